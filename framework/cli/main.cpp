@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// The command line: which commands there are, what they are called with, and what becomes of errors and signals.
+#include "cli/commands.hpp"
+
+#include <palpate/error.hpp>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+namespace palpate::cli {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+/// The first signal asks the run to stop after the tap under way, the second ends the program.
+extern "C" void on_signal(int signal) {
+  if (interrupted.exchange(true)) std::_Exit(128 + signal);
+}
+
+struct Arguments {
+  RunArguments run;
+  SweepArguments sweep;
+  ResumeArguments resume;
+  std::string directory;
+  std::vector<std::string> configs;
+  std::string plugin;
+  bool json = false;
+};
+
+/// What to do once the command line is understood.
+using Action = std::function<int(Program&)>;
+
+void add_run(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("run", "Run one experiment");
+  sub->add_option("CONFIG", a.run.config, "the experiment, a YAML file")->required();
+  sub->add_option("KEY=VALUE", a.run.overrides, "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)");
+  sub->add_option("--runs", a.run.runs, "where run directories are made")->capture_default_str();
+  sub->add_flag("--json", a.run.json, "print summary.json and nothing else");
+  sub->add_flag("--quiet", a.run.quiet, "print nothing");
+  sub->add_flag("--dry-run", a.run.dry_run, "say what would be run and where; move nothing");
+  sub->add_flag("--force", a.run.force, "move an earlier run of this id aside and run again");
+  CLI::Option* print = sub->add_flag("--print-config", a.run.print_config, "print the resolved config and stop");
+  sub->add_flag("--origins", a.run.origins, "with it, where each value came from")->needs(print);
+  sub->callback([&] { action = [&](Program& program) { return run(program, a.run); }; });
+}
+
+void add_sweep(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("sweep", "Run many experiments: every combination of some values");
+  sub->add_option("CONFIG", a.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
+  sub->add_option("KEY=VALUES", a.sweep.axes, "what to vary: seed=range(0,10), acquisition=weighted,random, "
+                                              "kernel.length_scale=log(1cm,5cm,8)");
+  sub->add_option("--runs", a.sweep.runs, "where run directories are made")->capture_default_str();
+  sub->add_option("-j", a.sweep.workers, "jobs at a time; the number of cores if not given")->check(CLI::Range(1, 1024));
+  sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
+  sub->add_flag("--quiet", a.sweep.quiet, "show no progress");
+  sub->callback([&] { action = [&](Program& program) { return sweep(program, a.sweep); }; });
+}
+
+void add_resume(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("resume", "Carry on a broken run or sweep");
+  sub->add_option("DIR", a.resume.directory, "its directory")->required();
+  sub->add_flag("--retry-failed", a.resume.retry_failed, "carry on what failed, too");
+  sub->add_flag("--force", a.resume.force, "carry on what another build began");
+  sub->add_flag("--quiet", a.resume.quiet, "print nothing but a sweep's table");
+  sub->add_option("-j", a.resume.workers, "jobs of a sweep at a time")->check(CLI::Range(1, 1024));
+  sub->callback([&] { action = [&](Program& program) { return resume(program, a.resume); }; });
+}
+
+void add_rest(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("status", "Where a run or a sweep stands");
+  sub->add_option("DIR", a.directory, "its directory")->required();
+  sub->callback([&] { action = [&](Program& program) { return status(program, a.directory); }; });
+
+  sub = app.add_subcommand("replay", "Send recorded taps through the same models and compare every number");
+  sub->add_option("DIR", a.directory, "the run's directory")->required();
+  sub->callback([&] { action = [&](Program& program) { return replay(program, a.directory); }; });
+
+  sub = app.add_subcommand("validate", "Check configs, run nothing");
+  sub->add_option("CONFIG", a.configs, "YAML files")->required();
+  sub->callback([&] { action = [&](Program& program) { return validate(program, a.configs); }; });
+
+  sub = app.add_subcommand("plugins", "List plugins, or the options of one");
+  sub->add_option("KIND/NAME", a.plugin, "a kind (kernel) or a plugin (kernel/rbf)");
+  sub->add_flag("--json", a.json, "as JSON");
+  sub->callback([&] { action = [&](Program& program) { return plugins(program, a.plugin, a.json); }; });
+
+  sub = app.add_subcommand("schema", "Print the JSON Schema of config files, for editors");
+  sub->callback([&] { action = [&](Program& program) { return schema(program); }; });
+}
+
+/// CLI11's own words, on one line.
+int usage_error(const CLI::Error& trouble) {
+  throw Error("", trouble.what(), "see palpate --help");
+}
+
+int perform(const Action& action, int argc, char** argv) {
+  const Installation installation = find_installation();
+  const PluginHost host(PluginHost::search_path(installation.plugins));
+  Composer composer(installation.configs);
+  Program program{installation, host, composer, {host, installation, {argv, argv + argc}, &interrupted}};
+  return action(program);
+}
+
+int run_main(int argc, char** argv) {
+  CLI::App app{"palpate: experiments in active touch. A robot arm, or a simulated one, taps an unknown object; Gaussian\n"
+               "processes say where to tap next.",
+               "palpate"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", kVersion);
+  Arguments arguments;
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  arguments.sweep.workers = cores;
+  arguments.resume.workers = cores;
+  Action action;
+  add_run(app, arguments, action);
+  add_sweep(app, arguments, action);
+  add_resume(app, arguments, action);
+  add_rest(app, arguments, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wish) {
+    return app.exit(wish);
+  } catch (const CLI::Error& trouble) {
+    return usage_error(trouble);
+  }
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  return perform(action, argc, argv);
+}
+
+int exit_status(Error::Kind kind) {
+  switch (kind) {
+    case Error::Kind::usage:
+      return kUsage;
+    case Error::Kind::run:
+      return kFailed;
+    case Error::Kind::busy:
+      return kBusy;
+  }
+  return kFailed;
+}
+
+}  // namespace
+}  // namespace palpate::cli
+
+int main(int argc, char** argv) {
+  try {
+    return palpate::cli::run_main(argc, argv);
+  } catch (const palpate::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return palpate::cli::exit_status(error.kind());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "palpate: {}\n", error.what());
+    return palpate::cli::kFailed;
+  }
+}

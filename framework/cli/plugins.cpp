@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "config/describe.hpp"
+#include "record/json.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace palpate::cli {
+namespace {
+
+Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
+
+std::vector<FieldDescription> options_of(const PluginHost& host, const PluginListing& row) {
+  return describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); });
+}
+
+Tree row_tree(const PluginHost& host, const PluginListing& row) {
+  Tree out = Tree::map();
+  out.at("kind") = quoted(row.kind);
+  out.at("name") = quoted(row.name);
+  out.at("summary") = quoted(row.summary);
+  out.at("file") = quoted(row.file.string());
+  out.at("trouble") = row.trouble.empty() ? Tree{} : quoted(row.trouble);
+  out.at("options") = row.trouble.empty() ? describe_tree(options_of(host, row)) : Tree::list();
+  return out;
+}
+
+void print_one(const PluginHost& host, const PluginListing& row) {
+  fmt::print("{}/{}: {}\n{}\n", row.kind, row.name, row.summary, row.file.string());
+  const std::vector<FieldDescription> options = options_of(host, row);
+  fmt::print("{}", options.empty() ? "  no options\n" : describe_text(options));
+}
+
+}  // namespace
+
+int plugins(Program& program, const std::string& what, bool json) {
+  const auto slash = what.find('/');
+  const std::string kind = what.substr(0, slash);
+  const std::string name = slash == std::string::npos ? std::string() : what.substr(slash + 1);
+  const std::vector<std::string> kinds = PluginHost::kinds();
+  if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+    throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
+  }
+  const std::vector<PluginListing> rows = program.host.list(kind, name);
+  // Asks for the very plugin, so that the error names its neighbours.
+  if (!name.empty() && rows.empty()) describe_fields([&](Fields& fields) { program.host.describe(kind, name, fields); });
+
+  const bool broken = std::any_of(rows.begin(), rows.end(), [](const PluginListing& row) { return !row.trouble.empty(); });
+  if (json) {
+    Tree list = Tree::list();
+    for (const PluginListing& row : rows) list.items.push_back(row_tree(program.host, row));
+    fmt::print("{}", to_json(list));
+  } else if (!name.empty() && !broken) {
+    print_one(program.host, rows.front());
+  } else {
+    for (const PluginListing& row : rows) {
+      if (row.trouble.empty()) fmt::print("{:<12} {:<14} {}\n", row.kind, row.name, row.summary);
+    }
+  }
+  for (const PluginListing& row : rows) {
+    if (!row.trouble.empty()) fmt::print(stderr, "{}\n", row.trouble);
+  }
+  return broken ? kFailed : kDone;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+
+#include <fmt/format.h>
+
+namespace palpate::cli {
+
+int replay(Program& program, const std::string& directory) {
+  constexpr std::size_t kShown = 10;
+  const ReplayReport report = replay_run(program.workshop, directory);
+  if (report.differences.empty()) {
+    fmt::print("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
+    return kDone;
+  }
+  fmt::print("{} taps, {} numbers, {} differ\n", report.taps, report.numbers, report.differences.size());
+  for (std::size_t i = 0; i < report.differences.size() && i < kShown; ++i) {
+    const Difference& one = report.differences[i];
+    fmt::print("{}: {}: recorded {}, now {}\n", one.tap == 0 ? std::string("summary") : fmt::format("tap {}", one.tap),
+               one.field, one.recorded, one.replayed);
+  }
+  if (report.differences.size() > kShown) fmt::print("... and {} more\n", report.differences.size() - kShown);
+  return kFailed;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "config/yaml.hpp"
+#include "record/run_directory.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace palpate::cli {
+namespace {
+
+/// Every value with its place, one a line, and what a later choice of type left behind.
+void print_origins(const ResolvedConfig& config) {
+  std::size_t width = 0;
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const ResolveNotes::Origin& one : config.notes.origins) {
+    Tree tree = config.tree;
+    const Tree& value = tree.at_path(one.path);
+    std::string text = to_yaml(value);
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    lines.emplace_back(fmt::format("{}: {}", one.path, text), one.place);
+    width = std::max(width, lines.back().first.size());
+  }
+  for (const auto& [text, place] : lines) fmt::print("{:<{}}  # {}\n", text, width, place);
+  for (const ResolveNotes::Origin& one : config.notes.dropped) {
+    fmt::print("# dropped: {} from {}, the type chosen later has no such option\n", one.path, one.place);
+  }
+}
+
+void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
+  const RunStatus status = read_status(directory);
+  fmt::print("{}: {} taps of {} with {}, kernel {}, seed {}\n", config.options.name, config.options.taps,
+             config.options.backend.type, config.options.acquisition.type, config.options.kernel.type, config.options.seed);
+  fmt::print("{}: {}\n", directory.string(),
+             status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
+}
+
+}  // namespace
+
+int run(Program& program, const RunArguments& arguments) {
+  std::vector<Override> overrides;
+  for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
+  const ResolvedConfig config = load_experiment(program.composer, program.host, arguments.config, overrides);
+  if (arguments.print_config) {
+    if (arguments.origins) {
+      print_origins(config);
+    } else {
+      fmt::print("{}", to_yaml(config.tree));
+    }
+    return kDone;
+  }
+  const std::filesystem::path directory = directory_of(config, arguments.runs);
+  if (arguments.dry_run) {
+    print_plan(config, directory);
+    return kDone;
+  }
+  const bool table = !arguments.quiet && !arguments.json;
+  std::unique_ptr<Journal> display;
+  if (table) display = std::make_unique<TapTable>(config.options.taps);
+  const RunReport report = start_run(program.workshop, config, directory, arguments.force, display.get());
+  if (arguments.json) {
+    fmt::print("{}", to_json_text(report.summary));
+  } else if (!arguments.quiet) {
+    print_summary(report);
+  }
+  if (report.interrupted) return kInterrupted;
+  return kDone;
+}
+
+}  // namespace palpate::cli

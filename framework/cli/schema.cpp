@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "config/describe.hpp"
+#include "experiment/experiment_options.hpp"
+#include "record/json.hpp"
+
+#include <fmt/format.h>
+
+namespace palpate::cli {
+namespace {
+
+Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
+
+/// The options of one plugin, with its type.
+Tree plugin_schema(const PluginHost& host, const PluginListing& row) {
+  Tree out = schema_of(describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); }));
+  out.at("title") = quoted(row.kind + "/" + row.name);
+  out.at("description") = quoted(row.summary);
+  out.at("properties").at("type").at("const") = quoted(row.name);
+  return out;
+}
+
+/// A group of a kind: its name as plain text, or the options of one of its plugins. The type may be left to a group
+/// named under `defaults`, so it is not required.
+Tree kind_schema(const PluginHost& host, const std::string& kind) {
+  Tree any = Tree::list();
+  Tree name = Tree::map();
+  name.at("type") = quoted("string");
+  name.at("description") = quoted("the name of a group file or of a plugin");
+  any.items.push_back(std::move(name));
+  for (const PluginListing& row : host.list(kind, "")) {
+    if (row.trouble.empty()) any.items.push_back(plugin_schema(host, row));
+  }
+  Tree out = Tree::map();
+  out.at("anyOf") = std::move(any);
+  return out;
+}
+
+}  // namespace
+
+int schema(Program& program) {
+  ExperimentOptions options;
+  Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); }));
+  Tree& properties = out.at("properties");
+  Tree scene = properties.at("scene");
+  Tree scene_name = Tree::map();
+  scene_name.at("type") = quoted("string");
+  properties.at("scene") = Tree::map();
+  Tree& either = properties.at("scene").at("anyOf");
+  either = Tree::list();
+  either.items = {std::move(scene_name), std::move(scene)};
+
+  Tree defaults = Tree::map();
+  defaults.at("description") = quoted("groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries win, then this file");
+  defaults.at("type") = quoted("array");
+  Tree& item = defaults.at("items");
+  item.at("type") = quoted("object");
+  item.at("additionalProperties").at("type") = quoted("string");
+  item.at("minProperties") = Tree::scalar("1");
+  item.at("maxProperties") = Tree::scalar("1");
+  properties.at("defaults") = std::move(defaults);
+
+  Tree sweep = Tree::map();
+  sweep.at("description") = quoted("what 'palpate sweep' varies");
+  sweep.at("type") = quoted("object");
+  sweep.at("properties").at("grid").at("type") = quoted("object");
+  sweep.at("additionalProperties") = Tree::scalar("false");
+  properties.at("sweep") = std::move(sweep);
+
+  Tree& definitions = out.at("definitions");
+  definitions = Tree::map();
+  for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);
+  out.at("$schema") = quoted("http://json-schema.org/draft-07/schema#");
+  out.at("title") = quoted("palpate experiment");
+  fmt::print("{}", to_json(out));
+  return kDone;
+}
+
+}  // namespace palpate::cli

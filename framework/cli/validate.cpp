@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "sweep/sweep.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+namespace palpate::cli {
+
+int validate(Program& program, const std::vector<std::string>& configs) {
+  int bad = 0;
+  for (const std::string& file : configs) {
+    // All files are looked at, so that one run of the command shows every file that needs a hand.
+    try {
+      const Tree tree = program.composer.compose(file, {});
+      if (tree.find("sweep") != nullptr) {
+        const SweepPlan plan = plan_sweep(program.composer, program.host, file, {}, "runs");
+        fmt::print("{}: valid, a sweep of {} jobs\n", file, plan.sweep.jobs.size());
+      } else {
+        fmt::print("{}: valid, id {}\n", file, resolve_experiment(tree, program.host).id);
+      }
+    } catch (const Error& trouble) {
+      fmt::print(stderr, "{}\n", trouble.what());
+      ++bad;
+    }
+  }
+  return bad == 0 ? kDone : kUsage;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+# Writes the commit that is checked out, and whether the tree differs from it, into OUTPUT, if that changed.
+set(commit "unknown")
+set(dirty "null")
+find_program(GIT git)
+if(GIT)
+  execute_process(COMMAND ${GIT} -C ${SOURCE} rev-parse HEAD OUTPUT_VARIABLE found RESULT_VARIABLE failed
+                  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT failed)
+    set(commit ${found})
+    execute_process(COMMAND ${GIT} -C ${SOURCE} status --porcelain OUTPUT_VARIABLE changes ERROR_QUIET)
+    set(dirty "false")
+    if(changes)
+      set(dirty "true")
+    endif()
+  endif()
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "{\"commit\": \"${commit}\", \"dirty\": ${dirty}}\n")

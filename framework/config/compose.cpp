@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "config/compose.hpp"
+
+#include "config/yaml.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `scene` is a group but no plugin: it has no type, and a missing file is an error at once.
+constexpr std::array<std::string_view, 5> kGroups{"kernel", "acquisition", "fitting", "backend", "scene"};
+
+std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+bool is_group(const std::string& path) {
+  return std::find(kGroups.begin(), kGroups.end(), last_key(path)) != kGroups.end();
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+}
+
+/// The path as the user would name it: relative when it lies below the working directory.
+fs::path shown(const fs::path& path) {
+  const fs::path near = path.lexically_proximate(fs::current_path());
+  return near.empty() || *near.begin() == ".." ? path : near;
+}
+
+void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
+  Tree* type = content.find("type");
+  if (type == nullptr) return;
+  type->layer = layer;
+  if (layer >= kFileLayer) type->place = place;
+}
+
+}  // namespace
+
+Override parse_override(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw Error("command line", fmt::format("'{}' is not KEY=VALUE", text), "for example kernel.length_scale=2cm");
+  }
+  Override out{text.substr(0, equals), parse_value(text.substr(equals + 1), "command line")};
+  // Lines and columns within one argument would only confuse.
+  const auto file = std::make_shared<const std::string>("command line");
+  const auto place_all = [&](auto&& self, Tree& tree) -> void {
+    tree.place = {file, 0, 0};
+    for (Tree& item : tree.items) self(self, item);
+    for (Tree::Entry& entry : tree.entries) {
+      entry.place = tree.place;
+      self(self, entry.value);
+    }
+  };
+  place_all(place_all, out.value);
+  if (out.path.front() == '.' || out.path.back() == '.' || out.path.find("..") != std::string::npos) {
+    throw Error("command line", fmt::format("'{}' is not a dotted path", out.path));
+  }
+  out.value.set_layer(kCommandLineLayer);
+  return out;
+}
+
+const Tree& Composer::load(const fs::path& file) {
+  const fs::path key = fs::absolute(file).lexically_normal();
+  const auto found = files_.find(key);
+  if (found != files_.end()) return found->second;
+  Tree tree = read_yaml(file);
+  if (!tree.is_map()) throw Error(tree.place.text(), "a config is a map", "write key: value");
+  return files_.emplace(key, std::move(tree)).first->second;
+}
+
+std::vector<fs::path> Composer::roots(const fs::path& beside) const {
+  std::vector<fs::path> out;
+  for (fs::path folder = fs::absolute(beside).lexically_normal();; folder = folder.parent_path()) {
+    out.push_back(folder);
+    if (folder == folder.parent_path()) break;
+  }
+  out.push_back(fs::current_path() / "configs");
+  out.push_back(shipped_);
+  return out;
+}
+
+fs::path Composer::find_group(const std::string& group, const std::string& name, const fs::path& beside) const {
+  for (const fs::path& root : roots(beside)) {
+    std::error_code ignored;
+    fs::path file = root / group / (name + ".yaml");
+    if (fs::exists(file, ignored)) return shown(file);
+  }
+  return {};
+}
+
+Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
+                             const fs::path& beside, std::vector<std::string>& chain) {
+  if (!is_name(name)) {
+    throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group),
+                "a name has letters, digits, '_' and '-', and no path");
+  }
+  const std::string link = group + "/" + name;
+  const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
+  chain.push_back(link);
+  if (cyclic) {
+    std::string text;
+    for (const std::string& one : chain) text += (text.empty() ? "" : " -> ") + one;
+    throw Error(place.text(), "defaults form a cycle", text);
+  }
+  const fs::path file = find_group(group, name, beside);
+  if (file.empty()) {
+    if (group == "scene") {
+      throw Error(place.text(), fmt::format("no file {}/{}.yaml", group, name),
+                  "looked in the folders above the config, ./configs and the program's configs");
+    }
+    Tree content = Tree::map();
+    content.place = place;
+    content.at("type") = Tree::scalar(name);
+    content.at("type").place = place;
+    return content;
+  }
+  Tree own = load(file);
+  Tree content = Tree::map();
+  content.place = own.place;
+  for (const Choice& base : take_defaults(own)) {
+    if (base.path != group) {
+      throw Error(base.place.text(), fmt::format("a {} may build only on another {}", group, group));
+    }
+    content.merge(group_content(group, base.name, base.place, file.parent_path(), chain));
+  }
+  for (const Tree::Entry& entry : own.entries) {
+    if (entry.key != group) {
+      throw Error(entry.place.text(), fmt::format("unknown key '{}'", entry.key),
+                  fmt::format("a file in {}/ holds only '{}:'", group, group));
+    }
+    if (!entry.value.is_map()) throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", group));
+    content.merge(entry.value);
+  }
+  chain.pop_back();
+  return content;
+}
+
+std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
+  std::vector<Choice> choices;
+  const Tree* defaults = own.find("defaults");
+  if (defaults == nullptr) return choices;
+  if (defaults->kind != Tree::Kind::list) {
+    throw Error(defaults->place.text(), "defaults: expects a list", "write '- kernel: rbf', one group a line");
+  }
+  for (const Tree& item : defaults->items) {
+    if (!item.is_map() || item.entries.size() != 1 || !item.entries.front().value.is_scalar()) {
+      throw Error(item.place.text(), "defaults: expects '- group: name'", "for example '- kernel: rbf'");
+    }
+    const Tree::Entry& entry = item.entries.front();
+    if (!is_group(entry.key)) {
+      throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key),
+                  suggestion(entry.key, {kGroups.begin(), kGroups.end()}));
+    }
+    choices.push_back({entry.key, entry.value.text, entry.value.place, kGroupLayer});
+  }
+  own.erase("defaults");
+  return choices;
+}
+
+void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const {
+  std::vector<std::string> taken;
+  for (Tree::Entry& entry : tree.entries) {
+    if (path.empty() && entry.key == "sweep") continue;
+    const std::string here = path.empty() ? entry.key : path + "." + entry.key;
+    if (is_group(here) && entry.value.is_scalar()) {
+      choices.push_back({here, entry.value.text, entry.value.place, entry.value.layer});
+      taken.push_back(entry.key);
+    } else if (entry.value.is_map() && !is_group(here)) {
+      take_names(entry.value, here, choices);
+    }
+  }
+  for (const std::string& key : taken) tree.erase(key);
+}
+
+Tree Composer::compose(const fs::path& file, const std::vector<Override>& overrides) {
+  Tree own = load(file);
+  const fs::path beside = fs::absolute(file).parent_path();
+  std::vector<Choice> choices = take_defaults(own);
+  take_names(own, "", choices);
+  for (const Override& one : overrides) {
+    if (!is_group(one.path) || !one.value.is_scalar()) continue;
+    const auto at_path = [&](const Choice& choice) { return choice.path == one.path; };
+    choices.erase(std::remove_if(choices.begin(), choices.end(), at_path), choices.end());
+    choices.push_back({one.path, one.value.text, one.value.place, one.value.layer});
+  }
+
+  Tree tree = Tree::map();
+  tree.place = own.place;
+  Layer layer = kGroupLayer;
+  for (const Choice& choice : choices) {
+    std::vector<std::string> chain;
+    Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+    content.set_layer(layer);
+    set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
+    ++layer;
+    Tree& slot = tree.at_path(choice.path);
+    if (slot.kind == Tree::Kind::null) slot = Tree::map();
+    if (slot.place.line == 0) slot.place = content.place;
+    slot.merge(content);
+  }
+  tree.merge(own);
+  for (const Override& one : overrides) {
+    if (is_group(one.path) && one.value.is_scalar()) continue;
+    Tree& slot = tree.at_path(one.path);
+    if (slot.kind == Tree::Kind::map && one.value.kind == Tree::Kind::map) {
+      slot.merge(one.value);
+    } else {
+      slot = one.value;
+    }
+  }
+  inherit_shared(tree);
+  return tree;
+}
+
+void inherit_shared(Tree& tree) {
+  for (const char* process : {"height", "weight"}) {
+    Tree* own = tree.find(process);
+    if (own == nullptr || !own->is_map()) continue;
+    for (const char* shared : {"kernel", "fitting"}) {
+      Tree* part = own->find(shared);
+      const Tree* base = tree.find(shared);
+      if (part == nullptr || base == nullptr || !part->is_map() || !base->is_map()) continue;
+      Tree merged = *base;
+      // What the shared one says is older than anything said for this process alone.
+      merged.shift_layer(-2 * kCommandLineLayer);
+      merged.merge(*part);
+      merged.place = part->place;
+      *part = std::move(merged);
+    }
+  }
+}
+
+}  // namespace palpate

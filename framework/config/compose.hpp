@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// A config is composed from groups, its own file and the command line. The result is a tree in which every value knows
+// its place and its layer; nothing is checked yet but the grammar.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// One `KEY=VALUE`: a dotted path and a value.
+struct Override {
+  std::string path;
+  Tree value;
+};
+
+/// Splits and reads `KEY=VALUE` as typed. Throws Error for a missing '=' or an empty key.
+Override parse_override(const std::string& text);
+
+/// Reads config files, once each, and composes them.
+///
+/// Groups are the keys `kernel`, `acquisition`, `fitting`, `backend` and `scene`, wherever they stand (`height.kernel`
+/// too). A plain name there, in the file or as an override, chooses the file <folder>/<group>/<name>.yaml, in the
+/// first folder that has it of: the folders above the config, ./configs, and the program's own configs. A name without
+/// such a file is taken as the type of a plugin with default options.
+class Composer {
+ public:
+  /// `shipped` is the program's own folder of configs; it need not exist.
+  explicit Composer(std::filesystem::path shipped) : shipped_(std::move(shipped)) {}
+
+  /// Groups in the order of `defaults`, then the file, then `overrides` in order.
+  ///
+  /// A group chosen by an override takes the place of the group chosen before at that path; what the file itself says
+  /// there stays, as far as the new type has that option (see resolve()). Throws Error for missing files, unknown
+  /// groups and cycles.
+  Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
+
+ private:
+  struct Choice {
+    std::string path;  ///< where the group goes
+    std::string name;
+    Place place;  ///< of the choice
+    Layer layer;  ///< of the choice: the type that it brings has this layer
+  };
+
+  const Tree& load(const std::filesystem::path& file);
+  std::vector<Choice> take_defaults(Tree& own) const;
+  void take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const;
+  std::filesystem::path find_group(const std::string& group, const std::string& name,
+                                   const std::filesystem::path& beside) const;
+  std::vector<std::filesystem::path> roots(const std::filesystem::path& beside) const;
+  Tree group_content(const std::string& group, const std::string& name, const Place& place,
+                     const std::filesystem::path& beside, std::vector<std::string>& chain);
+
+  std::filesystem::path shipped_;
+  std::map<std::filesystem::path, Tree> files_;
+};
+
+/// Fills `height.kernel`, `weight.fitting` and their like, where present, from the shared ones, so that they may name
+/// only what differs.
+void inherit_shared(Tree& tree);
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Option lists turned into text for people and into JSON Schema for editors.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <palpate/options.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// All that is known of one field.
+struct FieldDescription {
+  enum class Type { real, reals, integer, flag, text, choice, section, sections, plugin };
+  struct CaseDescription;
+
+  std::string name;
+  Type type = Type::real;
+  Unit unit = Unit::none;
+  std::string range;          ///< "> 0 m", "0 .. 1", or ""
+  std::string default_value;  ///< as it would be written; "" for none
+  std::string meaning;
+  std::string source;
+  bool required = false;
+  std::size_t count = 0;                 ///< of `reals`
+  std::string kind;                      ///< of `plugin`
+  std::vector<CaseDescription> cases;    ///< of `choice`
+  std::vector<FieldDescription> fields;  ///< of `section` and `sections`
+
+  /// "length", "whole number", "one of a, b", ...
+  std::string type_name() const;
+};
+
+struct FieldDescription::CaseDescription {
+  std::string name;
+  std::string meaning;
+  std::vector<FieldDescription> fields;
+};
+
+/// The description of what `list` lists.
+std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list);
+
+/// An aligned table, a field a line, nested fields indented by their path.
+std::string describe_text(const std::vector<FieldDescription>& fields);
+
+/// The same as a tree to be printed as JSON: name, type, unit, range, default, meaning, source, required.
+Tree describe_tree(const std::vector<FieldDescription>& fields);
+
+/// The `properties` of a JSON Schema object that allows exactly `fields`. A plugin field refers to
+/// "#/definitions/<kind>".
+Tree schema_of(const std::vector<FieldDescription>& fields);
+
+}  // namespace palpate

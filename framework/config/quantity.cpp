@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include "config/quantity.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace palpate {
+namespace {
+
+/// A unit is a power of ten where it can be, because a decimal shifted in its text stays exact.
+struct UnitName {
+  std::string_view name;
+  Unit unit;
+  int power;            ///< of ten
+  double factor = 1.0;  ///< beside it
+};
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::array kUnits{
+    UnitName{"m", Unit::metre, 0},           UnitName{"dm", Unit::metre, -1},
+    UnitName{"cm", Unit::metre, -2},         UnitName{"mm", Unit::metre, -3},
+    UnitName{"um", Unit::metre, -6},         UnitName{"s", Unit::second, 0},
+    UnitName{"ms", Unit::second, -3},        UnitName{"us", Unit::second, -6},
+    UnitName{"min", Unit::second, 0, 60.0},  UnitName{"h", Unit::second, 0, 3600.0},
+    UnitName{"N", Unit::newton, 0},          UnitName{"mN", Unit::newton, -3},
+    UnitName{"kN", Unit::newton, 3},         UnitName{"rad", Unit::radian, 0},
+    UnitName{"mrad", Unit::radian, -3},      UnitName{"deg", Unit::radian, 0, kPi / 180.0},
+    UnitName{"m/s", Unit::metre_per_second, 0},   UnitName{"cm/s", Unit::metre_per_second, -2},
+    UnitName{"mm/s", Unit::metre_per_second, -3},
+};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The length of the decimal number that `text` begins with; 0 if it does not.
+std::size_t decimal_length(std::string_view text) {
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+  std::size_t digits = 0;
+  for (; i < text.size() && is_digit(text[i]); ++i) ++digits;
+  if (i < text.size() && text[i] == '.') {
+    for (++i; i < text.size() && is_digit(text[i]); ++i) ++digits;
+  }
+  if (digits == 0) return 0;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    std::size_t j = i + 1;
+    if (j < text.size() && (text[j] == '-' || text[j] == '+')) ++j;
+    const std::size_t first = j;
+    for (; j < text.size() && is_digit(text[j]);) ++j;
+    if (j > first) i = j;
+  }
+  return i;
+}
+
+bool looks_octal(std::string_view number) {
+  if (!number.empty() && (number[0] == '-' || number[0] == '+')) number.remove_prefix(1);
+  return number.size() > 1 && number[0] == '0' && is_digit(number[1]);
+}
+
+std::string example(Unit unit) {
+  switch (unit) {
+    case Unit::none:
+      return "a plain number";
+    case Unit::metre:
+      return "a length like '1.7 cm'";
+    case Unit::second:
+      return "a time like '500 ms'";
+    case Unit::newton:
+      return "a force like '10 N'";
+    case Unit::radian:
+      return "an angle like '30 deg'";
+    case Unit::metre_per_second:
+      return "a speed like '10 cm/s'";
+  }
+  return {};
+}
+
+[[noreturn]] void refuse(const Tree& tree, const std::string& name, const std::string& reason, Unit unit) {
+  throw Error(tree.place.text(), fmt::format("{}: {}", name, reason), fmt::format("write {}", example(unit)));
+}
+
+/// Splits a scalar into number and unit, refusing what is not a scalar with a decimal number in front.
+std::pair<std::string_view, std::string_view> split(const Tree& tree, const std::string& name, Unit unit) {
+  if (tree.kind == Tree::Kind::null) refuse(tree, name, "has no value", unit);
+  if (!tree.is_scalar()) refuse(tree, name, "is a list or a map, not a number", unit);
+  const std::string_view text = tree.text;
+  const std::size_t length = decimal_length(text);
+  if (length == 0) refuse(tree, name, fmt::format("'{}' is not a number", text), unit);
+  std::string_view rest = text.substr(length);
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+  const std::string_view number = text.substr(0, length);
+  if (looks_octal(number)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has a leading zero", name, text),
+                "octal numbers are not read: write it without the zero");
+  }
+  return {number, rest};
+}
+
+double to_double(std::string_view number, int power, const Tree& tree, const std::string& name, Unit unit) {
+  // from_chars knows no leading '+', and shifting the exponent in the text keeps the decimal exact.
+  if (number[0] == '+') number.remove_prefix(1);
+  std::string text(number);
+  if (power != 0) {
+    const auto e = text.find_first_of("eE");
+    int exponent = 0;
+    if (e != std::string::npos) {
+      const char* first = text.data() + e + 1 + (text[e + 1] == '+' ? 1 : 0);
+      if (std::from_chars(first, text.data() + text.size(), exponent).ec != std::errc() || std::abs(exponent) > 9999) {
+        refuse(tree, name, fmt::format("'{}' is out of range", tree.text), unit);
+      }
+      text.erase(e);
+    }
+    text += fmt::format("e{}", exponent + power);
+  }
+  double value = 0.0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec != std::errc() || !std::isfinite(value)) {
+    refuse(tree, name, fmt::format("'{}' is out of range", tree.text), unit);
+  }
+  return value;
+}
+
+}  // namespace
+
+std::string unit_symbol(Unit unit) {
+  for (const UnitName& known : kUnits) {
+    if (known.unit == unit && known.power == 0 && known.factor == 1.0) return std::string(known.name);
+  }
+  return {};
+}
+
+std::string dimension_name(Unit unit) {
+  switch (unit) {
+    case Unit::none:
+      return "number";
+    case Unit::metre:
+      return "length";
+    case Unit::second:
+      return "time";
+    case Unit::newton:
+      return "force";
+    case Unit::radian:
+      return "angle";
+    case Unit::metre_per_second:
+      return "speed";
+  }
+  return {};
+}
+
+std::vector<std::string> unit_names(Unit unit) {
+  std::vector<std::string> names;
+  for (const UnitName& known : kUnits) {
+    if (known.unit == unit) names.emplace_back(known.name);
+  }
+  return names;
+}
+
+double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
+  const auto [number, symbol] = split(tree, name, unit);
+  if (unit == Unit::none) {
+    if (!symbol.empty()) {
+      throw Error(tree.place.text(), fmt::format("{}: '{}' is not a plain number", name, tree.text),
+                  "this one has no unit");
+    }
+    return to_double(number, 0, tree, name, unit);
+  }
+  if (symbol.empty()) refuse(tree, name, fmt::format("'{}' lacks its unit", tree.text), unit);
+  for (const UnitName& known : kUnits) {
+    if (known.name != symbol) continue;
+    if (known.unit != unit) {
+      refuse(tree, name, fmt::format("'{}' is a {}, not a {}", tree.text, dimension_name(known.unit), dimension_name(unit)),
+             unit);
+    }
+    return to_double(number, known.power, tree, name, unit) * known.factor;
+  }
+  throw Error(tree.place.text(), fmt::format("{}: unknown unit '{}'", name, symbol),
+              suggestion(symbol, unit_names(unit)));
+}
+
+std::int64_t read_integer(const Tree& tree, const std::string& name) {
+  const auto [number, rest] = split(tree, name, Unit::none);
+  std::int64_t value = 0;
+  const char* first = number.data() + (number[0] == '+' ? 1 : 0);
+  const char* last = number.data() + number.size();
+  const auto result = std::from_chars(first, last, value);
+  if (result.ec == std::errc::result_out_of_range) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' is out of range", name, tree.text), "at most 9223372036854775807");
+  }
+  if (result.ec != std::errc() || result.ptr != last || !rest.empty()) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' is not a whole number", name, tree.text));
+  }
+  return value;
+}
+
+std::string write_quantity(double value, Unit unit) {
+  // An angle reads back through its own unit; all written units are SI, so no factor is involved.
+  const std::string number = fmt::format("{}", value);
+  const std::string symbol = unit_symbol(unit);
+  return symbol.empty() ? number : number + " " + symbol;
+}
+
+}  // namespace palpate

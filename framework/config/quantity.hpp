@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Numbers as people write them in configs, with and without unit, read strictly.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <palpate/options.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace palpate {
+
+/// Reads `1.7 cm` as 0.017. The value is the double nearest to the decimal as written, so that `17 mm`, `1.7 cm` and
+/// `0.017 m` are the same bits. Throws Error at the tree's place for anything but a finite decimal with a unit of the
+/// dimension: a bare number, another dimension, an octal or hexadecimal look, NaN, infinity.
+double read_quantity(const Tree& tree, const std::string& name, Unit unit);
+
+/// Reads a whole number; same strictness.
+std::int64_t read_integer(const Tree& tree, const std::string& name);
+
+/// `0.017 m`, the shortest text that reads back as the same bits.
+std::string write_quantity(double value, Unit unit);
+
+/// "m", "s", "N", "rad", "m/s" or "".
+std::string unit_symbol(Unit unit);
+
+/// "a length", "a time", ... and the units that may be written, for messages and descriptions.
+std::string dimension_name(Unit unit);
+std::vector<std::string> unit_names(Unit unit);
+
+}  // namespace palpate

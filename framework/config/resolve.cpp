@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: MIT
+#include "config/resolve.hpp"
+
+#include "config/quantity.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+/// Reads one map and writes its resolved twin. Nested groups get a resolver of their own.
+class Resolver final : public Fields {
+ public:
+  /// `input` may be null: then every field has its default. `path` is "" at the top, else it ends in a dot.
+  Resolver(const Tree* input, std::string path, const PluginSource& plugins, ResolveNotes& notes)
+      : input_(input), path_(std::move(path)), plugins_(plugins), notes_(notes), output_(Tree::map()) {
+    if (input_ != nullptr && input_->kind != Tree::Kind::map && input_->kind != Tree::Kind::null) {
+      throw Error(input_->place.text(), fmt::format("{} is not a group of options", owner()), "write {key: value, ...}");
+    }
+  }
+
+  /// The options of a plugin: `type` was read by the caller, and options older than it may be dropped.
+  void set_type(const Tree& type) {
+    known_.emplace_back("type");
+    type_layer_ = std::max(type_layer_, type.layer);
+  }
+
+  /// Refuses keys that no field has claimed.
+  Tree finish() {
+    if (input_ != nullptr) {
+      for (const Tree::Entry& entry : input_->entries) {
+        if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+        if (entry.value.layer < type_layer_) {
+          notes_.dropped.push_back({path_ + entry.key, place_text(entry.value)});
+          continue;
+        }
+        throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), suggestion(entry.key, known_));
+      }
+    }
+    return std::move(output_);
+  }
+
+  void real(double& value, const Field& field) override {
+    if (const Tree* tree = claim(field)) value = checked(read_quantity(*tree, name(field), field.unit), *tree, field);
+    write(field, Tree::scalar(write_quantity(value, field.unit)));
+  }
+
+  void real(std::optional<double>& value, const Field& field) override {
+    if (const Tree* tree = claim(field); tree != nullptr && !is_none(*tree)) {
+      value = checked(read_quantity(*tree, name(field), field.unit), *tree, field);
+    }
+    if (value) write(field, Tree::scalar(write_quantity(*value, field.unit)));
+  }
+
+  void reals(double* values, std::size_t count, const Field& field) override {
+    if (const Tree* tree = claim(field)) {
+      if (tree->kind != Tree::Kind::list || tree->items.size() != count) {
+        throw Error(tree->place.text(), fmt::format("{}: expects a list of {} values", name(field), count));
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        const Tree& item = tree->items[i];
+        values[i] = checked(read_quantity(item, name(field), field.unit), item, field);
+      }
+    }
+    Tree list = Tree::list();
+    for (std::size_t i = 0; i < count; ++i) list.items.push_back(Tree::scalar(write_quantity(values[i], field.unit)));
+    write(field, std::move(list));
+  }
+
+  void integer(std::int64_t& value, const Field& field) override {
+    if (const Tree* tree = claim(field)) value = whole(*tree, field);
+    write(field, Tree::scalar(std::to_string(value)));
+  }
+
+  void integer(std::optional<std::int64_t>& value, const Field& field) override {
+    if (const Tree* tree = claim(field); tree != nullptr && !is_none(*tree)) value = whole(*tree, field);
+    if (value) write(field, Tree::scalar(std::to_string(*value)));
+  }
+
+  void flag(bool& value, const Field& field) override {
+    if (const Tree* tree = claim(field)) {
+      const bool yes = tree->is_scalar() && tree->text == "true";
+      if (!yes && !(tree->is_scalar() && tree->text == "false")) {
+        throw Error(tree->place.text(), fmt::format("{}: {} is not a truth value", name(field), shown(*tree)),
+                    "write true or false");
+      }
+      value = yes;
+    }
+    write(field, Tree::scalar(value ? "true" : "false"));
+  }
+
+  void text(std::string& value, const Field& field) override {
+    if (const Tree* tree = claim(field)) {
+      if (!tree->is_scalar()) throw Error(tree->place.text(), fmt::format("{}: expects a text", name(field)));
+      value = tree->text;
+    }
+    write(field, Tree::scalar(value, true));
+  }
+
+  void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
+    if (const Tree* tree = claim(field)) {
+      const auto found = std::find_if(cases.begin(), cases.end(), [&](const Case& one) {
+        return tree->is_scalar() && tree->text == one.name;
+      });
+      if (found == cases.end()) {
+        std::vector<std::string> names;
+        for (const Case& one : cases) names.emplace_back(one.name);
+        throw Error(tree->place.text(), fmt::format("{}: unknown value {}", name(field), shown(*tree)),
+                    suggestion(tree->is_scalar() ? tree->text : "", names));
+      }
+      index = static_cast<std::size_t>(found - cases.begin());
+      if (found->list) type_layer_ = std::max(type_layer_, tree->layer);
+    }
+    write(field, Tree::scalar(cases[index].name));
+    if (cases[index].list) cases[index].list(*this);
+  }
+
+  void section(Options& options, const Field& field) override {
+    const Tree* tree = claim(field);
+    Resolver inner(tree, path_ + field.name + ".", plugins_, notes_);
+    options.list(inner);
+    output_.at(field.name) = inner.finish();
+  }
+
+  void sections(const ListAccess& access, const Field& field) override {
+    Tree list = Tree::list();
+    if (const Tree* tree = claim(field)) {
+      if (tree->kind != Tree::Kind::list) {
+        throw Error(tree->place.text(), fmt::format("{}: expects a list", name(field)), "write [{...}, {...}]");
+      }
+      access.resize(tree->items.size());
+      for (std::size_t i = 0; i < tree->items.size(); ++i) {
+        Resolver inner(&tree->items[i], fmt::format("{}{}.{}.", path_, field.name, i), plugins_, notes_);
+        access.item(i).list(inner);
+        list.items.push_back(inner.finish());
+      }
+    }
+    output_.at(field.name) = std::move(list);
+  }
+
+  void plugin(PluginChoice& choice, const Field& field) override {
+    const Tree* tree = claim(field);
+    if (tree == nullptr && !choice.type.empty()) {
+      static const Tree nothing = Tree::map();
+      read_plugin(choice, nothing, nullptr, field);
+      return;
+    }
+    if (tree == nullptr || tree->kind == Tree::Kind::null) {
+      throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
+                  fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name));
+    }
+    if (!tree->is_map()) {
+      throw Error(tree->place.text(), fmt::format("{} is not a group of options", name(field)), "write {type: ...}");
+    }
+    const Tree* type = tree->find("type");
+    if (type == nullptr) {
+      throw Error(tree->place.text(), fmt::format("{} has no type", name(field)),
+                  fmt::format("'palpate plugins {}' lists the types", choice.kind));
+    }
+    read_plugin(choice, *tree, type, field);
+  }
+
+  void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) override {
+    if (input_ == nullptr || input_->find(field.name) == nullptr) {
+      known_.emplace_back(field.name);
+      return;
+    }
+    choice = PluginChoice{kind, {}, nullptr};
+    plugin(*choice, field);
+  }
+
+  void require(bool holds, const char* field, const std::string& reason) override {
+    if (holds) return;
+    const Tree* tree = input_ != nullptr ? input_->find(field) : nullptr;
+    throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
+  }
+
+ private:
+  /// The name by which messages call a field: its whole path.
+  std::string name(const Field& field) const { return path_ + field.name; }
+  std::string owner() const { return path_.empty() ? "the config" : path_.substr(0, path_.size() - 1); }
+  std::string where() const { return input_ != nullptr ? input_->place.text() : std::string(); }
+
+  static std::string place_text(const Tree& tree) { return tree.place.text(); }
+  static bool is_none(const Tree& tree) { return tree.is_scalar() && !tree.quoted && tree.text == "none"; }
+  static std::string shown(const Tree& tree) {
+    switch (tree.kind) {
+      case Tree::Kind::scalar:
+        return "'" + tree.text + "'";
+      case Tree::Kind::list:
+        return "a list";
+      case Tree::Kind::map:
+        return "a map";
+      case Tree::Kind::null:
+        return "nothing";
+    }
+    return {};
+  }
+
+  /// Finds the field's value and remembers that the field exists. Null when the config does not say it.
+  const Tree* claim(const Field& field) {
+    known_.emplace_back(field.name);
+    const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
+    if (tree == nullptr && field.required) {
+      throw Error(where(), fmt::format("'{}' is missing", name(field)), field.meaning);
+    }
+    return tree;
+  }
+
+  void write(const Field& field, Tree value) {
+    const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
+    notes_.origins.push_back({path_ + field.name, tree != nullptr ? place_text(*tree) : "default"});
+    if (tree != nullptr) value.place = tree->place;
+    output_.at(field.name) = std::move(value);
+  }
+
+  double checked(double value, const Tree& tree, const Field& field) const {
+    const bool low = field.open_below ? !(value > field.least) : value < field.least;
+    if (low || value > field.most) {
+      const std::string bound = low ? fmt::format("{} {}", field.open_below ? "above" : "at least",
+                                                  write_quantity(field.least, field.unit))
+                                    : fmt::format("at most {}", write_quantity(field.most, field.unit));
+      throw Error(tree.place.text(), fmt::format("{}: {} is out of range", name(field), tree.text),
+                  fmt::format("it must be {}", bound));
+    }
+    return value;
+  }
+
+  std::int64_t whole(const Tree& tree, const Field& field) const {
+    const std::int64_t value = read_integer(tree, name(field));
+    checked(static_cast<double>(value), tree, field);
+    return value;
+  }
+
+  void read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const Field& field) {
+    const std::string where = type != nullptr ? type->place.text() : this->where();
+    if (type != nullptr) {
+      if (!type->is_scalar()) throw Error(where, fmt::format("{}.type is not a name", name(field)));
+      choice.type = type->text;
+    }
+    Resolver inner(&tree, path_ + field.name + ".", plugins_, notes_);
+    inner.set_type(type != nullptr ? *type : tree);
+    notes_.origins.push_back({inner.path_ + "type", type != nullptr ? where : "default"});
+    try {
+      plugins_.describe(choice.kind, choice.type, inner);
+    } catch (const Error& trouble) {
+      if (!trouble.where().empty()) throw;
+      throw Error(where, trouble.reason(), trouble.hint(), trouble.kind());
+    }
+    choice.options = std::make_shared<const Tree>(inner.finish());
+    Tree& written = output_.at(field.name);
+    written = Tree::map();
+    written.at("type") = Tree::scalar(choice.type);
+    for (const Tree::Entry& entry : choice.options->entries) written.entries.push_back(entry);
+  }
+
+  const Tree* input_;
+  std::string path_;
+  const PluginSource& plugins_;
+  ResolveNotes& notes_;
+  Tree output_;
+  std::vector<std::string> known_;
+  Layer type_layer_ = std::numeric_limits<Layer>::min();
+};
+
+}  // namespace
+
+Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes) {
+  Resolver resolver(&input, "", plugins, notes);
+  options.list(resolver);
+  return resolver.finish();
+}
+
+void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
+          const std::function<void(Fields&)>& describe) {
+  ResolveNotes notes;
+  Resolver resolver(&resolved, path.empty() ? path : path + ".", plugins, notes);
+  describe(resolver);
+}
+
+}  // namespace palpate

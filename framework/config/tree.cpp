@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "config/tree.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace palpate {
+
+std::string Place::text() const {
+  if (!file) return {};
+  if (line == 0) return *file;
+  return fmt::format("{}:{}:{}", *file, line, column);
+}
+
+Tree Tree::scalar(std::string text, bool quoted) {
+  Tree tree;
+  tree.kind = Kind::scalar;
+  tree.text = std::move(text);
+  tree.quoted = quoted;
+  return tree;
+}
+
+Tree Tree::list() {
+  Tree tree;
+  tree.kind = Kind::list;
+  return tree;
+}
+
+Tree Tree::map() {
+  Tree tree;
+  tree.kind = Kind::map;
+  return tree;
+}
+
+const Tree* Tree::find(std::string_view key) const {
+  for (const Entry& entry : entries) {
+    if (entry.key == key) return &entry.value;
+  }
+  return nullptr;
+}
+
+Tree* Tree::find(std::string_view key) { return const_cast<Tree*>(std::as_const(*this).find(key)); }
+
+Tree& Tree::at(std::string_view key) {
+  if (Tree* found = find(key)) return *found;
+  kind = Kind::map;
+  entries.push_back({std::string(key), place, Tree{}});
+  entries.back().value.place = place;
+  return entries.back().value;
+}
+
+void Tree::erase(std::string_view key) {
+  entries.erase(std::remove_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; }),
+                entries.end());
+}
+
+namespace {
+
+/// Splits "a.b.c" into "a" and "b.c".
+std::pair<std::string_view, std::string_view> split_path(std::string_view path) {
+  const auto dot = path.find('.');
+  if (dot == std::string_view::npos) return {path, {}};
+  return {path.substr(0, dot), path.substr(dot + 1)};
+}
+
+}  // namespace
+
+const Tree* Tree::find_path(std::string_view path) const {
+  const auto [head, rest] = split_path(path);
+  const Tree* child = find(head);
+  return child == nullptr || rest.empty() ? child : child->find_path(rest);
+}
+
+Tree& Tree::at_path(std::string_view path) {
+  const auto [head, rest] = split_path(path);
+  if (kind == Kind::scalar) throw Error(place.text(), fmt::format("'{}' leads into a value, not a group", path));
+  if (kind == Kind::list) {
+    std::size_t index = 0;
+    const auto parsed = std::from_chars(head.data(), head.data() + head.size(), index);
+    if (parsed.ec != std::errc() || parsed.ptr != head.data() + head.size() || index >= items.size()) {
+      throw Error(place.text(), fmt::format("'{}' is not one of the {} items of the list", head, items.size()));
+    }
+    return rest.empty() ? items[index] : items[index].at_path(rest);
+  }
+  Tree& child = at(head);
+  return rest.empty() ? child : child.at_path(rest);
+}
+
+void Tree::set_layer(Layer value) {
+  layer = value;
+  for (Tree& item : items) item.set_layer(value);
+  for (Entry& entry : entries) entry.value.set_layer(value);
+}
+
+void Tree::shift_layer(int steps) {
+  layer += steps;
+  for (Tree& item : items) item.shift_layer(steps);
+  for (Entry& entry : entries) entry.value.shift_layer(steps);
+}
+
+void Tree::merge(const Tree& upper) {
+  if (kind == Kind::map && upper.kind == Kind::map) {
+    for (const Entry& entry : upper.entries) {
+      if (Tree* mine = find(entry.key)) {
+        mine->merge(entry.value);
+      } else {
+        entries.push_back(entry);
+      }
+    }
+    return;
+  }
+  if (upper.layer >= layer) *this = upper;
+}
+
+std::string Tree::canonical() const {
+  switch (kind) {
+    case Kind::null:
+      return "~";
+    case Kind::scalar:
+      return fmt::format("{}:{}", text.size(), text);
+    case Kind::list: {
+      std::string out = "[";
+      for (const Tree& item : items) out += item.canonical() + ",";
+      return out + "]";
+    }
+    case Kind::map: {
+      std::string out = "{";
+      for (const Entry& entry : entries) out += fmt::format("{}={},", entry.key, entry.value.canonical());
+      return out + "}";
+    }
+  }
+  return {};
+}
+
+namespace {
+
+/// Edit distance with swaps of neighbours (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string nearest(std::string_view name, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, std::min<std::size_t>(name.size(), 64) / 3) + 1;
+  if (name.size() > 64) return best;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
+  const std::string near = nearest(name, known);
+  if (!near.empty()) return fmt::format("did you mean '{}'?", near);
+  if (known.empty()) return {};
+  return fmt::format("known: {}",
+                     std::accumulate(std::next(known.begin()), known.end(), known.front(),
+                                     [](const std::string& a, const std::string& b) { return a + ", " + b; }));
+}
+
+}  // namespace palpate

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// A config as read: scalars, lists and maps, each with the place it came from. All other code sees configs, records
+// and sweeps as trees; only yaml.cpp and json.cpp know the formats.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+/// Where a value was written. Lines and columns count from 1; 0 means the whole file.
+struct Place {
+  std::shared_ptr<const std::string> file;  ///< path as the user would name it, or "command line"; may be null
+  int line = 0;
+  int column = 0;
+
+  /// "file:line:column", or as much of it as is known.
+  std::string text() const;
+};
+
+/// Who has the last word when two sources say the same thing: the higher layer. Groups named under `defaults` count
+/// up from 0 in their order.
+using Layer = int;
+constexpr Layer kGroupLayer = 0;
+constexpr Layer kFileLayer = 1000;
+constexpr Layer kSweepLayer = 2000;
+constexpr Layer kCommandLineLayer = 3000;
+
+/// A value in a config.
+struct Tree {
+  enum class Kind { null, scalar, list, map };
+  struct Entry;
+
+  Kind kind = Kind::null;
+  std::string text;            ///< of a scalar, as written
+  bool quoted = false;         ///< the scalar stood in quotes: it is text whatever it looks like
+  std::vector<Tree> items;     ///< of a list
+  std::vector<Entry> entries;  ///< of a map, in the order written, keys unique
+  Place place;
+  Layer layer = kFileLayer;
+
+  static Tree scalar(std::string text, bool quoted = false);
+  static Tree list();
+  static Tree map();
+
+  bool is_map() const { return kind == Kind::map; }
+  bool is_scalar() const { return kind == Kind::scalar; }
+
+  /// The value at `key` of a map, or null.
+  const Tree* find(std::string_view key) const;
+  Tree* find(std::string_view key);
+  /// The entry at `key`, appended if missing; turns a null into a map.
+  Tree& at(std::string_view key);
+  void erase(std::string_view key);
+  /// The value at a dotted path, or null.
+  const Tree* find_path(std::string_view path) const;
+  /// The value at a dotted path; maps on the way are made as needed, list items are named by their number from 0.
+  /// Throws Error where a scalar is in the way or the list is shorter.
+  Tree& at_path(std::string_view path);
+
+  /// Marks this tree and all below as coming from `layer`.
+  void set_layer(Layer layer);
+  /// Moves this tree and all below by `steps` layers, keeping their order among themselves.
+  void shift_layer(int steps);
+
+  /// Lays `upper` over this tree: maps are merged key by key, all else is replaced where upper's layer is not lower.
+  void merge(const Tree& upper);
+
+  /// One line that is equal for equal values, whatever their places: input of the hash that names a run.
+  std::string canonical() const;
+};
+
+struct Tree::Entry {
+  std::string key;
+  Place place;  ///< of the key
+  Tree value;
+};
+
+/// The name among `known` that `name` was probably meant to be, or "" when none is near.
+std::string nearest(std::string_view name, const std::vector<std::string>& known);
+
+/// "did you mean 'x'?" or "known: a, b, c"; "" when there is nothing to offer.
+std::string suggestion(std::string_view name, const std::vector<std::string>& known);
+
+}  // namespace palpate

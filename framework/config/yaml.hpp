@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// YAML in and out. The only door to yaml-cpp, and the place where its leniencies end: duplicate keys, merge keys,
+// several documents and alias bombs are errors with a place.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace palpate {
+
+/// Parses one document; an empty one is an empty map. `file` is what places will name. Throws Error.
+Tree parse_yaml(const std::string& text, const std::string& file);
+
+/// Reads and parses a file, which must be a regular file of at most 1 MiB. Throws Error.
+Tree read_yaml(const std::filesystem::path& path);
+
+/// A single value as it stands behind the `=` of an override. What does not parse as YAML is taken as text.
+Tree parse_value(const std::string& text, const std::string& file);
+
+/// Block-style YAML that reads back as the same tree.
+std::string to_yaml(const Tree& tree);
+
+}  // namespace palpate

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Read this file first: it is the program. After the paper (Sun and Min 2021, section III): tap, add the point, update
+// both processes, choose the next tap by the exploration function.
+#include "experiment/experiment.hpp"
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
+
+}  // namespace
+
+void Experiment::run(Journal& journal) {
+  for (;;) {
+    if (std::optional<std::string> reason = stop_reason()) {
+      result_.stop_reason = *reason;
+      return;
+    }
+    std::optional<TapRecord> tap = choose_next();
+    if (!tap) {
+      result_.stop_reason = "no candidate is left";
+      return;
+    }
+    journal.announce(*tap);
+    perform(*tap);
+    journal.record(*tap, clock_.take());
+  }
+}
+
+std::optional<TapRecord> Experiment::choose_next() {
+  TapRecord tap;
+  tap.number = result_.taps + 1;
+  if (result_.taps < static_cast<int>(initial_.size())) {
+    tap.candidate = initial_[static_cast<std::size_t>(result_.taps)];
+  } else {
+    choose_by_score(tap);
+    if (tap.candidate < 0) return std::nullopt;
+  }
+  tap.target = candidates_.target(tap.candidate);
+  describe_state(tap);
+  return tap;
+}
+
+void Experiment::choose_by_score(TapRecord& tap) {
+  const PhaseClock::Scope acquire(clock_, Phase::acquire);
+  Eigen::VectorXd scores(candidates_.size());
+  acquisition_->score(belief_, scores);
+  Pick picked = pick(scores, allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
+  tap.source = Source::acquisition;
+  if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
+    tap.source = Source::fallback;
+    tap.why = *picked.flat;
+    picked = pick(belief_.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
+  }
+  tap.candidate = picked.candidate;
+  if (picked.candidate < 0) return;
+  tap.score = picked.score;
+  tap.ties = picked.ties;
+  if (picked.runner_up >= 0) {
+    tap.runner_up = candidates_.target(picked.runner_up);
+    tap.runner_up_score = picked.runner_up_score;
+  }
+}
+
+void Experiment::perform(TapRecord& tap) {
+  {
+    const PhaseClock::Scope in_tap(clock_, Phase::tap);
+    tap.contact = backend_->tap({tap.number, tap.target, previous_});
+  }
+  Contact& contact = tap.contact;
+  if (contact.outcome == Outcome::contact && !std::isfinite(contact.height)) {
+    contact = {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused};
+  }
+  if (contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(contact.height);
+  absorb(tap.target, contact, tap.source);
+}
+
+void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
+  belief_.observe(target, contact);
+  if (source == Source::fallback) ++result_.interventions["fallback"];
+  if (contact.reason == kHeightRefused) ++result_.interventions["height_refused"];
+  previous_ = target;
+  ++result_.taps;
+  result_.robot_seconds += contact.seconds;
+  const auto candidate = static_cast<std::size_t>(candidates_.nearest(target.x, target.y, scene_->area()));
+  if (contact.outcome != Outcome::contact) {
+    ++result_.failed_taps;
+    allowed_[candidate] = false;
+    return;
+  }
+  tapped_[candidate] = true;
+  if (options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
+  const bool on = scene_->on_surface(contact.height);
+  ++(on ? result_.on_surface_taps : result_.off_surface_taps);
+  if (on && !result_.first_hit_tap) result_.first_hit_tap = result_.taps;
+}
+
+std::optional<std::string> Experiment::stop_reason() const {
+  if (context_.interrupted != nullptr && context_.interrupted->load()) return "interrupted";
+  if (result_.taps >= options_.taps) return "tap budget";
+  const StopOptions& stop = options_.stop;
+  if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";
+  if (stop.max_standard_deviation && result_.taps >= options_.initial.count &&
+      std::sqrt(belief_.height_variance().maxCoeff()) <= *stop.max_standard_deviation) {
+    return "max_standard_deviation";
+  }
+  return std::nullopt;
+}
+
+}  // namespace palpate

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// The experiment: tap, absorb, fit, infer, score, choose, tap again.
+#pragma once
+
+#include "experiment/experiment_options.hpp"
+#include "experiment/policy.hpp"
+#include "experiment/tap_belief.hpp"
+#include "experiment/tap_record.hpp"
+
+#include <palpate/backend.hpp>
+#include <palpate/plugin.hpp>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// One run of one config. Owns the loop and the objects in it; writes nothing.
+class Experiment {
+ public:
+  /// Builds scene, candidates, strategy and, unless one is given, backend. `factory` and `interrupted` (may be null)
+  /// must outlive it. Throws Error for what only building can find out.
+  Experiment(const ExperimentOptions& options, const PluginFactory& factory, const std::atomic<bool>* interrupted,
+             std::shared_ptr<Backend> backend = nullptr);
+
+  Experiment(const Experiment&) = delete;
+  Experiment& operator=(const Experiment&) = delete;
+
+  /// Takes over the taps of an earlier process, in their order. Call before run().
+  void resume(const std::vector<PastTap>& past);
+
+  /// Taps until a stop rule holds, and tells `journal` of every tap.
+  void run(Journal& journal);
+
+  /// The result as of now; computes what only the record needs, building models that the loop did not.
+  RunResult result();
+
+  const Candidates& candidates() const { return candidates_; }
+  const Scene& scene() const { return *scene_; }
+  const Backend& backend() const { return *backend_; }
+  const TapBelief& belief() const { return belief_; }
+  PhaseClock& clock() { return clock_; }
+  /// The scene at the candidates; null where the backend taps another world.
+  const Truth* truth();
+
+ private:
+  std::optional<std::string> stop_reason() const;
+  std::optional<TapRecord> choose_next();
+  void choose_by_score(TapRecord& tap);
+  void describe_state(TapRecord& tap);
+  void perform(TapRecord& tap);
+  void absorb(const Target& target, const Contact& contact, Source source);
+
+  ExperimentOptions options_;
+  std::unique_ptr<const Scene> scene_;
+  Context context_;
+  Candidates candidates_;
+  std::vector<int> initial_;
+  PhaseClock clock_;
+  TapBelief belief_;
+  std::shared_ptr<Acquisition> acquisition_;
+  std::shared_ptr<Backend> backend_;
+
+  std::vector<bool> allowed_;  ///< candidates that may be tapped
+  std::vector<bool> tapped_;   ///< candidates where there was a contact
+  std::optional<Target> previous_;
+  std::optional<Truth> truth_;
+  RunResult result_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/experiment_options.hpp"
+
+namespace palpate {
+
+void InitialOptions::list(Fields& fields) {
+  fields.choice(design, Field("design", "how the first taps are spread; always over different candidates"),
+                {{"random", "uniformly, from the seed alone", {}},
+                 {"sobol", "by a Sobol sequence, shifted by the seed", {}},
+                 {"grid", "on a square lattice", {}}});
+  fields.integer(count, Field("count", "how many").at_least(1).from("Sun and Min 2021: 3"));
+}
+
+void CandidateOptions::list(Fields& fields) {
+  fields.integer(count, Field("count", "cells per side; 47 if neither this nor spacing is given").at_least(1).at_most(2000));
+  fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
+  fields.require(!(count && spacing), "spacing", "give either count or spacing, not both");
+}
+
+void HeightOptions::list(Fields& fields) {
+  fields.real(signal, Field("signal", "prior standard deviation of the height")
+                          .in(Unit::metre)
+                          .above(0)
+                          .from("Sun and Min 2021: unit signal variance"));
+  fields.real(noise, Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0));
+  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
+  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
+}
+
+void WeightOptions::list(Fields& fields) {
+  fields.real(signal, Field("signal", "prior standard deviation of the label").above(0));
+  fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0));
+  fields.real(prior_mean, Field("prior_mean", "of the label where nothing is known").from("Sun and Min 2021: 0"));
+  fields.flag(clip, Field("clip", "let the acquisitions see the weight clipped to [0, 1]"));
+  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
+  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
+}
+
+void StopOptions::list(Fields& fields) {
+  fields.real(max_standard_deviation,
+              Field("max_standard_deviation", "stop when no candidate's height is less certain than this; builds the height process")
+                  .in(Unit::metre)
+                  .above(0));
+  fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
+}
+
+void LogOptions::list(Fields& fields) {
+  fields.choice(sync, Field("sync", "when taps.jsonl is forced to disk"),
+                {{"auto", "around each tap where a tap cannot be repeated, else never", {}},
+                 {"tap", "around each tap", {}},
+                 {"none", "never", {}}});
+  fields.flag(maps, Field("maps", "write the maps that each choice was made from: maps/tap_NNN.csv"));
+  fields.flag(surface, Field("surface", "write surface.csv; false by default in a sweep"));
+}
+
+void ExperimentOptions::list(Fields& fields) {
+  fields.text(name, Field("name", "of the experiment; the folder of its runs is a slug of it"));
+  fields.integer(seed, Field("seed", "fixes everything that is drawn").at_least(0));
+  fields.integer(taps, Field("taps", "budget of taps, the initial ones included").at_least(1).at_most(100000));
+  fields.section(initial, Field("initial", "the first taps, drawn from the candidates without replacement"));
+  fields.section(candidates, Field("candidates", "the places among which the next tap is chosen: cell centres of a grid"));
+  fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes"));
+  fields.section(height, Field("height", "the process of the heights above the desk"));
+  fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk"));
+  fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),
+                {{"auto", "the fastest that is exact enough", {}}, {"dense", "any kernel, any candidates", {}}});
+  fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate"));
+  fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both processes"));
+  fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive"),
+                {{"uncertainty", "tap where the height is least known", {}},
+                 {"none", "tap the first candidate, as the paper's rule does: it stalls", {}}});
+  fields.choice(repeat, Field("repeat", "may a candidate be tapped twice; failed ones never are"),
+                {{"forbid", "no", {}}, {"allow", "yes, with independent noise", {}}});
+  fields.real(tie_tolerance,
+              Field("tie_tolerance", "scores within this times (|best| + the score's prior scale) of the best are tied")
+                  .at_least(0)
+                  .at_most(1)
+                  .from("rounding reaches 1e-12; below 1e-9 it decides taps at 1.7 cm"));
+  fields.section(stop, Field("stop", "reasons to stop before the budget is spent"));
+  fields.section(scene, Field("scene", "what the world holds; a robot backend reads only area and desk"));
+  fields.plugin(backend, Field("backend", "what is tapped"));
+  fields.section(log, Field("log", "what is written"));
+  fields.require(initial.count <= taps, "taps", "the budget is smaller than the number of initial taps");
+}
+
+bool enters_id(const std::string& key) { return key != "name" && key != "log"; }
+
+}  // namespace palpate

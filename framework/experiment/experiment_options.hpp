@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Every top-level key of a config, with its default and its meaning.
+#pragma once
+
+#include "scene/scene_options.hpp"
+
+#include <palpate/options.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace palpate {
+
+struct InitialOptions : Options {
+  enum class Design { random, sobol, grid };
+  Design design = Design::random;
+  std::int64_t count = 3;
+  void list(Fields& fields) override;
+};
+
+struct CandidateOptions : Options {
+  std::optional<std::int64_t> count;
+  std::optional<double> spacing;
+  void list(Fields& fields) override;
+};
+
+/// What a process has of its own: the heights' in metres, the labels' without unit.
+struct HeightOptions : Options {
+  double signal = 1.0;
+  double noise = 1e-4;
+  std::optional<PluginChoice> kernel;
+  std::optional<PluginChoice> fitting;
+  void list(Fields& fields) override;
+};
+
+struct WeightOptions : Options {
+  double signal = 1.0;
+  double noise = 1e-4;
+  double prior_mean = 0.0;
+  bool clip = false;
+  std::optional<PluginChoice> kernel;
+  std::optional<PluginChoice> fitting;
+  void list(Fields& fields) override;
+};
+
+struct StopOptions : Options {
+  std::optional<double> max_standard_deviation;
+  std::optional<double> robot_time;
+  void list(Fields& fields) override;
+};
+
+struct LogOptions : Options {
+  enum class Sync { automatic, tap, none };
+  Sync sync = Sync::automatic;
+  bool maps = false;
+  bool surface = true;
+  void list(Fields& fields) override;
+};
+
+struct ExperimentOptions : Options {
+  enum class Posterior { automatic, dense };
+  enum class Fallback { uncertainty, none };
+  enum class Repeat { forbid, allow };
+
+  std::string name = "experiment";
+  std::int64_t seed = 1;
+  std::int64_t taps = 17;
+  InitialOptions initial;
+  CandidateOptions candidates;
+  PluginChoice kernel{"kernel", {}, nullptr};
+  HeightOptions height;
+  WeightOptions weight;
+  Posterior posterior = Posterior::automatic;
+  PluginChoice acquisition{"acquisition", {}, nullptr};
+  PluginChoice fitting{"fitting", "fixed", nullptr};
+  Fallback fallback = Fallback::uncertainty;
+  Repeat repeat = Repeat::forbid;
+  double tie_tolerance = 1e-8;
+  StopOptions stop;
+  SceneOptions scene;
+  PluginChoice backend{"backend", {}, nullptr};
+  LogOptions log;
+
+  void list(Fields& fields) override;
+};
+
+/// Top-level keys that do not change what a run computes: they stay out of its id.
+bool enters_id(const std::string& key);
+
+}  // namespace palpate

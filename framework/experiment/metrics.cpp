@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/metrics.hpp"
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kLogTwoPi = 1.83787706640934548356;
+/// 97.5 % quantile of the standard normal distribution.
+constexpr double kNormal975 = 1.95996398454005423552;
+
+}  // namespace
+
+Truth truth_at(const Candidates& candidates, const Scene& scene) {
+  Truth truth{Eigen::VectorXd(candidates.size()), Eigen::Array<bool, Eigen::Dynamic, 1>(candidates.size())};
+  for (int i = 0; i < candidates.size(); ++i) {
+    truth.height(i) = scene.height(candidates.points(i, 0), candidates.points(i, 1));
+    truth.on(i) = scene.on_surface(truth.height(i));
+  }
+  return truth;
+}
+
+std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface) {
+  double sum = 0.0;
+  Eigen::Index cells = 0;
+  for (Eigen::Index i = 0; i < map.size(); ++i) {
+    if (only_on_surface && !truth.on(i)) continue;
+    const double error = map(i) - truth.height(i);
+    sum += error * error;
+    ++cells;
+  }
+  if (cells == 0) return std::nullopt;
+  return std::sqrt(sum / static_cast<double>(cells));
+}
+
+double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
+  const auto predicted = probability.array() >= 0.5;
+  const auto both = (predicted && truth.on).count();
+  const auto either = (predicted || truth.on).count();
+  return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
+}
+
+const Eigen::VectorXd& reconstruction(const TapBelief& belief) { return belief.height_mean(); }
+
+Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
+  Errors out;
+  if (belief.height_process() != nullptr) {
+    out.rmse = rmse(reconstruction(belief), truth, false);
+    out.rmse_on_surface = rmse(reconstruction(belief), truth, true);
+    out.rmse_height = rmse(belief.height_mean(), truth, true);
+  }
+  if (belief.weight_process() != nullptr) out.footprint_iou = footprint_iou(belief.weight_mean(), truth);
+  return out;
+}
+
+Errors final_errors(const TapBelief& belief, const Truth& truth) {
+  belief.height_mean();
+  belief.weight_mean();
+  return errors_so_far(belief, truth);
+}
+
+Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped) {
+  const Eigen::VectorXd& mean = belief.height_mean();
+  const Eigen::VectorXd& variance = belief.height_variance();
+  const double noise = belief.height_noise() * belief.height_noise();
+  double log_density = 0.0;
+  int inside = 0;
+  int cells = 0;
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    const double spread = variance(i) + noise;
+    if (!truth.on(i) || tapped[static_cast<std::size_t>(i)] || !(spread > 0.0)) continue;
+    const double error = truth.height(i) - mean(i);
+    log_density += -0.5 * (kLogTwoPi + std::log(spread) + error * error / spread);
+    inside += std::abs(error) <= kNormal975 * std::sqrt(spread) ? 1 : 0;
+    ++cells;
+  }
+  if (cells == 0) return {};
+  return {-log_density / cells, static_cast<double>(inside) / cells};
+}
+
+}  // namespace palpate

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// How good a reconstruction is, over the candidate cells, where the truth is known.
+#pragma once
+
+#include "experiment/tap_belief.hpp"
+
+#include <palpate/scene.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+/// The scene as seen at the candidates.
+struct Truth {
+  Eigen::VectorXd height;                   ///< metres
+  Eigen::Array<bool, Eigen::Dynamic, 1> on; ///< the cell's centre is on an object
+};
+
+Truth truth_at(const Candidates& candidates, const Scene& scene);
+
+/// Errors that need one of the two models; absent where there is no such cell or the model was not read.
+struct Errors {
+  std::optional<double> rmse;             ///< metres, the reconstructed scene, desk included
+  std::optional<double> rmse_on_surface;  ///< metres, the same over the cells on an object
+  std::optional<double> rmse_height;      ///< metres, the height mean itself over the cells on an object
+  std::optional<double> footprint_iou;    ///< predicted against true cells on an object; 1 if both are empty
+};
+
+/// Root mean square of (map - truth.height), over all cells or over those on an object. None if there are none.
+std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface);
+
+/// Intersection over union of the cells where `probability` >= 1/2 with those on an object.
+double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth);
+
+/// The errors so far of the models that the loop has built; builds none.
+Errors errors_so_far(const TapBelief& belief, const Truth& truth);
+
+/// The errors of the final models; builds what is missing.
+Errors final_errors(const TapBelief& belief, const Truth& truth);
+
+/// Does the height model know what it does not know? Over the cells on an object that were not tapped, noise included.
+struct Calibration {
+  std::optional<double> nlpd;         ///< mean negative log predictive density, natural logarithm of 1/m
+  std::optional<double> coverage_95;  ///< share of cells within the central 95 % interval
+};
+Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped);
+
+/// The surface as the config's `surface` reconstructs it: the height mean.
+const Eigen::VectorXd& reconstruction(const TapBelief& belief);
+
+}  // namespace palpate

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/policy.hpp"
+
+#include <palpate/error.hpp>
+
+#include <boost/random/sobol.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+std::vector<int> draw_random(int count, int candidates, Random& random) {
+  // The first steps of a Fisher-Yates shuffle.
+  std::vector<int> order(static_cast<std::size_t>(candidates));
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = 0; i < count; ++i) {
+    const auto from = static_cast<std::size_t>(i) + random.index(static_cast<std::uint64_t>(candidates - i));
+    std::swap(order[static_cast<std::size_t>(i)], order[from]);
+  }
+  order.resize(static_cast<std::size_t>(count));
+  return order;
+}
+
+/// Adds the candidate nearest to (x, y) unless it was taken before.
+void take(std::vector<int>& design, const Candidates& candidates, double x, double y, const Area& area) {
+  const int index = candidates.nearest(x, y, area);
+  if (std::find(design.begin(), design.end(), index) == design.end()) design.push_back(index);
+}
+
+std::vector<int> draw_sobol(std::size_t count, const Candidates& candidates, const Area& area, Random& random) {
+  // Cranley-Patterson rotation: one random shift, modulo 1, keeps the even spread and makes it depend on the seed.
+  const double shift_x = random.uniform();
+  const double shift_y = random.uniform();
+  boost::random::sobol sequence(2);
+  const double scale = 1.0 / (static_cast<double>(boost::random::sobol::max()) + 1.0);
+  const auto next = [&](double shift) { return std::fmod(static_cast<double>(sequence()) * scale + shift, 1.0); };
+  std::vector<int> design;
+  for (std::size_t i = 0; design.size() < count && i < 64 * static_cast<std::size_t>(candidates.size()); ++i) {
+    const double x = next(shift_x) * area.width;
+    const double y = next(shift_y) * area.depth;
+    take(design, candidates, x, y, area);
+  }
+  return design;
+}
+
+std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, const Area& area) {
+  const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
+  std::vector<int> design;
+  for (int i = 0; i < side * side && design.size() < count; ++i) {
+    const double x = (i % side + 0.5) * area.width / side;
+    const double y = (i / side + 0.5) * area.depth / side;
+    take(design, candidates, x, y, area);
+  }
+  return design;
+}
+
+}  // namespace
+
+std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
+                                std::uint64_t seed) {
+  const auto count = static_cast<std::size_t>(options.count);
+  if (options.count > candidates.size()) {
+    throw Error("", fmt::format("initial.count: {} taps, but there are only {} candidates", count, candidates.size()));
+  }
+  Random random(seed, "initial");
+  std::vector<int> design;
+  switch (options.design) {
+    case InitialOptions::Design::random:
+      return draw_random(static_cast<int>(count), candidates.size(), random);
+    case InitialOptions::Design::sobol:
+      design = draw_sobol(count, candidates, area, random);
+      break;
+    case InitialOptions::Design::grid:
+      design = draw_lattice(count, candidates, area);
+      break;
+  }
+  // A design nearly as fine as the candidates themselves meets some of them twice: the free ones follow in order.
+  for (int i = 0; design.size() < count; ++i) {
+    if (std::find(design.begin(), design.end(), i) == design.end()) design.push_back(i);
+  }
+  return design;
+}
+
+Pick pick(const VectorView& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
+  Pick out;
+  const auto is_allowed = [&](Eigen::Index i) { return allowed[static_cast<std::size_t>(i)]; };
+  double best = 0.0;
+  double least = 0.0;
+  int seen = 0;
+  for (Eigen::Index i = 0; i < scores.size(); ++i) {
+    if (!is_allowed(i)) continue;
+    best = seen == 0 ? scores(i) : std::max(best, scores(i));
+    least = seen == 0 ? scores(i) : std::min(least, scores(i));
+    ++seen;
+  }
+  if (seen == 0) return out;
+  const double bound = tolerance * (std::abs(best) + scale);
+  for (Eigen::Index i = 0; i < scores.size(); ++i) {
+    if (!is_allowed(i)) continue;
+    if (scores(i) >= best - bound) {
+      ++out.ties;
+      if (out.candidate < 0) {
+        out.candidate = static_cast<int>(i);
+        out.score = scores(i);
+        continue;
+      }
+    }
+    if (out.runner_up < 0 || scores(i) > out.runner_up_score) {
+      out.runner_up = static_cast<int>(i);
+      out.runner_up_score = scores(i);
+    }
+  }
+  if (best <= 0.0) {
+    out.flat = "no score is positive";
+  } else if (seen > 1 && best - least <= bound) {
+    out.flat = "every score is equal";
+  }
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// A config ready to run: options, the resolved tree, and the id that it has because of its content.
+#pragma once
+
+#include "config/compose.hpp"
+#include "config/resolve.hpp"
+#include "experiment/experiment_options.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+struct ResolvedConfig {
+  ExperimentOptions options;
+  Tree tree;           ///< every field with its final value; reads back as the same config
+  ResolveNotes notes;  ///< where the values came from
+  std::string id;      ///< 12 hex digits: a hash of all that decides what a run computes
+};
+
+/// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.
+ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
+
+/// Composes and resolves. Throws Error with a place in `file`, in a group, or on the command line.
+ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
+                               const std::vector<Override>& overrides);
+
+/// The name of a run's folder: letters, digits, '.', '_' and '-' of `name`, at most 64, never empty or hidden.
+std::string slug(const std::string& name);
+
+}  // namespace palpate

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// What stands around the loop of experiment.cpp: building it, taking over a broken one, and telling its result.
+#include "experiment/experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+Candidates make_candidates(const CandidateOptions& options, const Area& area) {
+  constexpr std::int64_t kPaperCount = 47;
+  if (options.spacing) return grid_by_spacing(area, *options.spacing);
+  return grid_by_count(area, static_cast<int>(options.count.value_or(kPaperCount)));
+}
+
+ProcessState state_of(const Process& process) {
+  return {process.kernel().parameters(), process.settings(), process.log_marginal_likelihood(), process.jitter(),
+          process.condition()};
+}
+
+}  // namespace
+
+Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,
+                       const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend)
+    : options_(options),
+      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed))),
+      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted},
+      candidates_(make_candidates(options.candidates, scene_->area())),
+      initial_(initial_design(options.initial, candidates_, scene_->area(), context_.seed)),
+      belief_(options_, candidates_, context_, clock_),
+      acquisition_(context_.create<Acquisition>(options.acquisition)),
+      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),
+      allowed_(static_cast<std::size_t>(candidates_.size()), true),
+      tapped_(allowed_.size(), false) {
+  result_.interventions = {{"fallback", 0}, {"height_refused", 0}, {"jitter", 0}, {"variance_clamped", 0}};
+}
+
+void Experiment::resume(const std::vector<PastTap>& past) {
+  for (const PastTap& tap : past) absorb(tap.target, tap.contact, tap.source);
+}
+
+const Truth* Experiment::truth() {
+  if (!backend_->scene_is_truth()) return nullptr;
+  if (!truth_) truth_ = truth_at(candidates_, *scene_);
+  return &*truth_;
+}
+
+void Experiment::describe_state(TapRecord& tap) {
+  const PhaseClock::Scope log(clock_, Phase::log);
+  if (const Process* height = belief_.height_process()) {
+    tap.uncertainty = belief_.uncertainty()(tap.candidate);
+    const Eigen::ArrayXd deviation = belief_.height_variance().array().sqrt();
+    tap.max_standard_deviation = deviation.maxCoeff();
+    tap.mean_standard_deviation = deviation.mean();
+    tap.height_process = state_of(*height);
+  }
+  if (const Process* weight = belief_.weight_process()) {
+    tap.weight = belief_.weight()(tap.candidate);
+    tap.min_weight = belief_.weight_mean().minCoeff();
+    tap.max_weight = belief_.weight_mean().maxCoeff();
+    tap.weight_process = state_of(*weight);
+  }
+  if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
+  if (const Truth* known = truth()) {
+    tap.true_on_surface = known->on(tap.candidate);
+    tap.errors = errors_so_far(belief_, *known);
+  }
+}
+
+RunResult Experiment::result() {
+  RunResult out = result_;
+  out.interrupted = out.stop_reason == "interrupted";
+  if (const Truth* known = truth()) {
+    out.errors = final_errors(belief_, *known);
+    out.calibration = calibration(belief_, *known, tapped_);
+  }
+  for (const Process* process : {belief_.height_process(), belief_.weight_process()}) {
+    if (process == nullptr) continue;
+    out.jitter_max = std::max(out.jitter_max, process->jitter());
+    out.interventions["jitter"] += process->jitter_raised();
+    out.interventions["variance_clamped"] += process->variances_clamped();
+  }
+  return out;
+}
+
+}  // namespace palpate

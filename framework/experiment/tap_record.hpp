@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// What one tap leaves behind, and what a whole run does.
+#pragma once
+
+#include "experiment/metrics.hpp"
+#include "experiment/phases.hpp"
+
+#include <palpate/types.hpp>
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Who chose a tap.
+enum class Source { initial, acquisition, fallback };
+
+/// A process as it stood when a tap was chosen.
+struct ProcessState {
+  std::vector<KernelParameter> kernel;
+  ProcessSettings settings;
+  double log_marginal_likelihood = 0.0;
+  double jitter = 0.0;
+  double condition = 1.0;
+};
+
+/// One tap: the choice, the state it was made from, and what came of it. Everything about the models is absent where
+/// the loop had not built them.
+struct TapRecord {
+  int number = 1;
+  Source source = Source::initial;
+  std::string why;  ///< of a fallback
+  int candidate = 0;
+  Target target;
+
+  // At the choice.
+  std::optional<double> score, uncertainty, weight, exploration;
+  std::optional<int> ties;
+  std::optional<Target> runner_up;
+  std::optional<double> runner_up_score;
+  std::optional<double> max_standard_deviation, mean_standard_deviation, min_weight, max_weight;
+  std::optional<ProcessState> height_process, weight_process;
+  Errors errors;
+
+  // After the tap.
+  Contact contact;
+  std::optional<bool> on_surface;       ///< absent unless the outcome is a contact
+  std::optional<bool> true_on_surface;  ///< absent where no truth is known
+};
+
+/// The result of a run, in the order of summary.json but for what the record adds (clocks, memory, names).
+struct RunResult {
+  std::string stop_reason;
+  bool interrupted = false;
+  int taps = 0;
+  int on_surface_taps = 0;
+  int off_surface_taps = 0;
+  int failed_taps = 0;
+  std::optional<int> first_hit_tap;
+  Errors errors;
+  Calibration calibration;
+  double robot_seconds = 0.0;
+  double jitter_max = 0.0;
+  std::map<std::string, int> interventions;  ///< by kind, zeros included
+};
+
+/// Learns of every tap, in time.
+class Journal {
+ public:
+  virtual ~Journal() = default;
+  /// The tap is chosen; nothing has moved.
+  virtual void announce(const TapRecord& tap) = 0;
+  /// The tap is over. `seconds` is the time since the last tap, by phase.
+  virtual void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) = 0;
+};
+
+/// A tap that an earlier process made, for a run that is carried on.
+struct PastTap {
+  Target target;
+  Contact contact;
+  Source source = Source::initial;
+};
+
+}  // namespace palpate

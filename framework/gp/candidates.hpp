@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// The places among which the next tap is chosen: the centres of a grid of cells over the area.
+#pragma once
+
+#include <palpate/scene.hpp>
+#include <palpate/types.hpp>
+
+namespace palpate {
+
+/// columns x rows cell centres, row by row: index = row * columns + column, x grows with the column, y with the row.
+struct Candidates {
+  int columns = 0;
+  int rows = 0;
+  Points points;
+
+  int size() const { return columns * rows; }
+  Target target(int index) const { return {points(index, 0), points(index, 1)}; }
+
+  /// The candidate whose cell holds (x, y); places outside the area belong to the nearest cell.
+  int nearest(double x, double y, const Area& area) const;
+};
+
+/// `count` cells along each side; >= 1.
+Candidates grid_by_count(const Area& area, int count);
+
+/// Cells of about `spacing` metres: each side is cut into round(side / spacing) cells, at least one.
+Candidates grid_by_spacing(const Area& area, double spacing);
+
+}  // namespace palpate

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Plugin kind `kernel`: how alike the heights at two places are.
+#pragma once
+
+#include <palpate/types.hpp>
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A named hyperparameter of a kernel as it stands now, for the record.
+struct KernelParameter {
+  std::string name;  ///< the option it came from
+  double value;      ///< SI
+};
+
+/// The shape of a covariance function; signal variance and noise belong to the process, not to the kernel.
+///
+/// Laws, checked by the contract tests for every kernel found: symmetric, covariance(A, A) positive semi-definite, its
+/// diagonal equal to variance(A), |k(a, b)|^2 <= k(a, a) k(b, b), a batch equal to the same points one by one, finite
+/// for all finite points. Thread use: const methods may run at the same time.
+class Kernel {
+ public:
+  static constexpr const char* kKind = "kernel";
+
+  virtual ~Kernel() = default;
+
+  /// k(a_i, b_j) for all pairs: `a` n x 2, `b` m x 2, `out` n x m. Never throws, allocates nothing in proportion to n.
+  virtual void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const = 0;
+
+  /// k(a_i, a_i): `a` n x 2, `out` n. Cheaper than the diagonal of covariance(a, a).
+  virtual void variance(const PointsView& a, VectorOut out) const = 0;
+
+  /// The hyperparameters in the order of the options.
+  virtual std::vector<KernelParameter> parameters() const = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// One list of fields per options struct, and five uses of it: reading a config strictly, writing the resolved config,
+// describing the options to people, the JSON Schema, and the hash that names a run.
+//
+// An options struct derives from Options, gives each member its default, and names its fields once:
+//
+//     struct RbfOptions : Options {
+//       double length_scale = 0.017;
+//       void list(Fields& fields) override {
+//         fields.real(length_scale, Field("length_scale", "distance over which heights stay alike")
+//                                       .in(Unit::metre).above(0));
+//       }
+//     };
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+class Fields;
+struct Tree;
+
+/// The dimension that a quantity has. In a config a quantity of any dimension but `none` carries its unit (`1.7 cm`);
+/// in the struct it is SI.
+enum class Unit { none, metre, second, newton, radian, metre_per_second };
+
+/// A group of options with one field list.
+struct Options {
+  virtual ~Options() = default;
+
+  /// Names every field once, in the order in which users read them. Must list the same fields at each call, but that
+  /// a choice already listed may decide which fields follow.
+  virtual void list(Fields& fields) = 0;
+};
+
+/// The choice of a plugin in a config: `{type: rbf, length_scale: 1.7 cm}`. Filled by Fields::plugin, turned into an
+/// object by Context::create.
+struct PluginChoice {
+  std::string kind;                     ///< "kernel", "acquisition", ...
+  std::string type;                     ///< the plugin's name
+  std::shared_ptr<const Tree> options;  ///< its options, checked and complete
+};
+
+/// What is said about one field: everything but its value.
+class Field {
+ public:
+  /// `key` is the name in the config, `sentence` its meaning without a full stop. Both must outlive the call.
+  Field(const char* key, const char* sentence) : name(key), meaning(sentence) {}
+
+  /// Its dimension; `none` if not said.
+  Field& in(Unit dimension) { return unit = dimension, *this; }
+  /// Its range: open below at `bound`, or closed below, or closed above.
+  Field& above(double bound) { return least = bound, open_below = true, *this; }
+  Field& at_least(double bound) { return least = bound, open_below = false, *this; }
+  Field& at_most(double bound) { return most = bound, *this; }
+  /// Where the default comes from: a paper, a data sheet, a measurement.
+  Field& from(const char* text) { return source = text, *this; }
+  /// No default: a config must say it.
+  Field& needed() { return required = true, *this; }
+
+  const char* name;
+  const char* meaning;
+  const char* source = "";
+  Unit unit = Unit::none;
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool open_below = false;
+  bool required = false;
+};
+
+/// One of the named values of a choice. A choice that is a `type` may bring fields of its own.
+struct Case {
+  const char* name;
+  const char* meaning;
+  std::function<void(Fields&)> list;  ///< the fields that come with this value, beside the choice; may be empty
+};
+
+/// Access to a list of sections without naming the container.
+struct ListAccess {
+  std::function<void(std::size_t)> resize;
+  std::function<std::size_t()> size;
+  std::function<Options&(std::size_t)> item;
+};
+
+/// Visits the fields of an options struct. The framework implements it once per use; authors only call it.
+/// A visitor that reads a config throws Error with file, line, column for an unknown key, a value of the wrong type, a
+/// missing unit or a value out of range.
+class Fields {
+ public:
+  virtual ~Fields() = default;
+
+  /// A real number; finite, within the field's range.
+  virtual void real(double& value, const Field& field) = 0;
+  /// A real number that may be absent. `none` stands for absent in a config.
+  virtual void real(std::optional<double>& value, const Field& field) = 0;
+  /// `count` real numbers of one dimension, written as a list.
+  virtual void reals(double* values, std::size_t count, const Field& field) = 0;
+  virtual void integer(std::int64_t& value, const Field& field) = 0;
+  virtual void integer(std::optional<std::int64_t>& value, const Field& field) = 0;
+  /// `true` or `false`.
+  virtual void flag(bool& value, const Field& field) = 0;
+  virtual void text(std::string& value, const Field& field) = 0;
+  /// One of several names; `index` is its position in `cases`. Fields of the chosen case follow.
+  virtual void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) = 0;
+  /// A nested group of options.
+  virtual void section(Options& options, const Field& field) = 0;
+  /// A list of groups of options.
+  virtual void sections(const ListAccess& access, const Field& field) = 0;
+  /// Another plugin, of the kind `choice.kind`.
+  virtual void plugin(PluginChoice& choice, const Field& field) = 0;
+  virtual void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) = 0;
+  /// A law between fields: when `holds` is false, reading fails with `reason` at the place of `field`.
+  virtual void require(bool holds, const char* field, const std::string& reason) = 0;
+
+  /// A choice stored as an enumeration: `cases` name the values 0, 1, 2, ... in order.
+  template <class Enum>
+  void choice(Enum& value, const Field& field, const std::vector<Case>& cases) {
+    auto index = static_cast<std::size_t>(value);
+    choice(index, field, cases);
+    value = static_cast<Enum>(index);
+  }
+
+  /// A list of groups stored in a vector.
+  template <class Item>
+  void sections(std::vector<Item>& items, const Field& field) {
+    sections(ListAccess{[&](std::size_t size) { items.resize(size); }, [&] { return items.size(); },
+                        [&](std::size_t i) -> Options& { return items[i]; }},
+             field);
+  }
+};
+
+}  // namespace palpate

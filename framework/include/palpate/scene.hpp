@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// The world as a config describes it. A simulator taps it, the metrics compare with it; a robot's backend reads only
+// its area and its desk.
+#pragma once
+
+#include <palpate/types.hpp>
+
+namespace palpate {
+
+/// The rectangle of the desk in which taps may fall: [0, width] x [0, depth], metres.
+struct Area {
+  double width = 0.0;
+  double depth = 0.0;
+};
+
+/// A desk with objects on it, seen from above: one height per place. Immutable once built; safe to share.
+class Scene {
+ public:
+  virtual ~Scene() = default;
+
+  virtual Area area() const = 0;
+
+  /// Height of the bare desk, metres.
+  virtual double desk() const = 0;
+
+  /// Height of the highest thing at (x, y), metres: the desk, or an object on it. Defined on the whole plane.
+  virtual double height(double x, double y) const = 0;
+
+  /// Upper bound of `height` over the plane, metres.
+  virtual double highest() const = 0;
+
+  /// The rule that separates object from desk, the same for robot, simulator and truth: strictly higher than the desk
+  /// plus a margin that the config names (`scene.on_surface_above`).
+  virtual bool on_surface(double height) const = 0;
+};
+
+}  // namespace palpate

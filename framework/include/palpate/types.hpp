@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// The words of the domain that every plugin shares: points, taps and what a tap brings back.
+// All quantities are SI: metres, seconds, newtons, radians.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <string>
+
+namespace palpate {
+
+/// n points on the desk, one a row: x, y in metres, in the frame of the area (origin at its lower left corner).
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+/// Views that cross the plugin boundary: the caller owns and sizes them, the callee never resizes.
+using PointsView = Eigen::Ref<const Points>;
+using VectorView = Eigen::Ref<const Eigen::VectorXd>;
+using VectorOut = Eigen::Ref<Eigen::VectorXd>;
+using MatrixOut = Eigen::Ref<Eigen::MatrixXd>;
+
+/// Where the next tap goes, in metres within the area.
+struct Target {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+/// What became of one tap. Only `contact` reaches the models; all others are recorded and leave the belief as it was.
+enum class Outcome {
+  contact,      ///< the tool touched something; the height is valid
+  no_contact,   ///< the descent ended at its floor without a touch
+  unreachable,  ///< the place cannot be reached; nothing moved, or the arm turned back
+  timeout,      ///< the motion did not end in its time
+  aborted,      ///< stopped by the user or by a safety rule
+  unknown,      ///< the program died between moving and recording; found by `resume`
+};
+
+/// The answer of a backend to one tap.
+struct Contact {
+  Outcome outcome = Outcome::unknown;
+  double height = 0.0;   ///< of the touched point, metres, in the frame of `Scene::desk()`; meaningful only for `contact`
+  double force = 0.0;    ///< at contact, newtons; meaningful only for `contact`
+  double seconds = 0.0;  ///< robot time that the tap took, whatever its outcome
+  std::string reason;    ///< why a tap failed, one line; empty for `contact`
+};
+
+}  // namespace palpate

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// What program this is, for manifests: enough to tell whether two runs were made by the same code.
+#pragma once
+
+#include "config/tree.hpp"
+#include "plugin/host.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace palpate {
+
+/// Folders that belong to the program, in a build tree or installed.
+struct Installation {
+  std::filesystem::path program;
+  std::filesystem::path plugins;
+  std::filesystem::path configs;
+};
+
+/// Where this very program lies.
+Installation find_installation();
+
+extern const char* const kVersion;
+
+/// One hash over the program file and the plugins that `host` has loaded. Equal for equal code: a commit alone does
+/// not change it.
+std::string build_hash(const PluginHost& host);
+
+/// Version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins, host.
+Tree describe_build(const Installation& installation, const PluginHost& host);
+
+}  // namespace palpate

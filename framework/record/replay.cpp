@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Replay: the recorded contacts go through the same models, and every number is compared as text, bit for bit.
+#include "experiment/experiment.hpp"
+#include "record/files.hpp"
+#include "record/json.hpp"
+#include "record/session.hpp"
+#include "record/summary.hpp"
+#include "record/tap_row.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
+class Recorded final : public Backend {
+ public:
+  Recorded(std::vector<PastTap> taps, bool truth_known) : taps_(std::move(taps)), truth_known_(truth_known) {}
+  Contact tap(const TapRequest& request) override { return taps_.at(static_cast<std::size_t>(request.number - 1)).contact; }
+  bool repeatable() const override { return true; }
+  bool scene_is_truth() const override { return truth_known_; }
+
+ private:
+  std::vector<PastTap> taps_;
+  bool truth_known_;
+};
+
+class Collector final : public Journal {
+ public:
+  std::vector<Row> rows;
+  void announce(const TapRecord&) override {}
+  void record(const TapRecord& tap, const std::array<double, kPhases>&) override { rows.push_back(tap_row(tap)); }
+};
+
+std::string shown(const Scalar* value) {
+  if (value == nullptr || std::holds_alternative<std::monostate>(*value)) return "null";
+  return csv_cell(*value);
+}
+
+void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& report) {
+  for (const auto& [field, value] : replayed.fields) {
+    if (depends_on_machine(field)) continue;
+    ++report.numbers;
+    const std::string before = shown(recorded.find(field));
+    const std::string now = shown(&value);
+    if (before != now) report.differences.push_back({tap, field, before, now});
+  }
+}
+
+}  // namespace
+
+ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
+  ResolvedConfig config = load_run(workshop.host, directory);
+  std::vector<Row> recorded;
+  for (Row& row : read_json_lines(directory / "taps.jsonl").rows) {
+    if (!is_intent(row)) recorded.push_back(std::move(row));
+  }
+  if (recorded.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
+  std::vector<PastTap> taps;
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    taps.push_back(past_tap(recorded[i], fmt::format("{}: tap {}", (directory / "taps.jsonl").string(), i + 1)));
+  }
+  const Scalar* truth = recorded.front().find("true_on_surface");
+  const bool truth_known = truth != nullptr && !std::holds_alternative<std::monostate>(*truth);
+
+  ExperimentOptions options = config.options;
+  const bool cut = static_cast<std::int64_t>(taps.size()) < options.taps;
+  options.taps = static_cast<std::int64_t>(taps.size());
+  Experiment experiment(options, workshop.host, workshop.interrupted,
+                        std::make_shared<Recorded>(std::move(taps), truth_known));
+  Collector collector;
+  experiment.run(collector);
+
+  ReplayReport report;
+  report.taps = static_cast<int>(recorded.size());
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    if (i < collector.rows.size()) {
+      compare(recorded[i], collector.rows[i], number, report);
+    } else {
+      report.differences.push_back({number, "tap", "made", "not made"});
+    }
+  }
+  std::error_code none;
+  if (!fs::exists(directory / "summary.json", none)) return report;
+  const std::optional<Row> summary = parse_json_row(read_file(directory / "summary.json"));
+  if (!summary) throw Error((directory / "summary.json").string(), "is not a JSON object", "the file is damaged");
+  RunResult result = experiment.result();
+  std::string failure;
+  // A record that ended before its budget ended for a reason that the taps alone do not show.
+  if (cut) {
+    if (const Scalar* reason = summary->find("stop_reason")) result.stop_reason = shown(reason);
+    if (shown(summary->find("status")) == "failed") failure = result.stop_reason;
+  }
+  compare(*summary, summary_row(config, result, failure, Stopwatch{}, {}), 0, report);
+  return report;
+}
+
+}  // namespace palpate

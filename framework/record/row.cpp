@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "record/row.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace palpate {
+namespace {
+
+std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+
+std::string json_value(const Scalar& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return json_quoted(*text);
+  const std::string cell = csv_cell(value);
+  return cell.empty() ? "null" : cell;
+}
+
+/// Writes the fields from `next` on that share the prefix `prefix`; returns behind the last of them.
+std::size_t write_object(std::string& out, const Row& row, std::size_t next, const std::string& prefix,
+                         const std::string& indent) {
+  const std::string line_end = indent.empty() ? "" : "\n" + indent;
+  bool first = true;
+  out += "{";
+  while (next < row.fields.size()) {
+    const std::string& name = row.fields[next].first;
+    if (name.compare(0, prefix.size(), prefix) != 0) break;
+    if (!first) out += indent.empty() ? ", " : ",";
+    out += line_end;
+    first = false;
+    const auto dot = name.find('.', prefix.size());
+    const std::string key = name.substr(prefix.size(), dot == std::string::npos ? dot : dot - prefix.size());
+    out += json_quoted(key) + ": ";
+    if (dot == std::string::npos) {
+      out += json_value(row.fields[next].second);
+      ++next;
+    } else {
+      next = write_object(out, row, next, name.substr(0, dot + 1), indent.empty() ? indent : indent + "  ");
+    }
+  }
+  if (!indent.empty()) out += "\n" + indent.substr(2);
+  out += "}";
+  return next;
+}
+
+}  // namespace
+
+const Scalar* Row::find(std::string_view name) const {
+  for (const auto& [key, value] : fields) {
+    if (key == name) return &value;
+  }
+  return nullptr;
+}
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string csv_cell(const Scalar& value) {
+  struct Visitor {
+    std::string operator()(std::monostate) const { return {}; }
+    std::string operator()(bool truth) const { return truth ? "true" : "false"; }
+    std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
+    std::string operator()(double real) const { return number_text(real); }
+    std::string operator()(const std::string& text) const { return csv_text(text); }
+  };
+  return std::visit(Visitor{}, value);
+}
+
+std::string json_quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    switch (c) {
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      case '\n':
+        out += "\\n";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20) {
+          out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+        } else {
+          out += c;
+        }
+    }
+  }
+  return out + "\"";
+}
+
+std::string to_json_line(const Row& row) {
+  std::string out;
+  write_object(out, row, 0, "", "");
+  return out;
+}
+
+std::string to_json_text(const Row& row) {
+  std::string out;
+  write_object(out, row, 0, "", "  ");
+  return out + "\n";
+}
+
+std::string to_csv(const std::vector<Row>& rows) {
+  const auto widest = std::max_element(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+    return a.fields.size() < b.fields.size();
+  });
+  if (widest == rows.end()) return {};
+  std::string out;
+  for (const auto& [name, value] : widest->fields) out += (out.empty() ? "" : ",") + csv_text(name);
+  out += "\n";
+  for (const Row& row : rows) {
+    std::string line;
+    std::size_t at = 0;
+    for (const auto& [name, unused] : widest->fields) {
+      if (&name != &widest->fields.front().first) line += ",";
+      // Rows have their fields in the same order, some lacking: a second look from the start is rarely needed.
+      if (at < row.fields.size() && row.fields[at].first == name) {
+        line += csv_cell(row.fields[at++].second);
+      } else if (const Scalar* value = row.find(name)) {
+        line += csv_cell(*value);
+      }
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
+}  // namespace palpate

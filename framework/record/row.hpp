@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Named scalars in an order: one line of a table, one JSON object. Names are dotted ("height_process.jitter"): JSON
+// nests by the dots, CSV keeps them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace palpate {
+
+/// null, truth value, whole number, real number or text.
+using Scalar = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+
+struct Row {
+  std::vector<std::pair<std::string, Scalar>> fields;
+
+  void add(std::string name, bool value) { fields.emplace_back(std::move(name), value); }
+  void add(std::string name, int value) { fields.emplace_back(std::move(name), std::int64_t{value}); }
+  void add(std::string name, std::int64_t value) { fields.emplace_back(std::move(name), value); }
+  void add(std::string name, double value) { fields.emplace_back(std::move(name), value); }
+  void add(std::string name, std::string value) { fields.emplace_back(std::move(name), std::move(value)); }
+  void add(std::string name, const char* value) { fields.emplace_back(std::move(name), std::string(value)); }
+  template <class T>
+  void add(std::string name, const std::optional<T>& value) {
+    if (value) {
+      add(std::move(name), *value);
+    } else {
+      fields.emplace_back(std::move(name), std::monostate{});
+    }
+  }
+
+  /// The value at `name`, or null if there is none.
+  const Scalar* find(std::string_view name) const;
+};
+
+/// Text of one scalar as it stands in a CSV cell: shortest digits that read back as the same bits, empty for null and
+/// for what is not a finite number, quoted where commas, quotes or line ends need it.
+std::string csv_cell(const Scalar& value);
+
+/// Text quoted for CSV where it needs to be.
+std::string csv_text(const std::string& text);
+
+/// One line of JSON without line end. Numbers as in csv_cell; what is not finite is null.
+std::string to_json_line(const Row& row);
+
+/// The same, one field a line.
+std::string to_json_text(const Row& row);
+
+/// A table of rows that may differ in their fields: the header is that of the row with most fields, cells are found by
+/// name.
+std::string to_csv(const std::vector<Row>& rows);
+
+/// Text in quotes with JSON escapes.
+std::string json_quoted(const std::string& text);
+
+}  // namespace palpate

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The directory of one run: its lock, its files, and what state it is in. runs/README.md describes every file.
+#pragma once
+
+#include "experiment/resolved.hpp"
+#include "experiment/tap_record.hpp"
+#include "record/files.hpp"
+#include "record/row.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// How far a run came, read from its directory alone.
+struct RunStatus {
+  enum class State {
+    absent,       ///< no such directory, or one without a tap
+    running,      ///< a living process holds the lock
+    unfinished,   ///< killed or interrupted
+    done,
+    failed,
+  };
+  State state = State::absent;
+  int taps = 0;             ///< recorded
+  std::string stop_reason;  ///< of a finished run: why it stopped or failed
+};
+
+/// Reads the state of a run directory. Throws Error for a damaged one.
+RunStatus read_status(const std::filesystem::path& directory);
+
+const char* state_name(RunStatus::State state);
+
+/// A run directory held by this process. Keeps the lock for its lifetime.
+class RunDirectory final : public Journal {
+ public:
+  /// Makes the directory if need be and locks it. Throws Error of kind `busy` if another process holds it.
+  explicit RunDirectory(std::filesystem::path directory);
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Reads the recorded taps and cuts off what a kill left behind: half a line, or an intent without its result, which
+  /// becomes a tap of outcome `unknown`. Throws Error for a damaged file.
+  std::vector<PastTap> recover();
+
+  /// Opens taps.jsonl and timings.csv for what follows. With `announce` each tap is announced before it is made;
+  /// with `sync` lines are forced to disk.
+  void open(bool announce, bool sync);
+
+  void announce(const TapRecord& tap) override;
+  void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
+
+  /// The rows of taps.jsonl, recovered ones included.
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// Seconds by phase of all taps in timings.csv, earlier processes included.
+  std::array<double, kPhases> total_seconds() const { return total_; }
+
+  void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text, sync_); }
+
+ private:
+  void recover_timings();
+
+  std::filesystem::path path_;
+  FileLock lock_;
+  AppendFile taps_;
+  AppendFile timings_;
+  std::vector<Row> rows_;
+  std::array<double, kPhases> total_{};
+  bool announce_ = false;
+  bool sync_ = false;
+};
+
+}  // namespace palpate

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "record/session.hpp"
+
+#include "config/yaml.hpp"
+#include "experiment/experiment.hpp"
+#include "record/json.hpp"
+#include "record/run_directory.hpp"
+#include "record/summary.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
+
+std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config) {
+  Tree out = describe_build(workshop.installation, workshop.host);
+  Tree& line = out.at("command_line");
+  line = Tree::list();
+  for (const std::string& word : workshop.command_line) line.items.push_back(quoted(word));
+  Tree& origins = out.at("origins");
+  origins = Tree::map();
+  for (const ResolveNotes::Origin& one : config.notes.origins) origins.entries.push_back({one.path, {}, quoted(one.place)});
+  Tree& dropped = out.at("dropped");
+  dropped = Tree::map();
+  for (const ResolveNotes::Origin& one : config.notes.dropped) dropped.entries.push_back({one.path, {}, quoted(one.place)});
+  out.at("resumed") = Tree::list();
+  return to_json(out);
+}
+
+/// The build that began the run in `directory`, "" if that is not known.
+std::string recorded_build(const fs::path& directory) {
+  std::error_code none;
+  if (!fs::exists(directory / "manifest.json", none)) return {};
+  const Tree manifest = read_yaml(directory / "manifest.json");
+  const Tree* build = manifest.find("build");
+  return build != nullptr ? build->text : std::string();
+}
+
+/// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
+void note_resume(const Workshop& workshop, const RunDirectory& directory, int from) {
+  Tree manifest = read_yaml(directory.path() / "manifest.json");
+  // JSON is YAML: strings come back quoted, numbers plain, so the tree can be written as it was read.
+  Tree entry = Tree::map();
+  entry.at("after_tap") = Tree::scalar(std::to_string(from));
+  entry.at("build") = quoted(build_hash(workshop.host));
+  manifest.at("resumed").kind = Tree::Kind::list;
+  manifest.at("resumed").items.push_back(std::move(entry));
+  directory.write("manifest.json", to_json(manifest));
+}
+
+void move_away(const fs::path& directory) {
+  for (int n = 1;; ++n) {
+    const fs::path old = directory.string() + fmt::format(".old-{}", n);
+    if (fs::exists(old)) continue;
+    fs::rename(directory, old);
+    return;
+  }
+}
+
+/// Passes taps to the record first and to the observer after it, and writes maps where the config asks for them.
+class Relay final : public Journal {
+ public:
+  Relay(const ExperimentOptions& options, Experiment& experiment, RunDirectory& directory, Journal* observer)
+      : maps_(options.log.maps), experiment_(experiment), directory_(directory), observer_(observer) {}
+
+  void announce(const TapRecord& tap) override {
+    {
+      const PhaseClock::Scope log(experiment_.clock(), Phase::log);
+      if (maps_) write_maps(tap.number);
+      directory_.announce(tap);
+    }
+    if (observer_ != nullptr) observer_->announce(tap);
+  }
+
+  void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override {
+    {
+      const PhaseClock::Scope log(experiment_.clock(), Phase::log);
+      directory_.record(tap, seconds);
+    }
+    if (observer_ != nullptr) observer_->record(tap, seconds);
+  }
+
+ private:
+  void write_maps(int number) const {
+    const std::string text = maps_csv(experiment_.candidates(), experiment_.belief());
+    if (text.empty()) return;
+    fs::create_directories(directory_.path() / "maps");
+    directory_.write(fmt::format("maps/tap_{:03}.csv", number), text);
+  }
+
+  bool maps_;
+  Experiment& experiment_;
+  RunDirectory& directory_;
+  Journal* observer_;
+};
+
+/// Runs the experiment in an open directory and writes what ends a run.
+RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, Journal* observer,
+                    const Stopwatch& watch) {
+  const LogOptions& log = config.options.log;
+  const bool careful = log.sync == LogOptions::Sync::tap || !experiment.backend().repeatable();
+  directory.open(careful, careful && log.sync != LogOptions::Sync::none);
+  Relay relay(config.options, experiment, directory, observer);
+
+  RunReport report;
+  report.directory = directory.path();
+  std::string failure;
+  try {
+    experiment.run(relay);
+  } catch (const Error& trouble) {
+    failure = trouble.what();
+  }
+  const RunResult result = experiment.result();
+  report.interrupted = result.interrupted;
+  report.summary = summary_row(config, result, failure, watch, directory.total_seconds());
+  directory.write("taps.csv", to_csv(directory.rows()));
+  if (result.interrupted) return report;
+  if (log.surface) directory.write("surface.csv", surface_csv(experiment));
+  directory.write("summary.json", to_json_text(report.summary));
+  if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
+  return report;
+}
+
+RunReport report_done(const fs::path& directory) {
+  const std::optional<Row> summary = parse_json_row(read_file(directory / "summary.json"));
+  if (!summary) throw Error((directory / "summary.json").string(), "is not a JSON object", "the file is damaged");
+  return {directory, true, false, *summary};
+}
+
+}  // namespace
+
+fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {
+  return runs / slug(config.options.name) / config.id;
+}
+
+RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
+                    Journal* observer) {
+  const Stopwatch watch;
+  const RunStatus status = read_status(directory);
+  if (status.state == RunStatus::State::running) FileLock{directory / "lock"};  // throws: busy
+  if (status.state != RunStatus::State::absent && !force) {
+    const std::string where = directory.string();
+    switch (status.state) {
+      case RunStatus::State::done:
+        if (recorded_build(directory) == build_hash(workshop.host)) return report_done(directory);
+        throw Error(where, "this run was finished by another build of palpate or its plugins",
+                    "--force moves it aside and runs again");
+      case RunStatus::State::failed:
+        throw Error(where, fmt::format("this run failed: {}", status.stop_reason),
+                    "'palpate resume --retry-failed' carries on, --force starts again");
+      default:
+        throw Error(where, fmt::format("this run was broken off after {} taps", status.taps),
+                    "'palpate resume' carries on, --force starts again");
+    }
+  }
+  // Built before the directory is touched: what only building finds out leaves no trace.
+  Experiment experiment(config.options, workshop.host, workshop.interrupted);
+  if (status.state != RunStatus::State::absent) move_away(directory);
+  RunDirectory held(directory);
+  held.write("config.yaml", to_yaml(config.tree));
+  held.write("manifest.json", manifest_text(workshop, config));
+  return carry_out(config, held, experiment, observer, watch);
+}
+
+ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
+  const fs::path file = directory / "config.yaml";
+  std::error_code none;
+  if (!fs::exists(file, none)) {
+    throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
+  }
+  ResolvedConfig config = resolve_experiment(read_yaml(file), host);
+  const std::string name = fs::absolute(directory).lexically_normal().filename().string();
+  const bool is_id = name.size() >= 12 && name.find_first_not_of("0123456789abcdef") >= 12;
+  if (is_id && name.substr(0, 12) != config.id) {
+    throw Error(file.string(), fmt::format("the config now has the id {}, its directory is {}", config.id, name),
+                "config.yaml was changed; run it with 'palpate run' instead");
+  }
+  return config;
+}
+
+RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options, Journal* observer) {
+  const Stopwatch watch;
+  const ResolvedConfig config = load_run(workshop.host, directory);
+  const RunStatus status = read_status(directory);
+  if (status.state == RunStatus::State::done) return report_done(directory);
+  if (status.state == RunStatus::State::failed && !options.retry_failed) {
+    throw Error(directory.string(), fmt::format("this run failed: {}", status.stop_reason),
+                "--retry-failed carries on all the same", Error::Kind::run);
+  }
+  RunDirectory held(directory);
+  const std::string build = recorded_build(directory);
+  const bool other_build = !build.empty() && build != build_hash(workshop.host);
+  if (other_build && status.taps > 0 && !options.force) {
+    throw Error(directory.string(), "this run was begun by another build of palpate or its plugins",
+                "--force carries on all the same, and the manifest will say so");
+  }
+  const std::vector<PastTap> past = held.recover();
+  Experiment experiment(config.options, workshop.host, workshop.interrupted);
+  experiment.resume(past);
+  if (build.empty()) {
+    held.write("manifest.json", manifest_text(workshop, config));
+  } else {
+    note_resume(workshop, held, static_cast<int>(past.size()));
+  }
+  std::error_code none;
+  fs::remove(directory / "summary.json", none);
+  return carry_out(config, held, experiment, observer, watch);
+}
+
+}  // namespace palpate

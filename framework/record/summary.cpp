@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "record/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <ctime>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include <sys/resource.h>
+
+namespace palpate {
+namespace {
+
+double thread_cpu_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::int64_t peak_rss_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+using Column = std::pair<const char*, const Eigen::VectorXd*>;
+
+/// x, y and one column a map; a null map leaves its cells empty.
+std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
+  fmt::memory_buffer out;
+  auto to = std::back_inserter(out);
+  fmt::format_to(to, "x,y");
+  for (const Column& column : columns) fmt::format_to(to, ",{}", column.first);
+  fmt::format_to(to, "\n");
+  for (int i = 0; i < candidates.size(); ++i) {
+    fmt::format_to(to, "{},{}", candidates.points(i, 0), candidates.points(i, 1));
+    for (const Column& column : columns) {
+      if (column.second != nullptr) {
+        fmt::format_to(to, ",{}", (*column.second)(i));
+      } else {
+        fmt::format_to(to, ",");
+      }
+    }
+    fmt::format_to(to, "\n");
+  }
+  return fmt::to_string(out);
+}
+
+}  // namespace
+
+Stopwatch::Stopwatch() : wall_(std::chrono::steady_clock::now()), cpu_(thread_cpu_seconds()) {}
+double Stopwatch::wall_seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+}
+double Stopwatch::cpu_seconds() const { return thread_cpu_seconds() - cpu_; }
+
+Row summary_row(const ResolvedConfig& config, const RunResult& result, const std::string& failure,
+                const Stopwatch& watch, const std::array<double, kPhases>& phases) {
+  Row row;
+  row.add("name", config.options.name);
+  row.add("id", config.id);
+  row.add("seed", config.options.seed);
+  row.add("status", failure.empty() ? "done" : "failed");
+  row.add("stop_reason", failure.empty() ? result.stop_reason : failure);
+  row.add("taps", result.taps);
+  row.add("on_surface_taps", result.on_surface_taps);
+  row.add("off_surface_taps", result.off_surface_taps);
+  row.add("failed_taps", result.failed_taps);
+  row.add("first_hit_tap", result.first_hit_tap);
+  row.add("found", result.on_surface_taps > 0);
+  row.add("rmse_m", result.errors.rmse);
+  row.add("rmse_on_surface_m", result.errors.rmse_on_surface);
+  row.add("rmse_height_m", result.errors.rmse_height);
+  row.add("footprint_iou", result.errors.footprint_iou);
+  row.add("nlpd", result.calibration.nlpd);
+  row.add("coverage_95", result.calibration.coverage_95);
+  row.add("robot_seconds", result.robot_seconds);
+  row.add("wall_seconds", watch.wall_seconds());
+  row.add("compute_seconds", watch.cpu_seconds());
+  for (std::size_t i = 0; i < kPhases; ++i) row.add(std::string("compute.") + kPhaseNames[i], phases[i]);
+  row.add("jitter_max", result.jitter_max);
+  for (const auto& [kind, count] : result.interventions) row.add("interventions." + kind, count);
+  row.add("peak_rss_bytes", peak_rss_bytes());
+  return row;
+}
+
+bool depends_on_machine(const std::string& field) {
+  return field == "wall_seconds" || field == "compute_seconds" || field == "peak_rss_bytes" ||
+         field.compare(0, 8, "compute.") == 0;
+}
+
+std::string surface_csv(Experiment& experiment) {
+  const TapBelief& belief = experiment.belief();
+  const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
+  const Truth* truth = experiment.truth();
+  return grid_csv(experiment.candidates(), {{"height_mean", &belief.height_mean()},
+                                            {"height_standard_deviation", &deviation},
+                                            {"on_surface_probability", &belief.weight_mean()},
+                                            {"reconstructed_height", &reconstruction(belief)},
+                                            {"true_height", truth != nullptr ? &truth->height : nullptr}});
+}
+
+std::string maps_csv(const Candidates& candidates, const TapBelief& belief) {
+  std::vector<Column> columns;
+  if (belief.height_process() != nullptr) {
+    columns.insert(columns.end(), {{"height_mean", &belief.height_mean()},
+                                   {"height_variance", &belief.height_variance()},
+                                   {"u", &belief.uncertainty()}});
+  }
+  if (belief.weight_process() != nullptr) columns.emplace_back("w", &belief.weight());
+  return columns.empty() ? std::string() : grid_csv(candidates, columns);
+}
+
+}  // namespace palpate

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/expand.hpp"
+
+#include "config/yaml.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMaxJobs = 1'000'000;
+
+/// Splits at commas that stand in no bracket and no quotes.
+std::vector<std::string> split_top(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  char quote = 0;
+  for (const char c : text) {
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '(' || c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ')' || c == ']' || c == '}') {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      parts.emplace_back();
+      continue;
+    }
+    parts.back() += c;
+  }
+  return parts;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+struct Quantity {
+  double value;
+  std::string unit;
+};
+
+Quantity parse_quantity(const std::string& text, const Tree& tree, const std::string& key) {
+  Quantity out{0.0, {}};
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), out.value);
+  if (result.ec != std::errc() || !std::isfinite(out.value)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text));
+  }
+  out.unit = trimmed(std::string(result.ptr, text.data() + text.size()));
+  return out;
+}
+
+Tree number(double value, const std::string& unit, const Tree& like) {
+  Tree out = like;
+  out.quoted = false;
+  out.text = fmt::format("{}", value) + (unit.empty() ? "" : " " + unit);
+  return out;
+}
+
+std::vector<Tree> expand_range(const std::vector<Quantity>& from, const Tree& tree, const std::string& key) {
+  const double step = from.size() == 3 ? from[2].value : 1.0;
+  const double count = std::ceil((from[1].value - from[0].value) / step);
+  if (!(count >= 1.0) || count > static_cast<double>(kMaxJobs)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has no value or too many", key, tree.text));
+  }
+  std::vector<Tree> out;
+  for (int i = 0; i < static_cast<int>(count); ++i) out.push_back(number(from[0].value + i * step, from[0].unit, tree));
+  return out;
+}
+
+std::vector<Tree> expand_log(const std::vector<Quantity>& from, const Tree& tree, const std::string& key) {
+  const double first = from[0].value;
+  const double last = from[1].value;
+  const double count = from[2].value;
+  if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' needs two positive ends and a count of at least 2", key, tree.text));
+  }
+  std::vector<Tree> out;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const double share = i / (count - 1.0);
+    // The ends are as written; between them, rounding does not matter.
+    const double value = i == 0 ? first : share == 1.0 ? last : first * std::pow(last / first, share);
+    out.push_back(number(value, from[0].unit, tree));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
+  if (value.kind == Tree::Kind::list) {
+    if (value.items.empty()) throw Error(value.place.text(), fmt::format("{}: the list of values is empty", key));
+    return value.items;
+  }
+  if (value.kind == Tree::Kind::null) throw Error(value.place.text(), fmt::format("{}: has no value", key));
+  if (!value.is_scalar()) return {value};
+  const auto open = value.text.find('(');
+  const std::string name = value.text.substr(0, std::min(open, value.text.size()));
+  if (open == std::string::npos || value.text.back() != ')' || (name != "range" && name != "log")) return {value};
+  std::vector<Quantity> parts;
+  for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
+    parts.push_back(parse_quantity(trimmed(part), value, key));
+  }
+  const bool is_range = name == "range";
+  const bool right_count = is_range ? parts.size() == 2 || parts.size() == 3 : parts.size() == 3;
+  const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
+                         (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
+  if (!same_unit) {
+    throw Error(value.place.text(), fmt::format("{}: '{}' is not understood", key, value.text),
+                "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit");
+  }
+  return is_range ? expand_range(parts, value, key) : expand_log(parts, value, key);
+}
+
+std::vector<Axis> config_axes(const Tree& sweep) {
+  std::vector<Axis> axes;
+  if (!sweep.is_map()) throw Error(sweep.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
+  for (const Tree::Entry& part : sweep.entries) {
+    if (part.key != "grid") {
+      throw Error(part.place.text(), fmt::format("unknown option '{}' of sweep", part.key), suggestion(part.key, {"grid"}));
+    }
+    if (!part.value.is_map()) throw Error(part.place.text(), "sweep.grid: expects a map of keys to values");
+    for (const Tree::Entry& entry : part.value.entries) axes.push_back({entry.key, expand_values(entry.value, entry.key)});
+  }
+  return axes;
+}
+
+Axis parse_axis(const std::string& text) {
+  Override whole = parse_override(text);
+  const std::string value = text.substr(text.find('=') + 1);
+  const std::vector<std::string> parts = split_top(value);
+  if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path)};
+  Axis axis{whole.path, {}};
+  for (const std::string& part : parts) {
+    const Override one = parse_override(whole.path + "=" + trimmed(part));
+    for (Tree& tree : expand_values(one.value, whole.path)) axis.values.push_back(std::move(tree));
+  }
+  return axis;
+}
+
+std::vector<Combination> product(const std::vector<Axis>& axes) {
+  std::size_t count = 1;
+  for (const Axis& axis : axes) {
+    count *= axis.values.size();
+    if (count > kMaxJobs) throw Error("", "the sweep has more than a million jobs");
+  }
+  std::vector<Combination> out(count);
+  for (std::size_t job = 0; job < count; ++job) {
+    std::size_t rest = job;
+    std::size_t block = count;
+    for (const Axis& axis : axes) {
+      block /= axis.values.size();
+      Override one{axis.key, axis.values[rest / block]};
+      one.value.set_layer(std::max(one.value.layer, kSweepLayer));
+      out[job].push_back(std::move(one));
+      rest %= block;
+    }
+  }
+  return out;
+}
+
+std::string value_text(const Tree& value) {
+  if (value.is_scalar()) return value.text;
+  std::string text = to_yaml(value);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+}  // namespace palpate

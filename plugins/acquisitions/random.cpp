@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Control: tap anywhere. Scores are uniform in (0, 1), so the best of them is a uniform draw from the candidates.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+namespace palpate::acquisitions {
+
+struct NoOptions : Options {
+  void list(Fields&) override {}
+};
+
+class RandomSearch final : public Acquisition {
+ public:
+  using Options = NoOptions;
+  RandomSearch(const Options&, const Context& context) : seed_(context.seed) {}
+
+  void score(const Belief& belief, VectorOut out) const override {
+    // A stream a tap: the score stays a pure function of the belief, and a resumed run draws the same.
+    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.taps()));
+    for (double& one : out) one = random.uniform() + 0x1.0p-54;
+  }
+  double prior_scale() const override { return 0.0; }
+
+ private:
+  std::uint64_t seed_;
+};
+
+PALPATE_PLUGIN(Acquisition, RandomSearch, "random", "tap anywhere, a control")
+
+}  // namespace palpate::acquisitions

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The paper's exploration function: e(x) = u(x) w(x) (Sun and Min 2021, section III), with w as it comes from the
+// weight process. Its prior mean and its clipping are options of that process: `weight: {prior_mean, clip}`.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+namespace palpate::acquisitions {
+
+struct NoOptions : Options {
+  void list(Fields&) override {}
+};
+
+class Weighted final : public Acquisition {
+ public:
+  using Options = NoOptions;
+  Weighted(const Options&, const Context&) {}
+
+  void score(const Belief& belief, VectorOut out) const override {
+    out = belief.uncertainty().cwiseProduct(belief.weight());
+  }
+  /// u is 1 before any tap and w is a probability in the model's mind.
+  double prior_scale() const override { return 1.0; }
+};
+
+PALPATE_PLUGIN(Acquisition, Weighted, "weighted", "tap where the height is unknown and the object is likely, the paper's rule")
+
+}  // namespace palpate::acquisitions

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Answers from a record instead of a robot: a former run, or any table of contacts that has the same columns. A dense
+// scan of a real object, recorded once, becomes a bench for strategies.
+#include <palpate/backend.hpp>
+#include <palpate/plugin.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <vector>
+
+namespace palpate::backends {
+
+struct ReplayOptions : Options {
+  std::string record;
+  double tolerance = 1e-4;
+  bool scene_is_truth = false;
+
+  void list(Fields& fields) override {
+    fields.text(record, Field("record", "a run directory, or a CSV file with the columns x, y, outcome, height (m), and "
+                                        "if known tap, force, robot_seconds")
+                            .needed());
+    fields.real(tolerance, Field("tolerance", "how far from a target the recorded tap may lie").in(Unit::metre).at_least(0));
+    fields.flag(scene_is_truth, Field("scene_is_truth", "the scene of the config is what was recorded: compute the errors"));
+  }
+};
+
+namespace {
+
+struct Recorded {
+  int number = 0;
+  Target place;
+  Contact contact;
+};
+
+Outcome outcome_of(const std::string& name, const std::string& where) {
+  static const std::map<std::string, Outcome> kNames{
+      {"contact", Outcome::contact}, {"no_contact", Outcome::no_contact}, {"unreachable", Outcome::unreachable},
+      {"timeout", Outcome::timeout}, {"aborted", Outcome::aborted},       {"unknown", Outcome::unknown}};
+  const auto found = kNames.find(name);
+  if (found == kNames.end()) throw Error(where, "unknown outcome '" + name + "'");
+  return found->second;
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else if (c != '\r' && c != '"') {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+/// The rows of a CSV file by column name; only what a contact needs.
+class Table {
+ public:
+  explicit Table(const std::string& file) : file_(file), in_(file) {
+    std::string line;
+    if (!in_ || !std::getline(in_, line)) throw Error(file, "cannot be read", "backend.record names a run directory or a CSV file");
+    const std::vector<std::string> names = split(line);
+    for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
+    for (const char* needed : {"x", "y", "outcome", "height"}) {
+      if (columns_.count(needed) == 0) throw Error(file, std::string("has no column '") + needed + "'");
+    }
+  }
+
+  bool next() {
+    std::string line;
+    if (!std::getline(in_, line)) return false;
+    ++line_;
+    cells_ = split(line);
+    if (cells_.size() != columns_.size()) throw Error(where(), "has another number of cells than the header");
+    return true;
+  }
+
+  std::string where() const { return file_ + ":" + std::to_string(line_); }
+
+  std::string text(const std::string& column) const {
+    const auto found = columns_.find(column);
+    return found == columns_.end() ? std::string() : cells_[found->second];
+  }
+
+  /// The number in a cell; `absent` where the column or the cell is empty.
+  double number(const std::string& column, double absent) const {
+    const std::string cell = text(column);
+    if (cell.empty()) return absent;
+    char* end = nullptr;
+    const double value = std::strtod(cell.c_str(), &end);
+    if (*end != '\0' || !std::isfinite(value)) throw Error(where(), column + ": '" + cell + "' is not a number");
+    return value;
+  }
+
+ private:
+  std::string file_;
+  std::ifstream in_;
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::string> cells_;
+  int line_ = 1;
+};
+
+std::vector<Recorded> read_record(const std::string& path) {
+  const std::string file = std::filesystem::is_directory(path) ? path + "/taps.csv" : path;
+  Table table(file);
+  std::vector<Recorded> taps;
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  while (table.next()) {
+    Recorded one;
+    one.number = static_cast<int>(table.number("tap", 0.0));
+    one.place = {table.number("x", kMissing), table.number("y", kMissing)};
+    one.contact.outcome = outcome_of(table.text("outcome"), table.where());
+    one.contact.height = table.number("height", kMissing);
+    one.contact.force = table.number("force", 0.0);
+    one.contact.seconds = table.number("robot_seconds", 0.0);
+    if (one.contact.outcome != Outcome::contact) {
+      one.contact.height = 0.0;
+      one.contact.reason = "so recorded";
+    }
+    if (std::isnan(one.place.x + one.place.y + one.contact.height)) throw Error(table.where(), "lacks x, y or height");
+    taps.push_back(std::move(one));
+  }
+  return taps;
+}
+
+}  // namespace
+
+class Replay final : public Backend {
+ public:
+  using Options = ReplayOptions;
+
+  Replay(const Options& options, const Context&) : options_(options), taps_(read_record(options.record)) {}
+
+  /// The tap of the same number if it was at this place, else the nearest one within the tolerance.
+  Contact tap(const TapRequest& request) override {
+    const Recorded* best = nullptr;
+    double least = options_.tolerance;
+    for (const Recorded& one : taps_) {
+      const double distance = std::hypot(one.place.x - request.target.x, one.place.y - request.target.y);
+      if (distance > options_.tolerance) continue;
+      if (one.number == request.number) return one.contact;
+      if (best == nullptr || distance < least) {
+        best = &one;
+        least = distance;
+      }
+    }
+    if (best == nullptr) return {Outcome::unreachable, 0.0, 0.0, 0.0, "no tap was recorded at this place"};
+    return best->contact;
+  }
+
+  bool repeatable() const override { return true; }
+  bool scene_is_truth() const override { return options_.scene_is_truth; }
+
+ private:
+  ReplayOptions options_;
+  std::vector<Recorded> taps_;
+};
+
+PALPATE_PLUGIN(Backend, Replay, "replay", "answers from a recorded run or table")
+
+}  // namespace palpate::backends

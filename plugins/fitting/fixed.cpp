@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// The paper's fitting: none. The hyperparameters of the config stay.
+#include <palpate/fitting.hpp>
+#include <palpate/plugin.hpp>
+
+namespace palpate::fitting {
+
+struct NoOptions : Options {
+  void list(Fields&) override {}
+};
+
+class Fixed final : public Fitting {
+ public:
+  using Options = NoOptions;
+  Fixed(const Options&, const Context&) {}
+
+  bool due(int) const override { return false; }
+  FitSummary fit(FitProblem&, Random&) const override { return {false, 0.0, 0, "hyperparameters are fixed"}; }
+};
+
+PALPATE_PLUGIN(Fitting, Fixed, "fixed", "keep the hyperparameters of the config, as the paper does")
+
+}  // namespace palpate::fitting

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Matern kernel with nu = 3/2: k = (1 + s) exp(-s), s = sqrt(3) r (Rasmussen and Williams 2006, equation 4.17).
+#include "stationary.hpp"
+
+namespace palpate::kernels {
+
+struct Matern32Shape {
+  template <class Array>
+  static void apply(Array r2) {
+    r2 = (3.0 * r2).sqrt();
+    // exp(-s) underflows to 0 long before s overflows; without the bound, infinity times 0 would be NaN.
+    r2 = r2.min(800.0);
+    r2 = (1.0 + r2) * (-r2).exp();
+  }
+};
+
+using Matern32 = Stationary<Matern32Shape>;
+PALPATE_PLUGIN(Kernel, Matern32, "matern32", "Matern 3/2: surfaces with a slope everywhere, but rough")
+
+}  // namespace palpate::kernels

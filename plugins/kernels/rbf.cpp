@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The squared-exponential kernel of the paper, k = exp(-r^2 / 2) (Sun and Min 2021, section III).
+#include "stationary.hpp"
+
+namespace palpate::kernels {
+
+struct RbfShape {
+  template <class Array>
+  static void apply(Array r2) {
+    r2 = (-0.5 * r2).exp();
+  }
+};
+
+using Rbf = Stationary<RbfShape>;
+PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared exponential: very smooth surfaces, the paper's choice")
+
+}  // namespace palpate::kernels

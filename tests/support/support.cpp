@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "support/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace palpate::test {
+
+namespace fs = std::filesystem;
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "palpate-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+fs::path TemporaryFolder::write(const std::string& name, const std::string& text) const {
+  const fs::path file = path_ / name;
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+  return file;
+}
+
+Child::Child(const std::vector<std::string>& words, const fs::path& folder, const std::vector<std::string>& environment) {
+  const std::string out = (scratch_.path() / "out").string();
+  const std::string err = (scratch_.path() / "err").string();
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_ = ::fork();
+  if (pid_ < 0) throw std::runtime_error("cannot fork");
+  if (pid_ > 0) return;
+  // In the child only calls that are safe after a fork, up to setenv, which no other thread can disturb here.
+  ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+  ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+  ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+  for (const std::string& one : environment) ::putenv(const_cast<char*>(one.c_str()));
+  if (::chdir(folder.c_str()) == 0) ::execvp(arguments.front(), arguments.data());
+  ::_exit(127);
+}
+
+Child::~Child() {
+  if (pid_ < 0) return;
+  ::kill(pid_, SIGKILL);
+  ::waitpid(pid_, nullptr, 0);
+}
+
+void Child::signal(int number) const { ::kill(pid_, number); }
+
+Ended Child::wait() {
+  int status = 0;
+  ::waitpid(pid_, &status, 0);
+  pid_ = -1;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return {code, text_of(scratch_.path() / "out"), text_of(scratch_.path() / "err")};
+}
+
+Ended run_program(const std::vector<std::string>& words, const fs::path& folder, const std::vector<std::string>& environment) {
+  return Child(words, folder, environment).wait();
+}
+
+Ended palpate(const std::vector<std::string>& words, const fs::path& folder, const std::vector<std::string>& environment) {
+  std::vector<std::string> all{program_file().string()};
+  all.insert(all.end(), words.begin(), words.end());
+  return run_program(all, folder, environment);
+}
+
+fs::path source_folder() { return PALPATE_SOURCE_FOLDER; }
+fs::path program_file() { return fs::path(PALPATE_BUILD_FOLDER) / "palpate"; }
+fs::path plugin_folder() { return fs::path(PALPATE_BUILD_FOLDER) / "lib" / "palpate"; }
+
+const PluginHost& shared_host() {
+  static const PluginHost host({plugin_folder()});
+  return host;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+fs::path only_run(const fs::path& runs) {
+  std::vector<fs::path> found;
+  for (const auto& name : fs::directory_iterator(runs)) {
+    for (const auto& id : fs::directory_iterator(name.path())) found.push_back(id.path());
+  }
+  EXPECT_EQ(found.size(), 1U);
+  return found.empty() ? fs::path() : found.front();
+}
+
+}  // namespace palpate::test

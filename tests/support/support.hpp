@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What tests share: a folder that vanishes, the program run as a user runs it, and the places of this build.
+#pragma once
+
+#include "plugin/host.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+
+/// A fresh folder, removed with all that is in it at the end of the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Writes a file below the folder, making folders on the way, and returns its path.
+  std::filesystem::path write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What a program left behind when it ended.
+struct Ended {
+  int status = 0;  ///< exit status; 128 + signal if a signal ended it
+  std::string out;
+  std::string err;
+};
+
+/// A program under way, started without a shell.
+class Child {
+ public:
+  /// `words[0]` is the program. `folder` becomes its working directory; `environment` adds NAME=VALUE.
+  Child(const std::vector<std::string>& words, const std::filesystem::path& folder,
+        const std::vector<std::string>& environment = {});
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void signal(int number) const;
+  /// Waits for its end and collects what it printed.
+  Ended wait();
+
+ private:
+  TemporaryFolder scratch_;
+  int pid_ = -1;
+};
+
+/// Runs a program to its end.
+Ended run_program(const std::vector<std::string>& words, const std::filesystem::path& folder,
+                  const std::vector<std::string>& environment = {});
+
+/// Runs `palpate` of this build with `words` behind it, in `folder`.
+Ended palpate(const std::vector<std::string>& words, const std::filesystem::path& folder,
+              const std::vector<std::string>& environment = {});
+
+/// The folder of the project's sources, the program and the plugins of this build.
+std::filesystem::path source_folder();
+std::filesystem::path program_file();
+std::filesystem::path plugin_folder();
+
+/// A host over the plugins of this build, shared by the tests of one process.
+const PluginHost& shared_host();
+
+/// The text of a file.
+std::string text_of(const std::filesystem::path& file);
+
+/// The one run directory below `runs`; fails the test if there is not exactly one.
+std::filesystem::path only_run(const std::filesystem::path& runs);
+
+}  // namespace palpate::test
