@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -32,17 +33,16 @@ void take(std::vector<int>& design, const Candidates& candidates, double x, doub
 }
 
 std::vector<int> draw_sobol(std::size_t count, const Candidates& candidates, const Area& area, Random& random) {
-  // Cranley-Patterson rotation: one random shift, modulo 1, keeps the even spread and makes it depend on the seed.
-  const double shift_x = random.uniform();
-  const double shift_y = random.uniform();
+  // A digital shift (Owen 2003): one random pattern of bits an axis, added without carry to every point. Unlike a
+  // shift modulo 1 it keeps the even spread over halves, quarters, ... and still depends on the seed.
+  const std::array<std::uint64_t, 2> shift{random.bits(), random.bits()};
   boost::random::sobol sequence(2);
-  const double scale = 1.0 / (static_cast<double>(boost::random::sobol::max()) + 1.0);
-  const auto next = [&](double shift) { return std::fmod(static_cast<double>(sequence()) * scale + shift, 1.0); };
+  const auto coordinate = [](std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1.0p-53; };
   std::vector<int> design;
+  std::array<std::uint64_t, 2> point{0, 0};  // Boost's sequence leaves out the origin, with which it begins
   for (std::size_t i = 0; design.size() < count && i < 64 * static_cast<std::size_t>(candidates.size()); ++i) {
-    const double x = next(shift_x) * area.width;
-    const double y = next(shift_y) * area.depth;
-    take(design, candidates, x, y, area);
+    take(design, candidates, coordinate(point[0] ^ shift[0]) * area.width, coordinate(point[1] ^ shift[1]) * area.depth, area);
+    for (std::uint64_t& axis : point) axis = sequence();
   }
   return design;
 }

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/experiment.hpp"
+#include "support/runs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace palpate {
+namespace {
+
+using test::Collector;
+using test::CountingFactory;
+using test::ScriptedBackend;
+using test::shipped_config;
+
+Contact touch(double height) { return {Outcome::contact, height, 8.0, 1.0, {}}; }
+Contact failure(Outcome outcome) { return {outcome, 0.0, 0.0, 1.0, "because the test says so"}; }
+
+/// Looks at the belief after every tap.
+class Watcher final : public Journal {
+ public:
+  explicit Watcher(Experiment& experiment) : experiment_(experiment) {}
+  int weight_seen = 0;
+  int height_seen = 0;
+  void announce(const TapRecord&) override {}
+  void record(const TapRecord&, const std::array<double, kPhases>&) override {
+    weight_seen += experiment_.belief().weight_process() != nullptr ? 1 : 0;
+    height_seen += experiment_.belief().height_process() != nullptr ? 1 : 0;
+  }
+
+ private:
+  Experiment& experiment_;
+};
+
+TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"acquisition=uncertainty"});
+  const CountingFactory factory;
+  Experiment experiment(config.options, factory, nullptr);
+  Watcher watcher(experiment);
+  experiment.run(watcher);
+  EXPECT_EQ(watcher.weight_seen, 0);
+  EXPECT_EQ(watcher.height_seen, 14) << "of 17 taps, the 14 chosen by score need the height process";
+  EXPECT_EQ(factory.made["kernel"], 1) << "one kernel for the height process, none for the weight process";
+  EXPECT_EQ(factory.made["fitting"], 1);
+  experiment.result();
+  EXPECT_EQ(factory.made["kernel"], 2) << "the truth-based metrics want the outline, once, after the last tap";
+}
+
+TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"acquisition=random"});
+  const CountingFactory factory;
+  Experiment experiment(config.options, factory, nullptr);
+  Collector collector;
+  experiment.run(collector);
+  EXPECT_EQ(factory.made["kernel"], 0);
+  EXPECT_FALSE(collector.taps.back().max_standard_deviation.has_value());
+  EXPECT_FALSE(collector.taps.back().errors.rmse.has_value());
+}
+
+TEST(Experiment, WeightedScoreIsTheProductOfUncertaintyAndWeight) {
+  const ResolvedConfig config = shipped_config("paper/object_i_right.yaml", {"seed=6"});
+  Experiment experiment(config.options, test::shared_host(), nullptr);
+  Collector collector;
+  experiment.run(collector);
+  int by_score = 0;
+  for (const TapRecord& tap : collector.taps) {
+    if (tap.source != Source::acquisition) continue;
+    ++by_score;
+    EXPECT_DOUBLE_EQ(*tap.score, *tap.uncertainty * *tap.weight);
+    EXPECT_GE(*tap.uncertainty, 0.0);
+    EXPECT_LE(*tap.uncertainty, 1.0);
+  }
+  EXPECT_EQ(by_score, 14);
+}
+
+TEST(Experiment, ADeadStartFallsBackToUncertaintyAndSaysSo) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Collector collector;
+  experiment.run(collector);
+  for (std::size_t i = 3; i < collector.taps.size(); ++i) {
+    EXPECT_EQ(collector.taps[i].source, Source::fallback);
+    EXPECT_EQ(collector.taps[i].why, "no score is positive");
+  }
+  EXPECT_EQ(experiment.result().interventions.at("fallback"), 14);
+}
+
+TEST(Experiment, WithoutFallbackADeadStartStallsAtTheFirstCandidateAsThePapersRuleDoes) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"fallback=none", "repeat=allow"});
+  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Collector collector;
+  experiment.run(collector);
+  for (std::size_t i = 3; i < collector.taps.size(); ++i) EXPECT_EQ(collector.taps[i].candidate, 0);
+  const RunResult result = experiment.result();
+  EXPECT_EQ(result.taps, 17);
+  EXPECT_EQ(result.interventions.at("jitter"), 0) << "repeated taps are legal data with independent noise";
+}
+
+TEST(Experiment, ForbiddenRepeatsTapEveryCandidateAtMostOnceAndStopWhenNoneIsLeft) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"candidates.count=3", "taps=17"});
+  Experiment experiment(config.options, test::shared_host(), nullptr);
+  Collector collector;
+  experiment.run(collector);
+  std::set<int> tapped;
+  for (const TapRecord& tap : collector.taps) tapped.insert(tap.candidate);
+  EXPECT_EQ(collector.taps.size(), 9U);
+  EXPECT_EQ(tapped.size(), 9U);
+  EXPECT_EQ(experiment.result().stop_reason, "no candidate is left");
+}
+
+TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=6", "repeat=allow"});
+  const std::vector<Contact> answers{touch(0.09),
+                                     failure(Outcome::unreachable),
+                                     failure(Outcome::timeout),
+                                     failure(Outcome::no_contact),
+                                     failure(Outcome::aborted),
+                                     touch(0.0)};
+  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
+  Collector collector;
+  experiment.run(collector);
+  const RunResult result = experiment.result();
+  EXPECT_EQ(result.taps, 6);
+  EXPECT_EQ(result.on_surface_taps, 1);
+  EXPECT_EQ(result.off_surface_taps, 1);
+  EXPECT_EQ(result.failed_taps, 4);
+  experiment.belief().height_mean();
+  EXPECT_EQ(experiment.belief().height_process()->size(), 2);
+  std::set<int> places;
+  for (const TapRecord& tap : collector.taps) places.insert(tap.candidate);
+  EXPECT_EQ(places.size(), 6U) << "a place that failed is not tried again, even where repeats are allowed";
+}
+
+TEST(Experiment, AHeightThatIsNotANumberIsRefusedAsAFailedTap) {
+  for (const double height : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=5"});
+    const std::vector<Contact> answers{touch(0.09), touch(height), touch(0.0)};
+    Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
+    Collector collector;
+    experiment.run(collector);
+    EXPECT_EQ(collector.taps[1].contact.outcome, Outcome::aborted);
+    EXPECT_THAT(collector.taps[1].contact.reason, ::testing::HasSubstr("not a finite number"));
+    const RunResult result = experiment.result();
+    EXPECT_EQ(result.interventions.at("height_refused"), 1);
+    EXPECT_TRUE(experiment.belief().height_mean().allFinite());
+  }
+}
+
+TEST(Experiment, StopsWhenTheRobotHasBeenBusyLongEnough) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"stop.robot_time=5 s"});
+  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Collector collector;
+  experiment.run(collector);
+  EXPECT_EQ(collector.taps.size(), 5U) << "each scripted tap takes a second";
+  EXPECT_EQ(experiment.result().stop_reason, "robot_time");
+}
+
+TEST(Experiment, StopsWhenNoCandidateIsUncertainAnyMore) {
+  const ResolvedConfig config =
+      shipped_config("paper/object_i.yaml", {"acquisition=uncertainty", "kernel.length_scale=13 cm", "taps=100",
+                                             "stop.max_standard_deviation=10 cm"});
+  Experiment experiment(config.options, test::shared_host(), nullptr);
+  Collector collector;
+  experiment.run(collector);
+  const RunResult result = experiment.result();
+  EXPECT_EQ(result.stop_reason, "max_standard_deviation");
+  EXPECT_LE(std::sqrt(experiment.belief().height_variance().maxCoeff()), 0.1);
+  EXPECT_GT(*collector.taps.back().max_standard_deviation, 0.1) << "it stopped as soon as it could";
+}
+
+TEST(Experiment, AnInterruptionStopsItAfterTheTapUnderWay) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  std::atomic<bool> interrupted{false};
+  Experiment experiment(config.options, test::shared_host(), &interrupted);
+  class Stopper final : public Journal {
+   public:
+    explicit Stopper(std::atomic<bool>& flag) : flag_(flag) {}
+    void announce(const TapRecord& tap) override { flag_ = tap.number == 5; }
+    void record(const TapRecord&, const std::array<double, kPhases>&) override {}
+
+   private:
+    std::atomic<bool>& flag_;
+  } stopper(interrupted);
+  experiment.run(stopper);
+  EXPECT_EQ(experiment.result().taps, 5);
+  EXPECT_TRUE(experiment.result().interrupted);
+}
+
+TEST(Experiment, StrategiesWithEqualSeedsStartAlike) {
+  std::vector<std::vector<int>> starts;
+  for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {
+    const ResolvedConfig config = shipped_config("paper/object_i.yaml", {std::string("acquisition=") + acquisition, "seed=42"});
+    Experiment experiment(config.options, test::shared_host(), nullptr);
+    Collector collector;
+    experiment.run(collector);
+    starts.push_back({collector.taps[0].candidate, collector.taps[1].candidate, collector.taps[2].candidate});
+  }
+  for (const auto& start : starts) EXPECT_EQ(start, starts.front());
+}
+
+TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
+  for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {
+    const ResolvedConfig config = shipped_config("paper/object_i_right.yaml", {std::string("acquisition=") + acquisition, "seed=3"});
+    Experiment whole(config.options, test::shared_host(), nullptr);
+    Collector unbroken;
+    whole.run(unbroken);
+    for (std::size_t cut : {1U, 3U, 9U, 16U}) {
+      std::vector<PastTap> past;
+      for (std::size_t i = 0; i < cut; ++i) past.push_back({unbroken.taps[i].target, unbroken.taps[i].contact, unbroken.taps[i].source});
+      Experiment second(config.options, test::shared_host(), nullptr);
+      second.resume(past);
+      Collector rest;
+      second.run(rest);
+      ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
+      for (std::size_t i = 0; i < rest.taps.size(); ++i) {
+        EXPECT_EQ(rest.taps[i].candidate, unbroken.taps[cut + i].candidate) << acquisition << " cut " << cut << " tap " << i;
+        EXPECT_EQ(rest.taps[i].score, unbroken.taps[cut + i].score);
+        EXPECT_EQ(rest.taps[i].contact.seconds, unbroken.taps[cut + i].contact.seconds);
+      }
+    }
+  }
+}
+
+TEST(Experiment, TheDeskMayLieAnywhere) {
+  const std::vector<std::string> moved{"scene.desk=-30 cm", "seed=3"};
+  const ResolvedConfig low = shipped_config("paper/object_i_right.yaml", moved);
+  const ResolvedConfig plain = shipped_config("paper/object_i_right.yaml", {"seed=3"});
+  Experiment first(low.options, test::shared_host(), nullptr);
+  Experiment second(plain.options, test::shared_host(), nullptr);
+  Collector a;
+  Collector b;
+  first.run(a);
+  second.run(b);
+  for (std::size_t i = 0; i < a.taps.size(); ++i) EXPECT_EQ(a.taps[i].candidate, b.taps[i].candidate);
+  EXPECT_NEAR(*first.result().errors.rmse, *second.result().errors.rmse, 1e-12);
+}
+
+}  // namespace
+}  // namespace palpate

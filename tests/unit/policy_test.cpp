@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/policy.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace palpate {
+namespace {
+
+Pick pick_all(std::initializer_list<double> scores, double scale = 0.0, double tolerance = 1e-8) {
+  const std::vector<double> values(scores);
+  const Eigen::VectorXd vector = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return pick(vector, std::vector<bool>(values.size(), true), scale, tolerance);
+}
+
+TEST(Pick, TakesTheHighestScoreAndNamesTheRunnerUp) {
+  const Pick picked = pick_all({0.1, 0.7, 0.3, 0.6});
+  EXPECT_EQ(picked.candidate, 1);
+  EXPECT_EQ(picked.score, 0.7);
+  EXPECT_EQ(picked.ties, 1);
+  EXPECT_EQ(picked.runner_up, 3);
+  EXPECT_EQ(picked.runner_up_score, 0.6);
+  EXPECT_FALSE(picked.flat);
+}
+
+TEST(Pick, GivesATieToTheLowestIndexEvenIfAnotherIsHigherByRounding) {
+  const Pick picked = pick_all({0.2, 0.5, 0.5 + 1e-15, 0.1});
+  EXPECT_EQ(picked.candidate, 1);
+  EXPECT_EQ(picked.ties, 2);
+  EXPECT_EQ(picked.runner_up, 2);
+}
+
+TEST(Pick, JudgesTiesOfTinyScoresByThePriorScale) {
+  EXPECT_EQ(pick_all({1e-12, 3e-12, 2e-12}, 0.0).candidate, 1) << "without a scale they are far apart";
+  const Pick picked = pick_all({1e-12, 3e-12, 2e-12}, 1.0);
+  EXPECT_EQ(picked.candidate, 0) << "with scale 1 they are rounding";
+  EXPECT_EQ(picked.flat, "every score is equal");
+}
+
+TEST(Pick, SeesThatScoresSayNothing) {
+  EXPECT_EQ(pick_all({0.0, 0.0, 0.0}).flat, "no score is positive");
+  EXPECT_EQ(pick_all({-1.0, -2.0}).flat, "no score is positive");
+  EXPECT_EQ(pick_all({0.5, 0.5}).flat, "every score is equal");
+  EXPECT_FALSE(pick_all({0.5}).flat) << "a single candidate is no tie";
+}
+
+TEST(Pick, LeavesOutWhatIsNotAllowed) {
+  const Eigen::Vector3d scores(0.9, 0.5, 0.7);
+  EXPECT_EQ(pick(scores, {false, true, true}, 0.0, 1e-8).candidate, 2);
+  EXPECT_EQ(pick(scores, {false, true, false}, 0.0, 1e-8).runner_up, -1);
+  EXPECT_EQ(pick(scores, {false, false, false}, 0.0, 1e-8).candidate, -1);
+}
+
+class Design : public ::testing::TestWithParam<InitialOptions::Design> {};
+
+TEST_P(Design, GivesDifferentCandidatesAndTheSameOnesForTheSameSeed) {
+  const Area area{0.23, 0.23};
+  const Candidates candidates = grid_by_count(area, 5);
+  for (const std::int64_t count : {1, 3, 24, 25}) {
+    InitialOptions options;
+    options.design = GetParam();
+    options.count = count;
+    const std::vector<int> first = initial_design(options, candidates, area, 7);
+    EXPECT_EQ(first, initial_design(options, candidates, area, 7));
+    EXPECT_EQ(std::set<int>(first.begin(), first.end()).size(), static_cast<std::size_t>(count));
+    EXPECT_GE(*std::min_element(first.begin(), first.end()), 0);
+    EXPECT_LT(*std::max_element(first.begin(), first.end()), 25);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Design,
+                         ::testing::Values(InitialOptions::Design::random, InitialOptions::Design::sobol,
+                                           InitialOptions::Design::grid));
+
+TEST(InitialDesign, RandomHitsEveryCandidateEquallyOften) {
+  const Area area{1.0, 1.0};
+  const Candidates candidates = grid_by_count(area, 4);
+  std::vector<int> counts(16, 0);
+  InitialOptions options;
+  constexpr int kSeeds = 4000;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    for (const int index : initial_design(options, candidates, area, static_cast<std::uint64_t>(seed))) {
+      ++counts[static_cast<std::size_t>(index)];
+    }
+  }
+  // 3 of 16 each time: binomial with mean 750 and standard deviation below 25; five of those.
+  for (const int count : counts) EXPECT_NEAR(count, kSeeds * 3 / 16, 125);
+}
+
+TEST(InitialDesign, SobolSpreadsFourTapsOverTheFourQuarters) {
+  const Area area{1.0, 1.0};
+  const Candidates candidates = grid_by_count(area, 40);
+  InitialOptions options;
+  options.design = InitialOptions::Design::sobol;
+  options.count = 4;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    std::vector<int> quarters(4, 0);
+    for (const int index : initial_design(options, candidates, area, seed)) {
+      const Target at = candidates.target(index);
+      ++quarters[static_cast<std::size_t>((at.x < 0.5 ? 0 : 1) + (at.y < 0.5 ? 0 : 2))];
+    }
+    EXPECT_EQ(quarters, std::vector<int>(4, 1)) << "seed " << seed;
+  }
+}
+
+TEST(InitialDesign, RefusesMoreTapsThanCandidates) {
+  const Area area{1.0, 1.0};
+  InitialOptions options;
+  options.count = 5;
+  EXPECT_THROW(initial_design(options, grid_by_count(area, 2), area, 1), Error);
+}
+
+}  // namespace
+}  // namespace palpate
