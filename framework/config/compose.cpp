@@ -212,7 +212,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   for (const Override& one : overrides) {
     if (is_group(one.path) && one.value.is_scalar()) continue;
     Tree& slot = tree.at_path(one.path);
-    if (slot.kind == Tree::Kind::map && one.value.kind == Tree::Kind::map) {
+    if (is_group(one.path) && slot.is_map() && one.value.is_map()) {
       slot.merge(one.value);
     } else {
       slot = one.value;

@@ -35,7 +35,8 @@ class Composer {
   /// Groups in the order of `defaults`, then the file, then `overrides` in order.
   ///
   /// A group chosen by an override takes the place of the group chosen before at that path; what the file itself says
-  /// there stays, as far as the new type has that option (see resolve()). Throws Error for missing files, unknown
+  /// there stays, as far as the new type has that option (see resolve()). A map given for a group is laid over it; any
+  /// other value takes the place of what was there. Throws Error for missing files, unknown
   /// groups and cycles.
   Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
 

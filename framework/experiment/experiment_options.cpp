@@ -14,7 +14,7 @@ void InitialOptions::list(Fields& fields) {
 void CandidateOptions::list(Fields& fields) {
   fields.integer(count, Field("count", "cells per side; 47 if neither this nor spacing is given").at_least(1).at_most(2000));
   fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
-  fields.require(!(count && spacing), "spacing", "give either count or spacing, not both");
+  fields.require(!(count && spacing), "spacing", "give either count or spacing; the word none takes the other away");
 }
 
 void HeightOptions::list(Fields& fields) {

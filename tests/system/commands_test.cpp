@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: MIT
+// Every command as a user calls it: what it prints, where, and with which exit status.
+#include "record/files.hpp"
+#include "record/json.hpp"
+#include "support/support.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace palpate {
+namespace {
+
+using test::Ended;
+using test::only_run;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+std::string config(const std::string& name) { return (test::source_folder() / "configs" / name).string(); }
+
+std::string paper() { return config("paper/object_i.yaml"); }
+
+int lines(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
+
+Scalar value(const std::string& json, const std::string& name) {
+  const auto row = parse_json_row(json);
+  EXPECT_TRUE(row) << json;
+  const Scalar* found = row ? row->find(name) : nullptr;
+  EXPECT_NE(found, nullptr) << name;
+  return found != nullptr ? *found : Scalar{};
+}
+
+TEST(Run, PrintsALineATapAndASummaryAndLeavesEveryFileOfTheContract) {
+  const TemporaryFolder folder;
+  const Ended run = test::palpate({"run", paper()}, folder.path());
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(lines(run.out), 1 + 17 + 4);
+  const fs::path directory = only_run(folder.path() / "runs");
+  for (const char* name : {"config.yaml", "manifest.json", "taps.jsonl", "taps.csv", "timings.csv", "summary.json", "surface.csv"}) {
+    EXPECT_TRUE(fs::exists(directory / name)) << name;
+  }
+  EXPECT_EQ(lines(text_of(directory / "taps.jsonl")), 17);
+  EXPECT_EQ(lines(text_of(directory / "taps.csv")), 18);
+  EXPECT_EQ(lines(text_of(directory / "timings.csv")), 18);
+  EXPECT_EQ(lines(text_of(directory / "surface.csv")), 1 + 47 * 47);
+  EXPECT_EQ(directory.parent_path().filename(), "object_i");
+  EXPECT_EQ(directory.filename().string().size(), 12U);
+}
+
+TEST(Run, TheSummaryHoldsEveryFieldOfTheContractAndAddsUp) {
+  const TemporaryFolder folder;
+  const Ended run = test::palpate({"run", paper(), "--json"}, folder.path());
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, text_of(only_run(folder.path() / "runs") / "summary.json"));
+  for (const char* name :
+       {"name", "id", "seed", "status", "stop_reason", "taps", "on_surface_taps", "off_surface_taps", "failed_taps", "first_hit_tap",
+        "found", "rmse_m", "rmse_on_surface_m", "rmse_height_m", "footprint_iou", "nlpd", "coverage_95", "robot_seconds",
+        "wall_seconds", "compute_seconds", "compute.infer", "jitter_max", "interventions.jitter", "peak_rss_bytes"}) {
+    value(run.out, name);
+  }
+  const auto whole = [&](const char* name) { return std::get<std::int64_t>(value(run.out, name)); };
+  EXPECT_EQ(whole("taps"), 17);
+  EXPECT_EQ(whole("on_surface_taps") + whole("off_surface_taps") + whole("failed_taps"), 17);
+  EXPECT_EQ(value(run.out, "stop_reason"), Scalar{std::string("tap budget")});
+}
+
+TEST(Run, QuietPrintsNothing) {
+  const TemporaryFolder folder;
+  const Ended run = test::palpate({"run", paper(), "--quiet"}, folder.path());
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.out + run.err, "");
+}
+
+TEST(Run, DryRunSaysWhereAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const Ended run = test::palpate({"run", paper(), "--dry-run"}, folder.path());
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.out, HasSubstr("runs/object_i/"));
+  EXPECT_THAT(run.out, HasSubstr("not run yet"));
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+}
+
+TEST(Run, AFinishedRunIsReportedAndNotRepeated) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper()}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  const std::string before = text_of(directory / "summary.json");
+  const Ended again = test::palpate({"run", paper()}, folder.path());
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.out, StartsWith("already done"));
+  EXPECT_EQ(text_of(directory / "summary.json"), before);
+}
+
+TEST(Run, AFinishedRunOfAnotherBuildIsRefusedAndForceMovesItAside) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  std::string manifest = text_of(directory / "manifest.json");
+  const auto build = manifest.find("\"build\": \"") + 10;
+  manifest[build] = manifest[build] == '0' ? '1' : '0';
+  std::ofstream(directory / "manifest.json") << manifest;
+
+  const Ended refused = test::palpate({"run", paper()}, folder.path());
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("another build"));
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_EQ(lines(refused.err), 1);
+
+  const Ended forced = test::palpate({"run", paper(), "--force"}, folder.path());
+  EXPECT_EQ(forced.status, 0) << forced.err;
+  EXPECT_TRUE(fs::exists(directory.string() + ".old-1/summary.json"));
+  EXPECT_TRUE(fs::exists(directory / "summary.json"));
+}
+
+TEST(Run, ThePrintedConfigRunsAsTheSameRun) {
+  const TemporaryFolder folder;
+  const Ended printed = test::palpate({"run", paper(), "kernel=matern52", "seed=4", "--print-config"}, folder.path());
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  const fs::path file = folder.write("printed.yaml", printed.out);
+  const Ended one = test::palpate({"run", paper(), "kernel=matern52", "seed=4", "--dry-run"}, folder.path());
+  const Ended two = test::palpate({"run", file.string(), "--dry-run"}, folder.path());
+  EXPECT_EQ(one.out, two.out);
+  EXPECT_EQ(two.status, 0) << two.err;
+}
+
+TEST(Run, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
+  const TemporaryFolder folder;
+  const Ended run = test::palpate({"run", config("paper/comparison.yaml"), "acquisition=grid", "acquisition.type=random",
+                                   "taps=9", "--print-config", "--origins"},
+                                  folder.path());
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("taps: 9"));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("taps: 9 +# command line"));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("kernel.length_scale: 0.017 m +# .*configs/kernel/rbf.yaml:4:17"));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("tie_tolerance: 1e-08 +# default"));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("# dropped: acquisition.count from .*configs/acquisition/grid.yaml:4:10"));
+}
+
+TEST(Run, SwapsEveryStrategyFromTheCommandLine) {
+  const TemporaryFolder folder;
+  for (const char* choice : {"kernel=rbf", "kernel=matern32", "kernel=matern52", "acquisition=uncertainty", "acquisition=weighted",
+                             "acquisition=random", "acquisition=grid", "fitting=fixed", "scene=object_ii", "weight.clip=true",
+                             "height.kernel=matern32", "initial.design=sobol", "candidates={spacing: 1 cm}"}) {
+    const Ended run = test::palpate({"run", paper(), choice, "--json", "--force"}, folder.path());
+    EXPECT_EQ(run.status, 0) << choice << ": " << run.err;
+    EXPECT_EQ(value(run.out, "taps"), Scalar{std::int64_t{17}}) << choice;
+  }
+}
+
+TEST(Run, TheReplayBackendRepeatsARecordedRunFromItsTable) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const fs::path first = only_run(folder.path() / "runs");
+  const Ended again = test::palpate({"run", paper(), "backend={type: replay, record: " + first.string() + "}", "--runs", "again", "--quiet"},
+                                    folder.path());
+  ASSERT_EQ(again.status, 0) << again.err;
+  const fs::path second = only_run(folder.path() / "again");
+  const auto contacts = [](const fs::path& run) {
+    std::string out;
+    for (const Row& row : read_json_lines(run / "taps.jsonl").rows) {
+      for (const char* name : {"x", "y", "outcome", "height", "score", "ties"}) out += csv_cell(*row.find(name)) + " ";
+    }
+    return out;
+  };
+  EXPECT_EQ(contacts(second), contacts(first));
+}
+
+TEST(Run, WritesTheMapsOfEachChoiceWhereTheConfigAsksForThem) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"run", paper(), "log.maps=true", "--quiet"}, folder.path()).status, 0);
+  const fs::path maps = only_run(folder.path() / "runs") / "maps";
+  EXPECT_FALSE(fs::exists(maps / "tap_003.csv")) << "the initial taps are made without a model";
+  EXPECT_THAT(text_of(maps / "tap_004.csv"), StartsWith("x,y,height_mean,height_variance,u,w\n"));
+  EXPECT_EQ(lines(text_of(maps / "tap_017.csv")), 1 + 47 * 47);
+}
+
+TEST(Run, TheSameConfigAndSeedGiveTheSameBytes) {
+  const TemporaryFolder folder;
+  for (const char* runs : {"a", "b"}) {
+    ASSERT_EQ(test::palpate({"run", config("paper/object_i_right.yaml"), "--quiet", "--runs", runs}, folder.path()).status, 0);
+  }
+  const std::string first = text_of(only_run(folder.path() / "a") / "taps.csv");
+  EXPECT_EQ(first, text_of(only_run(folder.path() / "b") / "taps.csv"));
+  EXPECT_EQ(lines(first), 18);
+}
+
+TEST(Run, InterruptedEndsWith130AndCanBeResumed) {
+  const TemporaryFolder folder;
+  test::Child child({test::program_file().string(), "run", paper(), "backend.pace=1"}, folder.path());
+  const fs::path runs = folder.path() / "runs" / "object_i";
+  // Waits for the first tap to be under way; each takes seconds.
+  for (int i = 0; i < 2000 && !fs::exists(runs); ++i) ::usleep(5000);
+  while (fs::is_empty(runs) || !fs::exists(only_run(folder.path() / "runs") / "taps.jsonl")) ::usleep(5000);
+  child.signal(SIGINT);
+  const Ended ended = child.wait();
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
+  const fs::path directory = only_run(folder.path() / "runs");
+  EXPECT_FALSE(fs::exists(directory / "summary.json"));
+  EXPECT_THAT(text_of(directory / "taps.jsonl"), HasSubstr("\"outcome\": \"aborted\""));
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, HasSubstr("unfinished after 1 of 17"));
+  const Ended again = test::palpate({"run", paper(), "backend.pace=1"}, folder.path());
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("'palpate resume' carries on"));
+}
+
+TEST(Run, ARunThatAnotherProcessHoldsEndsWith75) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  const FileLock lock(directory / "lock");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", paper(), "--force"}, {"resume", directory.string()}}) {
+    fs::remove(directory / "summary.json");
+    const Ended ended = test::palpate(words, folder.path());
+    EXPECT_EQ(ended.status, 75) << words.front();
+    EXPECT_THAT(ended.err, HasSubstr("another process holds this run"));
+  }
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, HasSubstr("running"));
+}
+
+TEST(Resume, OfAFinishedRunRepeatsNothing) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  const std::string before = text_of(directory / "taps.jsonl");
+  const Ended ended = test::palpate({"resume", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.out, StartsWith("already done"));
+  EXPECT_EQ(text_of(directory / "taps.jsonl"), before);
+}
+
+TEST(Resume, RefusesAChangedConfigAndAnotherBuild) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  fs::remove(directory / "summary.json");
+  const std::string text = text_of(directory / "config.yaml");
+  std::string changed = text;
+  changed.replace(changed.find("taps: 17"), 8, "taps: 18");
+  std::ofstream(directory / "config.yaml") << changed;
+  const Ended config_changed = test::palpate({"resume", directory.string()}, folder.path());
+  EXPECT_EQ(config_changed.status, 2);
+  EXPECT_THAT(config_changed.err, HasSubstr("config.yaml was changed"));
+
+  std::ofstream(directory / "config.yaml") << text;
+  std::string manifest = text_of(directory / "manifest.json");
+  const auto build = manifest.find("\"build\": \"") + 10;
+  manifest[build] = manifest[build] == '0' ? '1' : '0';
+  std::ofstream(directory / "manifest.json") << manifest;
+  const Ended other = test::palpate({"resume", directory.string()}, folder.path());
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("another build"));
+  EXPECT_EQ(test::palpate({"resume", directory.string(), "--force"}, folder.path()).status, 0);
+  EXPECT_THAT(text_of(directory / "manifest.json"), HasSubstr("\"after_tap\": 17"));
+}
+
+TEST(Resume, OfWhatIsNoRunSaysSo) {
+  const TemporaryFolder folder;
+  for (const char* command : {"resume", "status", "replay"}) {
+    const Ended ended = test::palpate({command, folder.path().string()}, folder.path());
+    EXPECT_EQ(ended.status, 2) << command;
+    EXPECT_THAT(ended.err, HasSubstr("is not a run directory"));
+    EXPECT_EQ(lines(ended.err), 1);
+  }
+}
+
+TEST(Status, TellsWhereARunStandsAndWhyItStopped) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const Ended ended = test::palpate({"status", only_run(folder.path() / "runs").string()}, folder.path());
+  EXPECT_EQ(ended.out, "object_i: done after 17 of 17 taps: tap budget\n");
+}
+
+TEST(Replay, FindsEveryNumberEqual) {
+  const TemporaryFolder folder;
+  for (const char* acquisition : {"weighted", "uncertainty", "random"}) {
+    test::palpate({"run", paper(), "--quiet", "--runs", acquisition, std::string("acquisition=") + acquisition}, folder.path());
+    const Ended ended = test::palpate({"replay", only_run(folder.path() / acquisition).string()}, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.out;
+    EXPECT_THAT(ended.out, ::testing::MatchesRegex("17 taps, [0-9]+ numbers, all equal\n"));
+  }
+}
+
+TEST(Replay, NoticesANumberThatWasTamperedWith) {
+  const TemporaryFolder folder;
+  test::palpate({"run", config("paper/object_i_right.yaml"), "seed=3", "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  std::string taps = text_of(directory / "taps.jsonl");
+  // The last digit of one score.
+  const auto at = taps.rfind("\"score\": 0.", taps.rfind("\"u\": ")) + 13;
+  taps[at] = taps[at] == '5' ? '6' : '5';
+  std::ofstream(directory / "taps.jsonl") << taps;
+  const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("tap 17: score: recorded 0."));
+}
+
+TEST(Validate, ChecksEveryShippedConfigAndNamesEveryBadOne) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words{"validate"};
+  for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / "configs" / "paper")) words.push_back(entry.path().string());
+  const Ended good = test::palpate(words, folder.path());
+  EXPECT_EQ(good.status, 0) << good.err;
+  EXPECT_EQ(lines(good.out), static_cast<int>(words.size()) - 1);
+  EXPECT_THAT(good.out, HasSubstr("a sweep of 4000 jobs"));
+
+  const fs::path bad = folder.write("bad.yaml", "taps: many\n");
+  const Ended mixed = test::palpate({"validate", bad.string(), paper(), "missing.yaml"}, folder.path());
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_EQ(lines(mixed.err), 2);
+  EXPECT_EQ(lines(mixed.out), 1);
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+}
+
+TEST(Sweep, WritesOneRowAJobAndListsItsJobsBeforehand) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words{"sweep", paper(), "acquisition=weighted,random", "kernel.length_scale=log(1cm,4cm,3)", "seed=range(0,2)"};
+  std::vector<std::string> list = words;
+  list.push_back("--list");
+  const Ended listed = test::palpate(list, folder.path());
+  EXPECT_EQ(lines(listed.out), 12);
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+  EXPECT_THAT(listed.out, HasSubstr("kernel.length_scale=1 cm"));
+  EXPECT_THAT(listed.out, HasSubstr("kernel.length_scale=2 cm"));
+
+  const Ended ended = test::palpate(words, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const fs::path directory = only_run(folder.path() / "runs");
+  const std::string results = text_of(directory / "results.csv");
+  EXPECT_THAT(results, StartsWith("job,id,acquisition,kernel.length_scale,seed,name,status,"));
+  EXPECT_EQ(lines(results), 13);
+  EXPECT_EQ(results.find("nan"), std::string::npos);
+  EXPECT_EQ(results.find("null"), std::string::npos);
+  EXPECT_EQ(lines(text_of(directory / "manifest.jsonl")), 12);
+  EXPECT_FALSE(fs::exists(directory / "summary.json"));
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, StartsWith("12 jobs, 12 done, 0 running"));
+  for (const auto& job : fs::directory_iterator(directory / "jobs")) {
+    EXPECT_FALSE(fs::exists(job.path() / "surface.csv")) << "not by default in a sweep";
+    EXPECT_TRUE(fs::exists(job.path() / "taps.csv"));
+  }
+}
+
+TEST(Sweep, GivesTheSameBytesAsSingleRunsOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  for (const char* workers : {"1", "2"}) {
+    ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,6)", "-j", workers, "--runs", workers, "--quiet"}, folder.path()).status, 0);
+  }
+  const fs::path one = only_run(folder.path() / "1");
+  const fs::path two = only_run(folder.path() / "2");
+  int jobs = 0;
+  for (const auto& job : fs::directory_iterator(one / "jobs")) {
+    ++jobs;
+    EXPECT_EQ(text_of(job.path() / "taps.csv"), text_of(two / "jobs" / job.path().filename() / "taps.csv"));
+  }
+  EXPECT_EQ(jobs, 6);
+  ASSERT_EQ(test::palpate({"run", paper(), "seed=4", "--runs", "single", "--quiet"}, folder.path()).status, 0);
+  const fs::path single = only_run(folder.path() / "single");
+  EXPECT_EQ(text_of(single / "taps.csv"), text_of(one / "jobs" / single.filename() / "taps.csv"));
+}
+
+TEST(Sweep, ABadValueIsRefusedBeforeAnyJobStarts) {
+  const TemporaryFolder folder;
+  const Ended ended = test::palpate({"sweep", paper(), "taps=5,17,0"}, folder.path());
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("taps: 0 is out of range"));
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+}
+
+TEST(Sweep, CarriesOnWithWhatIsMissing) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,5)", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  const std::string before = text_of(directory / "results.csv");
+  const fs::path job = fs::directory_iterator(directory / "jobs")->path();
+  const std::string taps = text_of(job / "taps.csv");
+  for (const char* name : {"summary.json", "taps.csv", "taps.jsonl", "timings.csv", "manifest.json"}) fs::remove(job / name);
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, HasSubstr("4 done, 0 running, 0 failed, 0 unfinished, 1 missing"));
+  const Ended refused = test::palpate({"sweep", paper(), "seed=range(0,5)"}, folder.path());
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("'palpate resume' carries on"));
+  EXPECT_EQ(test::palpate({"resume", directory.string()}, folder.path()).status, 0);
+  EXPECT_EQ(text_of(job / "taps.csv"), taps);
+  EXPECT_EQ(lines(text_of(directory / "results.csv")), lines(before));
+}
+
+TEST(Sweep, AFailedJobIsCountedNamedAndStopsNoOther) {
+  const TemporaryFolder folder;
+  const Ended ended = test::palpate({"sweep", paper(), "scene.placement=random", "scene.objects.0.length=10cm,16cm,40cm"}, folder.path());
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("failed: job 2"));
+  EXPECT_THAT(ended.out, HasSubstr("does not fit into the area"));
+  const fs::path directory = only_run(folder.path() / "runs");
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, StartsWith("3 jobs, 2 done, 0 running, 1 failed"));
+  EXPECT_EQ(lines(text_of(directory / "results.csv")), 4);
+}
+
+TEST(Plugins, ListsEveryOneAndTheOptionsOfOne) {
+  const TemporaryFolder folder;
+  const Ended all = test::palpate({"plugins"}, folder.path());
+  EXPECT_EQ(all.status, 0) << all.err;
+  for (const char* name : {"rbf", "matern32", "matern52", "uncertainty", "weighted", "random", "grid", "fixed", "simulator", "replay"}) {
+    EXPECT_THAT(all.out, HasSubstr(name));
+  }
+  EXPECT_EQ(lines(test::palpate({"plugins", "kernel"}, folder.path()).out), 3);
+  const Ended one = test::palpate({"plugins", "kernel/rbf"}, folder.path());
+  EXPECT_THAT(one.out, HasSubstr("length_scale"));
+  EXPECT_THAT(one.out, HasSubstr("> 0 m"));
+  EXPECT_THAT(one.out, HasSubstr("0.017 m"));
+  const Ended json = test::palpate({"plugins", "--json"}, folder.path());
+  EXPECT_TRUE(is_json(json.out));
+  const Ended missing = test::palpate({"plugins", "kernel/rfb"}, folder.path());
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_EQ(missing.err, "no plugin kernel/rfb, did you mean 'rbf'?\n");
+}
+
+TEST(CommandLine, HelpGoesToStdoutWithStatus0) {
+  const TemporaryFolder folder;
+  for (const char* command : {"", "run", "sweep", "resume", "status", "replay", "validate", "plugins", "schema"}) {
+    std::vector<std::string> words{"--help"};
+    if (*command != '\0') words.insert(words.begin(), command);
+    const Ended help = test::palpate(words, folder.path());
+    EXPECT_EQ(help.status, 0) << command;
+    EXPECT_EQ(help.err, "") << command;
+    EXPECT_THAT(help.out, HasSubstr("--help")) << command;
+  }
+}
+
+TEST(CommandLine, WrongUsageIsOneLineWithStatus2) {
+  const TemporaryFolder folder;
+  const std::vector<std::vector<std::string>> wrong{{}, {"rum"}, {"run"}, {"run", paper(), "--jsno"}, {"sweep"}, {"run", paper(), "--origins"},
+                                                    {"plugins", "kernels"}, {"sweep", paper(), "-j", "0"}};
+  for (const auto& words : wrong) {
+    const Ended ended = test::palpate(words, folder.path());
+    EXPECT_EQ(ended.status, 2) << (words.empty() ? "" : words.back());
+    EXPECT_EQ(lines(ended.err), 1) << ended.err;
+    EXPECT_EQ(ended.out, "");
+  }
+}
+
+}  // namespace
+}  // namespace palpate
