@@ -66,7 +66,7 @@ void Experiment::choose_by_score(TapRecord& tap) {
 
 void Experiment::perform(TapRecord& tap) {
   {
-    const PhaseClock::Scope in_tap(clock_, Phase::tap);
+    const PhaseClock::Scope in_tap(clock_, Phase::robot);
     tap.contact = backend_->tap({tap.number, tap.target, previous_});
   }
   Contact& contact = tap.contact;

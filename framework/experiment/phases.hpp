@@ -8,9 +8,9 @@
 
 namespace palpate {
 
-enum class Phase { tap, fit, infer, acquire, log };
+enum class Phase { robot, fit, infer, acquire, log };
 constexpr std::size_t kPhases = 5;
-constexpr std::array<const char*, kPhases> kPhaseNames{"tap", "fit", "infer", "acquire", "log"};
+constexpr std::array<const char*, kPhases> kPhaseNames{"robot", "fit", "infer", "acquire", "log"};
 
 /// Seconds of wall time by phase. Phases nest: while an inner one runs, the outer one stands still, so that a model
 /// built in the middle of a score counts as inference.

@@ -107,13 +107,16 @@ class PluginHost::Library {
       refuse(file, "loading", dlerror_part(failure.what()));
     }
     manifest_ = &check_manifest(library_, file, kind, name);
+    hash_ = hash_of_file(file);
   }
 
   const PluginManifest& manifest() const { return *manifest_; }
   const fs::path& file() const { return file_; }
+  const std::string& hash() const { return hash_; }
 
  private:
   fs::path file_;
+  std::string hash_;
   boost::dll::shared_library library_;
   const PluginManifest* manifest_ = nullptr;
 };
@@ -226,7 +229,7 @@ std::vector<LoadedPlugin> PluginHost::loaded() const {
   const std::lock_guard lock(mutex_);
   std::vector<LoadedPlugin> out;
   for (const auto& [key, holder] : libraries_) {
-    if (holder) out.push_back({key.first, key.second, holder->file(), hash_of_file(holder->file())});
+    if (holder) out.push_back({key.first, key.second, holder->file(), holder->hash()});
   }
   return out;
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
-#include <fmt/format.h>
-
+#include <charconv>
 #include <ctime>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -27,25 +25,27 @@ std::int64_t peak_rss_bytes() {
 
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
 
-/// x, y and one column a map; a null map leaves its cells empty.
+/// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: to_chars, the fastest there is.
 std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
-  fmt::memory_buffer out;
-  auto to = std::back_inserter(out);
-  fmt::format_to(to, "x,y");
-  for (const Column& column : columns) fmt::format_to(to, ",{}", column.first);
-  fmt::format_to(to, "\n");
+  constexpr std::size_t kLongest = 32;  // a double in shortest form has at most 24 characters
+  std::string out = "x,y";
+  for (const Column& column : columns) out += std::string(",") + column.first;
+  out += '\n';
+  std::array<char, kLongest> cell{};
+  const auto append = [&](double value) {
+    out.append(cell.data(), std::to_chars(cell.data(), cell.data() + cell.size(), value).ptr);
+  };
   for (int i = 0; i < candidates.size(); ++i) {
-    fmt::format_to(to, "{},{}", candidates.points(i, 0), candidates.points(i, 1));
+    append(candidates.points(i, 0));
+    out += ',';
+    append(candidates.points(i, 1));
     for (const Column& column : columns) {
-      if (column.second != nullptr) {
-        fmt::format_to(to, ",{}", (*column.second)(i));
-      } else {
-        fmt::format_to(to, ",");
-      }
+      out += ',';
+      if (column.second != nullptr) append((*column.second)(i));
     }
-    fmt::format_to(to, "\n");
+    out += '\n';
   }
-  return fmt::to_string(out);
+  return out;
 }
 
 }  // namespace
