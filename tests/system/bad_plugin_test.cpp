@@ -213,5 +213,41 @@ TEST(BadPlugin, NamedOnTheCommandLineIsRefusedThere) {
   EXPECT_THAT(ended.err, HasSubstr("no_symbol.so: finding the symbol"));
 }
 
+/// Constructors that throw: the library is sound, so it is listed; the run is refused before it leaves a trace.
+void expect_refused_by_constructor(const std::string& name, const std::string& line) {
+  const fs::path folder = bad_plugin_folder(name);
+  const TemporaryFolder here;
+  const Ended list = palpate({"plugins"}, here.path(), search(folder));
+  EXPECT_EQ(list.status, 0) << list.err;
+  EXPECT_THAT(list.out, HasSubstr(name));
+  expect_refused(folder, name, line, "\n");
+}
+
+TEST(ThrowingPlugin, ErrorIsCaughtByTypeAndGetsThePlaceOfTheConfig) {
+  expect_refused_by_constructor(
+      "throws_error", "exp.yaml:1:16: kernel/throws_error: this kernel refuses its options, choose another\n");
+}
+
+TEST(ThrowingPlugin, ErrorWithAPlaceOfItsOwnKeepsIt) {
+  expect_refused_by_constructor("throws_error_with_place", "table.csv:7: this kernel refuses its table\n");
+}
+
+TEST(ThrowingPlugin, StandardExceptionIsToldInOneLine) {
+  expect_refused_by_constructor("throws_runtime_error",
+                                "exp.yaml:1:16: kernel/throws_runtime_error cannot be created: two lines\n");
+}
+
+TEST(ThrowingPlugin, ExceptionOfThePluginIsTold) {
+  expect_refused_by_constructor(
+      "throws_own_exception",
+      "exp.yaml:1:16: kernel/throws_own_exception cannot be created: an exception of its own\n");
+}
+
+TEST(ThrowingPlugin, WhatIsNoExceptionIsToldToo) {
+  expect_refused_by_constructor(
+      "throws_number",
+      "exp.yaml:1:16: kernel/throws_number cannot be created: it threw something that is no exception\n");
+}
+
 }  // namespace
 }  // namespace palpate::test
