@@ -249,5 +249,21 @@ TEST(ThrowingPlugin, WhatIsNoExceptionIsToldToo) {
       "exp.yaml:1:16: kernel/throws_number cannot be created: it threw something that is no exception\n");
 }
 
+TEST(ThrowingPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
+  for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"throws_in_score", "no score today"},
+           {"throws_number_in_score", "a plugin threw something that is no exception"}}) {
+    const TemporaryFolder here;
+    here.write("exp.yaml", config_with("acquisition", name));
+    const Ended ended = palpate({"run", "exp.yaml"}, here.path(), search(bad_plugin_folder(name)));
+    EXPECT_EQ(ended.status, 1) << ended.err;
+    EXPECT_EQ(ended.err, reason + "\n");
+    const Ended status =
+        palpate({"status", only_run(here.path() / "runs").string()}, here.path(), search(bad_plugin_folder(name)));
+    EXPECT_THAT(status.out + status.err, HasSubstr("failed"));
+    EXPECT_THAT(status.out + status.err, HasSubstr(reason));
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test
