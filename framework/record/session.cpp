@@ -114,8 +114,10 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   std::string failure;
   try {
     experiment.run(relay);
-  } catch (const Error& trouble) {
+  } catch (const std::exception& trouble) {
     failure = trouble.what();
+  } catch (...) {
+    failure = "a plugin threw something that is no exception";
   }
   const RunResult result = experiment.result();
   report.interrupted = result.interrupted;
