@@ -10,9 +10,7 @@ struct RationalOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(length_scale, Field("length_scale", "distance over which heights stay alike").in(Unit::metre).above(0));
-    fields.real(
-        alpha,
-        Field("alpha", "small mixes many length scales, large nears the rbf kernel").at_least(0.01).at_most(1e6));
+    fields.real(alpha, Field("alpha", "small mixes many length scales").at_least(0.01).at_most(1e6));
   }
 };
 
