@@ -3,14 +3,11 @@
 // both processes, choose the next tap by the exploration function.
 #include "experiment/experiment.hpp"
 
+#include <palpate/error.hpp>
+
 #include <cmath>
 
 namespace palpate {
-namespace {
-
-constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
-
-}  // namespace
 
 void Experiment::run(Journal& journal) {
   for (;;) {
@@ -47,6 +44,9 @@ void Experiment::choose_by_score(TapRecord& tap) {
   const PhaseClock::Scope acquire(clock_, Phase::acquire);
   Eigen::VectorXd scores(candidates_.size());
   acquisition_->score(belief_, scores);
+  if (!scores.allFinite()) {
+    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {}, Error::Kind::run);
+  }
   Pick picked = pick(scores, allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
   tap.source = Source::acquisition;
   if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
@@ -65,36 +65,19 @@ void Experiment::choose_by_score(TapRecord& tap) {
 }
 
 void Experiment::perform(TapRecord& tap) {
-  {
-    const PhaseClock::Scope in_tap(clock_, Phase::robot);
-    tap.contact = backend_->tap({tap.number, tap.target, previous_});
-  }
-  Contact& contact = tap.contact;
-  if (contact.outcome == Outcome::contact && !std::isfinite(contact.height)) {
-    contact = {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused};
-  }
-  if (contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(contact.height);
-  absorb(tap.target, contact, tap.source);
+  tap.contact = touch(tap.number, tap.target);
+  if (tap.contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(tap.contact.height);
+  absorb(tap.target, tap.contact, tap.source);
 }
 
 void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
   belief_.observe(target, contact);
-  if (source == Source::fallback) ++result_.interventions["fallback"];
-  if (contact.reason == kHeightRefused) ++result_.interventions["height_refused"];
+  count(contact, source);
   previous_ = target;
-  ++result_.taps;
-  result_.robot_seconds += contact.seconds;
   const auto candidate = static_cast<std::size_t>(candidates_.nearest(target.x, target.y, scene_->area()));
-  if (contact.outcome != Outcome::contact) {
-    ++result_.failed_taps;
-    allowed_[candidate] = false;
-    return;
-  }
-  tapped_[candidate] = true;
-  if (options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
-  const bool on = scene_->on_surface(contact.height);
-  ++(on ? result_.on_surface_taps : result_.off_surface_taps);
-  if (on && !result_.first_hit_tap) result_.first_hit_tap = result_.taps;
+  const bool touched = contact.outcome == Outcome::contact;
+  if (touched) tapped_[candidate] = true;
+  if (!touched || options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
 }
 
 std::optional<std::string> Experiment::stop_reason() const {

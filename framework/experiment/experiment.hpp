@@ -55,7 +55,9 @@ class Experiment {
   void choose_by_score(TapRecord& tap);
   void describe_state(TapRecord& tap);
   void perform(TapRecord& tap);
+  Contact touch(int number, const Target& target);
   void absorb(const Target& target, const Contact& contact, Source source);
+  void count(const Contact& contact, Source source);
 
   ExperimentOptions options_;
   std::unique_ptr<const Scene> scene_;

@@ -14,6 +14,8 @@ Candidates make_candidates(const CandidateOptions& options, const Area& area) {
   return grid_by_count(area, static_cast<int>(options.count.value_or(kPaperCount)));
 }
 
+constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
+
 ProcessState state_of(const Process& process) {
   return {process.kernel().parameters(), process.settings(), process.log_marginal_likelihood(), process.jitter(),
           process.condition()};
@@ -38,6 +40,27 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
 
 void Experiment::resume(const std::vector<PastTap>& past) {
   for (const PastTap& tap : past) absorb(tap.target, tap.contact, tap.source);
+}
+
+Contact Experiment::touch(int number, const Target& target) {
+  const PhaseClock::Scope in_tap(clock_, Phase::robot);
+  Contact contact = backend_->tap({number, target, previous_});
+  if (contact.outcome != Outcome::contact || std::isfinite(contact.height)) return contact;
+  return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused};
+}
+
+void Experiment::count(const Contact& contact, Source source) {
+  ++result_.taps;
+  result_.robot_seconds += contact.seconds;
+  if (source == Source::fallback) ++result_.interventions["fallback"];
+  if (contact.reason == kHeightRefused) ++result_.interventions["height_refused"];
+  if (contact.outcome != Outcome::contact) {
+    ++result_.failed_taps;
+    return;
+  }
+  const bool on = scene_->on_surface(contact.height);
+  ++(on ? result_.on_surface_taps : result_.off_surface_taps);
+  if (on && !result_.first_hit_tap) result_.first_hit_tap = result_.taps;
 }
 
 const Truth* Experiment::truth() {

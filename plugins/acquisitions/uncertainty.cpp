@@ -5,10 +5,6 @@
 
 namespace palpate::acquisitions {
 
-struct NoOptions : Options {
-  void list(Fields&) override {}
-};
-
 class Uncertainty final : public Acquisition {
  public:
   using Options = NoOptions;

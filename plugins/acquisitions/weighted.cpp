@@ -6,10 +6,6 @@
 
 namespace palpate::acquisitions {
 
-struct NoOptions : Options {
-  void list(Fields&) override {}
-};
-
 class Weighted final : public Acquisition {
  public:
   using Options = NoOptions;

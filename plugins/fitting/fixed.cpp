@@ -5,10 +5,6 @@
 
 namespace palpate::fitting {
 
-struct NoOptions : Options {
-  void list(Fields&) override {}
-};
-
 class Fixed final : public Fitting {
  public:
   using Options = NoOptions;

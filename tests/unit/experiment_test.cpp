@@ -2,6 +2,8 @@
 #include "experiment/experiment.hpp"
 #include "support/runs.hpp"
 
+#include <palpate/error.hpp>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -145,6 +147,31 @@ TEST(Experiment, AHeightThatIsNotANumberIsRefusedAsAFailedTap) {
     EXPECT_EQ(result.interventions.at("height_refused"), 1);
     EXPECT_TRUE(experiment.belief().height_mean().allFinite());
   }
+}
+
+TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
+  class Broken final : public Acquisition {
+   public:
+    void score(const Belief&, VectorOut out) const override { out.setConstant(std::nan("")); }
+    double prior_scale() const override { return 1.0; }
+  };
+  class Factory final : public PluginFactory {
+   public:
+    std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
+      if (choice.kind == Acquisition::kKind) return std::shared_ptr<Acquisition>(std::make_shared<Broken>());
+      return test::shared_host().create(choice, context);
+    }
+  } const factory;
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  Experiment experiment(config.options, factory, nullptr);
+  Collector collector;
+  try {
+    experiment.run(collector);
+    FAIL() << "NaN was taken for a score";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "acquisition/weighted: gave a score that is not a finite number");
+  }
+  EXPECT_EQ(collector.taps.size(), 3U) << "the taps before stay recorded";
 }
 
 TEST(Experiment, StopsWhenTheRobotHasBeenBusyLongEnough) {

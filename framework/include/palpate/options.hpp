@@ -41,6 +41,11 @@ struct Options {
   virtual void list(Fields& fields) = 0;
 };
 
+/// The options of a plugin that has none.
+struct NoOptions : Options {
+  void list(Fields&) override {}
+};
+
 /// The choice of a plugin in a config: `{type: rbf, length_scale: 1.7 cm}`. Filled by Fields::plugin, turned into an
 /// object by Context::create.
 struct PluginChoice {
