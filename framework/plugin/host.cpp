@@ -92,6 +92,19 @@ const PluginManifest& check_manifest(const boost::dll::shared_library& library, 
   return manifest;
 }
 
+/// A plugin has refused its options: tells where in the config they, or the one that it names, were written.
+[[noreturn]] void refuse_options(const Error& refusal, const PluginChoice& choice) {
+  const Tree* option = choice.options->find(refusal.where());
+  if (option == nullptr && !refusal.where().empty()) {
+    throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
+  }
+  const std::string who = option != nullptr ? choice.kind + "." + refusal.where() : choice.kind + "/" + choice.type;
+  const Place place = option != nullptr && option->place.file ? option->place : choice.options->place;
+  const std::string where = place.text();
+  if (where.empty()) throw Error(who, refusal.reason(), refusal.hint(), refusal.kind());
+  throw Error(where, who + ": " + refusal.reason(), refusal.hint(), refusal.kind());
+}
+
 }  // namespace
 
 /// One loaded library. Closed when the last object made by it is gone.
@@ -197,7 +210,7 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
   try {
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { object = manifest.create(fields, context); });
   } catch (const Error& refusal) {
-    throw Error(refusal.where().empty() ? who : refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
+    refuse_options(refusal, choice);
   } catch (const std::exception& failure) {
     throw Error(who, fmt::format("cannot be created: {}", failure.what()));
   } catch (...) {
