@@ -58,7 +58,7 @@ struct ResumeArguments {
 };
 int resume(Program& program, const ResumeArguments& arguments);
 
-int status(Program& program, const std::string& directory);
+int status(const std::string& directory);
 int replay(Program& program, const std::string& directory);
 int validate(Program& program, const std::vector<std::string>& configs);
 int plugins(Program& program, const std::string& what, bool json);

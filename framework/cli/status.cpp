@@ -12,10 +12,16 @@
 namespace palpate::cli {
 namespace {
 
-void print_run(const ResolvedConfig& config, const RunStatus& status) {
+/// Reads the config without resolving it: a status needs no plugin.
+void print_run(const std::filesystem::path& directory) {
+  const Tree config = read_run_config(directory);
+  const RunStatus status = read_status(directory);
+  const auto text_at = [&](const char* key) {
+    const Tree* value = config.find(key);
+    return value != nullptr ? value->text : std::string("?");
+  };
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
-  fmt::print("{}: {} after {} of {} taps{}\n", config.options.name, state_name(status.state), status.taps,
-             config.options.taps, reason);
+  fmt::print("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"), reason);
 }
 
 void print_sweep_status(const Sweep& sweep) {
@@ -38,11 +44,11 @@ void print_sweep_status(const Sweep& sweep) {
 
 }  // namespace
 
-int status(Program& program, const std::string& directory) {
+int status(const std::string& directory) {
   if (is_sweep(directory)) {
     print_sweep_status(read_sweep(directory));
   } else {
-    print_run(load_run(program.host, directory), read_status(directory));
+    print_run(directory);
   }
   return kDone;
 }

@@ -275,7 +275,9 @@ class Resolver final : public Fields {
       if (!trouble.where().empty()) throw;
       throw Error(at, trouble.reason(), trouble.hint(), trouble.kind());
     }
-    choice.options = std::make_shared<const Tree>(inner.finish());
+    Tree options = inner.finish();
+    if (type != nullptr) options.place = type->place;  // where the plugin's own complaints will point
+    choice.options = std::make_shared<const Tree>(std::move(options));
     Tree& written = output_.at(field.name);
     written = Tree::map();
     written.at("type") = Tree::scalar(choice.type);

@@ -35,6 +35,9 @@ class Experiment {
   /// Taps until a stop rule holds, and tells `journal` of every tap.
   void run(Journal& journal);
 
+  /// What was counted so far, without errors: builds and computes nothing.
+  const RunResult& counts() const { return result_; }
+
   /// The result as of now; computes what only the record needs, building models that the loop did not.
   RunResult result();
 

@@ -14,12 +14,13 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       clip_(options.weight.clip),
       initial_taps_(static_cast<int>(options.initial.count)) {
   height_.name = "fitting/height";
-  height_.kernel = options.height.kernel.value_or(options.kernel);
-  height_.fit = options.height.fitting.value_or(options.fitting);
+  // The plugins are made at once, so that options which they refuse are refused before the first tap.
+  height_.kernel = context.create<Kernel>(options.height.kernel.value_or(options.kernel));
+  height_.fitting = context.create<Fitting>(options.height.fitting.value_or(options.fitting));
   height_.settings = {options.height.signal, options.height.noise, 0.0};
   weight_.name = "fitting/weight";
-  weight_.kernel = options.weight.kernel.value_or(options.kernel);
-  weight_.fit = options.weight.fitting.value_or(options.fitting);
+  weight_.kernel = context.create<Kernel>(options.weight.kernel.value_or(options.kernel));
+  weight_.fitting = context.create<Fitting>(options.weight.fitting.value_or(options.fitting));
   weight_.settings = {options.weight.signal, options.weight.noise, options.weight.prior_mean};
 }
 
@@ -33,8 +34,7 @@ void TapBelief::observe(const Target& place, const Contact& contact) {
 Process& TapBelief::ready(Model& model) const {
   const PhaseClock::Scope infer(clock_, Phase::infer);
   if (!model.process) {
-    model.process = std::make_unique<Process>(context_.create<Kernel>(model.kernel), model.settings, candidates_.points);
-    model.fitting = context_.create<Fitting>(model.fit);
+    model.process = std::make_unique<Process>(model.kernel, model.settings, candidates_.points);
   }
   Process& process = *model.process;
   // One by one, fits included: a process that is read late, or after a resume, goes through the very states that one

@@ -60,10 +60,9 @@ class TapBelief final : public Belief {
   struct Model {
     std::vector<Datum> data;
     std::unique_ptr<Process> process;
-    std::shared_ptr<Fitting> fitting;
     const char* name = "";
-    PluginChoice kernel;
-    PluginChoice fit;
+    std::shared_ptr<Kernel> kernel;
+    std::shared_ptr<Fitting> fitting;
     ProcessSettings settings;
   };
 

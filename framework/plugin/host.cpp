@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/host.hpp"
 
+#include "config/describe.hpp"
 #include "config/hash.hpp"
 #include "config/tree.hpp"
 
@@ -12,12 +13,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <vector>
 
-#include <boost/dll/library_info.hpp>
 #include <boost/dll/shared_library.hpp>
+
+#include <link.h>
 
 namespace palpate {
 
@@ -56,15 +61,42 @@ std::string stamp_difference(std::string_view theirs, std::string_view ours) {
   return {};
 }
 
-/// A truncated library kills the process inside dlopen (SIGBUS), so its section table is read first.
-void check_sections(const fs::path& file) {
-  try {
-    boost::dll::library_info info(file.string());
-    if (info.sections().empty()) refuse(file, "reading sections", "not a shared library");
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception&) {
-    refuse(file, "reading sections", "not a complete shared library", "build or copy it again");
+/// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
+/// promise is compared with the length first. What else may be wrong with a header, dlopen finds and tells.
+void check_complete(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) refuse(file, "opening", std::strerror(errno));
+  const auto size = static_cast<std::uint64_t>(in.tellg());
+  const auto holds = [size](std::uint64_t offset, std::uint64_t bytes) {
+    return offset <= size && bytes <= size - offset;
+  };
+  const auto read = [&](std::uint64_t offset, void* to, std::size_t bytes) {
+    in.seekg(static_cast<std::streamoff>(offset));
+    return holds(offset, bytes) &&
+           static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
+  };
+  const auto incomplete = [&] {
+    refuse(file, "reading the header", "not a complete shared library", "build or copy it again");
+  };
+
+  std::array<char, EI_NIDENT> identity{};
+  const auto known = std::min<std::uint64_t>(size, identity.size());
+  read(0, identity.data(), known);
+  if (std::memcmp(identity.data(), ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
+    refuse(file, "reading the header", "not a shared library", "build it with palpate_add_plugin()");
+  }
+  if (known < identity.size()) incomplete();
+  constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
+  if (identity[EI_CLASS] != kNativeClass) return;
+
+  ElfW(Ehdr) header{};
+  // Linkers write the section headers last: a file that holds them was not cut short.
+  if (!read(0, &header, sizeof header)) incomplete();
+  if (!holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize)) incomplete();
+  for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
+    ElfW(Phdr) segment{};
+    if (!read(header.e_phoff + i * sizeof segment, &segment, sizeof segment)) incomplete();
+    if (!holds(segment.p_offset, segment.p_filesz)) incomplete();
   }
 }
 
@@ -92,17 +124,26 @@ const PluginManifest& check_manifest(const boost::dll::shared_library& library, 
   return manifest;
 }
 
-/// A plugin has refused its options: tells where in the config they, or the one that it names, were written.
-[[noreturn]] void refuse_options(const Error& refusal, const PluginChoice& choice) {
-  const Tree* option = choice.options->find(refusal.where());
-  if (option == nullptr && !refusal.where().empty()) {
-    throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
+/// Calls into a plugin. An exception thrown there has its code in the plugin: only copies of its text may leave.
+/// `options` may be null; a refusal that names one of them is told at the place where that was written.
+template <class Call>
+void guarded(const Tree* options, const std::string& plugin, const char* failure, Call call) {
+  const std::string place = options != nullptr ? options->place.text() : std::string();
+  try {
+    call();
+  } catch (const Error& refusal) {
+    if (const Tree* option = options != nullptr ? options->find(refusal.where()) : nullptr) {
+      throw Error(option->place.file ? option->place.text() : place,
+                  fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
+    }
+    // What the plugin says of the place, a file of its own perhaps, is nearer to the cause than the config is.
+    if (!refusal.where().empty()) throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
+    throw Error(place, fmt::format("{}: {}", plugin, refusal.reason()), refusal.hint(), refusal.kind());
+  } catch (const std::exception& trouble) {
+    throw Error(place, fmt::format("{} {}: {}", plugin, failure, trouble.what()));
+  } catch (...) {
+    throw Error(place, fmt::format("{} {}: it threw something that is no exception", plugin, failure));
   }
-  const std::string who = option != nullptr ? choice.kind + "." + refusal.where() : choice.kind + "/" + choice.type;
-  const Place place = option != nullptr && option->place.file ? option->place : choice.options->place;
-  const std::string where = place.text();
-  if (where.empty()) throw Error(who, refusal.reason(), refusal.hint(), refusal.kind());
-  throw Error(where, who + ": " + refusal.reason(), refusal.hint(), refusal.kind());
 }
 
 }  // namespace
@@ -112,12 +153,13 @@ class PluginHost::Library {
  public:
   Library(const fs::path& file, const std::string& kind, const std::string& name) : file_(file) {
     std::error_code trouble;
+    if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a file that is not there");
     if (!fs::is_regular_file(file, trouble)) refuse(file, "opening", "not a regular file");
-    check_sections(file);
+    check_complete(file);
     try {
       library_.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
     } catch (const std::exception& failure) {
-      refuse(file, "loading", dlerror_part(failure.what()));
+      refuse(file, "loading", dlerror_part(failure.what()), "a plugin links all that it uses");
     }
     manifest_ = &check_manifest(library_, file, kind, name);
     hash_ = hash_of_file(file);
@@ -134,7 +176,16 @@ class PluginHost::Library {
   const PluginManifest* manifest_ = nullptr;
 };
 
-PluginHost::PluginHost(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
+PluginHost::PluginHost(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    // One folder named twice does not make its plugins ambiguous.
+    const bool known = std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& other) {
+      std::error_code none;
+      return fs::equivalent(folder, other, none);
+    });
+    if (!known) folders_.push_back(folder);
+  }
+}
 PluginHost::~PluginHost() = default;
 
 std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
@@ -190,32 +241,26 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
     throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, names));
   }
   if (found.size() > 1) {
-    throw Error("", fmt::format("plugin {}/{} is there twice: {} and {}", kind, name, found[0].string(), found[1].string()),
-                "remove or rename one");
+    throw Error("",
+                fmt::format("plugin {}/{} is there twice: {} and {}", kind, name, found[0].string(), found[1].string()),
+                "remove one, or build it under another name");
   }
   slot = std::make_shared<const Library>(found.front(), kind, name);
   return slot;
 }
 
 void PluginHost::describe(const std::string& kind, const std::string& name, Fields& fields) const {
-  library(kind, name)->manifest().describe(fields);
+  const std::shared_ptr<const Library> holder = library(kind, name);
+  guarded(nullptr, kind + "/" + name, "cannot list its options", [&] { holder->manifest().describe(fields); });
 }
 
 std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Context& context) const {
   const std::shared_ptr<const Library> holder = library(choice.kind, choice.type);
   const PluginManifest& manifest = holder->manifest();
-  const std::string who = choice.kind + "/" + choice.type;
   void* object = nullptr;
-  // An exception thrown by a plugin has its code in the plugin: only copies of its text may leave.
-  try {
+  guarded(choice.options.get(), choice.kind + "/" + choice.type, "cannot be created", [&] {
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { object = manifest.create(fields, context); });
-  } catch (const Error& refusal) {
-    refuse_options(refusal, choice);
-  } catch (const std::exception& failure) {
-    throw Error(who, fmt::format("cannot be created: {}", failure.what()));
-  } catch (...) {
-    throw Error(who, "cannot be created: it threw something that is no exception");
-  }
+  });
   // The deleter owns the library, which therefore outlives the object.
   return {object, [holder](void* gone) { holder->manifest().destroy(gone); }};
 }
@@ -226,9 +271,13 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
     if (!kind.empty() && one != kind) continue;
     for (const auto& [stem, file] : files(one)) {
       if (!name.empty() && stem != name) continue;
+      // The files are sorted: a name in a second folder comes right after the first, whose row names both.
+      if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
       PluginListing row{one, stem, file, {}, {}};
       try {
-        row.summary = library(one, stem)->manifest().summary;
+        const char* summary = library(one, stem)->manifest().summary;
+        describe_fields([&](Fields& fields) { describe(one, stem, fields); });
+        row.summary = summary;
       } catch (const Error& trouble) {
         row.trouble = trouble.what();
       }

@@ -39,7 +39,7 @@ struct LoadedPlugin {
 class PluginHost final : public PluginSource, public PluginFactory {
  public:
   /// Looks for <folder>/<kind>/<name>.so in each of `folders`.
-  explicit PluginHost(std::vector<std::filesystem::path> folders);
+  explicit PluginHost(const std::vector<std::filesystem::path>& folders);
   ~PluginHost() override;
 
   /// The folders of PALPATE_PLUGIN_PATH (separated by ':'), then `shipped`.
@@ -49,10 +49,11 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// nearest name), if two folders have it, or if a check fails: then the message names file, step and reason.
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 
-  /// Throws Error when the plugin's constructor does, naming the plugin.
+  /// Throws Error when the plugin's constructor throws whatever it may, with the place of the choice in the config
+  /// unless the plugin names a place of its own.
   std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override;
 
-  /// Every library found, sorted; broken ones too. `kind` and `name` may be empty for all.
+  /// Every library found, sorted, each name once; broken ones too. `kind` and `name` may be empty for all.
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 
   /// The libraries that the given choices use; each must be loaded.

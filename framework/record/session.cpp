@@ -123,17 +123,22 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   RunReport report;
   report.directory = directory.path();
   std::string failure;
+  RunResult result;
   try {
     experiment.run(relay);
-  } catch (const Error& trouble) {
+    result = experiment.result();
+  } catch (const std::exception& trouble) {
     failure = trouble.what();
+  } catch (...) {
+    failure = "a plugin threw something that is no exception";
   }
-  const RunResult result = experiment.result();
+  // A model that failed once is not asked again.
+  if (!failure.empty()) result = experiment.counts();
   report.interrupted = result.interrupted;
   report.summary = summary_row(config, result, failure, watch, directory.total_seconds());
   directory.write("taps.csv", to_csv(directory.rows()));
   if (result.interrupted) return report;
-  if (log.surface) directory.write("surface.csv", surface_csv(experiment));
+  if (log.surface && failure.empty()) directory.write("surface.csv", surface_csv(experiment));
   directory.write("summary.json", to_json_text(report.summary));
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
   return report;
@@ -180,17 +185,19 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
   return carry_out(config, held, experiment, observer, watch);
 }
 
-ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
+Tree read_run_config(const fs::path& directory) {
   const fs::path file = directory / "config.yaml";
   std::error_code none;
-  if (!fs::exists(file, none)) {
-    throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
-  }
-  ResolvedConfig config = resolve_experiment(read_yaml(file), host);
+  if (!fs::exists(file, none)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
+  return read_yaml(file);
+}
+
+ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
+  ResolvedConfig config = resolve_experiment(read_run_config(directory), host);
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();
   const bool is_id = name.size() >= 12 && name.find_first_not_of("0123456789abcdef") >= 12;
   if (is_id && name.substr(0, 12) != config.id) {
-    throw Error(file.string(), fmt::format("the config now has the id {}, its directory is {}", config.id, name),
+    throw Error((directory / "config.yaml").string(), fmt::format("the config now has the id {}, its directory is {}", config.id, name),
                 "config.yaml was changed; run it with 'palpate run' instead");
   }
   return config;

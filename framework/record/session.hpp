@@ -71,6 +71,9 @@ struct ReplayReport {
 /// Writes nothing, moves nothing: the backend is not even created.
 ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
 
+/// The config.yaml of a run directory as it stands. Throws Error if there is none.
+Tree read_run_config(const std::filesystem::path& directory);
+
 /// The config of a run directory, as resolved then. Throws Error if it does not resolve to the id that it had.
 ResolvedConfig load_run(const PluginHost& host, const std::filesystem::path& directory);
 

@@ -100,7 +100,10 @@ Row tap_row(const TapRecord& tap) {
 }
 
 Row intent_row(const TapRecord& tap) {
-  Row row = tap_row(tap);
+  TapRecord before = tap;
+  before.contact = {};
+  before.on_surface.reset();
+  Row row = tap_row(before);
   row.fields.insert(row.fields.begin() + 1, {"intent", true});
   return row;
 }

@@ -48,10 +48,13 @@ Outcome outcome_of(const std::string& name, const std::string& where) {
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells(1);
+  bool quoted = false;
   for (const char c : line) {
-    if (c == ',') {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
       cells.emplace_back();
-    } else if (c != '\r' && c != '"') {
+    } else if (c != '\r') {
       cells.back() += c;
     }
   }

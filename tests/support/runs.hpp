@@ -7,7 +7,6 @@
 #include "experiment/resolved.hpp"
 #include "support/support.hpp"
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -27,16 +26,6 @@ class Collector : public Journal {
   std::vector<TapRecord> taps;
   void announce(const TapRecord&) override {}
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override { taps.push_back(tap); }
-};
-
-/// Counts what is made, by kind.
-class CountingFactory final : public PluginFactory {
- public:
-  mutable std::map<std::string, int> made;
-  std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
-    ++made[choice.kind];
-    return shared_host().create(choice, context);
-  }
 };
 
 /// Answers with what the test scripts; a plain desk at 0 once the script has ended.

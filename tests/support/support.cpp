@@ -81,6 +81,7 @@ Ended palpate(const std::vector<std::string>& words, const fs::path& folder, con
 fs::path source_folder() { return PALPATE_SOURCE_FOLDER; }
 fs::path program_file() { return fs::path(PALPATE_BUILD_FOLDER) / "palpate"; }
 fs::path plugin_folder() { return fs::path(PALPATE_BUILD_FOLDER) / "lib" / "palpate"; }
+fs::path bad_plugin_folder(const std::string& name) { return fs::path(PALPATE_BUILD_FOLDER) / "tests" / "bad_plugins" / name; }
 
 const PluginHost& shared_host() {
   static const PluginHost host({plugin_folder()});

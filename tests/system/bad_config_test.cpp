@@ -210,7 +210,8 @@ std::vector<Case> cases() {
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
            "bad.yaml:10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
       line("HoverBelowTheObject", "backend: {hover: 5 cm}",
-           "bad.yaml:10:18: backend.hover: an object is as high as the arm travels, or higher, raise it or lower the "
+           "bad.yaml:10:18: backend/simulator: hover: an object is as high as the arm travels, or higher, raise it or "
+           "lower the "
            "object"),
 
       // The command line

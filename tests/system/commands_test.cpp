@@ -198,11 +198,15 @@ TEST(Run, TheSameConfigAndSeedGiveTheSameBytes) {
 
 TEST(Run, InterruptedEndsWith130AndCanBeResumed) {
   const TemporaryFolder folder;
-  test::Child child({test::program_file().string(), "run", paper(), "backend.pace=1"}, folder.path());
+  test::Child child({test::program_file().string(), "run", paper(), "backend.pace=1", "log.sync=tap"}, folder.path());
+  // Waits for the announcement of the first tap, which takes seconds: the signal falls into it.
   const fs::path runs = folder.path() / "runs" / "object_i";
-  // Waits for the first tap to be under way; each takes seconds.
-  for (int i = 0; i < 2000 && !fs::exists(runs); ++i) ::usleep(5000);
-  while (fs::is_empty(runs) || !fs::exists(only_run(folder.path() / "runs") / "taps.jsonl")) ::usleep(5000);
+  const auto announced = [&] {
+    std::error_code none;
+    for (const auto& run : fs::directory_iterator(runs, none)) return !text_of(run.path() / "taps.jsonl").empty();
+    return false;
+  };
+  for (int i = 0; i < 5000 && !announced(); ++i) ::usleep(5000);
   child.signal(SIGINT);
   const Ended ended = child.wait();
   EXPECT_EQ(ended.status, 130) << ended.err;
@@ -211,7 +215,7 @@ TEST(Run, InterruptedEndsWith130AndCanBeResumed) {
   EXPECT_FALSE(fs::exists(directory / "summary.json"));
   EXPECT_THAT(text_of(directory / "taps.jsonl"), HasSubstr("\"outcome\": \"aborted\""));
   EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, HasSubstr("unfinished after 1 of 17"));
-  const Ended again = test::palpate({"run", paper(), "backend.pace=1"}, folder.path());
+  const Ended again = test::palpate({"run", paper(), "backend.pace=1", "log.sync=tap"}, folder.path());
   EXPECT_EQ(again.status, 2);
   EXPECT_THAT(again.err, HasSubstr("'palpate resume' carries on"));
 }

@@ -13,7 +13,6 @@ namespace palpate {
 namespace {
 
 using test::Collector;
-using test::CountingFactory;
 using test::ScriptedBackend;
 using test::shipped_config;
 
@@ -38,25 +37,23 @@ class Watcher final : public Journal {
 
 TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"acquisition=uncertainty"});
-  const CountingFactory factory;
-  Experiment experiment(config.options, factory, nullptr);
+  Experiment experiment(config.options, test::shared_host(), nullptr);
   Watcher watcher(experiment);
   experiment.run(watcher);
   EXPECT_EQ(watcher.weight_seen, 0);
   EXPECT_EQ(watcher.height_seen, 14) << "of 17 taps, the 14 chosen by score need the height process";
-  EXPECT_EQ(factory.made["kernel"], 1) << "one kernel for the height process, none for the weight process";
-  EXPECT_EQ(factory.made["fitting"], 1);
   experiment.result();
-  EXPECT_EQ(factory.made["kernel"], 2) << "the truth-based metrics want the outline, once, after the last tap";
+  EXPECT_NE(experiment.belief().weight_process(), nullptr)
+      << "the truth-based metrics want the outline, once, after the last tap";
 }
 
 TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"acquisition=random"});
-  const CountingFactory factory;
-  Experiment experiment(config.options, factory, nullptr);
+  Experiment experiment(config.options, test::shared_host(), nullptr);
   Collector collector;
   experiment.run(collector);
-  EXPECT_EQ(factory.made["kernel"], 0);
+  EXPECT_EQ(experiment.belief().height_process(), nullptr);
+  EXPECT_EQ(experiment.belief().weight_process(), nullptr);
   EXPECT_FALSE(collector.taps.back().max_standard_deviation.has_value());
   EXPECT_FALSE(collector.taps.back().errors.rmse.has_value());
 }

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// An acquisition that can be loaded and made, and throws when it is used: what the run must survive in good order.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+namespace broken {
+
+struct NoOptions : palpate::Options {
+  void list(palpate::Fields&) override {}
+};
+
+struct OwnException final : std::exception {
+  const char* what() const noexcept override { return "no score today"; }
+};
+
+class Acquisition final : public palpate::Acquisition {
+ public:
+  using Options = NoOptions;
+  Acquisition(const Options&, const palpate::Context&) {}
+  void score(const palpate::Belief&, palpate::VectorOut) const override {
+#ifdef THROWS_NUMBER
+    throw 42;
+#else
+    throw OwnException();
+#endif
+  }
+  double prior_scale() const override { return 1.0; }
+};
+
+PALPATE_PLUGIN(palpate::Acquisition, Acquisition, PLUGIN_NAME, "throws when asked for a score")
+
+}  // namespace broken

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// The outside project in this folder, built against the installed program: what the tutorial of plugins/README.md
+// promises to plugin authors.
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+fs::path project() { return source_folder() / "tests" / "consumer"; }
+
+/// The program installed into a folder of its own, and the outside project built against it.
+class Consumer : public testing::Test {
+ protected:
+  void SetUp() override {
+    const Ended ended = run_program(
+        {PALPATE_CMAKE, "--install", program_file().parent_path().string(), "--prefix", prefix().string()}, here());
+    ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+  }
+
+  void build_with(const std::string& more_flags) {
+    const std::string flags = std::string("-DCMAKE_CXX_FLAGS=" PALPATE_CXX_FLAGS) + more_flags;
+    const Ended configured =
+        run_program({PALPATE_CMAKE, "-S", project().string(), "-B", build().string(), "-G", PALPATE_GENERATOR,
+                     "-DCMAKE_PREFIX_PATH=" + prefix().string(), "-DCMAKE_CXX_COMPILER=" PALPATE_CXX_COMPILER,
+                     "-DCMAKE_BUILD_TYPE=" PALPATE_BUILD_TYPE, flags},
+                    here());
+    ASSERT_EQ(configured.status, 0) << configured.out << configured.err;
+    const Ended built = run_program({PALPATE_CMAKE, "--build", build().string()}, here());
+    ASSERT_EQ(built.status, 0) << built.out << built.err;
+    ASSERT_TRUE(fs::is_regular_file(build() / "lib" / "palpate" / "kernel" / "rational.so"));
+  }
+
+  /// Runs the installed program with the outside plugin on its search path.
+  Ended installed(std::vector<std::string> words) const {
+    words.insert(words.begin(), (prefix() / "bin" / "palpate").string());
+    return run_program(words, here(), {search_path()});
+  }
+
+  const fs::path& here() const { return folder_.path(); }
+  fs::path prefix() const { return here() / "prefix"; }
+  fs::path build() const { return here() / "build"; }
+  std::string search_path() const { return "PALPATE_PLUGIN_PATH=" + (build() / "lib" / "palpate").string(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Consumer, InstallationIsComplete) {
+  for (const char* file : {"bin/palpate", "lib/palpate/kernel/rbf.so", "lib/palpate/acquisition/weighted.so",
+                           "lib/palpate/fitting/fixed.so", "lib/palpate/backend/simulator.so", "lib/palpate/build.json",
+                           "share/palpate/configs/paper/object_i.yaml", "include/palpate/plugin.hpp",
+                           "lib/cmake/palpate/palpateConfig.cmake", "lib/cmake/palpate/palpateConfigVersion.cmake"}) {
+    EXPECT_TRUE(fs::is_regular_file(prefix() / file)) << file;
+  }
+  // The program finds its own plugins and configs wherever it was put.
+  const Ended ended =
+      run_program({(prefix() / "bin" / "palpate").string(), "run",
+                   (prefix() / "share/palpate/configs/paper/object_i.yaml").string(), "taps=4", "--quiet"},
+                  here());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_TRUE(fs::exists(only_run(here() / "runs") / "summary.json"));
+}
+
+TEST_F(Consumer, PluginIsFoundDescribedRunAndSound) {
+  build_with("");
+  const Ended described = installed({"plugins", "kernel/rational"});
+  EXPECT_EQ(described.status, 0) << described.err;
+  EXPECT_THAT(described.out, HasSubstr("kernel/rational: rational quadratic: several length scales at once"));
+  EXPECT_THAT(described.out, testing::ContainsRegex("length_scale +length > 0 m +0.02 m +distance over which"));
+  EXPECT_THAT(described.out, HasSubstr("alpha"));
+
+  fs::copy_file(project() / "my_experiment.yaml", here() / "my_experiment.yaml");
+  const Ended ended = installed({"run", "my_experiment.yaml", "--json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\"taps\": 17"));
+  EXPECT_THAT(ended.out, HasSubstr("\"status\": \"done\""));
+
+  // An author checks his own kernel with the contract tests of the project.
+  const Ended contract =
+      run_program({PALPATE_CONTRACT_TESTS, "--gtest_filter=Every/KernelContract.*/rational"}, here(), {search_path()});
+  EXPECT_EQ(contract.status, 0) << contract.out;
+  EXPECT_THAT(contract.out, HasSubstr("[  PASSED  ]"));
+  EXPECT_THAT(contract.out, HasSubstr("KernelContract.IsSymmetric/rational"));
+}
+
+TEST_F(Consumer, PluginOfOtherAlignmentIsRefusedByItsName) {
+#if !defined(__x86_64__) || defined(__AVX__)
+  GTEST_SKIP() << "-mavx changes nothing in this build";
+#endif
+  build_with(" -mavx");
+  fs::copy_file(project() / "my_experiment.yaml", here() / "my_experiment.yaml");
+  const Ended ended = installed({"run", "my_experiment.yaml"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  EXPECT_THAT(ended.err, testing::StartsWith("my_experiment.yaml:8:16: "));
+  EXPECT_THAT(ended.err, HasSubstr("kernel/rational.so: comparing the build: built with EIGEN_MAX_ALIGN_BYTES=32, the "
+                                   "program with EIGEN_MAX_ALIGN_BYTES=16, build it with the same compiler flags"));
+}
+
+TEST(Tutorial, HoldsTheOutsideProjectVerbatim) {
+  const std::string tutorial = text_of(source_folder() / "plugins" / "README.md");
+  EXPECT_THAT(tutorial, HasSubstr("```cpp\n" + text_of(project() / "rational.cpp") + "```\n"));
+  EXPECT_THAT(tutorial, HasSubstr("```cmake\n" + text_of(project() / "CMakeLists.txt") + "```\n"));
+  EXPECT_THAT(tutorial, HasSubstr("```yaml\n" + text_of(project() / "my_experiment.yaml") + "```\n"));
+  const fs::path readme = source_folder() / "README.md";
+  if (!fs::exists(readme)) return;
+  EXPECT_THAT(text_of(readme), HasSubstr("```cpp\n" + text_of(project() / "rational.cpp") + "```\n"));
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "support/plugins.hpp"
+
+#include "config/describe.hpp"
+#include "config/resolve.hpp"
+#include "config/yaml.hpp"
+#include "scene/scene_options.hpp"
+#include "support/support.hpp"
+
+#include <algorithm>
+
+namespace palpate::test {
+namespace {
+
+/// The smallest options that hold a plugin.
+struct Holder : Options {
+  PluginChoice choice;
+  void list(Fields& fields) override { fields.plugin(choice, Field("plugin", "under test")); }
+};
+
+bool needs_options(const std::string& kind, const std::string& name) {
+  const std::vector<FieldDescription> fields =
+      describe_fields([&](Fields& list) { contract_host().describe(kind, name, list); });
+  return std::any_of(fields.begin(), fields.end(), [](const FieldDescription& field) { return field.required; });
+}
+
+}  // namespace
+
+PluginChoice choose(const PluginHost& host, const std::string& kind, const std::string& name,
+                    const std::string& options) {
+  Tree chosen = parse_yaml(options, "options.yaml");
+  chosen.at("type") = Tree::scalar(name);
+  Tree input = Tree::map();
+  input.at("plugin") = std::move(chosen);
+  Holder holder;
+  holder.choice.kind = kind;
+  ResolveNotes notes;
+  resolve(holder, input, host, notes);
+  return holder.choice;
+}
+
+const Scene& wave_scene() {
+  static const std::unique_ptr<const Scene> scene = [] {
+    SceneOptions options;
+    options.objects.resize(1);
+    return build_scene(options, 1);
+  }();
+  return *scene;
+}
+
+Context context_of(const PluginHost& host, std::uint64_t seed) { return {host, wave_scene(), seed, nullptr}; }
+
+const PluginHost& contract_host() {
+  static const PluginHost host(PluginHost::search_path(plugin_folder()));
+  return host;
+}
+
+std::vector<std::string> plugins_under_contract(const std::string& kind) {
+  std::vector<std::string> names;
+  for (const PluginListing& row : contract_host().list(kind, "")) {
+    if (row.trouble.empty() && needs_options(kind, row.name)) continue;
+    names.push_back(row.name);
+  }
+  return names;
+}
+
+std::string test_name(std::string plugin) {
+  std::replace(plugin.begin(), plugin.end(), '-', '_');
+  return plugin;
+}
+
+}  // namespace palpate::test

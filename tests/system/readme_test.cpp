@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// README tells the truth: its commands run, and what it quotes is what comes out.
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+/// The lines of all code blocks marked `sh`.
+std::vector<std::string> shown_commands(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream lines(text);
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("```", 0) == 0) {
+      inside = line == "```sh";
+    } else if (inside && !line.empty()) {
+      out.push_back(line);
+    }
+  }
+  return out;
+}
+
+/// A folder that looks like a checkout: `palpate` is the program of this build, output stays in here.
+void imitate_checkout(const fs::path& folder) {
+  fs::create_symlink(test::program_file(), folder / "palpate");
+  for (const char* name : {"configs", "tests", "build"}) fs::create_symlink(test::source_folder() / name, folder / name);
+}
+
+/// Compares README's table with what `palpate sweep` printed: group, runs, dead starts, found, failed, three spreads.
+void expect_table(const std::string& readme, const std::string& printed) {
+  std::string plain = readme;
+  plain.erase(std::remove(plain.begin(), plain.end(), '*'), plain.end());
+  std::istringstream lines(printed);
+  int compared = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, runs, dead, found, failed, live, live_spread, all, all_spread, error, error_spread;
+    words >> name >> runs >> dead >> found >> failed >> live >> live_spread >> all >> all_spread >> error >> error_spread;
+    if (runs != "1000") continue;
+    ++compared;
+    const auto percent = [](std::string text) { return text.insert(text.size() - 1, " "); };
+    EXPECT_THAT(plain, HasSubstr("| " + name + " | " + live + " " + live_spread + " | " + all + " " + all_spread + " | " +
+                                 percent(dead) + " | " + percent(found) + " | " + error + " " + error_spread + " cm |"));
+  }
+  EXPECT_EQ(compared, 4);
+}
+
+TEST(Readme, EveryCommandThatItShowsRunsAndTheTableIsWhatTheSweepPrints) {
+  const TemporaryFolder folder;
+  imitate_checkout(folder.path());
+  const std::string readme = text_of(test::source_folder() / "README.md");
+  const std::vector<std::string> commands = shown_commands(readme);
+  EXPECT_GE(commands.size(), 10U);
+  int tables = 0;
+  for (const std::string& command : commands) {
+    const test::Ended ended = test::run_program({"sh", "-c", command}, folder.path());
+    EXPECT_EQ(ended.status, 0) << command << "\n" << ended.err;
+    if (command != "./palpate sweep configs/paper/comparison.yaml") continue;
+    ++tables;
+    expect_table(readme, ended.out);
+  }
+  EXPECT_EQ(tables, 1);
+}
+
+TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {
+  const TemporaryFolder folder;
+  imitate_checkout(folder.path());
+  const test::Ended ended = test::run_program({"sh", "-c", "./palpate run configs/paper/object_i.yaml"}, folder.path());
+  EXPECT_THAT(text_of(test::source_folder() / "README.md"), HasSubstr("```\n" + ended.out + "```\n"));
+}
+
+TEST(Reference, RecordedRunsComeOutTheSameWithinRounding) {
+  const fs::path reference = test::source_folder() / "runs" / "reference";
+  int runs = 0;
+  for (const auto& entry : fs::directory_iterator(reference)) {
+    ++runs;
+    const TemporaryFolder folder;
+    const test::Ended ended = test::palpate({"run", (entry.path() / "config.yaml").string(), "--quiet"}, folder.path());
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    std::istringstream before(text_of(entry.path() / "taps.csv"));
+    std::istringstream now(text_of(test::only_run(folder.path() / "runs") / "taps.csv"));
+    std::string a;
+    std::string b;
+    while (std::getline(before, a)) {
+      ASSERT_TRUE(std::getline(now, b));
+      std::istringstream cells_a(a);
+      std::istringstream cells_b(b);
+      std::string x;
+      std::string y;
+      while (std::getline(cells_a, x, ',')) {
+        ASSERT_TRUE(std::getline(cells_b, y, ','));
+        char* end = nullptr;
+        const double value = std::strtod(x.c_str(), &end);
+        if (x.empty() || *end != '\0') {
+          EXPECT_EQ(x, y);
+        } else {
+          // Where a number is 0 but for rounding, 1e-9 relative would demand more than double precision holds.
+          EXPECT_NEAR(std::strtod(y.c_str(), nullptr), value, 1e-9 * std::abs(value) + 1e-12);
+        }
+      }
+    }
+    EXPECT_FALSE(std::getline(now, b));
+  }
+  EXPECT_GE(runs, 2);
+}
+
+}  // namespace
+}  // namespace palpate

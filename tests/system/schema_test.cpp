@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// The JSON Schema that editors get, judged by a validator that is not ours.
+#include "config/yaml.hpp"
+#include "support/support.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// A config as an editor's YAML server sees it: plain scalars typed by YAML's core schema.
+Json as_json(const Tree& tree) {
+  switch (tree.kind) {
+    case Tree::Kind::null:
+      return nullptr;
+    case Tree::Kind::scalar: {
+      const Json typed = tree.quoted ? Json() : Json::parse(tree.text, nullptr, false);
+      return typed.is_number() || typed.is_boolean() ? typed : Json(tree.text);
+    }
+    case Tree::Kind::list: {
+      Json out = Json::array();
+      for (const Tree& item : tree.items) out.push_back(as_json(item));
+      return out;
+    }
+    case Tree::Kind::map: {
+      Json out = Json::object();
+      for (const Tree::Entry& entry : tree.entries) out[entry.key] = as_json(entry.value);
+      return out;
+    }
+  }
+  return nullptr;
+}
+
+class Schema : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const test::TemporaryFolder folder;
+    const test::Ended ended = test::palpate({"schema"}, folder.path());
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const Json text = Json::parse(ended.out);
+    valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema_);
+  }
+
+  bool accepts(const Json& config) {
+    return valijson::Validator().validate(schema_, valijson::adapters::NlohmannJsonAdapter(config), nullptr);
+  }
+
+  valijson::Schema schema_;
+};
+
+TEST_F(Schema, AcceptsEveryShippedExperiment) {
+  int files = 0;
+  for (const char* folder : {"configs/paper", "runs/reference"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / folder)) {
+      if (entry.path().extension() != ".yaml") continue;
+      ++files;
+      EXPECT_TRUE(accepts(as_json(read_yaml(entry.path())))) << entry.path();
+    }
+  }
+  EXPECT_GE(files, 6);
+}
+
+TEST_F(Schema, RefusesWhatTheProgramRefuses) {
+  const Json good = as_json(read_yaml(test::source_folder() / "runs/reference/object_i_right_seed_3/config.yaml"));
+  ASSERT_TRUE(accepts(good));
+  const auto refused = [&](const char* pointer, const Json& value) {
+    Json config = good;
+    config[Json::json_pointer(pointer)] = value;
+    return !accepts(config);
+  };
+  EXPECT_TRUE(refused("/tapps", 17)) << "unknown key";
+  EXPECT_TRUE(refused("/taps", "many")) << "wrong type";
+  EXPECT_TRUE(refused("/kernel/length_scale", 0.017)) << "a length without unit";
+  EXPECT_TRUE(refused("/kernel/length_scale", "1.7 s")) << "a time for a length";
+  EXPECT_TRUE(refused("/kernel/length_scal", "1.7 cm")) << "unknown option of a plugin";
+  EXPECT_TRUE(refused("/fallback", "uncertain")) << "unknown choice";
+  EXPECT_TRUE(refused("/scene/objects/0/type", "cube")) << "unknown shape";
+  EXPECT_FALSE(refused("/kernel", "matern52")) << "a group by name is legal";
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/host.hpp"
+
+#include "config/describe.hpp"
+#include "support/plugins.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/kernel.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<FieldDescription> options_of(const PluginHost& host, const std::string& kind, const std::string& name) {
+  return describe_fields([&](Fields& fields) { host.describe(kind, name, fields); });
+}
+
+/// What `call` throws, as the user reads it.
+template <class Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+std::string refusal_of(const std::string& kind, const std::string& name) {
+  return refusal([&] { options_of(shared_host(), kind, name); });
+}
+
+/// The value of an environment variable for the time of a test.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old, had_ = true;
+    ::setenv(name, value, 1);
+  }
+  ~Variable() { had_ ? ::setenv(name_, old_.c_str(), 1) : ::unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::string old_;
+  bool had_ = false;
+};
+
+/// Whether a file is mapped into this process.
+bool mapped(const fs::path& file) { return text_of("/proc/self/maps").find(file.string()) != std::string::npos; }
+
+/// A folder that holds a copy of kernel/rbf, so that its library is nobody else's.
+fs::path copy_of_rbf(const TemporaryFolder& folder) {
+  fs::create_directories(folder.path() / "kernel");
+  fs::copy(plugin_folder() / "kernel" / "rbf.so", folder.path() / "kernel" / "rbf.so");
+  return fs::canonical(folder.path()) / "kernel" / "rbf.so";
+}
+
+TEST(PluginHost, OpensTheNamedFileAndNoOther) {
+  const TemporaryFolder folder;
+  const fs::path file = copy_of_rbf(folder);
+  fs::copy(plugin_folder() / "kernel" / "matern32.so", folder.path() / "kernel" / "matern32.so");
+  folder.write("kernel/broken.so", "no library");
+  const PluginHost host({folder.path()});
+  EXPECT_FALSE(mapped(file));
+  EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 1U);
+  EXPECT_TRUE(mapped(file));
+  EXPECT_FALSE(mapped(fs::canonical(folder.path()) / "kernel" / "matern32.so"));
+  const std::vector<LoadedPlugin> loaded = host.loaded();
+  ASSERT_EQ(loaded.size(), 1U);
+  EXPECT_EQ(loaded[0].kind, "kernel");
+  EXPECT_EQ(loaded[0].name, "rbf");
+}
+
+TEST(PluginHost, ObjectsKeepTheirLibraryAfterTheHostIsGone) {
+  const TemporaryFolder folder;
+  const fs::path file = copy_of_rbf(folder);
+  auto host = std::make_unique<PluginHost>(std::vector<fs::path>{folder.path()});
+  std::shared_ptr<Kernel> kernel = make<Kernel>(*host, "rbf", "{length_scale: 1 m}");
+  host.reset();
+  ASSERT_TRUE(mapped(file));
+  Points points(2, 2);
+  points << 0, 0, 1, 0;
+  Eigen::MatrixXd out(2, 2);
+  kernel->covariance(points, points, out);
+  EXPECT_DOUBLE_EQ(out(0, 1), std::exp(-0.5));
+  kernel.reset();
+  EXPECT_FALSE(mapped(file));
+}
+
+TEST(PluginHost, KeepsALibraryWhenItsObjectsAreGone) {
+  const TemporaryFolder folder;
+  const fs::path file = copy_of_rbf(folder);
+  const PluginHost host({folder.path()});
+  make<Kernel>(host, "rbf").reset();
+  EXPECT_TRUE(mapped(file));
+}
+
+TEST(PluginHost, DescribesOptions) {
+  const std::vector<FieldDescription> options = options_of(shared_host(), "kernel", "rbf");
+  ASSERT_EQ(options.size(), 1U);
+  EXPECT_EQ(options[0].name, "length_scale");
+  EXPECT_EQ(options[0].type_name(), "length");
+  EXPECT_EQ(options[0].range, "> 0 m");
+  EXPECT_EQ(options[0].default_value, "0.017 m");
+  EXPECT_FALSE(options[0].meaning.empty());
+}
+
+TEST(PluginHost, OffersTheNearestName) {
+  EXPECT_EQ(refusal_of("kernel", "mattern52"), "no plugin kernel/mattern52, did you mean 'matern52'?");
+}
+
+TEST(PluginHost, NamesWithoutANeighbourListWhatThereIs) {
+  EXPECT_THAT(refusal_of("fitting", "zzzzzzzzzzzz"), HasSubstr("no plugin fitting/zzzzzzzzzzzz, known: fixed"));
+}
+
+TEST(PluginHost, RefusesNamesWithAPath) {
+  for (const char* name : {"../kernel/rbf", "/etc/passwd", "rbf.so", ".", "", "a b"}) {
+    EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not the name of a plugin")) << name;
+  }
+}
+
+TEST(PluginHost, RefusalOfOptionsNamesTheirPlace) {
+  EXPECT_THAT(refusal([] { choose(shared_host(), "kernel", "rbf", "{length_scal: 2 cm}"); }),
+              testing::StartsWith("options.yaml:1:2: unknown option 'length_scal', did you mean 'length_scale'?"));
+}
+
+TEST(PluginHost, SearchPathIsTheVariableThenTheShippedFolder) {
+  const Variable path("PALPATE_PLUGIN_PATH", "/a/b:relative");
+  EXPECT_THAT(PluginHost::search_path("/shipped"), ElementsAre("/a/b", "relative", "/shipped"));
+}
+
+TEST(PluginHost, SearchPathLeavesEmptyPartsOut) {
+  const Variable path("PALPATE_PLUGIN_PATH", "::/a::/b:");
+  EXPECT_THAT(PluginHost::search_path("/shipped"), ElementsAre("/a", "/b", "/shipped"));
+}
+
+TEST(PluginHost, SearchPathWithoutTheVariableIsTheShippedFolder) {
+  const Variable path("PALPATE_PLUGIN_PATH", "");
+  EXPECT_THAT(PluginHost::search_path("/shipped"), ElementsAre("/shipped"));
+}
+
+TEST(PluginHost, MissingFoldersAreNoError) {
+  const PluginHost host({"/nowhere", plugin_folder()});
+  EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 1U);
+}
+
+TEST(PluginHost, ListsShippedPluginsSortedAndSound) {
+  std::vector<std::string> names;
+  for (const PluginListing& row : shared_host().list("kernel", "")) {
+    EXPECT_EQ(row.trouble, "");
+    EXPECT_FALSE(row.summary.empty());
+    names.push_back(row.name);
+  }
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+  EXPECT_THAT(names, testing::IsSupersetOf({"matern32", "matern52", "rbf"}));
+}
+
+TEST(PluginHost, CatchesAnErrorOfTheConstructorByItsType) {
+  const PluginHost host({bad_plugin_folder("throws_error")});
+  try {
+    make<Kernel>(host, "throws_error");
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.reason(), "kernel/throws_error: this kernel refuses its options");
+    EXPECT_EQ(error.hint(), "choose another");
+  }
+}
+
+TEST(PluginHost, ErrorsOutliveTheLibraryThatThrewThem) {
+  const TemporaryFolder folder;
+  auto host = std::make_unique<PluginHost>(std::vector<fs::path>{bad_plugin_folder("throws_own_exception")});
+  std::exception_ptr kept;
+  try {
+    make<Kernel>(*host, "throws_own_exception");
+  } catch (const Error&) {
+    kept = std::current_exception();
+  }
+  host.reset();
+  ASSERT_FALSE(mapped(bad_plugin_folder("throws_own_exception")));
+  EXPECT_THAT(refusal([&] { std::rethrow_exception(kept); }), HasSubstr("an exception of its own"));
+}
+
+TEST(PluginHost, ServesSeveralThreads) {
+  const PluginHost host({plugin_folder()});
+  std::atomic<int> made{0};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&] {
+      for (const char* name : {"rbf", "matern32", "matern52"}) {
+        if (make<Kernel>(host, name)) ++made;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(made, 24);
+  EXPECT_EQ(host.loaded().size(), 3U);
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "record/json.hpp"
+#include "record/run_directory.hpp"
+#include "record/tap_row.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+using test::text_of;
+
+TapRecord tap(int number, double height) {
+  TapRecord out;
+  out.number = number;
+  out.target = {0.1 * number, 0.05};
+  out.contact = {Outcome::contact, height, 8.0, 5.5, {}};
+  out.on_surface = height > 0.01;
+  return out;
+}
+
+constexpr std::array<double, kPhases> kSeconds{0.5, 0.0, 0.25, 0.125, 0.0625};
+
+/// Writes three taps as a living run does.
+void write_three(const std::filesystem::path& directory, bool announce) {
+  RunDirectory run(directory);
+  run.open(announce, false);
+  for (int i = 1; i <= 3; ++i) {
+    run.announce(tap(i, 0.09));
+    run.record(tap(i, 0.09), kSeconds);
+  }
+}
+
+void append(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
+
+TEST(RunDirectory, RecoversTheTapsThatWereRecorded) {
+  for (const bool announce : {false, true}) {
+    const TemporaryFolder folder;
+    write_three(folder.path() / "run", announce);
+    RunDirectory again(folder.path() / "run");
+    const std::vector<PastTap> past = again.recover();
+    ASSERT_EQ(past.size(), 3U);
+    EXPECT_EQ(past[1].target.x, 0.2);
+    EXPECT_EQ(past[1].contact.height, 0.09);
+    EXPECT_EQ(past[1].contact.outcome, Outcome::contact);
+    EXPECT_EQ(again.rows().size(), 3U);
+    EXPECT_DOUBLE_EQ(again.total_seconds()[0], 1.5);
+    EXPECT_DOUBLE_EQ(again.total_seconds()[4], 0.1875);
+  }
+}
+
+TEST(RunDirectory, CutsOffHalfALineAtEveryLength) {
+  const TemporaryFolder folder;
+  write_three(folder.path() / "whole", false);
+  const std::string whole = text_of(folder.path() / "whole" / "taps.jsonl");
+  const auto second_end = whole.find('\n', whole.find('\n') + 1) + 1;
+  for (std::size_t cut = second_end; cut < whole.size(); cut += 7) {
+    const std::filesystem::path file = folder.write("cut/taps.jsonl", whole.substr(0, cut));
+    {
+      RunDirectory run(folder.path() / "cut");
+      EXPECT_EQ(run.recover().size(), 2U) << cut;
+      EXPECT_EQ(text_of(file), whole.substr(0, second_end));
+      run.open(false, false);
+      run.record(tap(3, 0.09), kSeconds);
+    }
+    EXPECT_EQ(text_of(file), whole) << "what follows begins on a line of its own";
+    std::filesystem::remove_all(folder.path() / "cut");
+  }
+}
+
+TEST(RunDirectory, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
+  const TemporaryFolder folder;
+  write_three(folder.path() / "run", true);
+  append(folder.path() / "run" / "taps.jsonl", to_json_line(intent_row(tap(4, 0.0))) + "\n");
+  for (int i = 0; i < 2; ++i) {
+    RunDirectory run(folder.path() / "run");
+    const std::vector<PastTap> past = run.recover();
+    ASSERT_EQ(past.size(), 4U);
+    EXPECT_EQ(past[3].contact.outcome, Outcome::unknown);
+    EXPECT_EQ(past[3].target.x, 0.4);
+  }
+}
+
+TEST(RunDirectory, RefusesADamagedLineWithItsNumber) {
+  const TemporaryFolder folder;
+  write_three(folder.path() / "run", false);
+  std::string text = text_of(folder.path() / "run" / "taps.jsonl");
+  text[text.find('\n') + 5] = '\n';
+  folder.write("run/taps.jsonl", text);
+  RunDirectory run(folder.path() / "run");
+  try {
+    run.recover();
+    FAIL() << "a damaged file was taken for a record";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("taps.jsonl:2: is not a JSON object"));
+  }
+}
+
+TEST(RunDirectory, RefusesALineThatIsNoTap) {
+  const TemporaryFolder folder;
+  folder.write("run/taps.jsonl", "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
+  RunDirectory run(folder.path() / "run");
+  EXPECT_THROW(run.recover(), Error);
+}
+
+TEST(RunDirectory, TellsItsStateFromItsFilesAlone) {
+  const TemporaryFolder folder;
+  const std::filesystem::path directory = folder.path() / "run";
+  EXPECT_EQ(read_status(directory).state, RunStatus::State::absent);
+  write_three(directory, true);
+  EXPECT_EQ(read_status(directory).state, RunStatus::State::unfinished);
+  EXPECT_EQ(read_status(directory).taps, 3);
+  {
+    const RunDirectory held(directory);
+    EXPECT_EQ(read_status(directory).state, RunStatus::State::running);
+  }
+  folder.write("run/summary.json", "{\"status\": \"failed\", \"stop_reason\": \"the arm was stopped\"}");
+  EXPECT_EQ(read_status(directory).state, RunStatus::State::failed);
+  EXPECT_EQ(read_status(directory).stop_reason, "the arm was stopped");
+  folder.write("run/summary.json", "{\"status\": \"done\", \"stop_reason\": \"tap budget\"}");
+  EXPECT_EQ(read_status(directory).state, RunStatus::State::done);
+}
+
+TEST(TapRow, ReadsBackAsTheTapThatItTells) {
+  TapRecord record = tap(5, 0.1 + 0.2);
+  record.source = Source::fallback;
+  record.why = "no score is positive";
+  const Row row = *parse_json_row(to_json_line(tap_row(record)));
+  const PastTap back = past_tap(row, "here");
+  EXPECT_EQ(back.source, Source::fallback);
+  EXPECT_EQ(back.target.x, record.target.x);
+  EXPECT_EQ(back.contact.height, 0.1 + 0.2) << "to the last bit";
+}
+
+TEST(TapRow, AnIntentHoldsNoResult) {
+  const Row row = intent_row(tap(1, 0.0));
+  EXPECT_TRUE(is_intent(row));
+  EXPECT_FALSE(is_intent(unknown_result_of(row)));
+  EXPECT_EQ(*unknown_result_of(row).find("outcome"), Scalar{std::string("unknown")});
+}
+
+}  // namespace
+}  // namespace palpate
