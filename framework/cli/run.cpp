@@ -19,9 +19,7 @@ void print_origins(const ResolvedConfig& config) {
   std::size_t width = 0;
   std::vector<std::pair<std::string, std::string>> lines;
   for (const ResolveNotes::Origin& one : config.notes.origins) {
-    Tree tree = config.tree;
-    const Tree& value = tree.at_path(one.path);
-    std::string text = to_yaml(value);
+    std::string text = to_yaml(*config.tree.find_path(one.path));
     while (!text.empty() && text.back() == '\n') text.pop_back();
     lines.emplace_back(fmt::format("{}: {}", one.path, text), one.place);
     width = std::max(width, lines.back().first.size());

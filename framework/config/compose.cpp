@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 namespace palpate {
 namespace {
@@ -51,25 +52,16 @@ Override parse_override(const std::string& text) {
     throw Error("command line", fmt::format("'{}' is not KEY=VALUE", text), "for example kernel.length_scale=2cm");
   }
   Override out{text.substr(0, equals), parse_value(text.substr(equals + 1), "command line")};
-  // Lines and columns within one argument would only confuse.
-  const auto file = std::make_shared<const std::string>("command line");
-  const auto place_all = [&](auto&& self, Tree& tree) -> void {
-    tree.place = {file, 0, 0};
-    for (Tree& item : tree.items) self(self, item);
-    for (Tree::Entry& entry : tree.entries) {
-      entry.place = tree.place;
-      self(self, entry.value);
-    }
-  };
-  place_all(place_all, out.value);
   if (out.path.front() == '.' || out.path.back() == '.' || out.path.find("..") != std::string::npos) {
-    throw Error("command line", fmt::format("'{}' is not a dotted path", out.path));
+    throw Error("command line", fmt::format("'{}' is not a dotted path", out.path),
+                "write it like kernel.length_scale");
   }
   out.value.set_layer(kCommandLineLayer);
   return out;
 }
 
 const Tree& Composer::load(const fs::path& file) {
+  if (file.empty()) throw Error("command line", "the name of the config is empty", "name a YAML file");
   const fs::path key = fs::absolute(file).lexically_normal();
   const auto found = files_.find(key);
   if (found != files_.end()) return found->second;
@@ -98,6 +90,17 @@ fs::path Composer::find_group(const std::string& group, const std::string& name,
   return {};
 }
 
+std::vector<std::string> Composer::group_names(const std::string& group, const fs::path& beside) const {
+  std::set<std::string> names;
+  for (const fs::path& root : roots(beside)) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(root / group, none)) {
+      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
 Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
                              const fs::path& beside, std::vector<std::string>& chain) {
   if (!is_name(name)) {
@@ -115,8 +118,10 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
   const fs::path file = find_group(group, name, beside);
   if (file.empty()) {
     if (group == "scene") {
+      const std::vector<std::string> names = group_names(group, beside);
       throw Error(place.text(), fmt::format("no file {}/{}.yaml", group, name),
-                  "looked in the folders above the config, ./configs and the program's configs");
+                  !names.empty() ? suggestion(name, names)
+                                 : "looked in the folders above the config, ./configs and the program's configs");
     }
     Tree content = Tree::map();
     content.place = place;
@@ -129,7 +134,8 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
   content.place = own.place;
   for (const Choice& base : take_defaults(own)) {
     if (base.path != group) {
-      throw Error(base.place.text(), fmt::format("a {} may build only on another {}", group, group));
+      throw Error(base.place.text(), fmt::format("a {} may build only on another {}", group, group),
+                  fmt::format("write '- {}: name'", group));
     }
     content.merge(group_content(group, base.name, base.place, file.parent_path(), chain));
   }
@@ -138,7 +144,10 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
       throw Error(entry.place.text(), fmt::format("unknown key '{}'", entry.key),
                   fmt::format("a file in {}/ holds only '{}:'", group, group));
     }
-    if (!entry.value.is_map()) throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", group));
+    if (!entry.value.is_map()) {
+      throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", group),
+                  "write key: value below it");
+    }
     content.merge(entry.value);
   }
   chain.pop_back();
@@ -148,7 +157,14 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
 std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
   std::vector<Choice> choices;
   const Tree* defaults = own.find("defaults");
-  if (defaults == nullptr) return choices;
+  if (defaults == nullptr) {
+    // Without this, the first complaint would be of a group that is not chosen.
+    for (const Tree::Entry& entry : own.entries) {
+      if (nearest(entry.key, {"defaults"}).empty()) continue;
+      throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), "did you mean 'defaults'?");
+    }
+    return choices;
+  }
   if (defaults->kind != Tree::Kind::list) {
     throw Error(defaults->place.text(), "defaults: expects a list", "write '- kernel: rbf', one group a line");
   }
@@ -203,7 +219,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
     content.set_layer(layer);
     set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
     ++layer;
-    Tree& slot = tree.at_path(choice.path);
+    Tree& slot = tree.at_path(choice.path, choice.place);
     if (slot.kind == Tree::Kind::null) slot = Tree::map();
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
@@ -211,7 +227,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   tree.merge(own);
   for (const Override& one : overrides) {
     if (is_group(one.path) && one.value.is_scalar()) continue;
-    Tree& slot = tree.at_path(one.path);
+    Tree& slot = tree.at_path(one.path, one.value.place);
     if (is_group(one.path) && slot.is_map() && one.value.is_map()) {
       slot.merge(one.value);
     } else {

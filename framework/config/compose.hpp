@@ -53,6 +53,7 @@ class Composer {
   void take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const;
   std::filesystem::path find_group(const std::string& group, const std::string& name,
                                    const std::filesystem::path& beside) const;
+  std::vector<std::string> group_names(const std::string& group, const std::filesystem::path& beside) const;
   std::vector<std::filesystem::path> roots(const std::filesystem::path& beside) const;
   Tree group_content(const std::string& group, const std::string& name, const Place& place,
                      const std::filesystem::path& beside, std::vector<std::string>& chain);

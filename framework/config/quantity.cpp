@@ -94,6 +94,9 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   std::string_view rest = text.substr(length);
   rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   const std::string_view number = text.substr(0, length);
+  if (!rest.empty() && rest[0] == ',') {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has a decimal comma", name, text), "write a point");
+  }
   if (looks_octal(number)) {
     throw Error(tree.place.text(), fmt::format("{}: '{}' has a leading zero", name, text),
                 "octal numbers are not read: write it without the zero");
@@ -192,7 +195,8 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
     throw Error(tree.place.text(), fmt::format("{}: '{}' is out of range", name, tree.text), "at most 9223372036854775807");
   }
   if (result.ec != std::errc() || result.ptr != last || !rest.empty()) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' is not a whole number", name, tree.text));
+    throw Error(tree.place.text(), fmt::format("{}: '{}' is not a whole number", name, tree.text),
+                "write digits alone");
   }
   return value;
 }

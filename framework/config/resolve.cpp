@@ -16,9 +16,11 @@ namespace {
 /// Reads one map and writes its resolved twin. Nested groups get a resolver of their own.
 class Resolver final : public Fields {
  public:
-  /// `input` may be null: then every field has its default. `path` is "" at the top, else it ends in a dot.
-  Resolver(const Tree* input, std::string path, const PluginSource& plugins, ResolveNotes& notes)
+  /// `input` may be null: then every field has its default, and errors name the place of `parent`. `path` is "" at
+  /// the top, else it ends in a dot.
+  Resolver(const Tree* input, std::string path, const PluginSource& plugins, ResolveNotes& notes, const Place& parent)
       : input_(input), path_(std::move(path)), plugins_(plugins), notes_(notes), output_(Tree::map()) {
+    output_.place = input_ != nullptr ? input_->place : parent;
     if (input_ != nullptr && input_->kind != Tree::Kind::map && input_->kind != Tree::Kind::null) {
       throw Error(input_->place.text(), fmt::format("{} is not a group of options", owner()), "write {key: value, ...}");
     }
@@ -60,7 +62,8 @@ class Resolver final : public Fields {
   void reals(double* values, std::size_t count, const Field& field) override {
     if (const Tree* tree = claim(field)) {
       if (tree->kind != Tree::Kind::list || tree->items.size() != count) {
-        throw Error(tree->place.text(), fmt::format("{}: expects a list of {} values", name(field), count));
+        throw Error(tree->place.text(), fmt::format("{}: expects a list of {} values", name(field), count),
+                    "write them in brackets, with commas between them");
       }
       for (std::size_t i = 0; i < count; ++i) {
         const Tree& item = tree->items[i];
@@ -96,7 +99,9 @@ class Resolver final : public Fields {
 
   void text(std::string& value, const Field& field) override {
     if (const Tree* tree = claim(field)) {
-      if (!tree->is_scalar()) throw Error(tree->place.text(), fmt::format("{}: expects a text", name(field)));
+      if (!tree->is_scalar())
+        throw Error(tree->place.text(), fmt::format("{}: expects a text, not {}", name(field), shown(*tree)),
+                    "write a word or two");
       value = tree->text;
     }
     write(field, Tree::scalar(value, true));
@@ -110,8 +115,12 @@ class Resolver final : public Fields {
       if (found == cases.end()) {
         std::vector<std::string> names;
         for (const Case& one : cases) names.emplace_back(one.name);
-        throw Error(tree->place.text(), fmt::format("{}: unknown value {}", name(field), shown(*tree)),
-                    suggestion(tree->is_scalar() ? tree->text : "", names));
+        if (tree->is_scalar()) {
+          throw Error(tree->place.text(), fmt::format("{}: unknown value '{}'", name(field), tree->text),
+                      suggestion(tree->text, names));
+        }
+        throw Error(tree->place.text(), fmt::format("{}: {} is not a name", name(field), shown(*tree)),
+                    suggestion("", names));
       }
       index = static_cast<std::size_t>(found - cases.begin());
       if (found->list) type_layer_ = std::max(type_layer_, tree->layer);
@@ -122,7 +131,7 @@ class Resolver final : public Fields {
 
   void section(Options& options, const Field& field) override {
     const Tree* tree = claim(field);
-    Resolver inner(tree, path_ + field.name + ".", plugins_, notes_);
+    Resolver inner(tree, path_ + field.name + ".", plugins_, notes_, output_.place);
     options.list(inner);
     output_.at(field.name) = inner.finish();
   }
@@ -135,7 +144,7 @@ class Resolver final : public Fields {
       }
       access.resize(tree->items.size());
       for (std::size_t i = 0; i < tree->items.size(); ++i) {
-        Resolver inner(&tree->items[i], fmt::format("{}{}.{}.", path_, field.name, i), plugins_, notes_);
+        Resolver inner(&tree->items[i], fmt::format("{}{}.{}.", path_, field.name, i), plugins_, notes_, output_.place);
         access.item(i).list(inner);
         list.items.push_back(inner.finish());
       }
@@ -151,6 +160,7 @@ class Resolver final : public Fields {
       return;
     }
     if (tree == nullptr || tree->kind == Tree::Kind::null) {
+      refuse_misspelt(field.name);
       throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
                   fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name));
     }
@@ -176,15 +186,15 @@ class Resolver final : public Fields {
 
   void require(bool holds, const char* field, const std::string& reason) override {
     if (holds) return;
-    const Tree* tree = input_ != nullptr ? input_->find(field) : nullptr;
-    throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
+    const Place place = input_ != nullptr ? input_->place_of(field) : Place{};
+    throw Error(place.file ? place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
   }
 
  private:
   /// The name by which messages call a field: its whole path.
   std::string name(const Field& field) const { return path_ + field.name; }
   std::string owner() const { return path_.empty() ? "the config" : path_.substr(0, path_.size() - 1); }
-  std::string where() const { return input_ != nullptr ? input_->place.text() : std::string(); }
+  std::string where() const { return output_.place.text(); }
 
   static std::string place_text(const Tree& tree) { return tree.place.text(); }
   static bool is_none(const Tree& tree) { return tree.is_scalar() && !tree.quoted && tree.text == "none"; }
@@ -207,9 +217,20 @@ class Resolver final : public Fields {
     known_.emplace_back(field.name);
     const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
     if (tree == nullptr && field.required) {
+      refuse_misspelt(field.name);
       throw Error(where(), fmt::format("'{}' is missing", name(field)), field.meaning);
     }
     return tree;
+  }
+
+  /// Before complaining that `missing` is missing: perhaps it is there under a name that is nearly right.
+  void refuse_misspelt(const std::string& missing) const {
+    if (input_ == nullptr) return;
+    for (const Tree::Entry& entry : input_->entries) {
+      const bool known = std::find(known_.begin(), known_.end(), entry.key) != known_.end();
+      if (known || nearest(entry.key, {missing}).empty()) continue;
+      throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), suggestion(entry.key, {missing}));
+    }
   }
 
   void write(const Field& field, Tree value) {
@@ -238,19 +259,21 @@ class Resolver final : public Fields {
   }
 
   void read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const Field& field) {
-    const std::string where = type != nullptr ? type->place.text() : this->where();
+    const std::string at = type != nullptr ? type->place.text() : where();
     if (type != nullptr) {
-      if (!type->is_scalar()) throw Error(where, fmt::format("{}.type is not a name", name(field)));
+      if (!type->is_scalar())
+        throw Error(at, fmt::format("{}.type is not a name", name(field)),
+                    fmt::format("'palpate plugins {}' lists the types", choice.kind));
       choice.type = type->text;
     }
-    Resolver inner(&tree, path_ + field.name + ".", plugins_, notes_);
+    Resolver inner(&tree, path_ + field.name + ".", plugins_, notes_, output_.place);
     inner.set_type(type != nullptr ? *type : tree);
-    notes_.origins.push_back({inner.path_ + "type", type != nullptr ? where : "default"});
+    notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
     try {
       plugins_.describe(choice.kind, choice.type, inner);
     } catch (const Error& trouble) {
       if (!trouble.where().empty()) throw;
-      throw Error(where, trouble.reason(), trouble.hint(), trouble.kind());
+      throw Error(at, trouble.reason(), trouble.hint(), trouble.kind());
     }
     Tree options = inner.finish();
     if (type != nullptr) options.place = type->place;  // where the plugin's own complaints will point
@@ -273,7 +296,7 @@ class Resolver final : public Fields {
 }  // namespace
 
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes) {
-  Resolver resolver(&input, "", plugins, notes);
+  Resolver resolver(&input, "", plugins, notes, input.place);
   options.list(resolver);
   return resolver.finish();
 }
@@ -281,7 +304,7 @@ Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, R
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
           const std::function<void(Fields&)>& describe) {
   ResolveNotes notes;
-  Resolver resolver(&resolved, path.empty() ? path : path + ".", plugins, notes);
+  Resolver resolver(&resolved, path.empty() ? path : path + ".", plugins, notes, resolved.place);
   describe(resolver);
 }
 

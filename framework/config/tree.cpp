@@ -68,27 +68,61 @@ std::pair<std::string_view, std::string_view> split_path(std::string_view path) 
   return {path.substr(0, dot), path.substr(dot + 1)};
 }
 
+/// The item of a list that `name` counts, or null.
+const Tree* find_item(const Tree& list, std::string_view name) {
+  std::size_t index = 0;
+  const auto parsed = std::from_chars(name.data(), name.data() + name.size(), index);
+  const bool counts = parsed.ec == std::errc() && parsed.ptr == name.data() + name.size();
+  return counts && index < list.items.size() ? &list.items[index] : nullptr;
+}
+
+const Tree* find_child(const Tree& tree, std::string_view name) {
+  return tree.kind == Tree::Kind::list ? find_item(tree, name) : tree.find(name);
+}
+
 }  // namespace
 
 const Tree* Tree::find_path(std::string_view path) const {
   const auto [head, rest] = split_path(path);
-  const Tree* child = find(head);
+  const Tree* child = find_child(*this, head);
   return child == nullptr || rest.empty() ? child : child->find_path(rest);
 }
 
-Tree& Tree::at_path(std::string_view path) {
-  const auto [head, rest] = split_path(path);
-  if (kind == Kind::scalar) throw Error(place.text(), fmt::format("'{}' leads into a value, not a group", path));
-  if (kind == Kind::list) {
-    std::size_t index = 0;
-    const auto parsed = std::from_chars(head.data(), head.data() + head.size(), index);
-    if (parsed.ec != std::errc() || parsed.ptr != head.data() + head.size() || index >= items.size()) {
-      throw Error(place.text(), fmt::format("'{}' is not one of the {} items of the list", head, items.size()));
+Tree& Tree::at_path(std::string_view path, const Place& asker) {
+  Tree* tree = this;
+  for (std::string_view rest = path; !rest.empty();) {
+    const auto [head, tail] = split_path(rest);
+    if (tree->kind == Kind::list && find_item(*tree, head) == nullptr) {
+      throw Error(asker.text(), fmt::format("'{}': the list has no item '{}'", path, head),
+                  tree->items.empty() ? "it is empty" : fmt::format("its items are 0 to {}", tree->items.size() - 1));
     }
-    return rest.empty() ? items[index] : items[index].at_path(rest);
+    if (tree->kind == Kind::scalar) {
+      throw Error(asker.text(), fmt::format("'{}': there is no '{}' below a value", path, head),
+                  fmt::format("the path ends at '{}'", path.substr(0, path.size() - rest.size() - 1)));
+    }
+    Tree* child = const_cast<Tree*>(find_child(*tree, head));
+    if (child == nullptr) {
+      child = &tree->at(head);
+      tree->entries.back().place = asker;
+      child->place = asker;
+    }
+    tree = child;
+    rest = tail;
   }
-  Tree& child = at(head);
-  return rest.empty() ? child : child.at_path(rest);
+  return *tree;
+}
+
+Place Tree::place_of(std::string_view path) const {
+  Place best;
+  const Tree* tree = this;
+  for (std::string_view rest = path; !rest.empty();) {
+    const auto [head, tail] = split_path(rest);
+    tree = find_child(*tree, head);
+    if (tree == nullptr) break;
+    if (tree->place.file) best = tree->place;
+    rest = tail;
+  }
+  return best;
 }
 
 void Tree::set_layer(Layer value) {

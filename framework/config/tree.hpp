@@ -55,11 +55,13 @@ struct Tree {
   /// The entry at `key`, appended if missing; turns a null into a map.
   Tree& at(std::string_view key);
   void erase(std::string_view key);
-  /// The value at a dotted path, or null.
+  /// The value at a dotted path, or null; list items are named by their number from 0.
   const Tree* find_path(std::string_view path) const;
-  /// The value at a dotted path; maps on the way are made as needed, list items are named by their number from 0.
-  /// Throws Error where a scalar is in the way or the list is shorter.
-  Tree& at_path(std::string_view path);
+  /// The same, but maps on the way are made as needed, with the place of `asker`, who also is to blame in the Error
+  /// thrown where a scalar is in the way or a list is shorter.
+  Tree& at_path(std::string_view path, const Place& asker);
+  /// The place of the value at a dotted path or, where that has none, of what encloses it; none if nothing is there.
+  Place place_of(std::string_view path) const;
 
   /// Marks this tree and all below as coming from `layer`.
   void set_layer(Layer layer);

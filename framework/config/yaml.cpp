@@ -21,13 +21,19 @@ constexpr int kMaxDepth = 100;
 
 class Converter {
  public:
-  explicit Converter(std::shared_ptr<const std::string> file) : file_(std::move(file)) {}
+  /// Without `lines` a place is the file alone: within one word of a command line they would only confuse.
+  explicit Converter(const std::string& file, bool lines = true)
+      : file_(std::make_shared<const std::string>(file)), lines_(lines) {}
 
   Tree convert(const YAML::Node& node, int depth = 0) {
     Tree tree;
     tree.place = place(node.Mark());
     if (++values_ > kMaxValues) throw Error(tree.place.text(), "too many values", "aliases unfold to over 100000");
     if (depth > kMaxDepth) throw Error(tree.place.text(), "nested too deeply", "at most 100 levels");
+    // "?" is a plain value, "!" one in quotes or a block; all other tags are written by hand.
+    if (const std::string& tag = node.Tag(); !tag.empty() && tag != "?" && tag != "!") {
+      throw Error(tree.place.text(), fmt::format("tags ('{}') are not read", tag), "remove it");
+    }
     switch (node.Type()) {
       case YAML::NodeType::Undefined:
       case YAML::NodeType::Null:
@@ -62,7 +68,9 @@ class Converter {
                                    [&](const Tree::Entry& entry) { return entry.key == name; });
     if (twin != map.entries.end()) {
       throw Error(at.text(), fmt::format("duplicate key '{}'", name),
-                  fmt::format("it is already at line {}, column {}", twin->place.line, twin->place.column));
+                  twin->place.line == 0
+                      ? "write it once"
+                      : fmt::format("it is already at line {}, column {}", twin->place.line, twin->place.column));
     }
     map.entries.push_back({name, at, convert(value, depth + 1)});
     // An absent value (`key:`) has a mark of its own, which may lie on a later line: the key is the better place.
@@ -70,24 +78,31 @@ class Converter {
   }
 
   Place place(const YAML::Mark& mark) const {
-    return mark.is_null() ? Place{file_, 0, 0} : Place{file_, mark.line + 1, mark.column + 1};
+    return mark.is_null() || !lines_ ? Place{file_, 0, 0} : Place{file_, mark.line + 1, mark.column + 1};
   }
 
   std::shared_ptr<const std::string> file_;
+  bool lines_;
   int values_ = 0;
 };
+
+std::string place_text(const std::string& file, const YAML::Mark& mark) {
+  return mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
+}
 
 YAML::Node load(const std::string& text, const std::string& file) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) throw Error(file, "holds more than one document", "remove the '---' between them");
+    if (documents.size() > 1) {
+      throw Error(place_text(file, documents[1].Mark()), "a second document begins here", "remove the '---' before it");
+    }
     return documents.empty() ? YAML::Node(YAML::NodeType::Map) : documents.front();
   } catch (const YAML::Exception& trouble) {
     // yaml-cpp's message for deep nesting is "bad file", which misleads.
     const bool deep = dynamic_cast<const YAML::DeepRecursion*>(&trouble) != nullptr;
-    const Place at{std::make_shared<std::string>(file), trouble.mark.is_null() ? 0 : trouble.mark.line + 1,
-                   trouble.mark.is_null() ? 0 : trouble.mark.column + 1};
-    throw Error(at.text(), deep ? "nested too deeply" : fmt::format("not valid YAML: {}", trouble.msg));
+    throw Error(
+        place_text(file, trouble.mark), deep ? "nested too deeply" : fmt::format("not valid YAML: {}", trouble.msg),
+        deep ? "at most 100 levels" : "look here or above for a missing bracket or quote, a wrong indent or a tab");
   }
 }
 
@@ -122,10 +137,23 @@ void emit(YAML::Emitter& out, const Tree& tree) {
   }
 }
 
+/// The config beside `missing` whose name is nearest to its own, as a hint.
+std::string similar_file(const std::filesystem::path& missing) {
+  std::vector<std::string> names;
+  std::error_code none;
+  const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string near = nearest(missing.filename().string(), names);
+  return near.empty() ? "name a YAML file" : fmt::format("did you mean '{}'?", near);
+}
+
 }  // namespace
 
 Tree parse_yaml(const std::string& text, const std::string& file) {
-  Tree tree = Converter(std::make_shared<const std::string>(file)).convert(load(text, file));
+  Tree tree = Converter(file).convert(load(text, file));
   if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;
   return tree;
 }
@@ -134,8 +162,8 @@ Tree read_yaml(const std::filesystem::path& path) {
   const std::string name = path.lexically_normal().string();
   std::error_code trouble;
   const auto status = std::filesystem::status(path, trouble);
-  if (!std::filesystem::exists(status)) throw Error(name, "no such file");
-  if (!std::filesystem::is_regular_file(status)) throw Error(name, "not a regular file");
+  if (!std::filesystem::exists(status)) throw Error(name, "no such file", similar_file(path));
+  if (!std::filesystem::is_regular_file(status)) throw Error(name, "not a regular file", "name a YAML file");
   const auto bytes = std::filesystem::file_size(path, trouble);
   if (trouble || bytes > kMaxBytes) throw Error(name, "too large for a config", "at most 1 MiB");
   std::ifstream in(path, std::ios::binary);
@@ -146,8 +174,7 @@ Tree read_yaml(const std::filesystem::path& path) {
 
 Tree parse_value(const std::string& text, const std::string& file) {
   try {
-    Tree tree = Converter(std::make_shared<const std::string>(file)).convert(YAML::Load(text));
-    return tree;
+    return Converter(file, false).convert(YAML::Load(text));
   } catch (const YAML::Exception&) {
     Tree tree = Tree::scalar(text, true);
     tree.place.file = std::make_shared<const std::string>(file);

@@ -16,7 +16,8 @@ Tree parse_yaml(const std::string& text, const std::string& file);
 /// Reads and parses a file, which must be a regular file of at most 1 MiB. Throws Error.
 Tree read_yaml(const std::filesystem::path& path);
 
-/// A single value as it stands behind the `=` of an override. What does not parse as YAML is taken as text.
+/// A single value as it stands behind the `=` of an override; its places have no lines. What does not parse as YAML is
+/// taken as text.
 Tree parse_value(const std::string& text, const std::string& file);
 
 /// Block-style YAML that reads back as the same tree.

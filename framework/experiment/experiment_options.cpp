@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/experiment_options.hpp"
 
+#include "gp/candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace palpate {
 
 void InitialOptions::list(Fields& fields) {
@@ -12,9 +18,16 @@ void InitialOptions::list(Fields& fields) {
 }
 
 void CandidateOptions::list(Fields& fields) {
-  fields.integer(count, Field("count", "cells per side; 47 if neither this nor spacing is given").at_least(1).at_most(2000));
+  fields.integer(
+      count,
+      Field("count", "cells per side; 47 if neither this nor spacing is given").at_least(1).at_most(kMaxCellsPerSide));
   fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
   fields.require(!(count && spacing), "spacing", "give either count or spacing; the word none takes the other away");
+}
+
+int CandidateOptions::cells_per_side() const {
+  constexpr std::int64_t kPaperCount = 47;
+  return static_cast<int>(count.value_or(kPaperCount));
 }
 
 void HeightOptions::list(Fields& fields) {
@@ -80,7 +93,21 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(scene, Field("scene", "what the world holds; a robot backend reads only area and desk"));
   fields.plugin(backend, Field("backend", "what is tapped"));
   fields.section(log, Field("log", "what is written"));
-  fields.require(initial.count <= taps, "taps", "the budget is smaller than the number of initial taps");
+  fields.require(
+      initial.count <= taps, "taps",
+      fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
+  const auto cells = [this](double side) {
+    return candidates.spacing ? cells_along(side, *candidates.spacing)
+                              : static_cast<double>(candidates.cells_per_side());
+  };
+  const double columns = cells(scene.area.width);
+  const double rows = cells(scene.area.depth);
+  fields.require(
+      std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
+      fmt::format("cuts the area into {} x {} cells, at most {} a side are possible", columns, rows, kMaxCellsPerSide));
+  fields.require(static_cast<double>(initial.count) <= columns * rows, "initial.count",
+                 fmt::format("{} taps, but there are only {} candidates, take fewer first taps or more candidates",
+                             initial.count, columns * rows));
 }
 
 bool enters_id(const std::string& key) { return key != "name" && key != "log"; }

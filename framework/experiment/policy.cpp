@@ -64,7 +64,8 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
                                 std::uint64_t seed) {
   const auto count = static_cast<std::size_t>(options.count);
   if (options.count > candidates.size()) {
-    throw Error("", fmt::format("initial.count: {} taps, but there are only {} candidates", count, candidates.size()));
+    throw Error("initial.count", fmt::format("{} taps, but there are only {} candidates", count, candidates.size()),
+                "take fewer first taps or more candidates");
   }
   Random random(seed, "initial");
   std::vector<int> design;

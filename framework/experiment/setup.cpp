@@ -9,9 +9,8 @@ namespace palpate {
 namespace {
 
 Candidates make_candidates(const CandidateOptions& options, const Area& area) {
-  constexpr std::int64_t kPaperCount = 47;
   if (options.spacing) return grid_by_spacing(area, *options.spacing);
-  return grid_by_count(area, static_cast<int>(options.count.value_or(kPaperCount)));
+  return grid_by_count(area, options.cells_per_side());
 }
 
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";

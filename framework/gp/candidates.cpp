@@ -32,8 +32,10 @@ int Candidates::nearest(double x, double y, const Area& area) const {
 Candidates grid_by_count(const Area& area, int count) { return grid(area, count, count); }
 
 Candidates grid_by_spacing(const Area& area, double spacing) {
-  const auto cells = [spacing](double side) { return std::max(1, static_cast<int>(std::lround(side / spacing))); };
+  const auto cells = [spacing](double side) { return static_cast<int>(cells_along(side, spacing)); };
   return grid(area, cells(area.width), cells(area.depth));
 }
+
+double cells_along(double side, double spacing) { return std::max(1.0, std::round(side / spacing)); }
 
 }  // namespace palpate

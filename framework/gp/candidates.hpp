@@ -20,10 +20,16 @@ struct Candidates {
   int nearest(double x, double y, const Area& area) const;
 };
 
-/// `count` cells along each side; >= 1.
+/// More cells along a side than anyone can pay for; the callers of the grids see to it.
+constexpr int kMaxCellsPerSide = 2000;
+
+/// `count` cells along each side, 1 to kMaxCellsPerSide.
 Candidates grid_by_count(const Area& area, int count);
 
-/// Cells of about `spacing` metres: each side is cut into round(side / spacing) cells, at least one.
+/// Cells of about `spacing` metres: each side is cut into cells_along(side, spacing), at most kMaxCellsPerSide.
 Candidates grid_by_spacing(const Area& area, double spacing);
+
+/// round(side / spacing), at least one; real, because it may be beyond any integer.
+double cells_along(double side, double spacing);
 
 }  // namespace palpate

@@ -125,11 +125,17 @@ const PluginManifest& check_manifest(const boost::dll::shared_library& library, 
 }
 
 /// Calls into a plugin. An exception thrown there has its code in the plugin: only copies of its text may leave.
+/// `options` may be null; a refusal that names one of them is told at the place where that was written.
 template <class Call>
-void guarded(const std::string& place, const std::string& plugin, const char* failure, Call call) {
+void guarded(const Tree* options, const std::string& plugin, const char* failure, Call call) {
+  const std::string place = options != nullptr ? options->place.text() : std::string();
   try {
     call();
   } catch (const Error& refusal) {
+    if (const Tree* option = options != nullptr ? options->find(refusal.where()) : nullptr) {
+      throw Error(option->place.file ? option->place.text() : place,
+                  fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
+    }
     // What the plugin says of the place, a file of its own perhaps, is nearer to the cause than the config is.
     if (!refusal.where().empty()) throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
     throw Error(place, fmt::format("{}: {}", plugin, refusal.reason()), refusal.hint(), refusal.kind());
@@ -245,14 +251,14 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
 
 void PluginHost::describe(const std::string& kind, const std::string& name, Fields& fields) const {
   const std::shared_ptr<const Library> holder = library(kind, name);
-  guarded({}, kind + "/" + name, "cannot list its options", [&] { holder->manifest().describe(fields); });
+  guarded(nullptr, kind + "/" + name, "cannot list its options", [&] { holder->manifest().describe(fields); });
 }
 
 std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Context& context) const {
   const std::shared_ptr<const Library> holder = library(choice.kind, choice.type);
   const PluginManifest& manifest = holder->manifest();
   void* object = nullptr;
-  guarded(choice.options->place.text(), choice.kind + "/" + choice.type, "cannot be created", [&] {
+  guarded(choice.options.get(), choice.kind + "/" + choice.type, "cannot be created", [&] {
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { object = manifest.create(fields, context); });
   });
   // The deleter owns the library, which therefore outlives the object.

@@ -59,7 +59,9 @@ void write_file(const fs::path& file, const std::string& text, bool sync) {
 
 std::string read_file(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string(), "cannot be read");
+  // A directory can be opened, too, and only reading it fails.
+  std::error_code none;
+  if (!in || fs::is_directory(file, none)) throw Error(file.string(), "cannot be read");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -12,6 +12,22 @@ namespace {
 
 std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
+/// The length of the UTF-8 sequence that `text` begins with; 0 if it is not valid (RFC 3629).
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  }
+  // No longer forms of shorter sequences, no surrogates, nothing beyond U+10FFFF.
+  const bool refused = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+                       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
+  return refused ? 0 : length;
+}
+
 std::string json_value(const Scalar& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return json_quoted(*text);
   const std::string cell = csv_cell(value);
@@ -77,7 +93,8 @@ std::string csv_cell(const Scalar& value) {
 
 std::string json_quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     switch (c) {
       case '"':
         out += "\\\"";
@@ -94,8 +111,11 @@ std::string json_quoted(const std::string& text) {
       default:
         if (static_cast<unsigned char>(c) < 0x20) {
           out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+        } else if (const std::size_t length = utf8_length(std::string_view(text).substr(i)); length > 0) {
+          out.append(text, i, length);
+          i += length - 1;
         } else {
-          out += c;
+          out += "\\ufffd";
         }
     }
   }

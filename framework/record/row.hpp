@@ -54,7 +54,7 @@ std::string to_json_text(const Row& row);
 /// name.
 std::string to_csv(const std::vector<Row>& rows);
 
-/// Text in quotes with JSON escapes.
+/// Text in quotes with JSON escapes; bytes that are not UTF-8 become U+FFFD, for no reader would take them.
 std::string json_quoted(const std::string& text);
 
 }  // namespace palpate

@@ -101,6 +101,17 @@ class Relay final : public Journal {
   Journal* observer_;
 };
 
+/// Builds the experiment. What only building finds out names an option; the config knows where that was written.
+Experiment build_experiment(const Workshop& workshop, const ResolvedConfig& config) {
+  try {
+    return Experiment(config.options, workshop.host, workshop.interrupted);
+  } catch (const Error& trouble) {
+    const std::string place = config.tree.place_of(trouble.where()).text();
+    if (place.empty()) throw;
+    throw Error(place, trouble.where() + ": " + trouble.reason(), trouble.hint(), trouble.kind());
+  }
+}
+
 /// Runs the experiment in an open directory and writes what ends a run.
 RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, Journal* observer,
                     const Stopwatch& watch) {
@@ -166,7 +177,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
     }
   }
   // Built before the directory is touched: what only building finds out leaves no trace.
-  Experiment experiment(config.options, workshop.host, workshop.interrupted);
+  Experiment experiment = build_experiment(workshop, config);
   if (status.state != RunStatus::State::absent) move_away(directory);
   RunDirectory held(directory);
   held.write("config.yaml", to_yaml(config.tree));
@@ -209,7 +220,7 @@ RunReport resume_run(const Workshop& workshop, const fs::path& directory, const 
                 "--force carries on all the same, and the manifest will say so");
   }
   const std::vector<PastTap> past = held.recover();
-  Experiment experiment(config.options, workshop.host, workshop.interrupted);
+  Experiment experiment = build_experiment(workshop, config);
   experiment.resume(past);
   if (build.empty()) {
     held.write("manifest.json", manifest_text(workshop, config));

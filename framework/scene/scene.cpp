@@ -70,7 +70,7 @@ void place_at_random(Body& body, const Area& area, Random& random, std::size_t n
                         body.y >= body.reach_y() && body.y <= area.depth - body.reach_y();
     if (inside) return;
   }
-  throw Error("", fmt::format("scene.objects.{} does not fit into the area", number),
+  throw Error(fmt::format("scene.objects.{}", number), "does not fit into the area",
               "make the object smaller or the area larger");
 }
 

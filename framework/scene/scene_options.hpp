@@ -58,7 +58,7 @@ struct SceneOptions : Options {
 };
 
 /// Builds the world. With random placement `seed` decides where each object stands and how it is turned; throws Error
-/// when an object does not fit into the area.
+/// when an object does not fit into the area; its `where` is the object's path in the config.
 std::unique_ptr<const Scene> build_scene(const SceneOptions& options, std::uint64_t seed);
 
 }  // namespace palpate

@@ -14,6 +14,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMaxJobs = 1'000'000;
+constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
 
 /// Splits at commas that stand in no bracket and no quotes.
 std::vector<std::string> split_top(const std::string& text) {
@@ -53,7 +54,7 @@ Quantity parse_quantity(const std::string& text, const Tree& tree, const std::st
   Quantity out{0.0, {}};
   const auto result = std::from_chars(text.data(), text.data() + text.size(), out.value);
   if (result.ec != std::errc() || !std::isfinite(out.value)) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text));
+    throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text), kHowTo);
   }
   out.unit = trimmed(std::string(result.ptr, text.data() + text.size()));
   return out;
@@ -66,14 +67,32 @@ Tree number(double value, const std::string& unit, const Tree& like) {
   return out;
 }
 
+constexpr double kRounding = 1e-9;
+
+/// 3 * 0.1 is 0.30000000000000004, but whoever steps by 0.1 means 0.3: 15 digits are as many as any decimal keeps.
+double as_decimal(double value) {
+  const std::string text = fmt::format("{:.15g}", value);
+  double out = value;
+  if (std::abs(value) < 1e15) std::from_chars(text.data(), text.data() + text.size(), out);
+  return out;
+}
+
 std::vector<Tree> expand_range(const std::vector<Quantity>& from, const Tree& tree, const std::string& key) {
   const double step = from.size() == 3 ? from[2].value : 1.0;
-  const double count = std::ceil((from[1].value - from[0].value) / step);
-  if (!(count >= 1.0) || count > static_cast<double>(kMaxJobs)) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' has no value or too many", key, tree.text));
+  // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
+  const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
+  if (!(count >= 1.0)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has no value", key, tree.text),
+                "the end must lie beyond the start");
+  }
+  if (count > static_cast<double>(kMaxJobs)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has more than a million values", key, tree.text),
+                "take a wider step");
   }
   std::vector<Tree> out;
-  for (int i = 0; i < static_cast<int>(count); ++i) out.push_back(number(from[0].value + i * step, from[0].unit, tree));
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    out.push_back(number(as_decimal(from[0].value + i * step), from[0].unit, tree));
+  }
   return out;
 }
 
@@ -82,7 +101,8 @@ std::vector<Tree> expand_log(const std::vector<Quantity>& from, const Tree& tree
   const double last = from[1].value;
   const double count = from[2].value;
   if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' needs two positive ends and a count of at least 2", key, tree.text));
+    throw Error(tree.place.text(),
+                fmt::format("{}: '{}' needs two positive ends and a count of 2 to 10000", key, tree.text), kHowTo);
   }
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
@@ -98,10 +118,12 @@ std::vector<Tree> expand_log(const std::vector<Quantity>& from, const Tree& tree
 
 std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
   if (value.kind == Tree::Kind::list) {
-    if (value.items.empty()) throw Error(value.place.text(), fmt::format("{}: the list of values is empty", key));
+    if (value.items.empty())
+      throw Error(value.place.text(), fmt::format("{}: the list of values is empty", key), "write [value, value]");
     return value.items;
   }
-  if (value.kind == Tree::Kind::null) throw Error(value.place.text(), fmt::format("{}: has no value", key));
+  if (value.kind == Tree::Kind::null)
+    throw Error(value.place.text(), fmt::format("{}: has no value", key), "write [value, value]");
   if (!value.is_scalar()) return {value};
   const auto open = value.text.find('(');
   const std::string name = value.text.substr(0, std::min(open, value.text.size()));
@@ -115,8 +137,7 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
   const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
                          (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
   if (!same_unit) {
-    throw Error(value.place.text(), fmt::format("{}: '{}' is not understood", key, value.text),
-                "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit");
+    throw Error(value.place.text(), fmt::format("{}: '{}' is not understood", key, value.text), kHowTo);
   }
   return is_range ? expand_range(parts, value, key) : expand_log(parts, value, key);
 }
@@ -128,7 +149,10 @@ std::vector<Axis> config_axes(const Tree& sweep) {
     if (part.key != "grid") {
       throw Error(part.place.text(), fmt::format("unknown option '{}' of sweep", part.key), suggestion(part.key, {"grid"}));
     }
-    if (!part.value.is_map()) throw Error(part.place.text(), "sweep.grid: expects a map of keys to values");
+    if (!part.value.is_map()) {
+      throw Error(part.place.text(), "sweep.grid: expects a map of keys to values",
+                  "write seed: range(0,10), a key a line");
+    }
     for (const Tree::Entry& entry : part.value.entries) axes.push_back({entry.key, expand_values(entry.value, entry.key)});
   }
   return axes;
@@ -142,6 +166,11 @@ Axis parse_axis(const std::string& text) {
   Axis axis{whole.path, {}};
   for (const std::string& part : parts) {
     const Override one = parse_override(whole.path + "=" + trimmed(part));
+    // Beside other values a list is one value: at=[1cm,1cm],[2cm,2cm].
+    if (one.value.kind == Tree::Kind::list) {
+      axis.values.push_back(one.value);
+      continue;
+    }
     for (Tree& tree : expand_values(one.value, whole.path)) axis.values.push_back(std::move(tree));
   }
   return axis;
@@ -151,7 +180,10 @@ std::vector<Combination> product(const std::vector<Axis>& axes) {
   std::size_t count = 1;
   for (const Axis& axis : axes) {
     count *= axis.values.size();
-    if (count > kMaxJobs) throw Error("", "the sweep has more than a million jobs");
+    if (count > kMaxJobs) {
+      throw Error(axis.values.front().place.text(), fmt::format("{}: the sweep has more than a million jobs", axis.key),
+                  "take fewer values");
+    }
   }
   std::vector<Combination> out(count);
   for (std::size_t job = 0; job < count; ++job) {

@@ -27,7 +27,8 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key);
 /// The axes of `sweep: {grid: {...}}`. Throws Error for anything else in it.
 std::vector<Axis> config_axes(const Tree& sweep);
 
-/// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=log(1cm,5cm,8)`: as typed behind `palpate sweep`.
+/// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=log(1cm,5cm,8)`: as typed behind `palpate sweep`. A list among
+/// several values is one value.
 Axis parse_axis(const std::string& text);
 
 /// The product of the axes; the last axis runs fastest. Throws Error beyond a million combinations.

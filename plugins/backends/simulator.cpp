@@ -58,7 +58,7 @@ class Simulator final : public Backend {
   Simulator(const Options& options, const Context& context)
       : options_(options), scene_(context.scene), interrupted_(context.interrupted), hover_(scene_.desk() + options.hover) {
     if (scene_.highest() >= hover_) {
-      throw Error("", "hover: an object is higher than the height at which the arm travels", "raise backend.hover");
+      throw Error("hover", "an object is as high as the arm travels, or higher", "raise it or lower the object");
     }
   }
 

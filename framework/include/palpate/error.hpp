@@ -11,8 +11,8 @@ namespace palpate {
 /// Thrown for input that the user can mend: a config, a file, a plugin, a robot. Numerical trouble is never an
 /// exception but part of a result. Programs print `what()` as it stands: "where: reason, hint", on one line.
 ///
-/// Throwing it from a plugin's constructor is the right way to refuse options; leave `where` empty there, the plugin
-/// host knows the place in the config and fills it in.
+/// Throwing it from a plugin's constructor is the right way to refuse options; leave `where` empty there or name the
+/// option, the plugin host knows the place in the config and fills it in.
 class Error : public std::exception {
  public:
   /// What the failure means to the caller of the program; it decides the exit status.

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "config/compose.hpp"
+
+#include "config/yaml.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+
+/// Files in a folder of their own, and what composing them gives.
+class Compose : public ::testing::Test {
+ protected:
+  Compose() {
+    folder_.write("kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scale: 1.7 cm\n");
+    folder_.write("kernel/rough.yaml", "kernel:\n  type: matern\n  length_scale: 2.5 cm\n  nu: 1.5\n");
+    folder_.write("scene/desk.yaml", "scene:\n  desk: 0 cm\n  objects: [{type: wave, height: 9 cm}, {type: slope}]\n");
+    folder_.write("scene/table.yaml", "scene:\n  desk: 70 cm\n");
+  }
+
+  Tree compose(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    const auto file = folder_.write("c.yaml", text);
+    std::vector<Override> parsed;
+    for (const std::string& one : overrides) parsed.push_back(parse_override(one));
+    return Composer("/nonexistent").compose(file, parsed);
+  }
+
+  /// The value at `path` of what `text` composes to; "-" if there is none.
+  std::string value(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {}) {
+    const Tree tree = compose(text, overrides);
+    const Tree* found = tree.find_path(path);
+    return found == nullptr ? "-" : found->text;
+  }
+
+  /// The error with the folder's name left out.
+  std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    try {
+      compose(text, overrides);
+    } catch (const Error& error) {
+      std::string what = error.what();
+      const std::string prefix = folder_.path().string() + "/";
+      for (auto at = what.find(prefix); at != std::string::npos; at = what.find(prefix)) what.erase(at, prefix.size());
+      return what;
+    }
+    return "accepted";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Compose, ReadsTheGroupsThatDefaultsName) {
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n  - scene: desk\n", "kernel.length_scale"), "1.7 cm");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n  - scene: desk\n", "scene.desk"), "0 cm");
+}
+
+TEST_F(Compose, LeavesNoTraceOfDefaults) {
+  EXPECT_EQ(compose("defaults:\n  - kernel: rbf\n").find("defaults"), nullptr);
+}
+
+TEST_F(Compose, LetsLaterDefaultsWin) {
+  EXPECT_EQ(value("defaults:\n  - scene: desk\n  - scene: table\n", "scene.desk"), "70 cm");
+  EXPECT_EQ(value("defaults:\n  - scene: table\n  - scene: desk\n", "scene.desk"), "0 cm");
+}
+
+TEST_F(Compose, LetsTheFileWinOverItsDefaultsWhereverTheyStand) {
+  EXPECT_EQ(value("kernel: {length_scale: 3 cm}\ndefaults:\n  - kernel: rbf\n", "kernel.length_scale"), "3 cm");
+}
+
+TEST_F(Compose, LetsTheCommandLineWinOverTheFile) {
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nkernel: {length_scale: 3 cm}\n", "kernel.length_scale",
+                  {"kernel.length_scale=4cm"}),
+            "4cm");
+}
+
+TEST_F(Compose, LetsTheLastOverrideWin) { EXPECT_EQ(value("seed: 1\n", "seed", {"seed=2", "seed=3"}), "3"); }
+
+TEST_F(Compose, GivesEveryValueThePlaceThatItCameFrom) {
+  const Tree tree = compose("defaults:\n  - kernel: rbf\nseed: 1\n", {"taps=5"});
+  const std::string folder = folder_.path().string();
+  EXPECT_EQ(tree.find_path("kernel.length_scale")->place.text(), folder + "/kernel/rbf.yaml:3:17");
+  EXPECT_EQ(tree.find_path("seed")->place.text(), folder + "/c.yaml:3:7");
+  EXPECT_EQ(tree.find_path("taps")->place.text(), "command line");
+}
+
+TEST_F(Compose, BlamesTheCommandLineForAKeyThatItAdds) {
+  const Tree tree = compose("defaults:\n  - kernel: rbf\n", {"kernel.length_scal=2cm"});
+  EXPECT_EQ(tree.find("kernel")->entries.back().key, "length_scal");
+  EXPECT_EQ(tree.find("kernel")->entries.back().place.text(), "command line");
+}
+
+TEST_F(Compose, TakesANameInTheFileForAGroup) { EXPECT_EQ(value("kernel: rough\n", "kernel.length_scale"), "2.5 cm"); }
+
+TEST_F(Compose, ReplacesTheGroupThatAnOverrideNamesButKeepsWhatTheFileSays) {
+  const std::string text = "defaults:\n  - kernel: rbf\nkernel: {type: rbf, length_scale: 3 cm}\n";
+  EXPECT_EQ(value(text, "kernel.type", {"kernel=rough"}), "matern");
+  EXPECT_EQ(value(text, "kernel.length_scale", {"kernel=rough"}), "3 cm");
+  EXPECT_EQ(value(text, "kernel.nu", {"kernel=rough"}), "1.5");
+}
+
+TEST_F(Compose, LeavesNothingOfTheGroupThatAnOverrideReplaces) {
+  EXPECT_EQ(value("defaults:\n  - kernel: rough\n", "kernel.nu", {"kernel=rbf"}), "-");
+}
+
+TEST_F(Compose, MarksTheChosenTypeAsTheOverridesWord) {
+  const Tree tree = compose("defaults:\n  - kernel: rough\nkernel: {nu: 2.5}\n", {"kernel=rbf"});
+  EXPECT_EQ(tree.find_path("kernel.type")->layer, kCommandLineLayer);
+  EXPECT_EQ(tree.find_path("kernel.type")->place.text(), "command line");
+  EXPECT_LT(tree.find_path("kernel.nu")->layer, kCommandLineLayer) << "older than the type, so it may be dropped";
+}
+
+TEST_F(Compose, TakesANameWithoutFileForThePluginItself) {
+  EXPECT_EQ(value("kernel: spline\n", "kernel.type"), "spline");
+}
+
+TEST_F(Compose, LaysAMapOverAGroup) {
+  EXPECT_EQ(value("defaults:\n  - kernel: rough\n", "kernel.nu", {"kernel={length_scale: 9 cm}"}), "1.5");
+  EXPECT_EQ(value("defaults:\n  - kernel: rough\n", "kernel.length_scale", {"kernel={length_scale: 9 cm}"}), "9 cm");
+}
+
+TEST_F(Compose, LetsAnOverrideReachAnItemOfAList) {
+  const std::string text = "defaults:\n  - scene: desk\n";
+  EXPECT_EQ(value(text, "scene.objects.0.height", {"scene.objects.0.height=5cm"}), "5cm");
+  EXPECT_EQ(value(text, "scene.objects.1.type", {"scene.objects.0.height=5cm"}), "slope");
+}
+
+TEST_F(Compose, BuildsAGroupOnAnotherOfItsKind) {
+  folder_.write("kernel/wide.yaml", "defaults:\n  - kernel: rough\nkernel:\n  length_scale: 5 cm\n");
+  EXPECT_EQ(value("kernel: wide\n", "kernel.length_scale"), "5 cm");
+  EXPECT_EQ(value("kernel: wide\n", "kernel.nu"), "1.5");
+}
+
+TEST_F(Compose, TakesTheGroupFileThatIsNearestToTheConfig) {
+  folder_.write("deep/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scale: 8 cm\n");
+  const auto file = folder_.write("deep/er/c.yaml", "kernel: rbf\n");
+  EXPECT_EQ(Composer("/nonexistent").compose(file, {}).find_path("kernel.length_scale")->text, "8 cm");
+}
+
+TEST_F(Compose, FallsBackToTheShippedGroups) {
+  const TemporaryFolder elsewhere;
+  const auto file = elsewhere.write("c.yaml", "kernel: rough\n");
+  EXPECT_EQ(Composer(folder_.path()).compose(file, {}).find_path("kernel.nu")->text, "1.5");
+}
+
+TEST_F(Compose, LetsAProcessInheritWhatItDoesNotSayOfTheSharedKernel) {
+  const std::string text = "defaults:\n  - kernel: rough\nheight:\n  kernel: {length_scale: 4 cm}\n";
+  EXPECT_EQ(value(text, "height.kernel.type"), "matern");
+  EXPECT_EQ(value(text, "height.kernel.nu"), "1.5");
+  EXPECT_EQ(value(text, "height.kernel.length_scale"), "4 cm");
+  EXPECT_EQ(value(text, "kernel.length_scale"), "2.5 cm");
+}
+
+TEST_F(Compose, LetsAProcessKeepItsWordAgainstAnOverrideOfTheSharedKernel) {
+  const std::string text = "defaults:\n  - kernel: rough\nheight:\n  kernel: {length_scale: 4 cm}\n";
+  EXPECT_EQ(value(text, "height.kernel.length_scale", {"kernel.length_scale=9cm"}), "4 cm");
+  EXPECT_EQ(value(text, "height.kernel.nu", {"kernel.nu=2.5"}), "2.5");
+}
+
+TEST_F(Compose, ReadsAGroupForOneProcess) {
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nweight:\n  kernel: rough\n", "weight.kernel.type"), "matern");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "weight.kernel.nu", {"weight.kernel=rough"}), "1.5");
+}
+
+TEST_F(Compose, GivesAProcessNoKernelOfItsOwnUnasked) {
+  EXPECT_EQ(compose("defaults:\n  - kernel: rbf\nheight: {signal: 1 m}\n").find_path("height.kernel"), nullptr);
+}
+
+TEST_F(Compose, LeavesTheNamesOfASweepAlone) {
+  EXPECT_EQ(value("sweep:\n  grid:\n    kernel: rbf\n", "sweep.grid.kernel"), "rbf");
+}
+
+TEST_F(Compose, RefusesACycleAndShowsIt) {
+  folder_.write("kernel/a.yaml", "defaults:\n  - kernel: b\n");
+  folder_.write("kernel/b.yaml", "defaults:\n  - kernel: a\n");
+  EXPECT_EQ(refusal("kernel: a\n"), "kernel/b.yaml:2:13: defaults form a cycle, kernel/a -> kernel/b -> kernel/a");
+}
+
+TEST_F(Compose, AllowsOneBaseTwiceWithoutACycle) {
+  folder_.write("kernel/twice.yaml", "defaults:\n  - kernel: rbf\n  - kernel: rbf\n");
+  EXPECT_EQ(value("kernel: twice\n", "kernel.type"), "rbf");
+}
+
+TEST_F(Compose, RefusesANameWithAPathInIt) {
+  for (const char* name : {"../rbf", "a/b", "rbf.yaml", "/etc/passwd", "''"}) {
+    const std::string plain = std::string(name) == "''" ? "" : name;
+    EXPECT_EQ(refusal(std::string("defaults:\n  - kernel: ") + name + "\n"),
+              "c.yaml:2:13: '" + plain +
+                  "' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path");
+  }
+}
+
+TEST_F(Compose, RefusesAnUnknownGroup) {
+  EXPECT_EQ(refusal("defaults:\n  - kernl: rbf\n"), "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?");
+  EXPECT_EQ(refusal("defaults:\n  - posterior: dense\n"),
+            "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, backend, scene");
+}
+
+TEST_F(Compose, RefusesASceneWithoutFileAndNamesANearOne) {
+  EXPECT_EQ(refusal("defaults:\n  - scene: desc\n"), "c.yaml:2:12: no file scene/desc.yaml, did you mean 'desk'?");
+}
+
+TEST_F(Compose, RefusesDefaultsThatAreNotAListOfPairs) {
+  EXPECT_EQ(refusal("defaults: {kernel: rbf}\n"),
+            "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group a line");
+  EXPECT_EQ(refusal("defaults:\n  - rbf\n"),
+            "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'");
+  EXPECT_EQ(refusal("defaults:\n  - kernel: [rbf]\n"),
+            "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'");
+}
+
+TEST_F(Compose, TakesAMisspeltDefaultsForWhatItIs) {
+  EXPECT_EQ(refusal("seed: 1\ndefualts:\n  - kernel: rbf\n"),
+            "c.yaml:2:1: unknown option 'defualts', did you mean 'defaults'?");
+}
+
+TEST_F(Compose, RefusesAGroupFileThatHoldsSomethingElse) {
+  folder_.write("kernel/odd.yaml", "kernel:\n  type: rbf\nseed: 3\n");
+  EXPECT_EQ(refusal("kernel: odd\n"),
+            "kernel/odd.yaml:3:1: unknown key 'seed', a file in kernel/ holds only 'kernel:'");
+}
+
+TEST_F(Compose, RefusesAGroupFileThatHoldsNoOptions) {
+  folder_.write("kernel/flat.yaml", "kernel: rbf\n");
+  EXPECT_EQ(refusal("kernel: flat\n"),
+            "kernel/flat.yaml:1:1: 'kernel' is not a group of options, write key: value below it");
+}
+
+TEST_F(Compose, RefusesAGroupThatBuildsOnAnotherKind) {
+  folder_.write("kernel/mixed.yaml", "defaults:\n  - scene: desk\n");
+  EXPECT_EQ(refusal("kernel: mixed\n"),
+            "kernel/mixed.yaml:2:12: a kernel may build only on another kernel, write '- kernel: name'");
+}
+
+TEST_F(Compose, RefusesAConfigThatIsNotAMap) {
+  EXPECT_EQ(refusal("[1, 2]\n"), "c.yaml:1:1: a config is a map, write key: value");
+  EXPECT_EQ(refusal("text\n"), "c.yaml:1:1: a config is a map, write key: value");
+}
+
+TEST_F(Compose, RefusesAnOverrideIntoAValue) {
+  EXPECT_EQ(
+      refusal("defaults:\n  - kernel: rbf\n", {"kernel.length_scale.x=1"}),
+      "command line: 'kernel.length_scale.x': there is no 'x' below a value, the path ends at 'kernel.length_scale'");
+}
+
+TEST(ComposeFile, RefusesAnEmptyName) {
+  try {
+    Composer("").compose("", {});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "command line: the name of the config is empty, name a YAML file");
+  }
+}
+
+std::string refused_override(const std::string& text) {
+  try {
+    parse_override(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(OverrideText, IsSplitAtItsFirstEqualsSign) {
+  const Override one = parse_override("name=a=b");
+  EXPECT_EQ(one.path, "name");
+  EXPECT_EQ(one.value.text, "a=b");
+  EXPECT_EQ(one.value.layer, kCommandLineLayer);
+}
+
+TEST(OverrideText, IsRefusedWithoutKeyOrEqualsSign) {
+  EXPECT_EQ(refused_override("seed"), "command line: 'seed' is not KEY=VALUE, for example kernel.length_scale=2cm");
+  EXPECT_EQ(refused_override("=3"), "command line: '=3' is not KEY=VALUE, for example kernel.length_scale=2cm");
+  EXPECT_EQ(refused_override(""), "command line: '' is not KEY=VALUE, for example kernel.length_scale=2cm");
+}
+
+TEST(OverrideText, IsRefusedWithAnEmptyPartOfItsPath) {
+  for (const char* path : {".a", "a.", "a..b"}) {
+    EXPECT_EQ(refused_override(std::string(path) + "=1"),
+              std::string("command line: '") + path + "' is not a dotted path, write it like kernel.length_scale");
+  }
+}
+
+}  // namespace
+}  // namespace palpate

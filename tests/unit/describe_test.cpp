@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "config/describe.hpp"
+
+#include "record/json.hpp"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+struct Part : Options {
+  double width = 0.05;
+  void list(Fields& fields) override { fields.real(width, Field("width", "of the part").in(Unit::metre).above(0)); }
+};
+
+struct Sample : Options {
+  double length = 0.017;
+  std::optional<double> limit;
+  double at[2] = {0.1, 0.2};
+  std::int64_t count = 3;
+  bool clip = false;
+  std::string name = "x";
+  std::size_t design = 1;
+  std::int64_t side = 4;
+  Part part;
+  std::vector<Part> parts;
+  PluginChoice kernel{"kernel", "rbf", nullptr};
+
+  void list(Fields& fields) override {
+    fields.real(length, Field("length", "a reach").in(Unit::metre).above(0).from("a paper"));
+    fields.real(limit, Field("limit", "a time").in(Unit::second).at_least(0).at_most(10));
+    fields.reals(at, 2, Field("at", "a place").in(Unit::metre));
+    fields.integer(count, Field("count", "how many").at_most(7).needed());
+    fields.flag(clip, Field("clip", "cut"));
+    fields.text(name, Field("name", "a word"));
+    fields.choice(design, Field("design", "how"),
+                  {{"random", "by lot", {}},
+                   {"grid", "in rows", [this](Fields& inner) { inner.integer(side, Field("side", "of the grid")); }}});
+    fields.section(part, Field("part", "one part"));
+    fields.sections(parts, Field("parts", "all parts"));
+    fields.plugin(kernel, Field("kernel", "a shape"));
+    fields.require(false, "count", "a law that only reading checks");
+  }
+};
+
+std::vector<FieldDescription> described() {
+  Sample sample;
+  return describe_fields([&](Fields& fields) { sample.list(fields); });
+}
+
+TEST(Describe, ListsFieldsInTheirOrder) {
+  std::string names;
+  for (const FieldDescription& field : described()) names += field.name + " ";
+  EXPECT_EQ(names, "length limit at count clip name design part parts kernel ");
+}
+
+TEST(Describe, NamesTypesInWords) {
+  std::vector<std::string> types;
+  for (const FieldDescription& field : described()) types.push_back(field.type_name());
+  EXPECT_EQ(types,
+            (std::vector<std::string>{"length", "time", "2 lengths", "whole number", "true or false", "text",
+                                      "one of random, grid", "group", "list of groups", "plugin of kind kernel"}));
+}
+
+TEST(Describe, WritesRangesWithTheirUnit) {
+  const auto fields = described();
+  EXPECT_EQ(fields[0].range, "> 0 m");
+  EXPECT_EQ(fields[1].range, "0 .. 10 s");
+  EXPECT_EQ(fields[3].range, "<= 7");
+  EXPECT_EQ(fields[4].range, "");
+}
+
+TEST(Describe, WritesDefaultsAsAConfigWould) {
+  const auto fields = described();
+  EXPECT_EQ(fields[0].default_value, "0.017 m");
+  EXPECT_EQ(fields[1].default_value, "none");
+  EXPECT_EQ(fields[2].default_value, "[0.1 m, 0.2 m]");
+  EXPECT_EQ(fields[4].default_value, "false");
+  EXPECT_EQ(fields[6].default_value, "grid");
+  EXPECT_EQ(fields[9].default_value, "rbf");
+}
+
+TEST(Describe, DescribesCasesAndNestedGroups) {
+  const auto fields = described();
+  ASSERT_EQ(fields[6].cases.size(), 2U);
+  EXPECT_TRUE(fields[6].cases[0].fields.empty());
+  EXPECT_EQ(fields[6].cases[1].fields.at(0).name, "side");
+  EXPECT_EQ(fields[7].fields.at(0).name, "width");
+  EXPECT_EQ(fields[8].fields.at(0).meaning, "of the part");
+}
+
+TEST(Describe, ChangesNothingInTheOptions) {
+  Sample sample;
+  describe_fields([&](Fields& fields) { sample.list(fields); });
+  EXPECT_TRUE(sample.parts.empty());
+  EXPECT_EQ(sample.design, 1U);
+}
+
+TEST(Describe, PrintsAnAlignedTable) {
+  double length = 0.5;
+  std::int64_t n = 2;
+  const auto fields = describe_fields([&](Fields& list) {
+    list.real(length, Field("length", "a reach").in(Unit::metre).from("a paper"));
+    list.integer(n, Field("n", "how many").needed());
+  });
+  EXPECT_EQ(describe_text(fields),
+            "  option  type and range  default   meaning\n"
+            "  length  length          0.5 m     a reach (a paper)\n"
+            "  n       whole number    required  how many\n");
+}
+
+TEST(Describe, GivesATreeThatIsValidJson) {
+  const Tree tree = describe_tree(described());
+  EXPECT_TRUE(is_json(to_json(tree)));
+  EXPECT_EQ(tree.find_path("0.unit")->text, "m");
+  EXPECT_EQ(tree.find_path("0.source")->text, "a paper");
+  EXPECT_EQ(tree.find_path("3.required")->text, "true");
+  EXPECT_EQ(tree.find_path("3.default")->kind, Tree::Kind::null);
+  EXPECT_EQ(tree.find_path("6.cases.1.options.0.name")->text, "side");
+  EXPECT_EQ(tree.find_path("7.options.0.name")->text, "width");
+}
+
+TEST(Schema, AllowsExactlyTheFieldsAndThoseOfTheCases) {
+  const Tree schema = schema_of(described());
+  EXPECT_TRUE(is_json(to_json(schema)));
+  EXPECT_EQ(schema.find("additionalProperties")->text, "false");
+  std::string names;
+  for (const Tree::Entry& entry : schema.find("properties")->entries) names += entry.key + " ";
+  EXPECT_EQ(names, "length limit at count clip name design side part parts kernel ");
+}
+
+TEST(Schema, TakesAQuantityForATextWithAUnit) {
+  const Tree schema = schema_of(described());
+  EXPECT_EQ(schema.find_path("properties.length.type")->text, "string");
+  EXPECT_EQ(schema.find_path("properties.length.pattern")->text,
+            "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *(m|dm|cm|mm|um)$");
+}
+
+TEST(Schema, KnowsTheJsonTypeOfEveryField) {
+  const Tree schema = schema_of(described());
+  const auto at = [&](const char* path) { return schema.find_path(path)->text; };
+  EXPECT_EQ(at("properties.count.type"), "integer");
+  EXPECT_EQ(at("properties.clip.type"), "boolean");
+  EXPECT_EQ(at("properties.name.type"), "string");
+  EXPECT_EQ(at("properties.at.minItems"), "2");
+  EXPECT_EQ(at("properties.at.maxItems"), "2");
+  EXPECT_EQ(at("properties.design.enum.1"), "grid");
+  EXPECT_EQ(at("properties.part.properties.width.type"), "string");
+  EXPECT_EQ(at("properties.parts.items.additionalProperties"), "false");
+  EXPECT_EQ(at("properties.kernel.$ref"), "#/definitions/kernel");
+}
+
+}  // namespace
+}  // namespace palpate

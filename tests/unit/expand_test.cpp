@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/expand.hpp"
+
+#include "config/yaml.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace palpate {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+Texts texts(const std::vector<Tree>& values) {
+  Texts out;
+  for (const Tree& value : values) out.push_back(value_text(value));
+  return out;
+}
+
+Texts expanded(const std::string& value) {
+  return texts(expand_values(*parse_yaml("k: " + value, "c.yaml").find("k"), "k"));
+}
+
+Texts typed(const std::string& text) { return texts(parse_axis(text).values); }
+
+template <class Action>
+std::string refusal(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string refused_value(const std::string& value) {
+  return refusal([&] { expanded(value); });
+}
+
+constexpr const char* kHowTo = ", write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
+
+TEST(Expand, TakesAPlainValueAsTheOnlyOne) {
+  EXPECT_EQ(expanded("3 cm"), (Texts{"3 cm"}));
+  EXPECT_EQ(expanded("ranger(1,2)"), (Texts{"ranger(1,2)"}));
+  EXPECT_EQ(expanded("range"), (Texts{"range"}));
+}
+
+TEST(Expand, TakesAListAsItsItems) { EXPECT_EQ(expanded("[a, 2, [1, 2]]"), (Texts{"a", "2", "[1, 2]"})); }
+
+TEST(Expand, CountsARangeWithoutItsEnd) {
+  EXPECT_EQ(expanded("range(0,3)"), (Texts{"0", "1", "2"}));
+  EXPECT_EQ(expanded("range( 2 , 10 , 3 )"), (Texts{"2", "5", "8"}));
+  EXPECT_EQ(expanded("range(-1,1)"), (Texts{"-1", "0"}));
+}
+
+TEST(Expand, CountsBackwards) { EXPECT_EQ(expanded("range(3,0,-1)"), (Texts{"3", "2", "1"})); }
+
+TEST(Expand, CarriesTheUnitOfARange) { EXPECT_EQ(expanded("range(1cm, 4 cm, 1cm)"), (Texts{"1 cm", "2 cm", "3 cm"})); }
+
+TEST(Expand, WritesDecimalStepsAsPeopleDo) {
+  EXPECT_EQ(expanded("range(0,0.5,0.1)"), (Texts{"0", "0.1", "0.2", "0.3", "0.4"}));
+}
+
+TEST(Expand, LeavesOutTheEndOfADecimalRangeDespiteRounding) {
+  EXPECT_EQ(expanded("range(1,1.3,0.1)"), (Texts{"1", "1.1", "1.2"}));
+  EXPECT_EQ(expanded("range(0,0.3,0.1)"), (Texts{"0", "0.1", "0.2"}));
+}
+
+TEST(Expand, WritesLargeWholeNumbersInDigits) {
+  EXPECT_EQ(expanded("range(1000000,1000002)"), (Texts{"1000000", "1000001"}));
+}
+
+TEST(Expand, SpacesALogarithmicRangeEvenlyAndKeepsItsEnds) {
+  EXPECT_EQ(expanded("log(1,100,3)"), (Texts{"1", "10", "100"}));
+  const Texts values = expanded("log(1cm,5cm,8)");
+  ASSERT_EQ(values.size(), 8U);
+  EXPECT_EQ(values.front(), "1 cm");
+  EXPECT_EQ(values.back(), "5 cm");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_NEAR(std::log(std::atof(values[i].c_str())), std::log(5.0) * static_cast<double>(i) / 7.0, 1e-14)
+        << values[i];
+  }
+}
+
+TEST(Expand, RefusesRangesThatAreNotUnderstood) {
+  for (const char* text : {"range(5)", "range(1,2,3,4)", "log(1,2)", "range(1cm,2)", "range(1cm,3cm,1)",
+                           "log(1cm,2m,3)", "log(1,2,3cm)", "range(0x10,20)"}) {
+    EXPECT_EQ(refused_value(text), std::string("c.yaml:1:4: k: '") + text + "' is not understood" + kHowTo);
+  }
+}
+
+TEST(Expand, RefusesRangesOfWhatAreNoNumbers) {
+  EXPECT_EQ(refused_value("range(a,b)"), std::string("c.yaml:1:4: k: 'a' in 'range(a,b)' is not a number") + kHowTo);
+  EXPECT_EQ(refused_value("range()"), std::string("c.yaml:1:4: k: '' in 'range()' is not a number") + kHowTo);
+  EXPECT_EQ(refused_value("range(0,inf)"),
+            std::string("c.yaml:1:4: k: 'inf' in 'range(0,inf)' is not a number") + kHowTo);
+}
+
+TEST(Expand, RefusesRangesWithoutValuesOrWithTooMany) {
+  EXPECT_EQ(refused_value("range(10,0)"),
+            "c.yaml:1:4: k: 'range(10,0)' has no value, the end must lie beyond the start");
+  EXPECT_EQ(refused_value("range(0,0)"), "c.yaml:1:4: k: 'range(0,0)' has no value, the end must lie beyond the start");
+  EXPECT_EQ(refused_value("range(0,1000001)"),
+            "c.yaml:1:4: k: 'range(0,1000001)' has more than a million values, take a wider step");
+  EXPECT_EQ(refused_value("range(0,1,0)"),
+            "c.yaml:1:4: k: 'range(0,1,0)' has more than a million values, take a wider step");
+}
+
+TEST(Expand, RefusesLogarithmsOfNothing) {
+  for (const char* text : {"log(0,1,3)", "log(-1,1,3)", "log(1,2,1)", "log(1,2,2.5)", "log(1,2,10001)"}) {
+    EXPECT_EQ(refused_value(text),
+              std::string("c.yaml:1:4: k: '") + text + "' needs two positive ends and a count of 2 to 10000" + kHowTo);
+  }
+}
+
+TEST(Expand, RefusesNothing) {
+  EXPECT_EQ(refused_value("[]"), "c.yaml:1:4: k: the list of values is empty, write [value, value]");
+  EXPECT_EQ(refused_value(""), "c.yaml:1:1: k: has no value, write [value, value]");
+}
+
+TEST(AxisText, SplitsAtCommas) {
+  EXPECT_EQ(typed("seed=1,2, 3"), (Texts{"1", "2", "3"}));
+  EXPECT_EQ(parse_axis("kernel.length_scale=1cm,2cm").key, "kernel.length_scale");
+}
+
+TEST(AxisText, DoesNotSplitInBracketsOrQuotes) {
+  EXPECT_EQ(typed("a=[1, 2],[3, 4]"), (Texts{"[1, 2]", "[3, 4]"}));
+  EXPECT_EQ(typed("a=[1, 2]"), (Texts{"1", "2"})) << "one list is the list of values";
+  EXPECT_EQ(typed("a='x,y',z"), (Texts{"x,y", "z"}));
+  EXPECT_EQ(typed("seed=range(0,3)"), (Texts{"0", "1", "2"}));
+  EXPECT_EQ(typed("seed=range(0,2),7"), (Texts{"0", "1", "7"}));
+}
+
+TEST(AxisText, RefusesAGapBetweenCommas) {
+  EXPECT_EQ(refusal([] { parse_axis("seed=1,,2"); }), "command line: seed: has no value, write [value, value]");
+}
+
+TEST(ConfigAxes, AreTheKeysOfTheGridInTheirOrder) {
+  const auto axes = config_axes(parse_yaml("grid: {b.c: [1, 2], a: 'range(0,2)'}", "c.yaml"));
+  ASSERT_EQ(axes.size(), 2U);
+  EXPECT_EQ(axes[0].key, "b.c");
+  EXPECT_EQ(texts(axes[1].values), (Texts{"0", "1"}));
+}
+
+TEST(ConfigAxes, RefuseWhatIsNoGrid) {
+  const auto refused = [](const char* text) {
+    return refusal([&] { config_axes(*parse_yaml(text, "c.yaml").find("sweep")); });
+  };
+  EXPECT_EQ(refused("sweep: 3"), "c.yaml:1:8: sweep: expects a map, write sweep: {grid: {key: [values]}}");
+  EXPECT_EQ(refused("sweep: {gird: {}}"), "c.yaml:1:9: unknown option 'gird' of sweep, did you mean 'grid'?");
+  EXPECT_EQ(refused("sweep: {grid: [seed]}"),
+            "c.yaml:1:9: sweep.grid: expects a map of keys to values, write seed: range(0,10), a key a line");
+}
+
+TEST(Product, RunsTheLastAxisFastest) {
+  std::string text;
+  for (const Combination& one : product({parse_axis("a=1,2"), parse_axis("b=x,y,z")})) {
+    text += one[0].path + one[0].value.text + one[1].path + one[1].value.text + " ";
+  }
+  EXPECT_EQ(text, "a1bx a1by a1bz a2bx a2by a2bz ");
+}
+
+TEST(Product, OfNothingIsOneEmptyCombination) {
+  ASSERT_EQ(product({}).size(), 1U);
+  EXPECT_TRUE(product({})[0].empty());
+}
+
+TEST(Product, LiftsValuesOfAConfigAboveThatConfig) {
+  const auto axes = config_axes(parse_yaml("grid: {a: [1]}", "c.yaml"));
+  EXPECT_EQ(product(axes)[0][0].value.layer, kSweepLayer);
+  EXPECT_EQ(product({parse_axis("a=1")})[0][0].value.layer, kCommandLineLayer);
+}
+
+TEST(Product, RefusesMoreThanAMillionJobs) {
+  EXPECT_EQ(refusal([] {
+              product({parse_axis("a=range(0,1001)"), parse_axis("b=range(0,1000)")});
+            }),
+            "command line: b: the sweep has more than a million jobs, take fewer values");
+}
+
+TEST(ValueText, IsOneLineForAMap) { EXPECT_EQ(value_text(parse_value("{}", "x")), "{}"); }
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "record/files.hpp"
+
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <utility>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using test::text_of;
+
+/// A process that takes the lock, says so, and then holds it until it is killed.
+class Holder {
+ public:
+  explicit Holder(const fs::path& file) {
+    int pipe_ends[2];
+    if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      const FileLock lock(file);
+      if (::write(pipe_ends[1], "x", 1) == 1) ::pause();
+      ::_exit(0);
+    }
+    char said = 0;
+    if (::read(pipe_ends[0], &said, 1) != 1) throw std::runtime_error("the holder is gone");
+    ::close(pipe_ends[0]);
+    ::close(pipe_ends[1]);
+  }
+  ~Holder() {
+    if (pid_ > 0) kill();
+  }
+  Holder(const Holder&) = delete;
+  Holder& operator=(const Holder&) = delete;
+
+  void kill() {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+std::string refused_lock(const fs::path& file, Error::Kind kind) {
+  try {
+    const FileLock lock(file);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    return error.what();
+  }
+  return "locked";
+}
+
+ino_t inode(const fs::path& file) {
+  struct stat status {};
+  EXPECT_EQ(::stat(file.c_str(), &status), 0) << file;
+  return status.st_ino;
+}
+
+TEST(Lock, IsBusyWhileAnotherProcessHoldsIt) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "lock";
+  const Holder holder(file);
+  EXPECT_TRUE(FileLock::is_held(file));
+  EXPECT_EQ(refused_lock(file, Error::Kind::busy),
+            folder.path().string() + ": another process holds this run, wait for it, or stop it");
+}
+
+TEST(Lock, IsFreeOnceItsHolderWasKilled) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "lock";
+  Holder holder(file);
+  holder.kill();
+  EXPECT_FALSE(FileLock::is_held(file));
+  EXPECT_EQ(refused_lock(file, Error::Kind::busy), "locked");
+}
+
+TEST(Lock, IsBusyForASecondHolderInTheSameProcess) {
+  const TemporaryFolder folder;
+  const FileLock lock(folder.path() / "lock");
+  EXPECT_EQ(refused_lock(folder.path() / "lock", Error::Kind::busy).find(": another process holds this run"),
+            folder.path().string().size());
+}
+
+TEST(Lock, IsFreeAfterItsEnd) {
+  const TemporaryFolder folder;
+  { const FileLock lock(folder.path() / "lock"); }
+  EXPECT_FALSE(FileLock::is_held(folder.path() / "lock"));
+}
+
+TEST(Lock, IsNotInheritedByAProgramThatWasStartedMeanwhile) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "lock";
+  auto lock = std::make_unique<FileLock>(file);
+  // The shell says when it runs: by then the exec has closed what must not be inherited.
+  const fs::path started = folder.path() / "started";
+  ASSERT_EQ(::mkfifo(started.c_str(), 0600), 0);
+  const test::Child child({"sh", "-c", "echo x > started; exec sleep 600"}, folder.path());
+  EXPECT_EQ(text_of(started), "x\n");
+  lock.reset();
+  EXPECT_FALSE(FileLock::is_held(file));
+}
+
+TEST(Lock, MovesWithItsObject) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "lock";
+  FileLock outer;
+  {
+    FileLock inner(file);
+    outer = std::move(inner);
+  }
+  EXPECT_TRUE(FileLock::is_held(file));
+  outer = FileLock();
+  EXPECT_FALSE(FileLock::is_held(file));
+}
+
+TEST(Lock, OfAFileThatIsNotThereIsNotHeld) { EXPECT_FALSE(FileLock::is_held("/nonexistent/lock")); }
+
+TEST(Lock, FailsWhereNoFileCanBe) {
+  EXPECT_EQ(refused_lock("/nonexistent/lock", Error::Kind::run),
+            "/nonexistent/lock: cannot be opened: No such file or directory");
+}
+
+TEST(WriteFile, WritesTheWholeText) {
+  const TemporaryFolder folder;
+  const std::string text("a\0b\n\xff", 5);
+  write_file(folder.path() / "x", text);
+  EXPECT_EQ(text_of(folder.path() / "x"), text);
+}
+
+TEST(WriteFile, ReplacesByRenamingSoThatAReaderKeepsTheOldContent) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("x", "old");
+  const ino_t before = inode(file);
+  fs::create_hard_link(file, folder.path() / "reader");
+  write_file(file, "new");
+  EXPECT_EQ(text_of(file), "new");
+  EXPECT_EQ(text_of(folder.path() / "reader"), "old") << "the old file was not written to";
+  EXPECT_NE(inode(file), before);
+}
+
+TEST(WriteFile, LeavesNoTemporaryFile) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "x", "a", true);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(WriteFile, IsNotHinderedByATemporaryFileOfAKilledProcess) {
+  const TemporaryFolder folder;
+  folder.write("x.tmp", "half of something longer");
+  write_file(folder.path() / "x", "new");
+  EXPECT_EQ(text_of(folder.path() / "x"), "new");
+}
+
+TEST(WriteFile, SaysWhyAPlaceCannotBeWritten) {
+  try {
+    write_file("/nonexistent/x", "a");
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "/nonexistent/x.tmp: cannot be made: No such file or directory");
+    EXPECT_EQ(error.kind(), Error::Kind::run);
+  }
+}
+
+TEST(WriteFile, SaysWhyAFolderCannotBeReplaced) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "x");
+  try {
+    write_file(folder.path() / "x", "a");
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), (folder.path() / "x").string() + ": cannot be renamed to: Is a directory");
+  }
+}
+
+TEST(WriteFile, SaysThatADiskIsFull) {
+  const TemporaryFolder folder;
+  fs::create_symlink("/dev/full", folder.path() / "x.tmp");
+  try {
+    write_file(folder.path() / "x", "a");
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              (folder.path() / "x.tmp").string() + ": cannot be written: No space left on device");
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "x"));
+}
+
+TEST(ReadFile, ReturnsEveryByte) {
+  const TemporaryFolder folder;
+  const std::string text("a\0\r\n\xff", 5);
+  EXPECT_EQ(read_file(folder.write("x", text)), text);
+}
+
+TEST(ReadFile, RefusesWhatIsMissingOrNoFile) {
+  const TemporaryFolder folder;
+  for (const fs::path& file : {folder.path() / "missing", folder.path()}) {
+    try {
+      read_file(file);
+      ADD_FAILURE() << "read";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), file.string() + ": cannot be read");
+    }
+  }
+}
+
+TEST(AppendFile, AddsToWhatIsThere) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("log", "one\n");
+  AppendFile log(file);
+  log.append("two\n", false);
+  log.append("three\n", true);
+  EXPECT_EQ(text_of(file), "one\ntwo\nthree\n") << "readable before it is closed";
+}
+
+TEST(AppendFile, WritesAtTheEndEvenIfAnotherHasWrittenMeanwhile) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "log";
+  AppendFile first(file);
+  AppendFile second(file);
+  first.append("1", false);
+  second.append("2", false);
+  first.append("3", false);
+  EXPECT_EQ(text_of(file), "123");
+}
+
+TEST(AppendFile, SaysWhyItCannotWrite) {
+  AppendFile full("/dev/full");
+  try {
+    full.append("x", false);
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "/dev/full: cannot be written: No space left on device");
+  }
+  EXPECT_THROW(AppendFile("/nonexistent/log"), Error);
+}
+
+}  // namespace
+}  // namespace palpate

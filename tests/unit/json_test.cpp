@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "record/json.hpp"
+
+#include "config/yaml.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+
+TEST(JsonRow, JoinsNestedNamesByDots) {
+  const auto row = parse_json_row(R"({"a": {"b": {"c": 1}}, "d": "x", "e": null, "f": true, "g": 0.5})");
+  ASSERT_TRUE(row);
+  ASSERT_EQ(row->fields.size(), 5U);
+  EXPECT_EQ(*row->find("a.b.c"), Scalar{std::int64_t{1}});
+  EXPECT_EQ(*row->find("d"), Scalar{std::string("x")});
+  EXPECT_EQ(*row->find("e"), Scalar{std::monostate{}});
+  EXPECT_EQ(*row->find("f"), Scalar{true});
+  EXPECT_EQ(*row->find("g"), Scalar{0.5});
+}
+
+TEST(JsonRow, KeepsTheOrderOfItsFields) {
+  const auto row = parse_json_row(R"({"z": 1, "a": 2, "m": 3})");
+  ASSERT_TRUE(row);
+  EXPECT_EQ(row->fields[0].first + row->fields[1].first + row->fields[2].first, "zam");
+}
+
+TEST(JsonRow, IsNoneForWhatIsNotOneFlatObject) {
+  for (const char* text : {"", "[1]", "1", "{\"a\": 1", "{\"a\": [1]}", "{\"a\": NaN}", "{\"a\": 1} {\"b\": 2}",
+                           "{'a': 1}", "{\"a\": \"\xff\"}"}) {
+    EXPECT_FALSE(parse_json_row(text)) << text;
+  }
+}
+
+TEST(JsonRow, ReadsBackWhatARowWrites) {
+  Row row;
+  row.add("a.b", 0.1);
+  row.add("a.c", std::int64_t{9223372036854775807});
+  row.add("name", "tab\t\"quote\" \\ \x01 \xc3\xa4");
+  row.add("none", std::optional<int>());
+  row.add("yes", true);
+  for (const std::string& text : {to_json_line(row), to_json_text(row)}) {
+    const auto again = parse_json_row(text);
+    ASSERT_TRUE(again) << text;
+    EXPECT_EQ(again->fields, row.fields);
+  }
+}
+
+TEST(JsonLines, AreReadWithTheirLength) {
+  const TemporaryFolder folder;
+  const JsonLines lines = read_json_lines(folder.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n"));
+  ASSERT_EQ(lines.rows.size(), 2U);
+  EXPECT_EQ(*lines.rows[1].find("tap"), Scalar{std::int64_t{2}});
+  EXPECT_EQ(lines.bytes, 22U);
+}
+
+TEST(JsonLines, LeaveOutALastLineThatWasCutOff) {
+  const TemporaryFolder folder;
+  for (const char* tail : {"{\"ta", "{\"tap\": 2}"}) {
+    const JsonLines lines = read_json_lines(folder.write("taps.jsonl", std::string("{\"tap\": 1}\n") + tail));
+    EXPECT_EQ(lines.rows.size(), 1U) << tail;
+    EXPECT_EQ(lines.bytes, 11U) << tail;
+  }
+}
+
+TEST(JsonLines, OfAnEmptyFileAreNone) {
+  const TemporaryFolder folder;
+  const JsonLines lines = read_json_lines(folder.write("taps.jsonl", ""));
+  EXPECT_TRUE(lines.rows.empty());
+  EXPECT_EQ(lines.bytes, 0U);
+}
+
+TEST(JsonLines, RefuseADamagedLineInTheMiddle) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("taps.jsonl", "{\"tap\": 1}\n{\"ta\n{\"tap\": 3}\n");
+  try {
+    read_json_lines(file);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), file.string() + ":2: is not a JSON object, the file is damaged");
+  }
+}
+
+TEST(JsonLines, RefuseAMissingFile) {
+  try {
+    read_json_lines("/nonexistent/taps.jsonl");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "/nonexistent/taps.jsonl: cannot be read");
+  }
+}
+
+TEST(JsonTree, KeepsPlainScalarsAndQuotesTheOthers) {
+  const Tree tree = parse_yaml("a: 1\nb: '1'\nc: [true, 'x y']\nd: {}\ne: []\nf:\n", "c.yaml");
+  EXPECT_EQ(to_json(tree),
+            "{\n  \"a\": 1,\n  \"b\": \"1\",\n  \"c\": [\n    true,\n    \"x y\"\n  ],\n  \"d\": {},\n  \"e\": [],\n  "
+            "\"f\": null\n}\n");
+}
+
+TEST(JsonTree, ComesBackFromTheYamlReader) {
+  Tree tree = Tree::map();
+  tree.at("text") = Tree::scalar("line\nbreak \"quoted\" \\ \x01 \xc3\xa4", true);
+  tree.at("number") = Tree::scalar("1");
+  EXPECT_EQ(parse_yaml(to_json(tree), "manifest.json").canonical(), tree.canonical());
+}
+
+TEST(Json, TellsValidFromInvalid) {
+  EXPECT_TRUE(is_json("{\"a\": [1, null]}"));
+  EXPECT_FALSE(is_json("{\"a\": nan}"));
+  EXPECT_FALSE(is_json("{} {}"));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "config/quantity.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace palpate {
+namespace {
+
+Tree scalar(const std::string& text) {
+  Tree tree = Tree::scalar(text);
+  tree.place = {std::make_shared<const std::string>("c.yaml"), 2, 5};
+  return tree;
+}
+
+double metres(const std::string& text) { return read_quantity(scalar(text), "length", Unit::metre); }
+
+std::string refusal(const std::string& text, Unit unit = Unit::metre) {
+  try {
+    read_quantity(scalar(text), "x", unit);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string refused_integer(const std::string& text) {
+  try {
+    read_integer(scalar(text), "n");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::uint64_t bits(double value) {
+  std::uint64_t out = 0;
+  std::memcpy(&out, &value, sizeof out);
+  return out;
+}
+
+TEST(Quantity, ReadsCentimetresAsTheNearestDouble) { EXPECT_EQ(metres("1.7 cm"), 0.017); }
+
+TEST(Quantity, ReadsTheSameBitsThroughEveryDecimalUnit) {
+  for (const char* text :
+       {"17 mm", "1.7cm", "0.17 dm", "0.017 m", "17000 um", "17e-3 m", "0.0017e1 m", "1.7E0 cm", "170e-1 mm"}) {
+    EXPECT_EQ(bits(metres(text)), bits(0.017)) << text;
+  }
+}
+
+TEST(Quantity, RoundsOnlyOnce) {
+  // Every one of these differs in the last bit when the number is read first and multiplied by the unit then.
+  EXPECT_EQ(metres("0.57 cm"), 0.0057);
+  EXPECT_EQ(metres("1.1 mm"), 0.0011);
+  EXPECT_EQ(metres("3.3 um"), 0.0000033);
+  EXPECT_EQ(read_quantity(scalar("1.1 kN"), "x", Unit::newton), 1100.0);
+}
+
+TEST(Quantity, ReadsSignsPointsAndExponents) {
+  EXPECT_EQ(metres("+1.5 m"), 1.5);
+  EXPECT_EQ(metres("-1.5 m"), -1.5);
+  EXPECT_EQ(metres(".5 m"), 0.5);
+  EXPECT_EQ(metres("5. m"), 5.0);
+  EXPECT_EQ(metres("1e2 cm"), 1.0);
+  EXPECT_EQ(metres("1E+2 cm"), 1.0);
+  EXPECT_EQ(metres("1e-2m"), 0.01);
+  EXPECT_EQ(metres("0 m"), 0.0);
+  EXPECT_EQ(metres("0.5\t m"), 0.5);
+}
+
+TEST(Quantity, ReadsUnitsOfEveryDimension) {
+  EXPECT_EQ(read_quantity(scalar("500 ms"), "x", Unit::second), 0.5);
+  EXPECT_EQ(read_quantity(scalar("1.5 min"), "x", Unit::second), 90.0);
+  EXPECT_EQ(read_quantity(scalar("2 h"), "x", Unit::second), 7200.0);
+  EXPECT_EQ(read_quantity(scalar("250 mN"), "x", Unit::newton), 0.25);
+  EXPECT_EQ(read_quantity(scalar("5 mrad"), "x", Unit::radian), 0.005);
+  EXPECT_EQ(read_quantity(scalar("90 deg"), "x", Unit::radian), 1.5707963267948966);
+  EXPECT_EQ(read_quantity(scalar("10 cm/s"), "x", Unit::metre_per_second), 0.1);
+  EXPECT_EQ(read_quantity(scalar("1e-4"), "x", Unit::none), 1e-4);
+}
+
+TEST(Quantity, AcceptsQuotes) {
+  Tree tree = Tree::scalar("1.7 cm", true);
+  EXPECT_EQ(read_quantity(tree, "x", Unit::metre), 0.017);
+}
+
+TEST(Quantity, RefusesABareNumberAndSaysWhatToWrite) {
+  EXPECT_EQ(refusal("0.017"), "c.yaml:2:5: x: '0.017' lacks its unit, write a length like '1.7 cm'");
+  EXPECT_EQ(refusal("0", Unit::second), "c.yaml:2:5: x: '0' lacks its unit, write a time like '500 ms'");
+  EXPECT_EQ(refusal("8", Unit::newton), "c.yaml:2:5: x: '8' lacks its unit, write a force like '10 N'");
+  EXPECT_EQ(refusal("8", Unit::radian), "c.yaml:2:5: x: '8' lacks its unit, write an angle like '30 deg'");
+  EXPECT_EQ(refusal("8", Unit::metre_per_second), "c.yaml:2:5: x: '8' lacks its unit, write a speed like '10 cm/s'");
+}
+
+TEST(Quantity, RefusesAnotherDimension) {
+  EXPECT_EQ(refusal("3 s"), "c.yaml:2:5: x: '3 s' is a time, not a length, write a length like '1.7 cm'");
+  EXPECT_EQ(refusal("3 cm", Unit::newton), "c.yaml:2:5: x: '3 cm' is a length, not a force, write a force like '10 N'");
+}
+
+TEST(Quantity, RefusesAUnitWhereNoneBelongs) {
+  EXPECT_EQ(refusal("1 cm", Unit::none), "c.yaml:2:5: x: '1 cm' is not a plain number, this one has no unit");
+}
+
+TEST(Quantity, RefusesAnUnknownUnitAndSuggestsANearOne) {
+  EXPECT_EQ(refusal("3 cmm"), "c.yaml:2:5: x: unknown unit 'cmm', did you mean 'cm'?");
+  EXPECT_EQ(refusal("3 inch"), "c.yaml:2:5: x: unknown unit 'inch', known: m, dm, cm, mm, um");
+  EXPECT_EQ(refusal("3 degs", Unit::radian), "c.yaml:2:5: x: unknown unit 'degs', did you mean 'deg'?");
+}
+
+TEST(Quantity, RefusesWhatIsNotANumber) {
+  for (const char* text : {".nan", "nan", "NaN m", ".inf", "inf m", "-inf", "infinity", "-.inf m", "", "cm", "-", ".",
+                           "e5 m", "--1 m", "one m"}) {
+    EXPECT_EQ(refusal(text),
+              std::string("c.yaml:2:5: x: '") + text + "' is not a number, write a length like '1.7 cm'");
+  }
+}
+
+TEST(Quantity, RefusesWhatNoDoubleCanHold) {
+  for (const char* text : {"1e309 m", "-1e309 m", "1e311 cm", "1e99999999999 m", "1e99999999999 cm", "1e-400 m"}) {
+    EXPECT_EQ(refusal(text),
+              std::string("c.yaml:2:5: x: '") + text + "' is out of range, write a length like '1.7 cm'");
+  }
+}
+
+TEST(Quantity, HoldsWhatOnlyTheUnitBringsIntoRange) { EXPECT_EQ(metres("1e309 cm"), 1e307); }
+
+TEST(Quantity, RefusesLeadingZeros) {
+  for (const char* text : {"010 cm", "-010 cm", "+01 cm", "00.5 m", "08 m"}) {
+    EXPECT_EQ(refusal(text), std::string("c.yaml:2:5: x: '") + text +
+                                 "' has a leading zero, octal numbers are not read: write it without the zero");
+  }
+  EXPECT_EQ(refusal("0.5 m"), "accepted");
+}
+
+TEST(Quantity, RefusesHexadecimalNumbers) {
+  EXPECT_EQ(refusal("0x10", Unit::none), "c.yaml:2:5: x: '0x10' is not a plain number, this one has no unit");
+  EXPECT_EQ(refusal("0x10 m"), "c.yaml:2:5: x: unknown unit 'x10 m', known: m, dm, cm, mm, um");
+}
+
+TEST(Quantity, RefusesADecimalComma) {
+  EXPECT_EQ(refusal("1,7 cm"), "c.yaml:2:5: x: '1,7 cm' has a decimal comma, write a point");
+}
+
+TEST(Quantity, RefusesTwoNumbersAndSeparators) {
+  EXPECT_EQ(refusal("1 2 cm"), "c.yaml:2:5: x: unknown unit '2 cm', known: m, dm, cm, mm, um");
+  EXPECT_EQ(refusal("1_000 m"), "c.yaml:2:5: x: unknown unit '_000 m', known: m, dm, cm, mm, um");
+  EXPECT_EQ(refusal("1 cm "), "c.yaml:2:5: x: unknown unit 'cm ', did you mean 'cm'?");
+}
+
+TEST(Quantity, RefusesListsMapsAndNothing) {
+  for (const auto& [tree, reason] :
+       {std::pair{Tree::list(), "is a list or a map, not a number"},
+        std::pair{Tree::map(), "is a list or a map, not a number"}, std::pair{Tree{}, "has no value"}}) {
+    try {
+      read_quantity(tree, "x", Unit::metre);
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), std::string("x: ") + reason + ", write a length like '1.7 cm'");
+    }
+  }
+}
+
+TEST(Integer, IsReadWithASign) {
+  EXPECT_EQ(read_integer(scalar("17"), "n"), 17);
+  EXPECT_EQ(read_integer(scalar("+17"), "n"), 17);
+  EXPECT_EQ(read_integer(scalar("-17"), "n"), -17);
+  EXPECT_EQ(read_integer(scalar("0"), "n"), 0);
+}
+
+TEST(Integer, ReachesTheEndsOfItsRange) {
+  EXPECT_EQ(read_integer(scalar("9223372036854775807"), "n"), std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(read_integer(scalar("-9223372036854775808"), "n"), std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(refused_integer("9223372036854775808"),
+            "c.yaml:2:5: n: '9223372036854775808' is out of range, at most 9223372036854775807");
+}
+
+TEST(Integer, IsRefusedUnlessItIsWhole) {
+  for (const char* text : {"1.5", "1.0", "1e3", "0x10", "17 taps", "1_000", "0b1", "0o17"}) {
+    EXPECT_EQ(refused_integer(text),
+              std::string("c.yaml:2:5: n: '") + text + "' is not a whole number, write digits alone");
+  }
+}
+
+TEST(Integer, IsRefusedInOctal) {
+  EXPECT_EQ(refused_integer("010"),
+            "c.yaml:2:5: n: '010' has a leading zero, octal numbers are not read: write it without the zero");
+}
+
+TEST(WrittenQuantity, IsTheShortestTextWithItsUnit) {
+  EXPECT_EQ(write_quantity(0.017, Unit::metre), "0.017 m");
+  EXPECT_EQ(write_quantity(0.1, Unit::none), "0.1");
+  EXPECT_EQ(write_quantity(1.0, Unit::second), "1 s");
+  EXPECT_EQ(write_quantity(1.5707963267948966, Unit::radian), "1.5707963267948966 rad");
+  EXPECT_EQ(write_quantity(8.0, Unit::newton), "8 N");
+  EXPECT_EQ(write_quantity(0.1, Unit::metre_per_second), "0.1 m/s");
+}
+
+TEST(WrittenQuantity, ReadsBackAsTheSameBits) {
+  constexpr Unit kUnits[] = {Unit::none, Unit::metre, Unit::second, Unit::newton, Unit::radian, Unit::metre_per_second};
+  std::mt19937_64 random(20210601);
+  int finite = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint64_t pattern = random();
+    double value = 0.0;
+    std::memcpy(&value, &pattern, sizeof value);
+    if (!std::isfinite(value)) continue;
+    ++finite;
+    const Unit unit = kUnits[i % 6];
+    const std::string text = write_quantity(value, unit);
+    ASSERT_EQ(bits(read_quantity(scalar(text), "x", unit)), pattern) << text;
+  }
+  EXPECT_GT(finite, 19000) << "about one pattern in 2000 is not finite";
+}
+
+TEST(WrittenQuantity, ReadsBackAtTheEdgesOfTheRange) {
+  using Limits = std::numeric_limits<double>;
+  for (const double value :
+       {0.0, -0.0, Limits::min(), Limits::denorm_min(), Limits::max(), -Limits::max(), Limits::epsilon(), 1e16, 1e17}) {
+    EXPECT_EQ(bits(metres(write_quantity(value, Unit::metre))), bits(value)) << value;
+  }
+}
+
+TEST(UnitNames, BelongToTheirDimension) {
+  EXPECT_EQ(unit_names(Unit::newton), (std::vector<std::string>{"N", "mN", "kN"}));
+  EXPECT_TRUE(unit_names(Unit::none).empty());
+  EXPECT_EQ(unit_symbol(Unit::none), "");
+  EXPECT_EQ(unit_symbol(Unit::radian), "rad");
+  EXPECT_EQ(dimension_name(Unit::metre_per_second), "speed");
+}
+
+}  // namespace
+}  // namespace palpate

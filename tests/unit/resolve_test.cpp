@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: MIT
+#include "config/resolve.hpp"
+
+#include "config/yaml.hpp"
+#include "experiment/resolved.hpp"
+#include "support/runs.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+/// A field of every type.
+struct Inner : Options {
+  double width = 0.5;
+  void list(Fields& fields) override { fields.real(width, Field("width", "of it").in(Unit::metre).above(0).needed()); }
+};
+
+struct Everything : Options {
+  double real = 0.25;
+  std::optional<double> optional_real;
+  double pair[2] = {0.0, 1.0};
+  std::int64_t whole = 3;
+  std::optional<std::int64_t> optional_whole;
+  bool flag = false;
+  std::string text = "word";
+  std::size_t choice = 0;
+  std::int64_t extra = 1;
+  std::vector<Inner> items;
+  Inner group;
+  bool lawful = true;
+
+  void list(Fields& fields) override {
+    fields.real(real, Field("real", "a share").at_least(0).at_most(1));
+    fields.real(optional_real, Field("optional_real", "a time or none").in(Unit::second));
+    fields.reals(pair, 2, Field("pair", "two lengths").in(Unit::metre));
+    fields.integer(whole, Field("whole", "a count").at_least(1).at_most(10));
+    fields.integer(optional_whole, Field("optional_whole", "a count or none"));
+    fields.flag(flag, Field("flag", "yes or no"));
+    fields.text(text, Field("text", "a word"));
+    fields.choice(choice, Field("choice", "one of two"),
+                  {{"plain", "nothing more", {}},
+                   {"rich", "with a field", [this](Fields& inner) { inner.integer(extra, Field("extra", "more")); }}});
+    fields.sections(items, Field("items", "a list"));
+    fields.section(group, Field("group", "a group"));
+    fields.require(lawful, "group.width", "breaks a law");
+  }
+};
+
+struct Pair : Options {
+  PluginChoice plugin{"kernel", "", nullptr};
+  std::optional<PluginChoice> other;
+  void list(Fields& fields) override {
+    fields.plugin(plugin, Field("kernel", "a kernel"));
+    fields.plugin(other, "kernel", Field("other", "another"));
+  }
+};
+
+/// Knows kernel/smooth with one option and kernel/rough with two.
+class TwoPlugins final : public PluginSource {
+ public:
+  void describe(const std::string& kind, const std::string& name, Fields& fields) const override {
+    double scale = 0.1;
+    double nu = 1.5;
+    if (name != "smooth" && name != "rough") throw Error("", "no plugin " + kind + "/" + name, "known: rough, smooth");
+    fields.real(scale, Field("scale", "its reach").in(Unit::metre).above(0));
+    if (name == "rough") fields.real(nu, Field("nu", "its order"));
+  }
+};
+
+constexpr const char* kGroup = "group: {width: 1 m}\n";
+
+Tree resolved(Options& options, const std::string& text, ResolveNotes* notes = nullptr) {
+  ResolveNotes own;
+  return resolve(options, parse_yaml(text, "c.yaml"), TwoPlugins(), notes != nullptr ? *notes : own);
+}
+
+template <class T = Everything>
+std::string refusal(const std::string& text) {
+  T options;
+  try {
+    resolved(options, text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// With the required group behind the lines.
+std::string refused_line(const std::string& line) { return refusal(line + "\n" + kGroup); }
+
+TEST(Resolve, FillsEveryFieldFromTheConfig) {
+  Everything all;
+  resolved(
+      all,
+      "real: 0.5\noptional_real: 2 s\npair: [1 cm, 2 cm]\nwhole: 7\noptional_whole: -4\nflag: true\ntext: two words\n"
+      "choice: rich\nextra: 9\nitems: [{width: 1 m}, {width: 2 m}]\ngroup: {width: 3 m}\n");
+  EXPECT_EQ(all.real, 0.5);
+  EXPECT_EQ(all.optional_real, 2.0);
+  EXPECT_EQ(all.pair[0], 0.01);
+  EXPECT_EQ(all.pair[1], 0.02);
+  EXPECT_EQ(all.whole, 7);
+  EXPECT_EQ(all.optional_whole, -4);
+  EXPECT_TRUE(all.flag);
+  EXPECT_EQ(all.text, "two words");
+  EXPECT_EQ(all.choice, 1U);
+  EXPECT_EQ(all.extra, 9);
+  ASSERT_EQ(all.items.size(), 2U);
+  EXPECT_EQ(all.items[1].width, 2.0);
+  EXPECT_EQ(all.group.width, 3.0);
+}
+
+TEST(Resolve, WritesEveryFieldWithItsFinalValueInSiUnits) {
+  Everything all;
+  EXPECT_EQ(to_yaml(resolved(all, "pair: [1 cm, 20 mm]\ngroup: {width: 3 cm}\n")),
+            "real: 0.25\npair: [0.01 m, 0.02 m]\nwhole: 3\nflag: false\ntext: \"word\"\nchoice: plain\nitems: []\n"
+            "group:\n  width: 0.03 m\n");
+}
+
+TEST(Resolve, ReadsItsOwnOutputAsTheSame) {
+  Everything first;
+  Everything second;
+  const Tree once =
+      resolved(first, "optional_real: 90 ms\nchoice: rich\nitems: [{width: 1.7 cm}]\ntext: '1'\ngroup: {width: 1 m}\n");
+  const Tree again = resolved(second, to_yaml(once));
+  EXPECT_EQ(again.canonical(), once.canonical());
+  EXPECT_EQ(second.text, "1");
+}
+
+TEST(Resolve, TakesTheWordNoneForAnAbsentNumber) {
+  Everything all;
+  all.optional_real = 5.0;
+  const Tree tree = resolved(all, std::string("optional_whole: none\n") + kGroup);
+  EXPECT_FALSE(all.optional_whole);
+  EXPECT_EQ(tree.find("optional_whole"), nullptr);
+}
+
+TEST(Resolve, RefusesAnUnknownOptionAndSuggestsTheNearest) {
+  EXPECT_EQ(refused_line("whol: 3"), "c.yaml:1:1: unknown option 'whol', did you mean 'whole'?");
+  EXPECT_EQ(refusal("group: {width: 1 m, depth: 2 m}"), "c.yaml:1:21: unknown option 'depth', known: width");
+}
+
+TEST(Resolve, RefusesTheOptionOfACaseThatWasNotChosen) {
+  EXPECT_EQ(refused_line("extra: 3").substr(0, 36), "c.yaml:1:1: unknown option 'extra', ");
+}
+
+TEST(Resolve, RefusesWhatIsOutOfRangeAndNamesTheBound) {
+  EXPECT_EQ(refused_line("real: -0.1"), "c.yaml:1:7: real: -0.1 is out of range, it must be at least 0");
+  EXPECT_EQ(refused_line("real: 1.1"), "c.yaml:1:7: real: 1.1 is out of range, it must be at most 1");
+  EXPECT_EQ(refused_line("whole: 11"), "c.yaml:1:8: whole: 11 is out of range, it must be at most 10");
+  EXPECT_EQ(refusal("group: {width: 0 cm}"), "c.yaml:1:16: group.width: 0 cm is out of range, it must be above 0 m");
+  EXPECT_EQ(refused_line("items: [{width: 1 m}, {width: -1 m}]"),
+            "c.yaml:1:31: items.1.width: -1 m is out of range, it must be above 0 m");
+}
+
+TEST(Resolve, AcceptsTheClosedEndsOfARange) {
+  EXPECT_EQ(refused_line("real: 0"), "accepted");
+  EXPECT_EQ(refused_line("real: 1"), "accepted");
+}
+
+TEST(Resolve, AcceptsOnlyTrueAndFalseAsTruthValues) {
+  for (const char* text : {"yes", "no", "on", "off", "True", "1", "0", "y"}) {
+    EXPECT_EQ(refused_line(std::string("flag: ") + text),
+              std::string("c.yaml:1:7: flag: '") + text + "' is not a truth value, write true or false");
+  }
+  EXPECT_EQ(refused_line("flag: [true]"), "c.yaml:1:7: flag: a list is not a truth value, write true or false");
+  EXPECT_EQ(refused_line("flag:"), "c.yaml:1:1: flag: nothing is not a truth value, write true or false");
+}
+
+TEST(Resolve, RefusesAnUnknownNameOfAChoice) {
+  EXPECT_EQ(refused_line("choice: ritch"), "c.yaml:1:9: choice: unknown value 'ritch', did you mean 'rich'?");
+  EXPECT_EQ(refused_line("choice: [rich]"), "c.yaml:1:9: choice: a list is not a name, known: plain, rich");
+}
+
+TEST(Resolve, RefusesAListOfAnotherLength) {
+  for (const char* text : {"[1 cm]", "[1 cm, 2 cm, 3 cm]", "[]", "1 cm"}) {
+    EXPECT_EQ(refused_line(std::string("pair: ") + text),
+              "c.yaml:1:7: pair: expects a list of 2 values, write them in brackets, with commas between them");
+  }
+}
+
+TEST(Resolve, PlacesABadItemOfAListAtTheItem) {
+  EXPECT_EQ(refused_line("pair: [1 cm, 2]"), "c.yaml:1:14: pair: '2' lacks its unit, write a length like '1.7 cm'");
+}
+
+TEST(Resolve, RefusesAListWhereAValueBelongs) {
+  EXPECT_EQ(refused_line("whole: [3]"), "c.yaml:1:8: whole: is a list or a map, not a number, write a plain number");
+  EXPECT_EQ(refused_line("text: [a]"), "c.yaml:1:7: text: expects a text, not a list, write a word or two");
+}
+
+TEST(Resolve, RefusesAValueWhereAGroupBelongs) {
+  EXPECT_EQ(refusal("group: 3"), "c.yaml:1:8: group is not a group of options, write {key: value, ...}");
+  EXPECT_EQ(refused_line("items: {width: 1 m}"), "c.yaml:1:8: items: expects a list, write [{...}, {...}]");
+  EXPECT_EQ(refused_line("items: [3]"), "c.yaml:1:9: items.0 is not a group of options, write {key: value, ...}");
+}
+
+TEST(Resolve, PlacesAMissingOptionAtTheGroupThatLacksIt) {
+  EXPECT_EQ(refusal("real: 0\ngroup: {}\n"), "c.yaml:2:8: 'group.width' is missing, of it");
+}
+
+TEST(Resolve, PlacesTheOptionOfAMissingGroupAtTheConfig) {
+  EXPECT_EQ(refusal("# only this\nreal: 0\n"), "c.yaml:2:1: 'group.width' is missing, of it");
+}
+
+TEST(Resolve, TakesAMissingOptionForMisspeltWhenANearNameIsThere) {
+  EXPECT_EQ(refusal("group: {widht: 1 m}\n"), "c.yaml:1:9: unknown option 'widht', did you mean 'width'?");
+}
+
+TEST(Resolve, PlacesABrokenLawAtTheNestedOptionThatItNames) {
+  Everything all;
+  all.lawful = false;
+  try {
+    resolved(all, "real: 0\ngroup: {width: 1 m}\n");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "c.yaml:2:16: group.width: breaks a law");
+  }
+}
+
+TEST(Resolve, NotesTheOriginOfEveryValue) {
+  Everything all;
+  ResolveNotes notes;
+  resolved(all, "whole: 4\ngroup: {width: 1 m}\n", &notes);
+  std::string text;
+  for (const auto& one : notes.origins) text += one.path + "@" + one.place + " ";
+  EXPECT_EQ(
+      text,
+      "real@default pair@default whole@c.yaml:1:8 flag@default text@default choice@default group.width@c.yaml:2:16 ");
+}
+
+TEST(ResolvePlugin, ReadsItsTypeAndItsOptions) {
+  Pair pair;
+  const Tree tree = resolved(pair, "kernel: {scale: 2 cm, type: rough}\n");
+  EXPECT_EQ(pair.plugin.type, "rough");
+  EXPECT_EQ(to_yaml(tree), "kernel:\n  type: rough\n  scale: 0.02 m\n  nu: 1.5\n");
+  EXPECT_FALSE(pair.other);
+}
+
+TEST(ResolvePlugin, RefusesAMissingOneAMissingTypeAndAnUnknownType) {
+  EXPECT_EQ(refusal<Pair>("# empty\nother: {type: rough}\n"),
+            "c.yaml:2:1: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'");
+  EXPECT_EQ(refusal<Pair>("kernel: {scale: 1 cm}\n"),
+            "c.yaml:1:9: kernel has no type, 'palpate plugins kernel' lists the types");
+  EXPECT_EQ(refusal<Pair>("kernel: {type: spline}\n"), "c.yaml:1:16: no plugin kernel/spline, known: rough, smooth");
+  EXPECT_EQ(refusal<Pair>("kernel: [rough]\n"), "c.yaml:1:9: kernel is not a group of options, write {type: ...}");
+  EXPECT_EQ(refusal<Pair>("kernel: {type: [rough]}\n"),
+            "c.yaml:1:16: kernel.type is not a name, 'palpate plugins kernel' lists the types");
+  EXPECT_EQ(refusal<Pair>("kernal: {type: rough}\n"), "c.yaml:1:1: unknown option 'kernal', did you mean 'kernel'?");
+}
+
+TEST(ResolvePlugin, RefusesAnOptionThatTheTypeOfTheSameFileLacks) {
+  EXPECT_EQ(refusal<Pair>("kernel: {type: smooth, nu: 2.5}\n"), "c.yaml:1:24: unknown option 'nu', known: type, scale");
+}
+
+TEST(ResolvePlugin, DropsAndListsOptionsThatALaterTypeLacks) {
+  Tree input = parse_yaml("kernel: {type: smooth, scale: 3 cm, nu: 2.5}\n", "c.yaml");
+  input.find("kernel")->find("type")->layer = kCommandLineLayer;
+  Pair pair;
+  ResolveNotes notes;
+  const Tree tree = resolve(pair, input, TwoPlugins(), notes);
+  EXPECT_EQ(to_yaml(tree), "kernel:\n  type: smooth\n  scale: 0.03 m\n");
+  ASSERT_EQ(notes.dropped.size(), 1U);
+  EXPECT_EQ(notes.dropped[0].path, "kernel.nu");
+  EXPECT_EQ(notes.dropped[0].place, "c.yaml:1:41");
+}
+
+TEST(ResolvedConfig, HasTheSameIdHoweverALengthIsWritten) {
+  const std::string id = test::shipped_config("paper/object_i.yaml", {"kernel.length_scale=1.7cm"}).id;
+  for (const char* text :
+       {"kernel.length_scale=17 mm", "kernel.length_scale=0.017m", "kernel.length_scale=+1.70e-2 m"}) {
+    EXPECT_EQ(test::shipped_config("paper/object_i.yaml", {text}).id, id) << text;
+  }
+  EXPECT_NE(test::shipped_config("paper/object_i.yaml", {"kernel.length_scale=1.8cm"}).id, id);
+}
+
+TEST(ResolvedConfig, HasAnIdOfTwelveHexadecimalDigits) {
+  const std::string id = test::shipped_config("paper/object_i.yaml").id;
+  EXPECT_EQ(id.size(), 12U);
+  EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
+}
+
+TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
+  EXPECT_EQ(
+      test::shipped_config("paper/object_i.yaml", {"repeat=forbid", "weight.prior_mean=0", "backend.hover=15cm"}).id,
+      test::shipped_config("paper/object_i.yaml").id);
+}
+
+TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
+  EXPECT_EQ(
+      test::shipped_config("paper/object_i.yaml", {"name=other", "log.maps=true", "log.sync=none", "log.surface=false"})
+          .id,
+      test::shipped_config("paper/object_i.yaml").id);
+}
+
+TEST(ResolvedConfig, PutsAllElseIntoTheId) {
+  const std::string id = test::shipped_config("paper/object_i.yaml").id;
+  for (const char* text :
+       {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "weight.clip=true",
+        "posterior=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
+        "stop.robot_time=9min", "scene.desk=1cm", "backend.motion.pause=0s", "kernel=matern32"}) {
+    EXPECT_NE(test::shipped_config("paper/object_i.yaml", {text}).id, id) << text;
+  }
+}
+
+TEST(ResolvedConfig, ReadsBackAsTheSameConfig) {
+  for (const char* file :
+       {"paper/object_i.yaml", "paper/object_i_right.yaml", "paper/object_ii.yaml", "paper/comparison.yaml"}) {
+    const ResolvedConfig config =
+        test::shipped_config(file, {"height.kernel=matern52", "candidates.spacing=5mm", "candidates.count=none"});
+    const ResolvedConfig again =
+        resolve_experiment(parse_yaml(to_yaml(config.tree), "again.yaml"), test::shared_host());
+    EXPECT_EQ(again.id, config.id) << file;
+    EXPECT_EQ(to_yaml(again.tree), to_yaml(config.tree)) << file;
+  }
+}
+
+TEST(ResolvedConfig, DropsWhatTheCommandLinesPluginLacks) {
+  const ResolvedConfig config =
+      test::shipped_config("paper/object_i.yaml", {"acquisition=grid", "acquisition.type=weighted"});
+  ASSERT_EQ(config.notes.dropped.size(), 1U);
+  EXPECT_EQ(config.notes.dropped[0].path, "acquisition.count");
+}
+
+std::string refused_config(const std::vector<std::string>& overrides) {
+  try {
+    test::shipped_config("paper/object_i.yaml", overrides);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ResolvedConfig, RefusesAGridThatIsTooFineForAnyComputer) {
+  EXPECT_EQ(
+      refused_config({"candidates={spacing: 1 um}", "candidates.count=none"}),
+      "command line: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are possible");
+  EXPECT_EQ(refused_config({"candidates.spacing=1e-300 m", "candidates.count=none"}).substr(0, 34),
+            "command line: candidates.spacing: ");
+  EXPECT_EQ(refused_config({"candidates.spacing=0.115 mm", "candidates.count=none"}), "accepted")
+      << "2000 cells a side";
+}
+
+TEST(ResolvedConfig, RefusesMoreInitialTapsThanCandidates) {
+  EXPECT_EQ(
+      refused_config({"candidates.count=2", "initial.count=5"}),
+      "command line: initial.count: 5 taps, but there are only 4 candidates, take fewer first taps or more candidates");
+  EXPECT_EQ(refused_config({"candidates.count=2", "initial.count=4"}), "accepted");
+}
+
+TEST(Slug, KeepsLettersDigitsAndThreeSigns) { EXPECT_EQ(slug("Object_I-2.b"), "Object_I-2.b"); }
+
+TEST(Slug, PutsOneDashForAllElse) { EXPECT_EQ(slug("a /\\ b\nc"), "a-b-c"); }
+
+TEST(Slug, IsNeverEmptyHiddenLongOrAPath) {
+  EXPECT_EQ(slug(""), "experiment");
+  EXPECT_EQ(slug("///"), "experiment");
+  EXPECT_EQ(slug(".."), "experiment");
+  EXPECT_EQ(slug("../../etc"), "etc");
+  EXPECT_EQ(slug(std::string(100, 'a')), std::string(64, 'a'));
+}
+
+}  // namespace
+}  // namespace palpate

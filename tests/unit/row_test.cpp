@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "record/row.hpp"
+
+#include "record/json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace palpate {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Cell, HoldsEveryKindOfScalar) {
+  EXPECT_EQ(csv_cell(std::monostate{}), "");
+  EXPECT_EQ(csv_cell(true), "true");
+  EXPECT_EQ(csv_cell(false), "false");
+  EXPECT_EQ(csv_cell(std::int64_t{-9007199254740993}), "-9007199254740993");
+  EXPECT_EQ(csv_cell(0.1), "0.1");
+  EXPECT_EQ(csv_cell(std::string("a b")), "a b");
+}
+
+TEST(Cell, IsEmptyForWhatIsNotFinite) {
+  EXPECT_EQ(csv_cell(kNaN), "");
+  EXPECT_EQ(csv_cell(kInfinity), "");
+  EXPECT_EQ(csv_cell(-kInfinity), "");
+}
+
+TEST(Cell, ReadsBackAsTheSameBits) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint64_t pattern = random();
+    double value = 0.0;
+    std::memcpy(&value, &pattern, sizeof value);
+    if (!std::isfinite(value)) continue;
+    ASSERT_EQ(std::strtod(csv_cell(value).c_str(), nullptr), value) << csv_cell(value);
+  }
+  EXPECT_TRUE(std::signbit(std::strtod(csv_cell(-0.0).c_str(), nullptr)));
+}
+
+TEST(CsvText, IsQuotedOnlyWhereItMustBe) {
+  EXPECT_EQ(csv_text("plain text"), "plain text");
+  EXPECT_EQ(csv_text("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_text("say \"x\""), "\"say \"\"x\"\"\"");
+  EXPECT_EQ(csv_text("two\nlines"), "\"two\nlines\"");
+  EXPECT_EQ(csv_text("a\rb"), "\"a\rb\"");
+}
+
+TEST(JsonText, EscapesQuotesBackslashesAndControls) {
+  EXPECT_EQ(json_quoted("a\"b\\c\nd\te\x01"
+                        "f\x1f"),
+            "\"a\\\"b\\\\c\\nd\\te\\u0001f\\u001f\"");
+  EXPECT_EQ(json_quoted(std::string("a\0b", 3)), "\"a\\u0000b\"");
+}
+
+TEST(JsonText, LeavesUtf8AsItIs) {
+  const std::string text = "\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80 \xf4\x8f\xbf\xbf \xed\x9f\xbf";
+  EXPECT_EQ(json_quoted(text), "\"" + text + "\"");
+}
+
+TEST(JsonText, ReplacesWhatIsNotUtf8SoThatItStaysJson) {
+  EXPECT_EQ(json_quoted("a\xff"
+                        "b"),
+            "\"a\\ufffdb\"");
+  EXPECT_EQ(json_quoted("\xc3"), "\"\\ufffd\"") << "cut off";
+  EXPECT_EQ(json_quoted("\x80"), "\"\\ufffd\"") << "a continuation alone";
+  EXPECT_EQ(json_quoted("\xc3\""), "\"\\ufffd\\\"\"") << "the quote is not swallowed";
+  // Longer forms, a surrogate, beyond U+10FFFF: each byte is replaced.
+  for (const char* text :
+       {"\xc0\xaf", "\xe0\x80\xaf", "\xf0\x80\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80"}) {
+    std::string expected = "\"";
+    for (std::size_t i = 0; i < std::strlen(text); ++i) expected += "\\ufffd";
+    EXPECT_EQ(json_quoted(text), expected + "\"");
+    EXPECT_TRUE(is_json(json_quoted(text)));
+  }
+}
+
+TEST(Row, BecomesOneLineOfJson) {
+  Row row;
+  row.add("tap", 3);
+  row.add("source", "initial");
+  row.add("score", std::optional<double>());
+  row.add("height", 0.25);
+  row.add("bad", kNaN);
+  row.add("hit", true);
+  EXPECT_EQ(to_json_line(row),
+            R"({"tap": 3, "source": "initial", "score": null, "height": 0.25, "bad": null, "hit": true})");
+}
+
+TEST(Row, NestsByTheDotsOfItsNames) {
+  Row row;
+  row.add("a.b.c", 1);
+  row.add("a.b.d", 2);
+  row.add("a.e", 3);
+  row.add("f", 4);
+  EXPECT_EQ(to_json_line(row), R"({"a": {"b": {"c": 1, "d": 2}, "e": 3}, "f": 4})");
+  EXPECT_EQ(
+      to_json_text(row),
+      "{\n  \"a\": {\n    \"b\": {\n      \"c\": 1,\n      \"d\": 2\n    },\n    \"e\": 3\n  },\n  \"f\": 4\n}\n");
+}
+
+TEST(Row, DoesNotNestWhatOnlyBeginsAlike) {
+  Row row;
+  row.add("a.b", 1);
+  row.add("ab", 2);
+  EXPECT_EQ(to_json_line(row), R"({"a": {"b": 1}, "ab": 2})");
+}
+
+TEST(Row, FindsAFieldByItsName) {
+  Row row;
+  row.add("a", 1);
+  row.add("b.c", "x");
+  ASSERT_NE(row.find("b.c"), nullptr);
+  EXPECT_EQ(*row.find("b.c"), Scalar{std::string("x")});
+  EXPECT_EQ(row.find("b"), nullptr);
+}
+
+TEST(Csv, HasAHeaderAndARowEach) {
+  Row first;
+  first.add("id", "x,y");
+  first.add("n", 1);
+  Row second;
+  second.add("id", "z");
+  second.add("n", 2.5);
+  EXPECT_EQ(to_csv({first, second}), "id,n\n\"x,y\",1\nz,2.5\n");
+}
+
+TEST(Csv, LeavesCellsEmptyThatARowLacks) {
+  Row whole;
+  whole.add("a", 1);
+  whole.add("b", 2);
+  whole.add("c", 3);
+  Row part;
+  part.add("a", 4);
+  part.add("c", 5);
+  Row swapped;
+  swapped.add("c", 6);
+  swapped.add("a", 7);
+  EXPECT_EQ(to_csv({part, whole, swapped}), "a,b,c\n4,,5\n1,2,3\n7,,6\n");
+}
+
+TEST(Csv, OfNoRowsIsEmpty) { EXPECT_EQ(to_csv({}), ""); }
+
+}  // namespace
+}  // namespace palpate

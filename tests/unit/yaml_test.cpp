@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include "config/yaml.hpp"
+
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_yaml(text, "c.yaml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string refusal_of_file(const fs::path& file) {
+  try {
+    read_yaml(file);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string repeated(const std::string& text, int count) {
+  std::string out;
+  for (int i = 0; i < count; ++i) out += text;
+  return out;
+}
+
+TEST(Yaml, GivesEveryKeyAndValueItsPlace) {
+  const Tree tree = parse_yaml("# first\nkernel:\n  type: rbf\n  at: [1 cm, 2 cm]\n", "c.yaml");
+  const Tree& kernel = *tree.find("kernel");
+  EXPECT_EQ(tree.entries[0].place.text(), "c.yaml:2:1");
+  EXPECT_EQ(kernel.entries[0].place.text(), "c.yaml:3:3");
+  EXPECT_EQ(kernel.find("type")->place.text(), "c.yaml:3:9");
+  EXPECT_EQ(kernel.find("at")->items[1].place.text(), "c.yaml:4:14");
+}
+
+TEST(Yaml, GivesAMissingValueThePlaceOfItsKey) {
+  const Tree tree = parse_yaml("a: 1\nkernel:\n\n\nb: 2\n", "c.yaml");
+  EXPECT_EQ(tree.find("kernel")->kind, Tree::Kind::null);
+  EXPECT_EQ(tree.find("kernel")->place.text(), "c.yaml:2:1");
+}
+
+TEST(Yaml, KeepsTheOrderOfKeys) {
+  const Tree tree = parse_yaml("z: 1\na: 2\nm: 3\n", "c.yaml");
+  ASSERT_EQ(tree.entries.size(), 3U);
+  EXPECT_EQ(tree.entries[0].key + tree.entries[1].key + tree.entries[2].key, "zam");
+}
+
+TEST(Yaml, KeepsScalarsAsTheyAreWritten) {
+  for (const char* text : {"010", "yes", "1e3", "0x10", "1.70", ".nan", "1_000", "12:30:45", "2021-01-01"}) {
+    const Tree tree = parse_yaml(std::string("a: ") + text, "c.yaml");
+    EXPECT_EQ(tree.find("a")->text, text);
+    EXPECT_FALSE(tree.find("a")->quoted) << text;
+  }
+}
+
+TEST(Yaml, RemembersWhichScalarsStoodInQuotes) {
+  for (const char* text : {"a: \"1\"", "a: '1'", "a: |-\n  1"}) {
+    const Tree tree = parse_yaml(text, "c.yaml");
+    EXPECT_EQ(tree.find("a")->text, "1") << text;
+    EXPECT_TRUE(tree.find("a")->quoted) << text;
+  }
+  EXPECT_FALSE(parse_yaml("a: 1", "c.yaml").find("a")->quoted);
+}
+
+TEST(Yaml, TakesAnEmptyDocumentAsAnEmptyMap) {
+  for (const char* text : {"", "\n\n", "# nothing\n", "---\n", "~", "{}"}) {
+    const Tree tree = parse_yaml(text, "c.yaml");
+    EXPECT_TRUE(tree.is_map()) << text;
+    EXPECT_TRUE(tree.entries.empty()) << text;
+  }
+}
+
+TEST(Yaml, ReadsLinesThatEndLikeOnWindowsAndAByteOrderMark) {
+  const Tree tree = parse_yaml(
+      "\xef\xbb\xbf"
+      "a: 1\r\nb: x y\r\n",
+      "c.yaml");
+  EXPECT_EQ(tree.find("a")->text, "1");
+  EXPECT_EQ(tree.find("b")->text, "x y");
+}
+
+TEST(Yaml, RefusesADuplicateKeyAndNamesBothPlaces) {
+  EXPECT_EQ(refusal("k:\n  a: 1\n  b: 2\n  a: 1\n"),
+            "c.yaml:4:3: duplicate key 'a', it is already at line 2, column 3");
+}
+
+TEST(Yaml, RefusesADuplicateKeyThatIsQuotedOnce) {
+  EXPECT_EQ(refusal("a: 1\n'a': 2\n"), "c.yaml:2:1: duplicate key 'a', it is already at line 1, column 1");
+}
+
+TEST(Yaml, AllowsTheSameKeyInDifferentMaps) { EXPECT_EQ(refusal("a: {x: 1}\nb: {x: 1}\n"), "accepted"); }
+
+TEST(Yaml, RefusesMergeKeysInWords) {
+  EXPECT_EQ(refusal("base: &b {x: 1}\nk:\n  <<: *b\n"),
+            "c.yaml:3:3: merge keys ('<<') are not read, repeat the options, or put them into a group file and name it "
+            "under 'defaults'");
+}
+
+TEST(Yaml, RefusesKeysThatAreNotText) {
+  EXPECT_EQ(refusal("? [a, b]\n: 1\n"), "c.yaml:1:3: a key must be plain text");
+  EXPECT_EQ(refusal("? {a: b}\n: 1\n"), "c.yaml:1:3: a key must be plain text");
+}
+
+TEST(Yaml, RefusesTags) {
+  EXPECT_EQ(refusal("a: !!int 5\n"), "c.yaml:1:4: tags ('tag:yaml.org,2002:int') are not read, remove it");
+  EXPECT_EQ(refusal("a: 1\nb: !include x.yaml\n"), "c.yaml:2:4: tags ('!include') are not read, remove it");
+}
+
+TEST(Yaml, RefusesASecondDocument) {
+  EXPECT_EQ(refusal("a: 1\n---\nb: 2\n"), "c.yaml:3:1: a second document begins here, remove the '---' before it");
+}
+
+TEST(Yaml, AllowsOneDocumentBetweenMarkers) { EXPECT_EQ(refusal("---\na: 1\n...\n"), "accepted"); }
+
+TEST(Yaml, UnfoldsAliasesWithThePlaceOfTheirAnchor) {
+  const Tree tree = parse_yaml("a: &x {b: 1}\nc: *x\n", "c.yaml");
+  EXPECT_EQ(tree.find_path("c.b")->text, "1");
+  EXPECT_EQ(tree.find_path("c.b")->place.text(), "c.yaml:1:11");
+}
+
+TEST(Yaml, RefusesAnAliasBombBeforeItUnfolds) {
+  std::string bomb = "l0: &l0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 10; ++i) {
+    const std::string below = "*l" + std::to_string(i - 1);
+    bomb += "l" + std::to_string(i) + ": &l" + std::to_string(i) + " [" + below + repeated(", " + below, 9) + "]\n";
+  }
+  EXPECT_EQ(refusal(bomb), "c.yaml:1:37: too many values, aliases unfold to over 100000");
+}
+
+TEST(Yaml, RefusesAnAliasOfItself) {
+  EXPECT_EQ(refusal("a: &x {b: *x}\n"), "c.yaml:1:4: nested too deeply, at most 100 levels");
+}
+
+TEST(Yaml, RefusesAnUnknownAlias) {
+  EXPECT_EQ(refusal("a: *x\n"),
+            "c.yaml:1:4: not valid YAML: the referenced anchor is not defined, look here or above for a missing "
+            "bracket or quote, a wrong indent or a tab");
+}
+
+TEST(Yaml, AllowsAHundredLevelsAndRefusesMore) {
+  EXPECT_EQ(refusal("a: " + repeated("[", 99) + repeated("]", 99)), "accepted");
+  EXPECT_EQ(refusal("a: " + repeated("[", 101) + repeated("]", 101)),
+            "c.yaml:1:104: nested too deeply, at most 100 levels");
+}
+
+TEST(Yaml, RefusesNestingThatTheParserItselfGivesUpOn) {
+  const std::string text = refusal("a: " + repeated("[", 100000));
+  EXPECT_EQ(text.substr(0, 7), "c.yaml:");
+  EXPECT_NE(text.find(": nested too deeply, at most 100 levels"), std::string::npos) << text;
+}
+
+TEST(Yaml, SaysWhereSyntaxIsWrong) {
+  EXPECT_EQ(refusal("a: 1\n  b: 2\n"),
+            "c.yaml:2:4: not valid YAML: illegal map value, look here or above for a missing bracket or quote, a wrong "
+            "indent or a tab");
+  EXPECT_EQ(refusal("a: [1, 2\n"),
+            "c.yaml:2:1: not valid YAML: end of sequence flow not found, look here or above for a missing bracket or "
+            "quote, a wrong indent or a tab");
+}
+
+TEST(Yaml, ReadsAFileUnderTheNameThatTheUserGave) {
+  const TemporaryFolder folder;
+  folder.write("sub/c.yaml", "a: 1\n");
+  const Tree tree = read_yaml(folder.path() / "sub" / ".." / "sub" / "c.yaml");
+  EXPECT_EQ(*tree.find("a")->place.file, (folder.path() / "sub" / "c.yaml").string());
+}
+
+TEST(Yaml, RefusesAFileThatIsMissingAndNamesANearOne) {
+  const TemporaryFolder folder;
+  folder.write("object_i.yaml", "");
+  folder.write("notes.txt", "");
+  EXPECT_EQ(refusal_of_file(folder.path() / "object_1.yaml"),
+            (folder.path() / "object_1.yaml").string() + ": no such file, did you mean 'object_i.yaml'?");
+  EXPECT_EQ(refusal_of_file(folder.path() / "notes.tx"),
+            (folder.path() / "notes.tx").string() + ": no such file, name a YAML file");
+}
+
+TEST(Yaml, RefusesADirectoryADeviceAndWhatIsTooLarge) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(refusal_of_file(folder.path()), folder.path().string() + ": not a regular file, name a YAML file");
+  EXPECT_EQ(refusal_of_file("/dev/zero"), "/dev/zero: not a regular file, name a YAML file");
+  const fs::path large = folder.write("large.yaml", "a: '" + std::string(1 << 20, 'x') + "'\n");
+  EXPECT_EQ(refusal_of_file(large), large.string() + ": too large for a config, at most 1 MiB");
+}
+
+TEST(Value, IsReadAsYaml) {
+  EXPECT_EQ(parse_value("[1, {a: b}]", "command line").items[1].find("a")->text, "b");
+  EXPECT_EQ(parse_value("", "command line").kind, Tree::Kind::null);
+  EXPECT_FALSE(parse_value("2cm", "command line").quoted);
+}
+
+TEST(Value, IsTextWhenItDoesNotParse) {
+  for (const char* text : {"[1, 2", "@x", "a: b: c", "{", "*x"}) {
+    const Tree tree = parse_value(text, "command line");
+    EXPECT_EQ(tree.text, text);
+    EXPECT_TRUE(tree.is_scalar()) << text;
+  }
+}
+
+TEST(Value, HasAPlaceWithoutLines) {
+  const Tree tree = parse_value("{a: [1]}", "command line");
+  EXPECT_EQ(tree.place.text(), "command line");
+  EXPECT_EQ(tree.entries[0].place.text(), "command line");
+  EXPECT_EQ(tree.find("a")->items[0].place.text(), "command line");
+}
+
+TEST(Value, IsAsStrictAsAFile) {
+  try {
+    parse_value("{a: 1, a: 2}", "command line");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "command line: duplicate key 'a', write it once");
+  }
+}
+
+TEST(Yaml, ReadsBackWhatItWrites) {
+  const Tree tree = parse_yaml(
+      "a: 1\nb: '1'\nc: [1 cm, '2 cm', ~]\nd: {}\ne: []\nf: {g: [{h: 1}, {h: [2, 3]}], i: 'yes'}\n"
+      "j: \"line\\nbreak \\\"quoted\\\" \\t # no comment: \\x01\"\nk: \"\"\nl: 'null'\nm: '~'\nn: \"\xc3\xa4\"\n",
+      "c.yaml");
+  const Tree again = parse_yaml(to_yaml(tree), "d.yaml");
+  EXPECT_EQ(again.canonical(), tree.canonical());
+  EXPECT_TRUE(again.find("b")->quoted);
+  EXPECT_FALSE(again.find("a")->quoted);
+  EXPECT_TRUE(again.find("l")->quoted);
+}
+
+TEST(Yaml, WritesBlocksForMapsAndOneLineForPlainLists) {
+  EXPECT_EQ(to_yaml(parse_yaml("{a: {b: 1}, c: [1 cm, 2 cm], d: {}}", "c.yaml")),
+            "a:\n  b: 1\nc: [1 cm, 2 cm]\nd: {}\n");
+}
+
+}  // namespace
+}  // namespace palpate
