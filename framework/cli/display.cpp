@@ -43,7 +43,8 @@ void TapTable::announce(const TapRecord& tap) {
     header_ = true;
   }
   if (!terminal_) return;
-  fmt::print("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100, tap.target.y * 100);
+  fmt::print("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100,
+             tap.target.y * 100);
   std::fflush(stdout);
 }
 
@@ -51,7 +52,9 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   clear_live_line();
   const bool touched = tap.contact.outcome == Outcome::contact;
   const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_surface ? "object" : "desk";
-  const char* source = tap.source == Source::initial ? "initial" : tap.source == Source::fallback ? "fallback" : "acquisition";
+  const char* source = tap.source == Source::initial    ? "initial"
+                       : tap.source == Source::fallback ? "fallback"
+                                                        : "acquisition";
   fmt::print("{:>4}  {:<11}  {:>6.2f}  {:>6.2f}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}\n", tap.number, source,
              tap.target.x * 100, tap.target.y * 100,
              touched ? fmt::format("{:.2f}", tap.contact.height * 100) : std::string("-"), contact,
@@ -77,15 +80,17 @@ void print_summary(const RunReport& report) {
   if (report.already_done) {
     fmt::print("already done, nothing was repeated: {}\n", report.directory.string());
   }
-  fmt::print("{}: {} after {} taps and {} s of robot time\n", report.interrupted ? "interrupted" : text_at(row, "status"),
-             text_at(row, "stop_reason"), text_at(row, "taps"), number_at(row, "robot_seconds", 1, "{:.1f}"));
+  fmt::print("{}: {} after {} taps and {} s of robot time\n",
+             report.interrupted ? "interrupted" : text_at(row, "status"), text_at(row, "stop_reason"),
+             text_at(row, "taps"), number_at(row, "robot_seconds", 1, "{:.1f}"));
   const std::string hit = text_at(row, "first_hit_tap");
   fmt::print("taps: {} on the object, {} on the desk, {} failed; {}\n", text_at(row, "on_surface_taps"),
              text_at(row, "off_surface_taps"), text_at(row, "failed_taps"),
              hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   if (!text_at(row, "rmse_m").empty()) {
-    fmt::print("error: {} cm over the scene, {} cm on the object; outline IoU {}\n", number_at(row, "rmse_m", 100, "{:.2f}"),
-               number_at(row, "rmse_on_surface_m", 100, "{:.2f}"), number_at(row, "footprint_iou", 1, "{:.2f}"));
+    fmt::print("error: {} cm over the scene, {} cm on the object; outline IoU {}\n",
+               number_at(row, "rmse_m", 100, "{:.2f}"), number_at(row, "rmse_on_surface_m", 100, "{:.2f}"),
+               number_at(row, "footprint_iou", 1, "{:.2f}"));
   }
   const std::string jitter = number_at(row, "interventions.jitter", 1, "{:.0f}");
   if (jitter != "0" && jitter != "-") {

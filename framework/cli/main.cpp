@@ -4,8 +4,8 @@
 
 #include <palpate/error.hpp>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <csignal>
 #include <cstdio>
@@ -37,7 +37,8 @@ using Action = std::function<int(Program&)>;
 void add_run(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("run", "Run one experiment");
   sub->add_option("CONFIG", a.run.config, "the experiment, a YAML file")->required();
-  sub->add_option("KEY=VALUE", a.run.overrides, "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)");
+  sub->add_option("KEY=VALUE", a.run.overrides,
+                  "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)");
   sub->add_option("--runs", a.run.runs, "where run directories are made")->capture_default_str();
   sub->add_flag("--json", a.run.json, "print summary.json and nothing else");
   sub->add_flag("--quiet", a.run.quiet, "print nothing");
@@ -51,10 +52,12 @@ void add_run(CLI::App& app, Arguments& a, Action& action) {
 void add_sweep(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("sweep", "Run many experiments: every combination of some values");
   sub->add_option("CONFIG", a.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
-  sub->add_option("KEY=VALUES", a.sweep.axes, "what to vary: seed=range(0,10), acquisition=weighted,random, "
-                                              "kernel.length_scale=log(1cm,5cm,8)");
+  sub->add_option("KEY=VALUES", a.sweep.axes,
+                  "what to vary: seed=range(0,10), acquisition=weighted,random, "
+                  "kernel.length_scale=log(1cm,5cm,8)");
   sub->add_option("--runs", a.sweep.runs, "where run directories are made")->capture_default_str();
-  sub->add_option("-j", a.sweep.workers, "jobs at a time; the number of cores if not given")->check(CLI::Range(1, 1024));
+  sub->add_option("-j", a.sweep.workers, "jobs at a time; the number of cores if not given")
+      ->check(CLI::Range(1, 1024));
   sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
   sub->add_flag("--quiet", a.sweep.quiet, "show no progress");
   sub->callback([&] { action = [&](Program& program) { return sweep(program, a.sweep); }; });
@@ -93,9 +96,7 @@ void add_rest(CLI::App& app, Arguments& a, Action& action) {
 }
 
 /// CLI11's own words, on one line.
-int usage_error(const CLI::Error& trouble) {
-  throw Error("", trouble.what(), "see palpate --help");
-}
+int usage_error(const CLI::Error& trouble) { throw Error("", trouble.what(), "see palpate --help"); }
 
 int perform(const Action& action, int argc, char** argv) {
   const Installation installation = find_installation();
@@ -106,9 +107,10 @@ int perform(const Action& action, int argc, char** argv) {
 }
 
 int run_main(int argc, char** argv) {
-  CLI::App app{"palpate: experiments in active touch. A robot arm, or a simulated one, taps an unknown object; Gaussian\n"
-               "processes say where to tap next.",
-               "palpate"};
+  CLI::App app{
+      "palpate: experiments in active touch. A robot arm, or a simulated one, taps an unknown object; Gaussian\n"
+      "processes say where to tap next.",
+      "palpate"};
   app.require_subcommand(1);
   app.set_version_flag("--version", kVersion);
   Arguments arguments;

@@ -47,9 +47,11 @@ int plugins(Program& program, const std::string& what, bool json) {
   }
   const std::vector<PluginListing> rows = program.host.list(kind, name);
   // Asks for the very plugin, so that the error names its neighbours.
-  if (!name.empty() && rows.empty()) describe_fields([&](Fields& fields) { program.host.describe(kind, name, fields); });
+  if (!name.empty() && rows.empty())
+    describe_fields([&](Fields& fields) { program.host.describe(kind, name, fields); });
 
-  const bool broken = std::any_of(rows.begin(), rows.end(), [](const PluginListing& row) { return !row.trouble.empty(); });
+  const bool broken =
+      std::any_of(rows.begin(), rows.end(), [](const PluginListing& row) { return !row.trouble.empty(); });
   if (json) {
     Tree list = Tree::list();
     for (const PluginListing& row : rows) list.items.push_back(row_tree(program.host, row));

@@ -13,8 +13,7 @@ int resume(Program& program, const ResumeArguments& arguments) {
     SweepLine line(arguments.quiet);
     const SweepReport report = run_sweep(program.workshop, sweep, nullptr, options, arguments.workers,
                                          [&](const SweepProgress& progress) { line.show(progress); });
-    const ResolvedConfig first =
-        load_run(program.host, sweep.directory / "jobs" / sweep.jobs.front().id);
+    const ResolvedConfig first = load_run(program.host, sweep.directory / "jobs" / sweep.jobs.front().id);
     return print_sweep(sweep, report, static_cast<int>(first.options.initial.count));
   }
   std::unique_ptr<Journal> display;

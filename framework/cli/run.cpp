@@ -33,7 +33,8 @@ void print_origins(const ResolvedConfig& config) {
 void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
   const RunStatus status = read_status(directory);
   fmt::print("{}: {} taps of {} with {}, kernel {}, seed {}\n", config.options.name, config.options.taps,
-             config.options.backend.type, config.options.acquisition.type, config.options.kernel.type, config.options.seed);
+             config.options.backend.type, config.options.acquisition.type, config.options.kernel.type,
+             config.options.seed);
   fmt::print("{}: {}\n", directory.string(),
              status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
 }

@@ -51,7 +51,8 @@ int schema(Program& program) {
   either.items = {std::move(scene_name), std::move(scene)};
 
   Tree defaults = Tree::map();
-  defaults.at("description") = quoted("groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries win, then this file");
+  defaults.at("description") =
+      quoted("groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries win, then this file");
   defaults.at("type") = quoted("array");
   Tree& item = defaults.at("items");
   item.at("type") = quoted("object");

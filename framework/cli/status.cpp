@@ -21,7 +21,8 @@ void print_run(const std::filesystem::path& directory) {
     return value != nullptr ? value->text : std::string("?");
   };
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
-  fmt::print("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"), reason);
+  fmt::print("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
+             reason);
 }
 
 void print_sweep_status(const Sweep& sweep) {

@@ -47,7 +47,9 @@ class Describer final : public Fields {
   void integer(std::optional<std::int64_t>& value, const Field& field) override {
     add(Type::integer, field).default_value = value ? std::to_string(*value) : "none";
   }
-  void flag(bool& value, const Field& field) override { add(Type::flag, field).default_value = value ? "true" : "false"; }
+  void flag(bool& value, const Field& field) override {
+    add(Type::flag, field).default_value = value ? "true" : "false";
+  }
   void text(std::string& value, const Field& field) override { add(Type::text, field).default_value = value; }
 
   void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
@@ -55,7 +57,8 @@ class Describer final : public Fields {
     row.default_value = cases[index].name;
     std::vector<FieldDescription::CaseDescription> described;
     for (const Case& one : cases) {
-      described.push_back({one.name, one.meaning, one.list ? describe_fields(one.list) : std::vector<FieldDescription>{}});
+      described.push_back(
+          {one.name, one.meaning, one.list ? describe_fields(one.list) : std::vector<FieldDescription>{}});
     }
     row.cases = std::move(described);
   }
@@ -95,11 +98,16 @@ class Describer final : public Fields {
 void append_text(std::vector<std::array<std::string, 4>>& lines, const std::vector<FieldDescription>& fields,
                  const std::string& prefix) {
   for (const FieldDescription& field : fields) {
-    const std::string meaning = field.source.empty() ? field.meaning : fmt::format("{} ({})", field.meaning, field.source);
+    const std::string meaning =
+        field.source.empty() ? field.meaning : fmt::format("{} ({})", field.meaning, field.source);
     std::string type = field.type_name();
     if (!field.range.empty()) type += " " + field.range;
     const bool group = field.type == Type::section || field.type == Type::sections;
-    lines.push_back({prefix + field.name, type, field.required ? "required" : group ? "" : field.default_value, meaning});
+    lines.push_back({prefix + field.name, type,
+                     field.required ? "required"
+                     : group        ? ""
+                                    : field.default_value,
+                     meaning});
     for (const auto& one : field.cases) {
       lines.push_back({prefix + "  " + one.name, "", "", one.meaning});
       append_text(lines, one.fields, prefix + "    ");
@@ -228,7 +236,8 @@ std::string describe_text(const std::vector<FieldDescription>& fields) {
   }
   std::string out;
   for (const auto& line : lines) {
-    out += fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", line[0], width[0], line[1], width[1], line[2], width[2], line[3]);
+    out +=
+        fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", line[0], width[0], line[1], width[1], line[2], width[2], line[3]);
   }
   return out;
 }

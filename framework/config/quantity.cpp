@@ -23,15 +23,24 @@ struct UnitName {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::array kUnits{
-    UnitName{"m", Unit::metre, 0},           UnitName{"dm", Unit::metre, -1},
-    UnitName{"cm", Unit::metre, -2},         UnitName{"mm", Unit::metre, -3},
-    UnitName{"um", Unit::metre, -6},         UnitName{"s", Unit::second, 0},
-    UnitName{"ms", Unit::second, -3},        UnitName{"us", Unit::second, -6},
-    UnitName{"min", Unit::second, 0, 60.0},  UnitName{"h", Unit::second, 0, 3600.0},
-    UnitName{"N", Unit::newton, 0},          UnitName{"mN", Unit::newton, -3},
-    UnitName{"kN", Unit::newton, 3},         UnitName{"rad", Unit::radian, 0},
-    UnitName{"mrad", Unit::radian, -3},      UnitName{"deg", Unit::radian, 0, kPi / 180.0},
-    UnitName{"m/s", Unit::metre_per_second, 0},   UnitName{"cm/s", Unit::metre_per_second, -2},
+    UnitName{"m", Unit::metre, 0},
+    UnitName{"dm", Unit::metre, -1},
+    UnitName{"cm", Unit::metre, -2},
+    UnitName{"mm", Unit::metre, -3},
+    UnitName{"um", Unit::metre, -6},
+    UnitName{"s", Unit::second, 0},
+    UnitName{"ms", Unit::second, -3},
+    UnitName{"us", Unit::second, -6},
+    UnitName{"min", Unit::second, 0, 60.0},
+    UnitName{"h", Unit::second, 0, 3600.0},
+    UnitName{"N", Unit::newton, 0},
+    UnitName{"mN", Unit::newton, -3},
+    UnitName{"kN", Unit::newton, 3},
+    UnitName{"rad", Unit::radian, 0},
+    UnitName{"mrad", Unit::radian, -3},
+    UnitName{"deg", Unit::radian, 0, kPi / 180.0},
+    UnitName{"m/s", Unit::metre_per_second, 0},
+    UnitName{"cm/s", Unit::metre_per_second, -2},
     UnitName{"mm/s", Unit::metre_per_second, -3},
 };
 
@@ -176,8 +185,8 @@ double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   for (const UnitName& known : kUnits) {
     if (known.name != symbol) continue;
     if (known.unit != unit) {
-      refuse(tree, name, fmt::format("'{}' is a {}, not a {}", tree.text, dimension_name(known.unit), dimension_name(unit)),
-             unit);
+      refuse(tree, name,
+             fmt::format("'{}' is a {}, not a {}", tree.text, dimension_name(known.unit), dimension_name(unit)), unit);
     }
     return to_double(number, known.power, tree, name, unit) * known.factor;
   }
@@ -192,7 +201,8 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
   const char* last = number.data() + number.size();
   const auto result = std::from_chars(first, last, value);
   if (result.ec == std::errc::result_out_of_range) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' is out of range", name, tree.text), "at most 9223372036854775807");
+    throw Error(tree.place.text(), fmt::format("{}: '{}' is out of range", name, tree.text),
+                "at most 9223372036854775807");
   }
   if (result.ec != std::errc() || result.ptr != last || !rest.empty()) {
     throw Error(tree.place.text(), fmt::format("{}: '{}' is not a whole number", name, tree.text),

@@ -22,7 +22,8 @@ class Resolver final : public Fields {
       : input_(input), path_(std::move(path)), plugins_(plugins), notes_(notes), output_(Tree::map()) {
     output_.place = input_ != nullptr ? input_->place : parent;
     if (input_ != nullptr && input_->kind != Tree::Kind::map && input_->kind != Tree::Kind::null) {
-      throw Error(input_->place.text(), fmt::format("{} is not a group of options", owner()), "write {key: value, ...}");
+      throw Error(input_->place.text(), fmt::format("{} is not a group of options", owner()),
+                  "write {key: value, ...}");
     }
   }
 
@@ -109,9 +110,8 @@ class Resolver final : public Fields {
 
   void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
     if (const Tree* tree = claim(field)) {
-      const auto found = std::find_if(cases.begin(), cases.end(), [&](const Case& one) {
-        return tree->is_scalar() && tree->text == one.name;
-      });
+      const auto found = std::find_if(cases.begin(), cases.end(),
+                                      [&](const Case& one) { return tree->is_scalar() && tree->text == one.name; });
       if (found == cases.end()) {
         std::vector<std::string> names;
         for (const Case& one : cases) names.emplace_back(one.name);
@@ -243,9 +243,9 @@ class Resolver final : public Fields {
   double checked(double value, const Tree& tree, const Field& field) const {
     const bool low = field.open_below ? !(value > field.least) : value < field.least;
     if (low || value > field.most) {
-      const std::string bound = low ? fmt::format("{} {}", field.open_below ? "above" : "at least",
-                                                  write_quantity(field.least, field.unit))
-                                    : fmt::format("at most {}", write_quantity(field.most, field.unit));
+      const std::string bound =
+          low ? fmt::format("{} {}", field.open_below ? "above" : "at least", write_quantity(field.least, field.unit))
+              : fmt::format("at most {}", write_quantity(field.most, field.unit));
       throw Error(tree.place.text(), fmt::format("{}: {} is out of range", name(field), tree.text),
                   fmt::format("it must be {}", bound));
     }

@@ -45,7 +45,8 @@ void Experiment::choose_by_score(TapRecord& tap) {
   Eigen::VectorXd scores(candidates_.size());
   acquisition_->score(belief_, scores);
   if (!scores.allFinite()) {
-    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {}, Error::Kind::run);
+    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+                Error::Kind::run);
   }
   Pick picked = pick(scores, allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
   tap.source = Source::acquisition;

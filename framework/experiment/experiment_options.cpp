@@ -51,7 +51,8 @@ void WeightOptions::list(Fields& fields) {
 
 void StopOptions::list(Fields& fields) {
   fields.real(max_standard_deviation,
-              Field("max_standard_deviation", "stop when no candidate's height is less certain than this; builds the height process")
+              Field("max_standard_deviation",
+                    "stop when no candidate's height is less certain than this; builds the height process")
                   .in(Unit::metre)
                   .above(0));
   fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
@@ -71,7 +72,8 @@ void ExperimentOptions::list(Fields& fields) {
   fields.integer(seed, Field("seed", "fixes everything that is drawn").at_least(0));
   fields.integer(taps, Field("taps", "budget of taps, the initial ones included").at_least(1).at_most(100000));
   fields.section(initial, Field("initial", "the first taps, drawn from the candidates without replacement"));
-  fields.section(candidates, Field("candidates", "the places among which the next tap is chosen: cell centres of a grid"));
+  fields.section(candidates,
+                 Field("candidates", "the places among which the next tap is chosen: cell centres of a grid"));
   fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes"));
   fields.section(height, Field("height", "the process of the heights above the desk"));
   fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk"));

@@ -13,8 +13,8 @@ namespace palpate {
 
 /// The scene as seen at the candidates.
 struct Truth {
-  Eigen::VectorXd height;                   ///< metres
-  Eigen::Array<bool, Eigen::Dynamic, 1> on; ///< the cell's centre is on an object
+  Eigen::VectorXd height;                    ///< metres
+  Eigen::Array<bool, Eigen::Dynamic, 1> on;  ///< the cell's centre is on an object
 };
 
 Truth truth_at(const Candidates& candidates, const Scene& scene);

@@ -19,7 +19,9 @@ class PhaseClock {
   /// Time from its birth to its death belongs to `phase`.
   class Scope {
    public:
-    Scope(PhaseClock& clock, Phase phase) : clock_(clock), outer_(clock.active_) { clock_.turn_to(static_cast<int>(phase)); }
+    Scope(PhaseClock& clock, Phase phase) : clock_(clock), outer_(clock.active_) {
+      clock_.turn_to(static_cast<int>(phase));
+    }
     ~Scope() { clock_.turn_to(outer_); }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -42,7 +44,8 @@ class PhaseClock {
 
   void turn_to(int phase) {
     const auto now = std::chrono::steady_clock::now();
-    if (active_ != kNone) seconds_[static_cast<std::size_t>(active_)] += std::chrono::duration<double>(now - since_).count();
+    if (active_ != kNone)
+      seconds_[static_cast<std::size_t>(active_)] += std::chrono::duration<double>(now - since_).count();
     since_ = now;
     active_ = phase;
   }

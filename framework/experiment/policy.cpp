@@ -3,8 +3,8 @@
 
 #include <palpate/error.hpp>
 
-#include <boost/random/sobol.hpp>
 #include <fmt/format.h>
+#include <boost/random/sobol.hpp>
 
 #include <algorithm>
 #include <array>
@@ -41,7 +41,8 @@ std::vector<int> draw_sobol(std::size_t count, const Candidates& candidates, con
   std::vector<int> design;
   std::array<std::uint64_t, 2> point{0, 0};  // Boost's sequence leaves out the origin, with which it begins
   for (std::size_t i = 0; design.size() < count && i < 64 * static_cast<std::size_t>(candidates.size()); ++i) {
-    take(design, candidates, coordinate(point[0] ^ shift[0]) * area.width, coordinate(point[1] ^ shift[1]) * area.depth, area);
+    take(design, candidates, coordinate(point[0] ^ shift[0]) * area.width, coordinate(point[1] ^ shift[1]) * area.depth,
+         area);
     for (std::uint64_t& axis : point) axis = sequence();
   }
   return design;

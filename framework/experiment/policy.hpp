@@ -22,10 +22,10 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
 
 /// The outcome of a choice among scored candidates.
 struct Pick {
-  int candidate = -1;           ///< -1: none was allowed
+  int candidate = -1;  ///< -1: none was allowed
   double score = 0.0;
-  int ties = 0;                 ///< candidates within the tie bound of the best, the chosen one included
-  int runner_up = -1;           ///< the best of the others; -1 if there is no other
+  int ties = 0;        ///< candidates within the tie bound of the best, the chosen one included
+  int runner_up = -1;  ///< the best of the others; -1 if there is no other
   double runner_up_score = 0.0;
   /// Set when the scores do not tell candidates apart: "every score is equal" or "no score is positive".
   std::optional<std::string> flat;

@@ -88,9 +88,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
 
 Eigen::VectorXd Process::mean() const { return (settings_.signal * mean_.array() + settings_.mean).matrix(); }
 
-Eigen::VectorXd Process::variance() const {
-  return variance_.cwiseMax(0.0) * (settings_.signal * settings_.signal);
-}
+Eigen::VectorXd Process::variance() const { return variance_.cwiseMax(0.0) * (settings_.signal * settings_.signal); }
 
 Eigen::VectorXd Process::relative_variance() const { return variance_.cwiseMax(0.0).cwiseQuotient(prior_); }
 

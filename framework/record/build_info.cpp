@@ -4,9 +4,9 @@
 #include "config/hash.hpp"
 #include "config/yaml.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Core>
 #include <boost/version.hpp>
-#include <fmt/format.h>
 
 #include <array>
 
@@ -66,7 +66,8 @@ Installation find_installation() {
   const fs::path program = fs::read_symlink("/proc/self/exe");
   const fs::path folder = program.parent_path();
   // Installed: bin/palpate, lib/palpate/plugins, share/palpate/configs. Built: build/<preset>/palpate beside lib.
-  if (fs::exists(folder / "lib" / "palpate")) return {program, folder / "lib" / "palpate", folder / ".." / ".." / "configs"};
+  if (fs::exists(folder / "lib" / "palpate"))
+    return {program, folder / "lib" / "palpate", folder / ".." / ".." / "configs"};
   return {program, folder / ".." / "lib" / "palpate", folder / ".." / "share" / "palpate" / "configs"};
 }
 

@@ -95,7 +95,8 @@ FileLock::FileLock(const fs::path& file) : descriptor_(::open(file.c_str(), O_RD
   ::close(descriptor_);
   descriptor_ = -1;
   if (why == EWOULDBLOCK) {
-    throw Error(file.parent_path().string(), "another process holds this run", "wait for it, or stop it", Error::Kind::busy);
+    throw Error(file.parent_path().string(), "another process holds this run", "wait for it, or stop it",
+                Error::Kind::busy);
   }
   errno = why;
   fail(file, "cannot be locked");

@@ -21,7 +21,9 @@ namespace {
 class Recorded final : public Backend {
  public:
   Recorded(std::vector<PastTap> taps, bool truth_known) : taps_(std::move(taps)), truth_known_(truth_known) {}
-  Contact tap(const TapRequest& request) override { return taps_.at(static_cast<std::size_t>(request.number - 1)).contact; }
+  Contact tap(const TapRequest& request) override {
+    return taps_.at(static_cast<std::size_t>(request.number - 1)).contact;
+  }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_known_; }
 

@@ -135,9 +135,8 @@ std::string to_json_text(const Row& row) {
 }
 
 std::string to_csv(const std::vector<Row>& rows) {
-  const auto widest = std::max_element(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-    return a.fields.size() < b.fields.size();
-  });
+  const auto widest = std::max_element(rows.begin(), rows.end(),
+                                       [](const Row& a, const Row& b) { return a.fields.size() < b.fields.size(); });
   if (widest == rows.end()) return {};
   std::string out;
   for (const auto& [name, value] : widest->fields) out += (out.empty() ? "" : ",") + csv_text(name);

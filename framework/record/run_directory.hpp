@@ -17,9 +17,9 @@ namespace palpate {
 /// How far a run came, read from its directory alone.
 struct RunStatus {
   enum class State {
-    absent,       ///< no such directory, or one without a tap
-    running,      ///< a living process holds the lock
-    unfinished,   ///< killed or interrupted
+    absent,      ///< no such directory, or one without a tap
+    running,     ///< a living process holds the lock
+    unfinished,  ///< killed or interrupted
     done,
     failed,
   };

@@ -26,10 +26,12 @@ std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config
   for (const std::string& word : workshop.command_line) line.items.push_back(quoted(word));
   Tree& origins = out.at("origins");
   origins = Tree::map();
-  for (const ResolveNotes::Origin& one : config.notes.origins) origins.entries.push_back({one.path, {}, quoted(one.place)});
+  for (const ResolveNotes::Origin& one : config.notes.origins)
+    origins.entries.push_back({one.path, {}, quoted(one.place)});
   Tree& dropped = out.at("dropped");
   dropped = Tree::map();
-  for (const ResolveNotes::Origin& one : config.notes.dropped) dropped.entries.push_back({one.path, {}, quoted(one.place)});
+  for (const ResolveNotes::Origin& one : config.notes.dropped)
+    dropped.entries.push_back({one.path, {}, quoted(one.place)});
   out.at("resumed") = Tree::list();
   return to_json(out);
 }
@@ -197,13 +199,15 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();
   const bool is_id = name.size() >= 12 && name.find_first_not_of("0123456789abcdef") >= 12;
   if (is_id && name.substr(0, 12) != config.id) {
-    throw Error((directory / "config.yaml").string(), fmt::format("the config now has the id {}, its directory is {}", config.id, name),
+    throw Error((directory / "config.yaml").string(),
+                fmt::format("the config now has the id {}, its directory is {}", config.id, name),
                 "config.yaml was changed; run it with 'palpate run' instead");
   }
   return config;
 }
 
-RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options, Journal* observer) {
+RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options,
+                     Journal* observer) {
   const Stopwatch watch;
   const ResolvedConfig config = load_run(workshop.host, directory);
   const RunStatus status = read_status(directory);

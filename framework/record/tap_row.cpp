@@ -79,10 +79,12 @@ double number_at(const Row& row, const char* name, double absent, const std::str
 }
 
 template <std::size_t N>
-std::size_t name_at(const Row& row, const char* field, const std::array<const char*, N>& names, const std::string& where) {
+std::size_t name_at(const Row& row, const char* field, const std::array<const char*, N>& names,
+                    const std::string& where) {
   const Scalar* value = row.find(field);
   const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-  const auto found = std::find_if(names.begin(), names.end(), [&](const char* one) { return text != nullptr && *text == one; });
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const char* one) { return text != nullptr && *text == one; });
   if (found == names.end()) throw Error(where, std::string("has no valid '") + field + "'", "the file is damaged");
   return static_cast<std::size_t>(found - names.begin());
 }
@@ -112,8 +114,9 @@ bool is_intent(const Row& row) { return row.find("intent") != nullptr; }
 
 Row unknown_result_of(const Row& intent) {
   Row row = intent;
-  row.fields.erase(std::remove_if(row.fields.begin(), row.fields.end(), [](const auto& field) { return field.first == "intent"; }),
-                   row.fields.end());
+  row.fields.erase(
+      std::remove_if(row.fields.begin(), row.fields.end(), [](const auto& field) { return field.first == "intent"; }),
+      row.fields.end());
   for (auto& [name, value] : row.fields) {
     if (name == "reason") value = std::string("the program ended during this tap");
   }

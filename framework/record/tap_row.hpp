@@ -24,7 +24,6 @@ Row unknown_result_of(const Row& intent);
 /// What a resumed run must know of a recorded tap. Throws Error, naming `where`, for a row that is not a tap.
 PastTap past_tap(const Row& row, const std::string& where);
 
-
 const char* outcome_name(Outcome outcome);
 
 }  // namespace palpate

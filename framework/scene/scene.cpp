@@ -38,7 +38,7 @@ struct Body {
   Shape shape;
   double half_length;
   double half_width;
-  double x, y;        ///< centre
+  double x, y;  ///< centre
   double cosine, sine;
 
   void turn(double rotation) {
@@ -66,8 +66,8 @@ void place_at_random(Body& body, const Area& area, Random& random, std::size_t n
     body.turn(2.0 * kPi * random.uniform());
     body.x = area.width * random.uniform();
     body.y = area.depth * random.uniform();
-    const bool inside = body.x >= body.reach_x() && body.x <= area.width - body.reach_x() &&
-                        body.y >= body.reach_y() && body.y <= area.depth - body.reach_y();
+    const bool inside = body.x >= body.reach_x() && body.x <= area.width - body.reach_x() && body.y >= body.reach_y() &&
+                        body.y <= area.depth - body.reach_y();
     if (inside) return;
   }
   throw Error(fmt::format("scene.objects.{}", number), "does not fit into the area",

@@ -147,13 +147,15 @@ std::vector<Axis> config_axes(const Tree& sweep) {
   if (!sweep.is_map()) throw Error(sweep.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
   for (const Tree::Entry& part : sweep.entries) {
     if (part.key != "grid") {
-      throw Error(part.place.text(), fmt::format("unknown option '{}' of sweep", part.key), suggestion(part.key, {"grid"}));
+      throw Error(part.place.text(), fmt::format("unknown option '{}' of sweep", part.key),
+                  suggestion(part.key, {"grid"}));
     }
     if (!part.value.is_map()) {
       throw Error(part.place.text(), "sweep.grid: expects a map of keys to values",
                   "write seed: range(0,10), a key a line");
     }
-    for (const Tree::Entry& entry : part.value.entries) axes.push_back({entry.key, expand_values(entry.value, entry.key)});
+    for (const Tree::Entry& entry : part.value.entries)
+      axes.push_back({entry.key, expand_values(entry.value, entry.key)});
   }
   return axes;
 }

@@ -107,7 +107,8 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
 void prepare_sweep(const SweepPlan& plan) {
   const fs::path& directory = plan.sweep.directory;
   if (is_sweep(directory)) {
-    throw Error(directory.string(), "this sweep exists", "'palpate resume' carries on, 'palpate status' tells its state");
+    throw Error(directory.string(), "this sweep exists",
+                "'palpate resume' carries on, 'palpate status' tells its state");
   }
   fs::create_directories(directory / "jobs");
   write_file(directory / "config.yaml", to_yaml(plan.config));
@@ -259,16 +260,18 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int
     group->on_surface_all.push_back(on_surface);
     if (dead) continue;
     group->on_surface_live.push_back(on_surface);
-    if (const std::string error = text_at(row, "rmse_height_m"); !error.empty()) group->rmse_live.push_back(std::stod(error));
+    if (const std::string error = text_at(row, "rmse_height_m"); !error.empty())
+      group->rmse_live.push_back(std::stod(error));
   }
   std::size_t width = 8;
   for (const Group& group : groups) width = std::max(width, group.name.size());
-  std::string out = fmt::format("{:<{}}  {:>5}  {:>11}  {:>7}  {:>6}  {:>22}  {:>22}  {:>18}\n", "group", width, "runs", "dead starts",
-                                "found", "failed", "on-surface, live", "on-surface, all", "height cm, live");
+  std::string out =
+      fmt::format("{:<{}}  {:>5}  {:>11}  {:>7}  {:>6}  {:>22}  {:>22}  {:>18}\n", "group", width, "runs",
+                  "dead starts", "found", "failed", "on-surface, live", "on-surface, all", "height cm, live");
   for (const Group& group : groups) {
     const int ended = std::max(1, group.runs - group.failed);
-    out += fmt::format("{:<{}}  {:>5}  {:>10.1f}%  {:>6.1f}%  {:>6}  {:>22}  {:>22}  {:>18}\n", group.name, width, group.runs,
-                       100.0 * group.dead / ended, 100.0 * group.found / ended, group.failed,
+    out += fmt::format("{:<{}}  {:>5}  {:>10.1f}%  {:>6.1f}%  {:>6}  {:>22}  {:>22}  {:>18}\n", group.name, width,
+                       group.runs, 100.0 * group.dead / ended, 100.0 * group.found / ended, group.failed,
                        spread(group.on_surface_live, "{:.0f}", 1.0), spread(group.on_surface_all, "{:.0f}", 1.0),
                        spread(group.rmse_live, "{:.1f}", 100.0));
   }

@@ -18,6 +18,7 @@ class Weighted final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 };
 
-PALPATE_PLUGIN(Acquisition, Weighted, "weighted", "tap where the height is unknown and the object is likely, the paper's rule")
+PALPATE_PLUGIN(Acquisition, Weighted, "weighted",
+               "tap where the height is unknown and the object is likely, the paper's rule")
 
 }  // namespace palpate::acquisitions

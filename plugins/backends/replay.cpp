@@ -21,11 +21,14 @@ struct ReplayOptions : Options {
   bool scene_is_truth = false;
 
   void list(Fields& fields) override {
-    fields.text(record, Field("record", "a run directory, or a CSV file with the columns x, y, outcome, height (m), and "
-                                        "if known tap, force, robot_seconds")
+    fields.text(record, Field("record",
+                              "a run directory, or a CSV file with the columns x, y, outcome, height (m), and "
+                              "if known tap, force, robot_seconds")
                             .needed());
-    fields.real(tolerance, Field("tolerance", "how far from a target the recorded tap may lie").in(Unit::metre).at_least(0));
-    fields.flag(scene_is_truth, Field("scene_is_truth", "the scene of the config is what was recorded: compute the errors"));
+    fields.real(tolerance,
+                Field("tolerance", "how far from a target the recorded tap may lie").in(Unit::metre).at_least(0));
+    fields.flag(scene_is_truth,
+                Field("scene_is_truth", "the scene of the config is what was recorded: compute the errors"));
   }
 };
 
@@ -66,7 +69,8 @@ class Table {
  public:
   explicit Table(const std::string& file) : file_(file), in_(file) {
     std::string line;
-    if (!in_ || !std::getline(in_, line)) throw Error(file, "cannot be read", "backend.record names a run directory or a CSV file");
+    if (!in_ || !std::getline(in_, line))
+      throw Error(file, "cannot be read", "backend.record names a run directory or a CSV file");
     const std::vector<std::string> names = split(line);
     for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
     for (const char* needed : {"x", "y", "outcome", "height"}) {

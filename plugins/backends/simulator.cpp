@@ -18,11 +18,15 @@ struct MotionOptions : Options {
   double pause = 0.5;
 
   void list(Fields& fields) override {
-    fields.choice(type, Field("type", "how the arm comes down"),
-                  {{"paper", "in steps with a pause after each, until the force rises", [this](Fields& inner) {
-                      inner.real(step, Field("step", "height of one step").in(Unit::metre).above(0).from("Sun and Min 2021: 3 cm"));
-                      inner.real(pause, Field("pause", "rest after each step").in(Unit::second).at_least(0).from("Sun and Min 2021: 0.5 s"));
-                    }}});
+    fields.choice(
+        type, Field("type", "how the arm comes down"),
+        {{"paper", "in steps with a pause after each, until the force rises", [this](Fields& inner) {
+            inner.real(step,
+                       Field("step", "height of one step").in(Unit::metre).above(0).from("Sun and Min 2021: 3 cm"));
+            inner.real(
+                pause,
+                Field("pause", "rest after each step").in(Unit::second).at_least(0).from("Sun and Min 2021: 0.5 s"));
+          }}});
   }
 };
 
@@ -47,7 +51,9 @@ struct SimulatorOptions : Options {
                                .in(Unit::newton)
                                .above(0)
                                .from("5 to 10 N above tare, below the 16 N at which Baxter's firmware stops"));
-    fields.real(pace, Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
+    fields.real(
+        pace,
+        Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
   }
 };
 
@@ -56,7 +62,10 @@ class Simulator final : public Backend {
   using Options = SimulatorOptions;
 
   Simulator(const Options& options, const Context& context)
-      : options_(options), scene_(context.scene), interrupted_(context.interrupted), hover_(scene_.desk() + options.hover) {
+      : options_(options),
+        scene_(context.scene),
+        interrupted_(context.interrupted),
+        hover_(scene_.desk() + options.hover) {
     if (scene_.highest() >= hover_) {
       throw Error("hover", "an object is as high as the arm travels, or higher", "raise it or lower the object");
     }

@@ -11,10 +11,11 @@ struct StationaryOptions : Options {
   double length_scale = 0.017;
 
   void list(Fields& fields) override {
-    fields.real(length_scale, Field("length_scale", "distance over which heights stay alike")
-                                  .in(Unit::metre)
-                                  .above(0)
-                                  .from("Sun and Min 2021 give 'sigma^2 = 0.017' without unit; 1.7 cm reproduces their counts"));
+    fields.real(length_scale,
+                Field("length_scale", "distance over which heights stay alike")
+                    .in(Unit::metre)
+                    .above(0)
+                    .from("Sun and Min 2021 give 'sigma^2 = 0.017' without unit; 1.7 cm reproduces their counts"));
   }
 };
 

@@ -31,7 +31,8 @@ class Collector : public Journal {
 /// Answers with what the test scripts; a plain desk at 0 once the script has ended.
 class ScriptedBackend final : public Backend {
  public:
-  explicit ScriptedBackend(std::vector<Contact> answers, bool truth = false) : answers_(std::move(answers)), truth_(truth) {}
+  explicit ScriptedBackend(std::vector<Contact> answers, bool truth = false)
+      : answers_(std::move(answers)), truth_(truth) {}
   std::vector<TapRequest> requests;
 
   Contact tap(const TapRequest& request) override {

@@ -34,7 +34,8 @@ fs::path TemporaryFolder::write(const std::string& name, const std::string& text
   return file;
 }
 
-Child::Child(const std::vector<std::string>& words, const fs::path& folder, const std::vector<std::string>& environment) {
+Child::Child(const std::vector<std::string>& words, const fs::path& folder,
+             const std::vector<std::string>& environment) {
   const std::string out = (scratch_.path() / "out").string();
   const std::string err = (scratch_.path() / "err").string();
   std::vector<char*> arguments;
@@ -68,11 +69,13 @@ Ended Child::wait() {
   return {code, text_of(scratch_.path() / "out"), text_of(scratch_.path() / "err")};
 }
 
-Ended run_program(const std::vector<std::string>& words, const fs::path& folder, const std::vector<std::string>& environment) {
+Ended run_program(const std::vector<std::string>& words, const fs::path& folder,
+                  const std::vector<std::string>& environment) {
   return Child(words, folder, environment).wait();
 }
 
-Ended palpate(const std::vector<std::string>& words, const fs::path& folder, const std::vector<std::string>& environment) {
+Ended palpate(const std::vector<std::string>& words, const fs::path& folder,
+              const std::vector<std::string>& environment) {
   std::vector<std::string> all{program_file().string()};
   all.insert(all.end(), words.begin(), words.end());
   return run_program(all, folder, environment);
@@ -81,7 +84,9 @@ Ended palpate(const std::vector<std::string>& words, const fs::path& folder, con
 fs::path source_folder() { return PALPATE_SOURCE_FOLDER; }
 fs::path program_file() { return fs::path(PALPATE_BUILD_FOLDER) / "palpate"; }
 fs::path plugin_folder() { return fs::path(PALPATE_BUILD_FOLDER) / "lib" / "palpate"; }
-fs::path bad_plugin_folder(const std::string& name) { return fs::path(PALPATE_BUILD_FOLDER) / "tests" / "bad_plugins" / name; }
+fs::path bad_plugin_folder(const std::string& name) {
+  return fs::path(PALPATE_BUILD_FOLDER) / "tests" / "bad_plugins" / name;
+}
 
 const PluginHost& shared_host() {
   static const PluginHost host({plugin_folder()});

@@ -65,7 +65,8 @@ std::filesystem::path source_folder();
 std::filesystem::path program_file();
 std::filesystem::path plugin_folder();
 
-/// The search path of one deliberately broken plugin (tests/bad_plugins): <folder>/<kind>/<name>.so with the name of the case.
+/// The search path of one deliberately broken plugin (tests/bad_plugins): <folder>/<kind>/<name>.so with the name of
+/// the case.
 std::filesystem::path bad_plugin_folder(const std::string& name);
 
 /// A host over the plugins of this build, shared by the tests of one process.

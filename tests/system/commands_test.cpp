@@ -48,7 +48,8 @@ TEST(Run, PrintsALineATapAndASummaryAndLeavesEveryFileOfTheContract) {
   EXPECT_EQ(run.err, "");
   EXPECT_EQ(lines(run.out), 1 + 17 + 4);
   const fs::path directory = only_run(folder.path() / "runs");
-  for (const char* name : {"config.yaml", "manifest.json", "taps.jsonl", "taps.csv", "timings.csv", "summary.json", "surface.csv"}) {
+  for (const char* name :
+       {"config.yaml", "manifest.json", "taps.jsonl", "taps.csv", "timings.csv", "summary.json", "surface.csv"}) {
     EXPECT_TRUE(fs::exists(directory / name)) << name;
   }
   EXPECT_EQ(lines(text_of(directory / "taps.jsonl")), 17);
@@ -64,10 +65,30 @@ TEST(Run, TheSummaryHoldsEveryFieldOfTheContractAndAddsUp) {
   const Ended run = test::palpate({"run", paper(), "--json"}, folder.path());
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, text_of(only_run(folder.path() / "runs") / "summary.json"));
-  for (const char* name :
-       {"name", "id", "seed", "status", "stop_reason", "taps", "on_surface_taps", "off_surface_taps", "failed_taps", "first_hit_tap",
-        "found", "rmse_m", "rmse_on_surface_m", "rmse_height_m", "footprint_iou", "nlpd", "coverage_95", "robot_seconds",
-        "wall_seconds", "compute_seconds", "compute.infer", "jitter_max", "interventions.jitter", "peak_rss_bytes"}) {
+  for (const char* name : {"name",
+                           "id",
+                           "seed",
+                           "status",
+                           "stop_reason",
+                           "taps",
+                           "on_surface_taps",
+                           "off_surface_taps",
+                           "failed_taps",
+                           "first_hit_tap",
+                           "found",
+                           "rmse_m",
+                           "rmse_on_surface_m",
+                           "rmse_height_m",
+                           "footprint_iou",
+                           "nlpd",
+                           "coverage_95",
+                           "robot_seconds",
+                           "wall_seconds",
+                           "compute_seconds",
+                           "compute.infer",
+                           "jitter_max",
+                           "interventions.jitter",
+                           "peak_rss_bytes"}) {
     value(run.out, name);
   }
   const auto whole = [&](const char* name) { return std::get<std::int64_t>(value(run.out, name)); };
@@ -137,22 +158,24 @@ TEST(Run, ThePrintedConfigRunsAsTheSameRun) {
 
 TEST(Run, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
   const TemporaryFolder folder;
-  const Ended run = test::palpate({"run", config("paper/comparison.yaml"), "acquisition=grid", "acquisition.type=random",
-                                   "taps=9", "--print-config", "--origins"},
+  const Ended run = test::palpate({"run", config("paper/comparison.yaml"), "acquisition=grid",
+                                   "acquisition.type=random", "taps=9", "--print-config", "--origins"},
                                   folder.path());
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("taps: 9"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("taps: 9 +# command line"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("kernel.length_scale: 0.017 m +# .*configs/kernel/rbf.yaml:4:17"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("tie_tolerance: 1e-08 +# default"));
-  EXPECT_THAT(run.out, ::testing::ContainsRegex("# dropped: acquisition.count from .*configs/acquisition/grid.yaml:4:10"));
+  EXPECT_THAT(run.out,
+              ::testing::ContainsRegex("# dropped: acquisition.count from .*configs/acquisition/grid.yaml:4:10"));
 }
 
 TEST(Run, SwapsEveryStrategyFromTheCommandLine) {
   const TemporaryFolder folder;
-  for (const char* choice : {"kernel=rbf", "kernel=matern32", "kernel=matern52", "acquisition=uncertainty", "acquisition=weighted",
-                             "acquisition=random", "acquisition=grid", "fitting=fixed", "scene=object_ii", "weight.clip=true",
-                             "height.kernel=matern32", "initial.design=sobol", "candidates={spacing: 1 cm}"}) {
+  for (const char* choice :
+       {"kernel=rbf", "kernel=matern32", "kernel=matern52", "acquisition=uncertainty", "acquisition=weighted",
+        "acquisition=random", "acquisition=grid", "fitting=fixed", "scene=object_ii", "weight.clip=true",
+        "height.kernel=matern32", "initial.design=sobol", "candidates={spacing: 1 cm}"}) {
     const Ended run = test::palpate({"run", paper(), choice, "--json", "--force"}, folder.path());
     EXPECT_EQ(run.status, 0) << choice << ": " << run.err;
     EXPECT_EQ(value(run.out, "taps"), Scalar{std::int64_t{17}}) << choice;
@@ -163,8 +186,9 @@ TEST(Run, TheReplayBackendRepeatsARecordedRunFromItsTable) {
   const TemporaryFolder folder;
   test::palpate({"run", paper(), "--quiet"}, folder.path());
   const fs::path first = only_run(folder.path() / "runs");
-  const Ended again = test::palpate({"run", paper(), "backend={type: replay, record: " + first.string() + "}", "--runs", "again", "--quiet"},
-                                    folder.path());
+  const Ended again = test::palpate(
+      {"run", paper(), "backend={type: replay, record: " + first.string() + "}", "--runs", "again", "--quiet"},
+      folder.path());
   ASSERT_EQ(again.status, 0) << again.err;
   const fs::path second = only_run(folder.path() / "again");
   const auto contacts = [](const fs::path& run) {
@@ -189,7 +213,9 @@ TEST(Run, WritesTheMapsOfEachChoiceWhereTheConfigAsksForThem) {
 TEST(Run, TheSameConfigAndSeedGiveTheSameBytes) {
   const TemporaryFolder folder;
   for (const char* runs : {"a", "b"}) {
-    ASSERT_EQ(test::palpate({"run", config("paper/object_i_right.yaml"), "--quiet", "--runs", runs}, folder.path()).status, 0);
+    ASSERT_EQ(
+        test::palpate({"run", config("paper/object_i_right.yaml"), "--quiet", "--runs", runs}, folder.path()).status,
+        0);
   }
   const std::string first = text_of(only_run(folder.path() / "a") / "taps.csv");
   EXPECT_EQ(first, text_of(only_run(folder.path() / "b") / "taps.csv"));
@@ -291,7 +317,8 @@ TEST(Status, TellsWhereARunStandsAndWhyItStopped) {
 TEST(Replay, FindsEveryNumberEqual) {
   const TemporaryFolder folder;
   for (const char* acquisition : {"weighted", "uncertainty", "random"}) {
-    test::palpate({"run", paper(), "--quiet", "--runs", acquisition, std::string("acquisition=") + acquisition}, folder.path());
+    test::palpate({"run", paper(), "--quiet", "--runs", acquisition, std::string("acquisition=") + acquisition},
+                  folder.path());
     const Ended ended = test::palpate({"replay", only_run(folder.path() / acquisition).string()}, folder.path());
     EXPECT_EQ(ended.status, 0) << ended.out;
     EXPECT_THAT(ended.out, ::testing::MatchesRegex("17 taps, [0-9]+ numbers, all equal\n"));
@@ -315,7 +342,8 @@ TEST(Replay, NoticesANumberThatWasTamperedWith) {
 TEST(Validate, ChecksEveryShippedConfigAndNamesEveryBadOne) {
   const TemporaryFolder folder;
   std::vector<std::string> words{"validate"};
-  for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / "configs" / "paper")) words.push_back(entry.path().string());
+  for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / "configs" / "paper"))
+    words.push_back(entry.path().string());
   const Ended good = test::palpate(words, folder.path());
   EXPECT_EQ(good.status, 0) << good.err;
   EXPECT_EQ(lines(good.out), static_cast<int>(words.size()) - 1);
@@ -331,7 +359,8 @@ TEST(Validate, ChecksEveryShippedConfigAndNamesEveryBadOne) {
 
 TEST(Sweep, WritesOneRowAJobAndListsItsJobsBeforehand) {
   const TemporaryFolder folder;
-  const std::vector<std::string> words{"sweep", paper(), "acquisition=weighted,random", "kernel.length_scale=log(1cm,4cm,3)", "seed=range(0,2)"};
+  const std::vector<std::string> words{"sweep", paper(), "acquisition=weighted,random",
+                                       "kernel.length_scale=log(1cm,4cm,3)", "seed=range(0,2)"};
   std::vector<std::string> list = words;
   list.push_back("--list");
   const Ended listed = test::palpate(list, folder.path());
@@ -350,7 +379,8 @@ TEST(Sweep, WritesOneRowAJobAndListsItsJobsBeforehand) {
   EXPECT_EQ(results.find("null"), std::string::npos);
   EXPECT_EQ(lines(text_of(directory / "manifest.jsonl")), 12);
   EXPECT_FALSE(fs::exists(directory / "summary.json"));
-  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, StartsWith("12 jobs, 12 done, 0 running"));
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
+              StartsWith("12 jobs, 12 done, 0 running"));
   for (const auto& job : fs::directory_iterator(directory / "jobs")) {
     EXPECT_FALSE(fs::exists(job.path() / "surface.csv")) << "not by default in a sweep";
     EXPECT_TRUE(fs::exists(job.path() / "taps.csv"));
@@ -360,7 +390,10 @@ TEST(Sweep, WritesOneRowAJobAndListsItsJobsBeforehand) {
 TEST(Sweep, GivesTheSameBytesAsSingleRunsOnAnyNumberOfThreads) {
   const TemporaryFolder folder;
   for (const char* workers : {"1", "2"}) {
-    ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,6)", "-j", workers, "--runs", workers, "--quiet"}, folder.path()).status, 0);
+    ASSERT_EQ(
+        test::palpate({"sweep", paper(), "seed=range(0,6)", "-j", workers, "--runs", workers, "--quiet"}, folder.path())
+            .status,
+        0);
   }
   const fs::path one = only_run(folder.path() / "1");
   const fs::path two = only_run(folder.path() / "2");
@@ -390,8 +423,10 @@ TEST(Sweep, CarriesOnWithWhatIsMissing) {
   const std::string before = text_of(directory / "results.csv");
   const fs::path job = fs::directory_iterator(directory / "jobs")->path();
   const std::string taps = text_of(job / "taps.csv");
-  for (const char* name : {"summary.json", "taps.csv", "taps.jsonl", "timings.csv", "manifest.json"}) fs::remove(job / name);
-  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, HasSubstr("4 done, 0 running, 0 failed, 0 unfinished, 1 missing"));
+  for (const char* name : {"summary.json", "taps.csv", "taps.jsonl", "timings.csv", "manifest.json"})
+    fs::remove(job / name);
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
+              HasSubstr("4 done, 0 running, 0 failed, 0 unfinished, 1 missing"));
   const Ended refused = test::palpate({"sweep", paper(), "seed=range(0,5)"}, folder.path());
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("'palpate resume' carries on"));
@@ -402,12 +437,14 @@ TEST(Sweep, CarriesOnWithWhatIsMissing) {
 
 TEST(Sweep, AFailedJobIsCountedNamedAndStopsNoOther) {
   const TemporaryFolder folder;
-  const Ended ended = test::palpate({"sweep", paper(), "scene.placement=random", "scene.objects.0.length=10cm,16cm,40cm"}, folder.path());
+  const Ended ended = test::palpate(
+      {"sweep", paper(), "scene.placement=random", "scene.objects.0.length=10cm,16cm,40cm"}, folder.path());
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.out, HasSubstr("failed: job 2"));
   EXPECT_THAT(ended.out, HasSubstr("does not fit into the area"));
   const fs::path directory = only_run(folder.path() / "runs");
-  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out, StartsWith("3 jobs, 2 done, 0 running, 1 failed"));
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
+              StartsWith("3 jobs, 2 done, 0 running, 1 failed"));
   EXPECT_EQ(lines(text_of(directory / "results.csv")), 4);
 }
 
@@ -415,7 +452,8 @@ TEST(Plugins, ListsEveryOneAndTheOptionsOfOne) {
   const TemporaryFolder folder;
   const Ended all = test::palpate({"plugins"}, folder.path());
   EXPECT_EQ(all.status, 0) << all.err;
-  for (const char* name : {"rbf", "matern32", "matern52", "uncertainty", "weighted", "random", "grid", "fixed", "simulator", "replay"}) {
+  for (const char* name :
+       {"rbf", "matern32", "matern52", "uncertainty", "weighted", "random", "grid", "fixed", "simulator", "replay"}) {
     EXPECT_THAT(all.out, HasSubstr(name));
   }
   EXPECT_EQ(lines(test::palpate({"plugins", "kernel"}, folder.path()).out), 3);
@@ -444,8 +482,14 @@ TEST(CommandLine, HelpGoesToStdoutWithStatus0) {
 
 TEST(CommandLine, WrongUsageIsOneLineWithStatus2) {
   const TemporaryFolder folder;
-  const std::vector<std::vector<std::string>> wrong{{}, {"rum"}, {"run"}, {"run", paper(), "--jsno"}, {"sweep"}, {"run", paper(), "--origins"},
-                                                    {"plugins", "kernels"}, {"sweep", paper(), "-j", "0"}};
+  const std::vector<std::vector<std::string>> wrong{{},
+                                                    {"rum"},
+                                                    {"run"},
+                                                    {"run", paper(), "--jsno"},
+                                                    {"sweep"},
+                                                    {"run", paper(), "--origins"},
+                                                    {"plugins", "kernels"},
+                                                    {"sweep", paper(), "-j", "0"}};
   for (const auto& words : wrong) {
     const Ended ended = test::palpate(words, folder.path());
     EXPECT_EQ(ended.status, 2) << (words.empty() ? "" : words.back());

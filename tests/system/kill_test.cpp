@@ -84,7 +84,8 @@ TEST_P(Kill, ResumedItEndsAsTheUnbrokenRunByteForByte) {
   EXPECT_EQ(text_of(done / "taps.csv"), whole);
   EXPECT_EQ(text_of(done / "taps.jsonl").substr(0, recorded.size()), recorded);
   EXPECT_EQ(read_json_lines(done / "taps.jsonl").rows.size(), 17U) << "no tap twice";
-  RecordProperty("recorded_before_the_last_resume", static_cast<int>(std::count(recorded.begin(), recorded.end(), '\n')));
+  RecordProperty("recorded_before_the_last_resume",
+                 static_cast<int>(std::count(recorded.begin(), recorded.end(), '\n')));
 }
 
 INSTANTIATE_TEST_SUITE_P(AtRandomMoments, Kill, ::testing::Range(0, 20));
@@ -92,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(AtRandomMoments, Kill, ::testing::Range(0, 20));
 TEST(KillBetweenAnnouncementAndResult, TheTapBecomesUnknownAndReachesNoModel) {
   const TemporaryFolder folder;
   // Each tap takes seconds of real time and is announced: a kill after the first announcement falls into the tap.
-  const std::vector<std::string> words{test::program_file().string(), "run", paper(), "log.sync=tap", "backend.pace=0.5", "taps=4", "--quiet"};
+  const std::vector<std::string> words{
+      test::program_file().string(), "run", paper(), "log.sync=tap", "backend.pace=0.5", "taps=4", "--quiet"};
   {
     test::Child child(words, folder.path());
     fs::path directory;

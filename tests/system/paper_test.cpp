@@ -49,14 +49,16 @@ double median(std::vector<double> values) {
 TEST(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertainty) {
   const TemporaryFolder folder;
   const std::string config = (test::source_folder() / "configs/paper/comparison.yaml").string();
-  const test::Ended ended = test::palpate({"sweep", config, "acquisition=uncertainty,weighted", "--quiet"}, folder.path());
+  const test::Ended ended =
+      test::palpate({"sweep", config, "acquisition=uncertainty,weighted", "--quiet"}, folder.path());
   ASSERT_EQ(ended.status, 0) << ended.err;
   std::map<std::string, std::vector<double>> live;
   std::map<std::string, int> runs;
   for (const Cells& row : read_csv(test::only_run(folder.path() / "runs") / "results.csv")) {
     ++runs[row.at("acquisition")];
     const std::string hit = row.at("first_hit_tap");
-    if (!hit.empty() && std::stoi(hit) <= 3) live[row.at("acquisition")].push_back(std::stod(row.at("on_surface_taps")));
+    if (!hit.empty() && std::stoi(hit) <= 3)
+      live[row.at("acquisition")].push_back(std::stod(row.at("on_surface_taps")));
     if (row.at("acquisition") == "weighted" && (hit.empty() || std::stoi(hit) > 3)) {
       EXPECT_EQ(row.at("on_surface_taps"), "0") << "without a fallback a dead start never recovers";
     }

@@ -37,7 +37,8 @@ std::vector<std::string> shown_commands(const std::string& text) {
 /// A folder that looks like a checkout: `palpate` is the program of this build, output stays in here.
 void imitate_checkout(const fs::path& folder) {
   fs::create_symlink(test::program_file(), folder / "palpate");
-  for (const char* name : {"configs", "tests", "build"}) fs::create_symlink(test::source_folder() / name, folder / name);
+  for (const char* name : {"configs", "tests", "build"})
+    fs::create_symlink(test::source_folder() / name, folder / name);
 }
 
 /// Compares README's table with what `palpate sweep` printed: group, runs, dead starts, found, failed, three spreads.
@@ -49,12 +50,14 @@ void expect_table(const std::string& readme, const std::string& printed) {
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string name, runs, dead, found, failed, live, live_spread, all, all_spread, error, error_spread;
-    words >> name >> runs >> dead >> found >> failed >> live >> live_spread >> all >> all_spread >> error >> error_spread;
+    words >> name >> runs >> dead >> found >> failed >> live >> live_spread >> all >> all_spread >> error >>
+        error_spread;
     if (runs != "1000") continue;
     ++compared;
     const auto percent = [](std::string text) { return text.insert(text.size() - 1, " "); };
-    EXPECT_THAT(plain, HasSubstr("| " + name + " | " + live + " " + live_spread + " | " + all + " " + all_spread + " | " +
-                                 percent(dead) + " | " + percent(found) + " | " + error + " " + error_spread + " cm |"));
+    EXPECT_THAT(plain,
+                HasSubstr("| " + name + " | " + live + " " + live_spread + " | " + all + " " + all_spread + " | " +
+                          percent(dead) + " | " + percent(found) + " | " + error + " " + error_spread + " cm |"));
   }
   EXPECT_EQ(compared, 4);
 }

@@ -78,7 +78,8 @@ TEST(Experiment, WeightedScoreIsTheProductOfUncertaintyAndWeight) {
 
 TEST(Experiment, ADeadStartFallsBackToUncertaintyAndSaysSo) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
   Collector collector;
   experiment.run(collector);
   for (std::size_t i = 3; i < collector.taps.size(); ++i) {
@@ -90,7 +91,8 @@ TEST(Experiment, ADeadStartFallsBackToUncertaintyAndSaysSo) {
 
 TEST(Experiment, WithoutFallbackADeadStartStallsAtTheFirstCandidateAsThePapersRuleDoes) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"fallback=none", "repeat=allow"});
-  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
   Collector collector;
   experiment.run(collector);
   for (std::size_t i = 3; i < collector.taps.size(); ++i) EXPECT_EQ(collector.taps[i].candidate, 0);
@@ -176,7 +178,8 @@ TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
 
 TEST(Experiment, StopsWhenTheRobotHasBeenBusyLongEnough) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"stop.robot_time=5 s"});
-  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
   Collector collector;
   experiment.run(collector);
   EXPECT_EQ(collector.taps.size(), 5U) << "each scripted tap takes a second";
@@ -184,9 +187,9 @@ TEST(Experiment, StopsWhenTheRobotHasBeenBusyLongEnough) {
 }
 
 TEST(Experiment, StopsWhenNoCandidateIsUncertainAnyMore) {
-  const ResolvedConfig config =
-      shipped_config("paper/object_i.yaml", {"acquisition=uncertainty", "kernel.length_scale=13 cm", "taps=100",
-                                             "stop.max_standard_deviation=10 cm"});
+  const ResolvedConfig config = shipped_config(
+      "paper/object_i.yaml",
+      {"acquisition=uncertainty", "kernel.length_scale=13 cm", "taps=100", "stop.max_standard_deviation=10 cm"});
   Experiment experiment(config.options, test::shared_host(), nullptr);
   Collector collector;
   experiment.run(collector);
@@ -217,7 +220,8 @@ TEST(Experiment, AnInterruptionStopsItAfterTheTapUnderWay) {
 TEST(Experiment, StrategiesWithEqualSeedsStartAlike) {
   std::vector<std::vector<int>> starts;
   for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {
-    const ResolvedConfig config = shipped_config("paper/object_i.yaml", {std::string("acquisition=") + acquisition, "seed=42"});
+    const ResolvedConfig config =
+        shipped_config("paper/object_i.yaml", {std::string("acquisition=") + acquisition, "seed=42"});
     Experiment experiment(config.options, test::shared_host(), nullptr);
     Collector collector;
     experiment.run(collector);
@@ -228,20 +232,23 @@ TEST(Experiment, StrategiesWithEqualSeedsStartAlike) {
 
 TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
   for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {
-    const ResolvedConfig config = shipped_config("paper/object_i_right.yaml", {std::string("acquisition=") + acquisition, "seed=3"});
+    const ResolvedConfig config =
+        shipped_config("paper/object_i_right.yaml", {std::string("acquisition=") + acquisition, "seed=3"});
     Experiment whole(config.options, test::shared_host(), nullptr);
     Collector unbroken;
     whole.run(unbroken);
     for (std::size_t cut : {1U, 3U, 9U, 16U}) {
       std::vector<PastTap> past;
-      for (std::size_t i = 0; i < cut; ++i) past.push_back({unbroken.taps[i].target, unbroken.taps[i].contact, unbroken.taps[i].source});
+      for (std::size_t i = 0; i < cut; ++i)
+        past.push_back({unbroken.taps[i].target, unbroken.taps[i].contact, unbroken.taps[i].source});
       Experiment second(config.options, test::shared_host(), nullptr);
       second.resume(past);
       Collector rest;
       second.run(rest);
       ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
       for (std::size_t i = 0; i < rest.taps.size(); ++i) {
-        EXPECT_EQ(rest.taps[i].candidate, unbroken.taps[cut + i].candidate) << acquisition << " cut " << cut << " tap " << i;
+        EXPECT_EQ(rest.taps[i].candidate, unbroken.taps[cut + i].candidate)
+            << acquisition << " cut " << cut << " tap " << i;
         EXPECT_EQ(rest.taps[i].score, unbroken.taps[cut + i].score);
         EXPECT_EQ(rest.taps[i].contact.seconds, unbroken.taps[cut + i].contact.seconds);
       }

@@ -3,9 +3,9 @@
 
 #include <palpate/random.hpp>
 
+#include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <gtest/gtest.h>
 
 #include <cmath>
 

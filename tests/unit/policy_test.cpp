@@ -13,7 +13,8 @@ namespace {
 
 Pick pick_all(std::initializer_list<double> scores, double scale = 0.0, double tolerance = 1e-8) {
   const std::vector<double> values(scores);
-  const Eigen::VectorXd vector = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Eigen::VectorXd vector =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return pick(vector, std::vector<bool>(values.size(), true), scale, tolerance);
 }
 

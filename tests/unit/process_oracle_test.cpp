@@ -5,9 +5,9 @@
 #include "experiment/resolved.hpp"
 #include "support/support.hpp"
 
-#include <boost/multiprecision/mpfr.hpp>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <boost/multiprecision/mpfr.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,8 @@
 namespace palpate {
 namespace {
 
-using Real = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<50>, boost::multiprecision::et_off>;
+using Real =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<50>, boost::multiprecision::et_off>;
 
 /// Two Gaussian processes on the same places, heights and labels, with the squared-exponential kernel of unit variance:
 /// by the book, point by point.
@@ -137,10 +138,10 @@ struct Worst {
 
 Worst errors_of_run(const std::string& length_scale, double metres, const std::string& acquisition, int seed) {
   Composer composer(test::source_folder() / "configs");
-  const ResolvedConfig config = load_experiment(
-      composer, test::shared_host(), test::source_folder() / "configs/paper/object_i_right.yaml",
-      {parse_override("kernel.length_scale=" + length_scale), parse_override("acquisition=" + acquisition),
-       parse_override("seed=" + std::to_string(seed))});
+  const ResolvedConfig config =
+      load_experiment(composer, test::shared_host(), test::source_folder() / "configs/paper/object_i_right.yaml",
+                      {parse_override("kernel.length_scale=" + length_scale),
+                       parse_override("acquisition=" + acquisition), parse_override("seed=" + std::to_string(seed))});
   Experiment experiment(config.options, test::shared_host(), nullptr);
   Comparison comparison(experiment, metres);
   experiment.run(comparison);

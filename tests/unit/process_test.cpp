@@ -4,9 +4,9 @@
 
 #include <palpate/random.hpp>
 
+#include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -46,7 +46,8 @@ Data draw(int n, std::uint64_t seed) {
 
 Process processed(const Data& data, const ProcessSettings& settings, const Candidates& candidates) {
   Process process(std::make_shared<Bowl>(), settings, candidates.points);
-  for (Eigen::Index i = 0; i < data.values.size(); ++i) process.add({data.points(i, 0), data.points(i, 1)}, data.values(i));
+  for (Eigen::Index i = 0; i < data.values.size(); ++i)
+    process.add({data.points(i, 0), data.points(i, 1)}, data.values(i));
   return process;
 }
 
@@ -72,8 +73,8 @@ TEST(Process, EqualsTheTextbookFormulasWithTheWholeMatrix) {
   EXPECT_LT((process.mean() - mean).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((process.variance() - variance).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((process.relative_variance() - variance.cwiseQuotient(6.25 * prior)).cwiseAbs().maxCoeff(), 1e-9);
-  const double likelihood =
-      -0.5 * centred.dot(inverse * centred) - 0.5 * std::log(k.determinant()) - 15 * std::log(2 * 3.14159265358979323846);
+  const double likelihood = -0.5 * centred.dot(inverse * centred) - 0.5 * std::log(k.determinant()) -
+                            15 * std::log(2 * 3.14159265358979323846);
   EXPECT_NEAR(process.log_marginal_likelihood(), likelihood, 1e-9);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "record/json.hpp"
 #include "record/run_directory.hpp"
+#include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "support/support.hpp"
 
@@ -105,7 +105,8 @@ TEST(RunDirectory, RefusesADamagedLineWithItsNumber) {
 
 TEST(RunDirectory, RefusesALineThatIsNoTap) {
   const TemporaryFolder folder;
-  folder.write("run/taps.jsonl", "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
+  folder.write("run/taps.jsonl",
+               "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
   RunDirectory run(folder.path() / "run");
   EXPECT_THROW(run.recover(), Error);
 }

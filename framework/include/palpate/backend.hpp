@@ -11,13 +11,14 @@ namespace palpate {
 /// One tap as it is asked for. It says all that a simulated answer may depend on beside options and seed, so that a
 /// resumed run goes on exactly as the unbroken one would have.
 struct TapRequest {
-  int number = 1;                    ///< of the tap within the run, from 1
-  Target target;                     ///< within the scene's area
-  std::optional<Target> previous;    ///< the target of the tap before, none for the first
+  int number = 1;                  ///< of the tap within the run, from 1
+  Target target;                   ///< within the scene's area
+  std::optional<Target> previous;  ///< the target of the tap before, none for the first
 };
 
-/// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up height; the destructor leaves a robot in a safe state; no
-/// method moves anything but tap(); a repeatable backend answers the same request alike, whatever it was asked before.
+/// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up
+/// height; the destructor leaves a robot in a safe state; no method moves anything but tap(); a repeatable backend
+/// answers the same request alike, whatever it was asked before.
 class Backend {
  public:
   static constexpr const char* kKind = "backend";

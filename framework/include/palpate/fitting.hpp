@@ -20,10 +20,10 @@ struct FitProblem {
 
 /// What a fit did, in numbers and words.
 struct FitSummary {
-  bool changed = false;     ///< the problem's hyperparameters are new; false leaves them exactly as they were
-  double objective = 0.0;   ///< value reached, by the fit's own measure
-  int evaluations = 0;      ///< of the objective
-  std::string reason;       ///< why it ended, one line
+  bool changed = false;    ///< the problem's hyperparameters are new; false leaves them exactly as they were
+  double objective = 0.0;  ///< value reached, by the fit's own measure
+  int evaluations = 0;     ///< of the objective
+  std::string reason;      ///< why it ended, one line
 };
 
 /// Law: never throws for numerical reasons. A fit that fails restores the old hyperparameters, reports `changed`

@@ -19,8 +19,8 @@ struct KernelParameter {
 ///
 /// Laws, checked by the contract tests for every kernel found: symmetric, covariance(A, A) positive semi-definite, its
 /// diagonal equal to variance(A), |k(a, b)|^2 <= k(a, a) k(b, b), a batch equal to the same points one by one, finite
-/// for all finite points. Equal means within 8 ulp: Eigen rounds differently in packets and in what is left behind them.
-/// The same call gives the same bytes. Thread use: const methods may run at the same time.
+/// for all finite points. Equal means within 8 ulp: Eigen rounds differently in packets and in what is left behind
+/// them. The same call gives the same bytes. Thread use: const methods may run at the same time.
 class Kernel {
  public:
   static constexpr const char* kKind = "kernel";

@@ -38,9 +38,9 @@ class PluginFactory {
 /// What a plugin is born with. Outlives the plugin.
 struct Context {
   const PluginFactory& factory;
-  const Scene& scene;                      ///< area, desk, and for simulators the objects
-  std::uint64_t seed;                      ///< of the run; draw from it only through random()
-  const std::atomic<bool>* interrupted;    ///< set when the user wants to stop: long motions watch it; may be null
+  const Scene& scene;                    ///< area, desk, and for simulators the objects
+  std::uint64_t seed;                    ///< of the run; draw from it only through random()
+  const std::atomic<bool>* interrupted;  ///< set when the user wants to stop: long motions watch it; may be null
 
   /// The stream of this run for one purpose, for example "acquisition/random" at tap `number`.
   Random random(const std::string& purpose, std::uint64_t number = 0) const { return {seed, purpose, number}; }
@@ -56,14 +56,14 @@ struct Context {
 /// The table behind the exported symbol. The first four members never change their place: a host compares them before
 /// it looks at anything else, so that a library of another age or of other compiler flags is refused, not run.
 struct PluginManifest {
-  char magic[8];          ///< "palpate"
-  std::uint32_t abi;      ///< kPluginAbi
-  std::uint32_t size;     ///< sizeof(PluginManifest)
-  const char* stamp;      ///< PALPATE_BUILD_STAMP
+  char magic[8];       ///< "palpate"
+  std::uint32_t abi;   ///< kPluginAbi
+  std::uint32_t size;  ///< sizeof(PluginManifest)
+  const char* stamp;   ///< PALPATE_BUILD_STAMP
 
-  const char* kind;       ///< the folder of the library
-  const char* name;       ///< its file name without .so
-  const char* summary;    ///< one line, for `palpate plugins`
+  const char* kind;     ///< the folder of the library
+  const char* name;     ///< its file name without .so
+  const char* summary;  ///< one line, for `palpate plugins`
   /// Lists the fields of a default options struct to `fields`.
   void (*describe)(Fields& fields);
   /// Fills an options struct from `fields` and makes the object: a pointer to the kind's interface.
@@ -81,7 +81,7 @@ struct PluginManifest {
 
 /// All that must be equal on both sides of the boundary. Eigen's alignment is here because it follows -march: a
 /// library of another alignment frees memory that it did not allocate in the same way, and corrupts the heap.
-#define PALPATE_BUILD_STAMP                                                                          \
+#define PALPATE_BUILD_STAMP \
   "Eigen=" PALPATE_TEXT(EIGEN_WORLD_VERSION) "." PALPATE_TEXT(EIGEN_MAJOR_VERSION) "." PALPATE_TEXT( \
       EIGEN_MINOR_VERSION) ";EIGEN_MAX_ALIGN_BYTES=" PALPATE_TEXT(EIGEN_MAX_ALIGN_BYTES)             \
       ";EIGEN_MAX_STATIC_ALIGN_BYTES=" PALPATE_TEXT(                                                 \
@@ -128,6 +128,6 @@ constexpr PluginManifest manifest_of(const char* name, const char* summary) {
 }  // namespace palpate
 
 /// Exports `Class`, which implements `Interface`, as the plugin of this library.
-#define PALPATE_PLUGIN(Interface, Class, name, summary)                                                      \
+#define PALPATE_PLUGIN(Interface, Class, name, summary)                                             \
   extern "C" __attribute__((visibility("default"))) const ::palpate::PluginManifest palpate_plugin; \
   const ::palpate::PluginManifest palpate_plugin = ::palpate::manifest_of<Interface, Class>(name, summary);

@@ -38,8 +38,9 @@ enum class Outcome {
 /// The answer of a backend to one tap.
 struct Contact {
   Outcome outcome = Outcome::unknown;
-  double height = 0.0;   ///< of the touched point, metres, in the frame of `Scene::desk()`; meaningful only for `contact`
-  double force = 0.0;    ///< at contact, newtons; meaningful only for `contact`
+  double height =
+      0.0;             ///< of the touched point, metres, in the frame of `Scene::desk()`; meaningful only for `contact`
+  double force = 0.0;  ///< at contact, newtons; meaningful only for `contact`
   double seconds = 0.0;  ///< robot time that the tap took, whatever its outcome
   std::string reason;    ///< why a tap failed, one line; empty for `contact`
 };
