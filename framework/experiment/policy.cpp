@@ -52,8 +52,10 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
   std::vector<int> design;
   for (int i = 0; i < side * side && design.size() < count; ++i) {
-    const double x = (i % side + 0.5) * area.width / side;
-    const double y = (i / side + 0.5) * area.depth / side;
+    const int column = i % side;
+    const int row = i / side;
+    const double x = (column + 0.5) * area.width / side;
+    const double y = (row + 0.5) * area.depth / side;
     take(design, candidates, x, y, area);
   }
   return design;

@@ -269,11 +269,12 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
   std::vector<PluginListing> out;
   for (const std::string& one : kinds()) {
     if (!kind.empty() && one != kind) continue;
-    for (const auto& [stem, file] : files(one)) {
+    for (const auto& found : files(one)) {
+      const std::string& stem = found.first;
       if (!name.empty() && stem != name) continue;
       // The files are sorted: a name in a second folder comes right after the first, whose row names both.
       if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
-      PluginListing row{one, stem, file, {}, {}};
+      PluginListing row{one, stem, found.second, {}, {}};
       try {
         const char* summary = library(one, stem)->manifest().summary;
         describe_fields([&](Fields& fields) { describe(one, stem, fields); });
