@@ -18,16 +18,12 @@ void InitialOptions::list(Fields& fields) {
 }
 
 void CandidateOptions::list(Fields& fields) {
-  fields.integer(
-      count,
-      Field("count", "cells per side; 47 if neither this nor spacing is given").at_least(1).at_most(kMaxCellsPerSide));
-  fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
-  fields.require(!(count && spacing), "spacing", "give either count or spacing; the word none takes the other away");
-}
-
-int CandidateOptions::cells_per_side() const {
   constexpr std::int64_t kPaperCount = 47;
-  return static_cast<int>(count.value_or(kPaperCount));
+  fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
+  // The default belongs into the resolved config, unless spacing takes its place.
+  if (!spacing && !count) count = kPaperCount;
+  fields.integer(count, Field("count", "cells per side").at_least(1).at_most(kMaxCellsPerSide));
+  fields.require(!(count && spacing), "spacing", "give either count or spacing; the word none takes the other away");
 }
 
 void HeightOptions::list(Fields& fields) {
@@ -99,8 +95,7 @@ void ExperimentOptions::list(Fields& fields) {
       initial.count <= taps, "taps",
       fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
   const auto cells = [this](double side) {
-    return candidates.spacing ? cells_along(side, *candidates.spacing)
-                              : static_cast<double>(candidates.cells_per_side());
+    return candidates.spacing ? cells_along(side, *candidates.spacing) : static_cast<double>(*candidates.count);
   };
   const double columns = cells(scene.area.width);
   const double rows = cells(scene.area.depth);

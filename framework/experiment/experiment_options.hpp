@@ -19,13 +19,11 @@ struct InitialOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// One of the two, once listed.
 struct CandidateOptions : Options {
   std::optional<std::int64_t> count;
   std::optional<double> spacing;
   void list(Fields& fields) override;
-
-  /// `count`, or its default; only without `spacing`.
-  int cells_per_side() const;
 };
 
 /// What a process has of its own: the heights' in metres, the labels' without unit.

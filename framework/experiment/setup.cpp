@@ -10,7 +10,7 @@ namespace {
 
 Candidates make_candidates(const CandidateOptions& options, const Area& area) {
   if (options.spacing) return grid_by_spacing(area, *options.spacing);
-  return grid_by_count(area, options.cells_per_side());
+  return grid_by_count(area, static_cast<int>(*options.count));
 }
 
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
