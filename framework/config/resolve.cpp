@@ -268,6 +268,7 @@ class Resolver final : public Fields {
     }
     Resolver inner(&tree, path_ + field.name + ".", plugins_, notes_, output_.place);
     inner.set_type(type != nullptr ? *type : tree);
+    notes_.plugins.emplace(choice.kind, choice.type);
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
     try {
       plugins_.describe(choice.kind, choice.type, inner);

@@ -6,7 +6,9 @@
 
 #include <palpate/options.hpp>
 
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -26,8 +28,9 @@ struct ResolveNotes {
     std::string path;   ///< dotted, for example "kernel.length_scale"
     std::string place;  ///< "file:line:column", "command line", or "default"
   };
-  std::vector<Origin> origins;  ///< of every value, in the order of the resolved config
-  std::vector<Origin> dropped;  ///< options left behind by a type that was chosen after them
+  std::vector<Origin> origins;                            ///< of every value, in the order of the resolved config
+  std::vector<Origin> dropped;                            ///< options left behind by a type that was chosen after them
+  std::set<std::pair<std::string, std::string>> plugins;  ///< kind and name of every plugin that the config names
 };
 
 /// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first

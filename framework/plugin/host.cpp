@@ -288,11 +288,11 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
   return out;
 }
 
-std::vector<LoadedPlugin> PluginHost::loaded() const {
-  const std::lock_guard lock(mutex_);
+std::vector<LoadedPlugin> PluginHost::loaded(const std::set<std::pair<std::string, std::string>>& plugins) const {
   std::vector<LoadedPlugin> out;
-  for (const auto& [key, holder] : libraries_) {
-    if (holder) out.push_back({key.first, key.second, holder->file(), holder->hash()});
+  for (const auto& [kind, name] : plugins) {
+    const std::shared_ptr<const Library> holder = library(kind, name);
+    out.push_back({kind, name, holder->file(), holder->hash()});
   }
   return out;
 }

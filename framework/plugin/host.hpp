@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,8 +57,8 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Every library found, sorted, each name once; broken ones too. `kind` and `name` may be empty for all.
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 
-  /// The libraries that the given choices use; each must be loaded.
-  std::vector<LoadedPlugin> loaded() const;
+  /// File and hash of the given plugins (kind, name), in their order; loads them if need be. Throws Error.
+  std::vector<LoadedPlugin> loaded(const std::set<std::pair<std::string, std::string>>& plugins) const;
 
   /// The kinds that exist.
   static std::vector<std::string> kinds();

@@ -46,9 +46,9 @@ Tree libraries() {
   return out;
 }
 
-Tree plugins(const PluginHost& host) {
+Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {
   Tree out = Tree::list();
-  for (const LoadedPlugin& one : host.loaded()) {
+  for (const LoadedPlugin& one : host.loaded(plugins)) {
     Tree row = Tree::map();
     row.at("kind") = text(one.kind);
     row.at("name") = text(one.name);
@@ -71,15 +71,15 @@ Installation find_installation() {
   return {program, folder / ".." / "lib" / "palpate", folder / ".." / "share" / "palpate" / "configs"};
 }
 
-std::string build_hash(const PluginHost& host) {
+std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
   // The program does not change while it runs, and in a sweep this is asked for once a job.
   static const std::string program = hash_of_file("/proc/self/exe");
   std::string all = program;
-  for (const LoadedPlugin& one : host.loaded()) all += one.kind + "/" + one.name + "=" + one.hash;
+  for (const LoadedPlugin& one : host.loaded(plugins)) all += one.kind + "/" + one.name + "=" + one.hash;
   return hash_of(all);
 }
 
-Tree describe_build(const Installation& installation, const PluginHost& host) {
+Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins) {
   Tree out = Tree::map();
   out.at("version") = text(kVersion);
   // Kept beside the program, not in it: a commit that changes no code leaves the program's bytes alone.
@@ -90,12 +90,12 @@ Tree describe_build(const Installation& installation, const PluginHost& host) {
     const Tree* value = stamp.find(key);
     out.at(key) = value != nullptr ? *value : Tree{};
   }
-  out.at("build") = text(build_hash(host));
+  out.at("build") = text(build_hash(host, plugins));
   out.at("compiler") = text(PALPATE_COMPILER);
   out.at("instruction_path") = text(instruction_path());
   out.at("build_stamp") = text(PALPATE_BUILD_STAMP);
   out.at("libraries") = libraries();
-  out.at("plugins") = plugins(host);
+  out.at("plugins") = describe_plugins(host, plugins);
   out.at("host") = text(host_name());
   return out;
 }

@@ -6,7 +6,9 @@
 #include "plugin/host.hpp"
 
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 
 namespace palpate {
 
@@ -22,11 +24,14 @@ Installation find_installation();
 
 extern const char* const kVersion;
 
-/// One hash over the program file and the plugins that `host` has loaded. Equal for equal code: a commit alone does
-/// not change it.
-std::string build_hash(const PluginHost& host);
+/// The plugins of one run, by kind and name.
+using PluginNames = std::set<std::pair<std::string, std::string>>;
+
+/// One hash over the program file and the plugins of a run. Equal for equal code: neither a commit alone nor another
+/// plugin changes it.
+std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
 /// Version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins, host.
-Tree describe_build(const Installation& installation, const PluginHost& host);
+Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins);
 
 }  // namespace palpate

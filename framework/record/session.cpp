@@ -20,7 +20,7 @@ namespace {
 Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
 
 std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config) {
-  Tree out = describe_build(workshop.installation, workshop.host);
+  Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins);
   Tree& line = out.at("command_line");
   line = Tree::list();
   for (const std::string& word : workshop.command_line) line.items.push_back(quoted(word));
@@ -46,12 +46,12 @@ std::string recorded_build(const fs::path& directory) {
 }
 
 /// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
-void note_resume(const Workshop& workshop, const RunDirectory& directory, int from) {
+void note_resume(const Workshop& workshop, const ResolvedConfig& config, const RunDirectory& directory, int from) {
   Tree manifest = read_yaml(directory.path() / "manifest.json");
   // JSON is YAML: strings come back quoted, numbers plain, so the tree can be written as it was read.
   Tree entry = Tree::map();
   entry.at("after_tap") = Tree::scalar(std::to_string(from));
-  entry.at("build") = quoted(build_hash(workshop.host));
+  entry.at("build") = quoted(build_hash(workshop.host, config.notes.plugins));
   manifest.at("resumed").kind = Tree::Kind::list;
   manifest.at("resumed").items.push_back(std::move(entry));
   directory.write("manifest.json", to_json(manifest));
@@ -167,7 +167,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
     const std::string where = directory.string();
     switch (status.state) {
       case RunStatus::State::done:
-        if (recorded_build(directory) == build_hash(workshop.host)) return report_done(directory);
+        if (recorded_build(directory) == build_hash(workshop.host, config.notes.plugins)) return report_done(directory);
         throw Error(where, "this run was finished by another build of palpate or its plugins",
                     "--force moves it aside and runs again");
       case RunStatus::State::failed:
@@ -218,7 +218,7 @@ RunReport resume_run(const Workshop& workshop, const fs::path& directory, const 
   }
   RunDirectory held(directory);
   const std::string build = recorded_build(directory);
-  const bool other_build = !build.empty() && build != build_hash(workshop.host);
+  const bool other_build = !build.empty() && build != build_hash(workshop.host, config.notes.plugins);
   if (other_build && status.taps > 0 && !options.force) {
     throw Error(directory.string(), "this run was begun by another build of palpate or its plugins",
                 "--force carries on all the same, and the manifest will say so");
@@ -229,7 +229,7 @@ RunReport resume_run(const Workshop& workshop, const fs::path& directory, const 
   if (build.empty()) {
     held.write("manifest.json", manifest_text(workshop, config));
   } else {
-    note_resume(workshop, held, static_cast<int>(past.size()));
+    note_resume(workshop, config, held, static_cast<int>(past.size()));
   }
   std::error_code none;
   fs::remove(directory / "summary.json", none);

@@ -435,6 +435,23 @@ TEST(Sweep, CarriesOnWithWhatIsMissing) {
   EXPECT_EQ(lines(text_of(directory / "results.csv")), lines(before));
 }
 
+TEST(Sweep, AJobThatWasBrokenOffIsCarriedOnThoughOtherJobsUseOtherPlugins) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"sweep", paper(), "acquisition=weighted,random,grid", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  for (const auto& job : fs::directory_iterator(directory / "jobs")) {
+    const std::string taps = text_of(job.path() / "taps.csv");
+    fs::remove(job.path() / "summary.json");
+    fs::resize_file(job.path() / "taps.jsonl", fs::file_size(job.path() / "taps.jsonl") / 2);
+    const Ended ended = test::palpate({"resume", directory.string()}, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.out;
+    EXPECT_EQ(text_of(job.path() / "taps.csv"), taps);
+    EXPECT_EQ(text_of(job.path() / "manifest.json").find("/random.so") != std::string::npos,
+              text_of(job.path() / "config.yaml").find("type: random") != std::string::npos)
+        << "a manifest names the plugins of its own run";
+  }
+}
+
 TEST(Sweep, AFailedJobIsCountedNamedAndStopsNoOther) {
   const TemporaryFolder folder;
   const Ended ended = test::palpate(
