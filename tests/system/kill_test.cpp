@@ -99,7 +99,7 @@ TEST(KillBetweenAnnouncementAndResult, TheTapBecomesUnknownAndReachesNoModel) {
     test::Child child(words, folder.path());
     fs::path directory;
     for (int i = 0; i < 4000 && (directory.empty() || text_of(directory / "taps.jsonl").empty()); ++i) {
-      ::usleep(2000);
+      ::usleep(2000);  // looks again: another process writes the file
       directory = run_in(folder.path() / "runs");
     }
     child.signal(SIGKILL);

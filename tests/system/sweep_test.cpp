@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Sweeps as a user calls them: one row a job, the bytes of single runs, and what becomes of broken and failed jobs.
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+using test::Ended;
+using test::lines;
+using test::only_run;
+using test::paper;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+TEST(Sweep, WritesOneRowAJobAndListsItsJobsBeforehand) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words{"sweep", paper(), "acquisition=weighted,random",
+                                       "kernel.length_scale=log(1cm,4cm,3)", "seed=range(0,2)"};
+  std::vector<std::string> list = words;
+  list.push_back("--list");
+  const Ended listed = test::palpate(list, folder.path());
+  EXPECT_EQ(lines(listed.out), 12);
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+  EXPECT_THAT(listed.out, HasSubstr("kernel.length_scale=1 cm"));
+  EXPECT_THAT(listed.out, HasSubstr("kernel.length_scale=2 cm"));
+
+  const Ended ended = test::palpate(words, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const fs::path directory = only_run(folder.path() / "runs");
+  const std::string results = text_of(directory / "results.csv");
+  EXPECT_THAT(results, StartsWith("job,id,acquisition,kernel.length_scale,seed,name,status,"));
+  EXPECT_EQ(lines(results), 13);
+  EXPECT_EQ(results.find("nan"), std::string::npos);
+  EXPECT_EQ(results.find("null"), std::string::npos);
+  EXPECT_EQ(lines(text_of(directory / "manifest.jsonl")), 12);
+  EXPECT_FALSE(fs::exists(directory / "summary.json"));
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
+              StartsWith("12 jobs, 12 done, 0 running"));
+  for (const auto& job : fs::directory_iterator(directory / "jobs")) {
+    EXPECT_FALSE(fs::exists(job.path() / "surface.csv")) << "not by default in a sweep";
+    EXPECT_TRUE(fs::exists(job.path() / "taps.csv"));
+  }
+}
+
+TEST(Sweep, GivesTheSameBytesAsSingleRunsOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  for (const char* workers : {"1", "2"}) {
+    ASSERT_EQ(
+        test::palpate({"sweep", paper(), "seed=range(0,6)", "-j", workers, "--runs", workers, "--quiet"}, folder.path())
+            .status,
+        0);
+  }
+  const fs::path one = only_run(folder.path() / "1");
+  const fs::path two = only_run(folder.path() / "2");
+  int jobs = 0;
+  for (const auto& job : fs::directory_iterator(one / "jobs")) {
+    ++jobs;
+    EXPECT_EQ(text_of(job.path() / "taps.csv"), text_of(two / "jobs" / job.path().filename() / "taps.csv"));
+  }
+  EXPECT_EQ(jobs, 6);
+  ASSERT_EQ(test::palpate({"run", paper(), "seed=4", "--runs", "single", "--quiet"}, folder.path()).status, 0);
+  const fs::path single = only_run(folder.path() / "single");
+  EXPECT_EQ(text_of(single / "taps.csv"), text_of(one / "jobs" / single.filename() / "taps.csv"));
+}
+
+TEST(Sweep, ABadValueIsRefusedBeforeAnyJobStarts) {
+  const TemporaryFolder folder;
+  const Ended ended = test::palpate({"sweep", paper(), "taps=5,17,0"}, folder.path());
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("taps: 0 is out of range"));
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+}
+
+TEST(Sweep, CarriesOnWithWhatIsMissing) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,5)", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  const std::string before = text_of(directory / "results.csv");
+  const fs::path job = fs::directory_iterator(directory / "jobs")->path();
+  const std::string taps = text_of(job / "taps.csv");
+  for (const char* name : {"summary.json", "taps.csv", "taps.jsonl", "timings.csv", "manifest.json"})
+    fs::remove(job / name);
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
+              HasSubstr("4 done, 0 running, 0 failed, 0 unfinished, 1 missing"));
+  const Ended refused = test::palpate({"sweep", paper(), "seed=range(0,5)"}, folder.path());
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("'palpate resume' carries on"));
+  EXPECT_EQ(test::palpate({"resume", directory.string()}, folder.path()).status, 0);
+  EXPECT_EQ(text_of(job / "taps.csv"), taps);
+  EXPECT_EQ(lines(text_of(directory / "results.csv")), lines(before));
+}
+
+TEST(Sweep, AJobThatWasBrokenOffIsCarriedOnThoughOtherJobsUseOtherPlugins) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"sweep", paper(), "acquisition=weighted,random,grid", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  for (const auto& job : fs::directory_iterator(directory / "jobs")) {
+    const std::string taps = text_of(job.path() / "taps.csv");
+    fs::remove(job.path() / "summary.json");
+    fs::resize_file(job.path() / "taps.jsonl", fs::file_size(job.path() / "taps.jsonl") / 2);
+    const Ended ended = test::palpate({"resume", directory.string()}, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.out;
+    EXPECT_EQ(text_of(job.path() / "taps.csv"), taps);
+    EXPECT_EQ(text_of(job.path() / "manifest.json").find("/random.so") != std::string::npos,
+              text_of(job.path() / "config.yaml").find("type: random") != std::string::npos)
+        << "a manifest names the plugins of its own run";
+  }
+}
+
+TEST(Sweep, AFailedJobIsCountedNamedAndStopsNoOther) {
+  const TemporaryFolder folder;
+  const Ended ended = test::palpate(
+      {"sweep", paper(), "scene.placement=random", "scene.objects.0.length=10cm,16cm,40cm"}, folder.path());
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("failed: job 2"));
+  EXPECT_THAT(ended.out, HasSubstr("does not fit into the area"));
+  const fs::path directory = only_run(folder.path() / "runs");
+  EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
+              StartsWith("3 jobs, 2 done, 0 running, 1 failed"));
+  EXPECT_EQ(lines(text_of(directory / "results.csv")), 4);
+}
+
+}  // namespace
+}  // namespace palpate
