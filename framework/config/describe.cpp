@@ -78,6 +78,9 @@ class Describer final : public Fields {
   void plugin(std::optional<PluginChoice>&, const char* kind, const Field& field) override {
     add(Type::plugin, field).kind = kind;
   }
+  void plugins(std::vector<PluginChoice>&, const char* kind, const Field& field) override {
+    add(Type::plugins, field).kind = kind;
+  }
   void require(bool, const char*, const std::string&) override {}
 
  private:
@@ -180,6 +183,13 @@ Tree field_schema(const FieldDescription& field) {
       out = Tree::map();
       out.at("$ref") = quoted("#/definitions/" + field.kind);
       break;
+    case Type::plugins: {
+      Tree item = Tree::map();
+      item.at("$ref") = quoted("#/definitions/" + field.kind);
+      out.at("type") = quoted("array");
+      out.at("items") = std::move(item);
+      break;
+    }
   }
   return out;
 }
@@ -217,6 +227,8 @@ std::string FieldDescription::type_name() const {
       return "list of groups";
     case Type::plugin:
       return "plugin of kind " + kind;
+    case Type::plugins:
+      return "list of plugins of kind " + kind;
   }
   return {};
 }

@@ -14,7 +14,7 @@ namespace palpate {
 
 /// All that is known of one field.
 struct FieldDescription {
-  enum class Type { real, reals, integer, flag, text, choice, section, sections, plugin };
+  enum class Type { real, reals, integer, flag, text, choice, section, sections, plugin, plugins };
   struct CaseDescription;
 
   std::string name;

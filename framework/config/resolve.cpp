@@ -156,7 +156,7 @@ class Resolver final : public Fields {
     const Tree* tree = claim(field);
     if (tree == nullptr && !choice.type.empty()) {
       static const Tree nothing = Tree::map();
-      read_plugin(choice, nothing, nullptr, field);
+      output_.at(field.name) = read_plugin(choice, nothing, nullptr, path_ + field.name);
       return;
     }
     if (tree == nullptr || tree->kind == Tree::Kind::null) {
@@ -164,15 +164,7 @@ class Resolver final : public Fields {
       throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
                   fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name));
     }
-    if (!tree->is_map()) {
-      throw Error(tree->place.text(), fmt::format("{} is not a group of options", name(field)), "write {type: ...}");
-    }
-    const Tree* type = tree->find("type");
-    if (type == nullptr) {
-      throw Error(tree->place.text(), fmt::format("{} has no type", name(field)),
-                  fmt::format("'palpate plugins {}' lists the types", choice.kind));
-    }
-    read_plugin(choice, *tree, type, field);
+    output_.at(field.name) = read_typed(choice, *tree, path_ + field.name);
   }
 
   void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) override {
@@ -182,6 +174,21 @@ class Resolver final : public Fields {
     }
     choice = PluginChoice{kind, {}, nullptr};
     plugin(*choice, field);
+  }
+
+  void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) override {
+    Tree list = Tree::list();
+    if (const Tree* tree = claim(field)) {
+      if (tree->kind != Tree::Kind::list) {
+        throw Error(tree->place.text(), fmt::format("{}: expects a list", name(field)),
+                    "write [{type: ...}, {type: ...}]");
+      }
+      choices.assign(tree->items.size(), PluginChoice{kind, {}, nullptr});
+      for (std::size_t i = 0; i < choices.size(); ++i) {
+        list.items.push_back(read_typed(choices[i], tree->items[i], fmt::format("{}{}.{}", path_, field.name, i)));
+      }
+    }
+    output_.at(field.name) = std::move(list);
   }
 
   void require(bool holds, const char* field, const std::string& reason) override {
@@ -258,15 +265,29 @@ class Resolver final : public Fields {
     return value;
   }
 
-  void read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const Field& field) {
+  /// A plugin at `path` whose group must name its type.
+  Tree read_typed(PluginChoice& choice, const Tree& tree, const std::string& path) {
+    if (!tree.is_map()) {
+      throw Error(tree.place.text(), fmt::format("{} is not a group of options", path), "write {type: ...}");
+    }
+    const Tree* type = tree.find("type");
+    if (type == nullptr) {
+      throw Error(tree.place.text(), fmt::format("{} has no type", path),
+                  fmt::format("'palpate plugins {}' lists the types", choice.kind));
+    }
+    return read_plugin(choice, tree, type, path);
+  }
+
+  /// Fills `choice`; returns what goes into the resolved config.
+  Tree read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const std::string& path) {
     const std::string at = type != nullptr ? type->place.text() : where();
     if (type != nullptr) {
       if (!type->is_scalar())
-        throw Error(at, fmt::format("{}.type is not a name", name(field)),
+        throw Error(at, fmt::format("{}.type is not a name", path),
                     fmt::format("'palpate plugins {}' lists the types", choice.kind));
       choice.type = type->text;
     }
-    Resolver inner(&tree, path_ + field.name + ".", plugins_, notes_, output_.place);
+    Resolver inner(&tree, path + ".", plugins_, notes_, output_.place);
     inner.set_type(type != nullptr ? *type : tree);
     notes_.plugins.emplace(choice.kind, choice.type);
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
@@ -279,10 +300,10 @@ class Resolver final : public Fields {
     Tree options = inner.finish();
     if (type != nullptr) options.place = type->place;  // where the plugin's own complaints will point
     choice.options = std::make_shared<const Tree>(std::move(options));
-    Tree& written = output_.at(field.name);
-    written = Tree::map();
+    Tree written = Tree::map();
     written.at("type") = Tree::scalar(choice.type);
     for (const Tree::Entry& entry : choice.options->entries) written.entries.push_back(entry);
+    return written;
   }
 
   const Tree* input_;

@@ -36,10 +36,12 @@ struct HeightOptions : Options {
 };
 
 struct WeightOptions : Options {
+  enum class Hyperparameters { own, shared };
   double signal = 1.0;
   double noise = 1e-4;
   double prior_mean = 0.0;
   bool clip = false;
+  Hyperparameters hyperparameters = Hyperparameters::own;
   std::optional<PluginChoice> kernel;
   std::optional<PluginChoice> fitting;
   void list(Fields& fields) override;
@@ -60,6 +62,7 @@ struct LogOptions : Options {
 };
 
 struct ExperimentOptions : Options {
+  enum class Surface { single, two_part };
   enum class Posterior { automatic, dense };
   enum class Fallback { uncertainty, none };
   enum class Repeat { forbid, allow };
@@ -72,6 +75,7 @@ struct ExperimentOptions : Options {
   PluginChoice kernel{"kernel", {}, nullptr};
   HeightOptions height;
   WeightOptions weight;
+  Surface surface = Surface::single;
   Posterior posterior = Posterior::automatic;
   PluginChoice acquisition{"acquisition", {}, nullptr};
   PluginChoice fitting{"fitting", "fixed", nullptr};

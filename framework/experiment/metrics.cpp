@@ -41,16 +41,24 @@ double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
 }
 
-const Eigen::VectorXd& reconstruction(const TapBelief& belief) { return belief.height_mean(); }
+Eigen::VectorXd reconstruction(const TapBelief& belief) {
+  if (!belief.two_part()) return belief.height_mean();
+  return (belief.weight_mean().array() >= 0.5)
+      .select(belief.height_mean(), Eigen::VectorXd::Constant(belief.weight_mean().size(), belief.desk()));
+}
 
 Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
   Errors out;
-  if (belief.height_process() != nullptr) {
-    out.rmse = rmse(reconstruction(belief), truth, false);
-    out.rmse_on_surface = rmse(reconstruction(belief), truth, true);
+  const bool knows_weight = belief.weight_process() != nullptr;
+  if (belief.surface_process() != nullptr) {
+    if (knows_weight || !belief.two_part()) {
+      const Eigen::VectorXd surface = reconstruction(belief);
+      out.rmse = rmse(surface, truth, false);
+      out.rmse_on_surface = rmse(surface, truth, true);
+    }
     out.rmse_height = rmse(belief.height_mean(), truth, true);
   }
-  if (belief.weight_process() != nullptr) out.footprint_iou = footprint_iou(belief.weight_mean(), truth);
+  if (knows_weight) out.footprint_iou = footprint_iou(belief.weight_mean(), truth);
   return out;
 }
 

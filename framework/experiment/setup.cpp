@@ -15,9 +15,10 @@ Candidates make_candidates(const CandidateOptions& options, const Area& area) {
 
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 
-ProcessState state_of(const Process& process) {
-  return {process.kernel().parameters(), process.settings(), process.log_marginal_likelihood(), process.jitter(),
-          process.condition()};
+ProcessState state_of(const Process& process, const TapBelief& belief) {
+  const FitSummary* fit = belief.last_fit(process);
+  return {process.kernel().parameters(), process.settings(),  process.log_marginal_likelihood(),
+          process.jitter(),              process.condition(), fit ? std::optional<FitSummary>(*fit) : std::nullopt};
 }
 
 }  // namespace
@@ -34,7 +35,8 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),
       allowed_(static_cast<std::size_t>(candidates_.size()), true),
       tapped_(allowed_.size(), false) {
-  result_.interventions = {{"fallback", 0}, {"height_refused", 0}, {"jitter", 0}, {"variance_clamped", 0}};
+  result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0}, {"jitter", 0},
+                           {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
 
 void Experiment::resume(const std::vector<PastTap>& past) {
@@ -72,16 +74,19 @@ void Experiment::describe_state(TapRecord& tap) {
   const PhaseClock::Scope log(clock_, Phase::log);
   if (const Process* height = belief_.height_process()) {
     tap.uncertainty = belief_.uncertainty()(tap.candidate);
+    tap.height_process = state_of(*height, belief_);
+  }
+  if (const Process* surface = belief_.surface_process()) {
     const Eigen::ArrayXd deviation = belief_.height_variance().array().sqrt();
     tap.max_standard_deviation = deviation.maxCoeff();
     tap.mean_standard_deviation = deviation.mean();
-    tap.height_process = state_of(*height);
+    if (belief_.two_part()) tap.surface_process = state_of(*surface, belief_);
   }
   if (const Process* weight = belief_.weight_process()) {
     tap.weight = belief_.weight()(tap.candidate);
     tap.min_weight = belief_.weight_mean().minCoeff();
     tap.max_weight = belief_.weight_mean().maxCoeff();
-    tap.weight_process = state_of(*weight);
+    tap.weight_process = state_of(*weight, belief_);
   }
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* known = truth()) {
@@ -97,10 +102,15 @@ RunResult Experiment::result() {
     out.errors = final_errors(belief_, *known);
     out.calibration = calibration(belief_, *known, tapped_);
   }
-  for (const Process* process : {belief_.height_process(), belief_.weight_process()}) {
+  out.interventions["fit_failed"] = belief_.failed_fits();
+  std::vector<const Process*> processes{belief_.height_process(), belief_.weight_process()};
+  if (belief_.two_part()) processes.push_back(belief_.surface_process());
+  for (const Process* process : processes) {
     if (process == nullptr) continue;
     out.jitter_max = std::max(out.jitter_max, process->jitter());
     out.interventions["jitter"] += process->jitter_raised();
+    out.interventions["pivoted"] += process->pivoted();
+    out.interventions["set_aside"] += process->set_aside();
     out.interventions["variance_clamped"] += process->variances_clamped();
   }
   return out;

@@ -1,10 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/tap_belief.hpp"
 
+#include "config/tree.hpp"
+
+#include <palpate/error.hpp>
+
 #include <string>
 
 namespace palpate {
 
+// The level of an object is not known before it is touched: ten signals make it as good as free.
+constexpr double kFreeLevel = 10.0;
+
+TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
+                                       const ProcessSettings& settings, const Context& context) {
+  Model model;
+  model.name = name;
+  model.kernel = context.create<Kernel>(kernel);
+  model.fitting = context.create<Fitting>(fitting);
+  model.settings = settings;
+  const std::string objection = model.fitting->objection(*model.kernel);
+  if (!objection.empty()) throw Error(fitting.options->place.text(), objection);
+  return model;
+}
+
+// The plugins are made at once, so that options which they refuse are refused before the first tap.
 TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candidates, const Context& context,
                      PhaseClock& clock)
     : candidates_(candidates),
@@ -12,43 +32,72 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       clock_(clock),
       desk_(context.scene.desk()),
       clip_(options.weight.clip),
+      two_part_(options.surface == ExperimentOptions::Surface::two_part),
+      shared_(options.weight.hyperparameters == WeightOptions::Hyperparameters::shared),
       initial_taps_(static_cast<int>(options.initial.count)) {
-  height_.name = "fitting/height";
-  // The plugins are made at once, so that options which they refuse are refused before the first tap.
-  height_.kernel = context.create<Kernel>(options.height.kernel.value_or(options.kernel));
-  height_.fitting = context.create<Fitting>(options.height.fitting.value_or(options.fitting));
-  height_.settings = {options.height.signal, options.height.noise, 0.0};
-  weight_.name = "fitting/weight";
-  weight_.kernel = context.create<Kernel>(options.weight.kernel.value_or(options.kernel));
-  weight_.fitting = context.create<Fitting>(options.weight.fitting.value_or(options.fitting));
-  weight_.settings = {options.weight.signal, options.weight.noise, options.weight.prior_mean};
+  const HeightOptions& height = options.height;
+  const WeightOptions& weight = options.weight;
+  const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
+  const PluginChoice height_fitting = height.fitting.value_or(options.fitting);
+  height_ = make_model("fitting/height", height_kernel, height_fitting, {height.signal, height.noise, 0.0}, context);
+  weight_ = make_model("fitting/weight", weight.kernel.value_or(options.kernel),
+                       weight.fitting.value_or(options.fitting), {weight.signal, weight.noise, weight.prior_mean},
+                       context);
+  if (shared_) weight_.kernel = height_.kernel;
+  if (two_part_) {
+    object_ = make_model("fitting/surface", height_kernel, height_fitting,
+                         {height.signal, height.noise, 0.0, kFreeLevel}, context);
+  }
 }
 
 void TapBelief::observe(const Target& place, const Contact& contact) {
   ++taps_;
   if (contact.outcome != Outcome::contact) return;
+  const bool on = context_.scene.on_surface(contact.height);
   height_.data.push_back({place, contact.height - desk_});
-  weight_.data.push_back({place, context_.scene.on_surface(contact.height) ? 1.0 : 0.0});
+  weight_.data.push_back({place, on ? 1.0 : 0.0});
+  if (on) object_.data.push_back(height_.data.back());
 }
 
 Process& TapBelief::ready(Model& model) const {
   const PhaseClock::Scope infer(clock_, Phase::infer);
-  if (!model.process) {
-    model.process = std::make_unique<Process>(model.kernel, model.settings, candidates_.points);
+  const bool joint = shared_ && &model != &object_;
+  const std::vector<Model*> models = joint ? std::vector<Model*>{&height_, &weight_} : std::vector<Model*>{&model};
+  for (Model* one : models) {
+    if (!one->process) one->process = std::make_unique<Process>(one->kernel, one->settings, candidates_.points);
   }
-  Process& process = *model.process;
   // One by one, fits included: a process that is read late, or after a resume, goes through the very states that one
   // read at every tap went through.
-  while (process.size() < static_cast<int>(model.data.size())) {
-    const Datum& datum = model.data[static_cast<std::size_t>(process.size())];
-    process.add(datum.place, datum.value);
-    if (model.fitting->due(process.size())) {
-      const PhaseClock::Scope fit(clock_, Phase::fit);
-      Random random = context_.random(model.name, static_cast<std::uint64_t>(process.size()));
-      process.fit(*model.fitting, random);
+  while (model.process->size() < static_cast<int>(model.data.size())) {
+    for (Model* one : models) {
+      const Datum& datum = one->data[static_cast<std::size_t>(one->process->size())];
+      one->process->add(datum.place, datum.value);
     }
+    if (models.front()->fitting->due(model.process->size())) fit(models);
   }
-  return process;
+  return *model.process;
+}
+
+void TapBelief::fit(const std::vector<Model*>& models) const {
+  const PhaseClock::Scope fit(clock_, Phase::fit);
+  std::vector<Process*> processes;
+  for (Model* one : models) processes.push_back(one->process.get());
+  Model& first = *models.front();
+  const int taps = first.process->size();
+  Random random = context_.random(first.name, static_cast<std::uint64_t>(taps));
+  const FitSummary summary = Process::fit(processes, *first.fitting, random);
+  if (summary.failed) ++failed_fits_;
+  for (Model* one : models) {
+    one->fit = summary;
+    one->fit_at = taps;
+  }
+}
+
+const FitSummary* TapBelief::last_fit(const Process& process) const {
+  for (const Model* one : {&height_, &weight_, &object_}) {
+    if (one->process.get() == &process && one->fit_at > 0 && one->fit_at == process.size()) return &one->fit;
+  }
+  return nullptr;
 }
 
 template <class Compute>
@@ -78,19 +127,17 @@ const Eigen::VectorXd& TapBelief::weight() const {
 }
 
 const Eigen::VectorXd& TapBelief::height_mean() const {
-  return read(mean_map_, height_,
+  return read(mean_map_, surface(),
               [this](const Process& process) -> Eigen::VectorXd { return process.mean().array() + desk_; });
 }
 
 const Eigen::VectorXd& TapBelief::height_variance() const {
-  return read(variance_map_, height_, [](const Process& process) { return process.variance(); });
+  return read(variance_map_, surface(), [](const Process& process) { return process.variance(); });
 }
 
-const Process* TapBelief::height_process() const { return height_.process ? &ready(height_) : nullptr; }
-const Process* TapBelief::weight_process() const { return weight_.process ? &ready(weight_) : nullptr; }
-
 double TapBelief::height_noise() const {
-  return height_.process ? height_.process->settings().noise : height_.settings.noise;
+  const Model& model = surface();
+  return model.process ? model.process->settings().noise : model.settings.noise;
 }
 
 }  // namespace palpate

@@ -40,9 +40,21 @@ class TapBelief final : public Belief {
   /// The mean of the weight process as it comes, whatever `weight.clip` says.
   const Eigen::VectorXd& weight_mean() const;
 
-  /// The processes as far as they were built, up to date with all taps; null if nothing has read them.
-  const Process* height_process() const;
-  const Process* weight_process() const;
+  /// The processes as far as they were built, up to date with all taps; null if nothing has read them. u comes from
+  /// the height process, height_mean() and height_variance() from the surface process: the same one for
+  /// `surface: single`, that of the taps on an object for `two_part`.
+  const Process* height_process() const { return built(height_); }
+  const Process* weight_process() const { return built(weight_); }
+  const Process* surface_process() const { return built(surface()); }
+  bool two_part() const { return two_part_; }
+
+  /// The fit after the latest tap that `process` has absorbed; null if none was due then.
+  const FitSummary* last_fit(const Process& process) const;
+  /// Fits that found nothing better and kept the old values.
+  int failed_fits() const { return failed_fits_; }
+
+  /// Height of the desk, metres.
+  double desk() const { return desk_; }
 
   /// Standard deviation of the noise of one tap's height, metres.
   double height_noise() const;
@@ -64,9 +76,16 @@ class TapBelief final : public Belief {
     std::shared_ptr<Kernel> kernel;
     std::shared_ptr<Fitting> fitting;
     ProcessSettings settings;
+    FitSummary fit;
+    int fit_at = 0;  ///< taps that the process had at its latest fit
   };
 
+  static Model make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
+                          const ProcessSettings& settings, const Context& context);
+  Model& surface() const { return two_part_ ? object_ : height_; }
+  const Process* built(Model& model) const { return model.process ? &ready(model) : nullptr; }
   Process& ready(Model& model) const;
+  void fit(const std::vector<Model*>& models) const;
   template <class Compute>
   const Eigen::VectorXd& read(Map& map, Model& model, Compute compute) const;
 
@@ -75,11 +94,15 @@ class TapBelief final : public Belief {
   PhaseClock& clock_;
   double desk_;
   bool clip_;
+  bool two_part_;
+  bool shared_;  ///< heights and labels are fitted together
   int taps_ = 0;
   int initial_taps_;
   // Lazily filled by const readers: a belief is used by one thread.
   mutable Model height_;
   mutable Model weight_;
+  mutable Model object_;  ///< heights of the taps on an object
+  mutable int failed_fits_ = 0;
   mutable Map uncertainty_map_, weight_map_, weight_mean_map_, mean_map_, variance_map_;
 };
 

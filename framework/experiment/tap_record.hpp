@@ -25,6 +25,7 @@ struct ProcessState {
   double log_marginal_likelihood = 0.0;
   double jitter = 0.0;
   double condition = 1.0;
+  std::optional<FitSummary> fit;  ///< the fit after the latest of its taps; absent if none was due then
 };
 
 /// One tap: the choice, the state it was made from, and what came of it. Everything about the models is absent where
@@ -43,6 +44,7 @@ struct TapRecord {
   std::optional<double> runner_up_score;
   std::optional<double> max_standard_deviation, mean_standard_deviation, min_weight, max_weight;
   std::optional<ProcessState> height_process, weight_process;
+  std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
   Errors errors;
 
   // After the tap.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gp/factor.hpp"
 
+#include "gp/tolerances.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate {
 
@@ -12,20 +13,49 @@ bool Factor::append(const VectorView& covariance, double diagonal) {
   if (rows_.cols() <= n) {
     const int capacity = std::max(16, 2 * n);
     rows_.conservativeResize(capacity, capacity);
+    largest_.vector.conservativeResize(capacity);
+    smallest_.vector.conservativeResize(capacity);
   }
   auto row = rows_.col(n);
   for (int i = 0; i < n; ++i) {
     row(i) = (covariance(i) - rows_.col(i).head(i).dot(row.head(i))) / rows_(i, i);
   }
   const double square = diagonal - row.head(n).squaredNorm();
-  if (!(square > (n + 1) * std::numeric_limits<double>::epsilon() * diagonal)) return false;
-  const double pivot = std::sqrt(square);
-  row(n) = pivot;
-  largest_ = n == 0 ? pivot : std::max(largest_, pivot);
-  smallest_ = n == 0 ? pivot : std::min(smallest_, pivot);
-  log_determinant_ += 2.0 * std::log(pivot);
+  if (!(square > kPivotGuard * (n + 1) * kEpsilon * diagonal)) return false;
+  row(n) = std::sqrt(square);
+  log_determinant_ += std::log(square);
   ++size_;
+  follow(largest_, true);
+  follow(smallest_, false);
   return true;
+}
+
+void Factor::follow(Extreme& extreme, bool largest) const {
+  const int n = size_ - 1;
+  const double pivot = last_pivot();
+  if (n == 0) {
+    extreme.vector(0) = 1.0;
+    extreme.value = pivot * pivot;
+    return;
+  }
+  // Among the vectors (s x, c), s^2 + c^2 = 1, |L (s x, c)|^2 is the form [s c] [[v + a^2, a d], [a d, d^2]] [s c]^T
+  // with a = l.x, d the pivot and v the value so far.
+  const double a = last_row().dot(extreme.vector.head(n));
+  const double angle = 0.5 * std::atan2(2.0 * a * pivot, extreme.value + a * a - pivot * pivot);
+  double s = std::cos(angle);
+  double c = std::sin(angle);
+  const double image = s * a + c * pivot;
+  const double largest_value = s * s * extreme.value + image * image;
+  if (largest) {
+    extreme.value = largest_value;
+  } else {
+    // The product of both eigenvalues is the determinant v d^2: no difference of near equals.
+    extreme.value = extreme.value * pivot * pivot / largest_value;
+    std::swap(s, c);
+    s = -s;
+  }
+  extreme.vector.head(n) *= s;
+  extreme.vector(n) = c;
 }
 
 void Factor::clear() {
@@ -33,6 +63,30 @@ void Factor::clear() {
   log_determinant_ = 0.0;
 }
 
-double Factor::condition() const { return size_ == 0 ? 1.0 : (largest_ / smallest_) * (largest_ / smallest_); }
+std::vector<int> independent_rows(Eigen::MatrixXd& covariance) {
+  const int n = static_cast<int>(covariance.rows());
+  Eigen::VectorXd left = covariance.diagonal();  // variance that the chosen rows do not explain
+  const Eigen::VectorXd own = left;
+  std::vector<int> order;
+  std::vector<bool> chosen(static_cast<std::size_t>(n), false);
+  Eigen::MatrixXd columns(n, n);
+  while (static_cast<int>(order.size()) < n) {
+    int best = -1;
+    for (int i = 0; i < n; ++i) {
+      const bool independent = left(i) > kPivotGuard * n * kEpsilon * own(i) && left(i) > 0.0;
+      if (!chosen[static_cast<std::size_t>(i)] && independent && (best < 0 || left(i) > left(best))) best = i;
+    }
+    if (best < 0) break;
+    const auto k = static_cast<Eigen::Index>(order.size());
+    auto column = columns.col(k);
+    column = covariance.col(best);
+    if (k > 0) column.noalias() -= columns.leftCols(k) * columns.row(best).head(k).transpose();
+    column /= std::sqrt(left(best));
+    left -= column.cwiseAbs2();
+    chosen[static_cast<std::size_t>(best)] = true;
+    order.push_back(best);
+  }
+  return order;
+}
 
 }  // namespace palpate

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 namespace palpate {
 
 /// L with L L^T = K, rows appended at O(n^2) each; earlier rows never change.
@@ -13,10 +15,7 @@ class Factor {
  public:
   /// Appends the point whose covariance with the n points before is `covariance` and with itself `diagonal` (noise and
   /// jitter included). Returns false, and leaves the factor as it was, when the pivot is not above what rounding
-  /// alone can produce: the matrix is then not positive definite in double precision.
-  ///
-  /// The guard: a pivot d^2 = diagonal - l.l carries a rounding error of up to about (n + 1) eps diagonal (Higham,
-  /// Accuracy and Stability of Numerical Algorithms, 2002, section 10.1), so a smaller one has no correct digit.
+  /// alone can produce (kPivotGuard): the matrix is then not positive definite in double precision.
   bool append(const VectorView& covariance, double diagonal);
 
   void clear();
@@ -30,16 +29,29 @@ class Factor {
   /// log det K = 2 sum log L_ii.
   double log_determinant() const { return log_determinant_; }
 
-  /// (max L_ii / min L_ii)^2: a lower bound of the condition number of K, usually within a factor of n of it. 1 for
-  /// an empty factor.
-  double condition() const;
+  /// An estimate of the condition number of K in the 2-norm, by incremental condition estimation (Bischof 1990): the
+  /// extreme singular vectors of L are carried along at O(n) a row. A lower bound, most often within a factor of 3;
+  /// 1 for an empty factor.
+  double condition() const { return size_ == 0 ? 1.0 : (largest_.value / smallest_.value); }
 
  private:
+  /// An approximate singular vector x of L, |x| = 1, and |L x|^2.
+  struct Extreme {
+    Eigen::VectorXd vector;
+    double value = 0.0;
+  };
+  void follow(Extreme& extreme, bool largest) const;
+
   int size_ = 0;
   Eigen::MatrixXd rows_;  ///< row i of L in column i: what the forward substitution reads is contiguous
   double log_determinant_ = 0.0;
-  double largest_ = 0.0;
-  double smallest_ = 0.0;
+  Extreme largest_;
+  Extreme smallest_;
 };
+
+/// The rows of `covariance` (symmetric, n x n, overwritten) that are independent in double precision, in the order of
+/// a Cholesky factorisation with diagonal pivoting: each the one that is least explained by those before. Rows whose
+/// pivot is not above kPivotGuard, or not a number, are left out.
+std::vector<int> independent_rows(Eigen::MatrixXd& covariance);
 
 }  // namespace palpate

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gp/process.hpp"
 
+#include "gp/tolerances.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -16,6 +18,7 @@ Process::Process(std::shared_ptr<Kernel> kernel, const ProcessSettings& settings
     : kernel_(std::move(kernel)), settings_(settings), candidates_(candidates), prior_(candidates.rows()) {
   kernel_->variance(candidates_, prior_);
   mean_ = Eigen::VectorXd::Zero(candidates_.rows());
+  if (settings_.mean_ratio > 0.0) explained_ = mean_;
   variance_ = prior_;
 }
 
@@ -24,7 +27,9 @@ void Process::reserve(int taps) {
   const int capacity = std::max(32, 2 * taps);
   points_.conservativeResize(capacity, 2);
   targets_.conservativeResize(capacity);
+  factored_.conservativeResize(capacity, 2);
   reduced_.conservativeResize(capacity);
+  constant_.conservativeResize(capacity);
   rows_.conservativeResize(candidates_.rows(), capacity);
   covariance_.resize(capacity);
 }
@@ -38,66 +43,152 @@ void Process::add(const Target& place, double value) {
   if (!append(size_ - 1)) rebuild();
 }
 
-bool Process::append(int index) {
-  const auto place = points_.row(index);
-  kernel_->covariance(points_.topRows(index), place, covariance_.head(index));
+bool Process::append(int tap) {
+  const int row = factor_.size();
+  factored_.row(row) = points_.row(tap);
+  const auto place = factored_.row(row);
+  kernel_->covariance(factored_.topRows(row), place, covariance_.head(row));
   double own = 0.0;
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));
   const double ratio = settings_.noise / settings_.signal;
-  if (!factor_.append(covariance_.head(index), own + ratio * ratio + jitter_)) return false;
+  if (!factor_.append(covariance_.head(row), own + ratio * ratio + jitter_)) return false;
 
   const double pivot = factor_.last_pivot();
-  const VectorView row = factor_.last_row();
-  const double target = (targets_(index) - settings_.mean) / settings_.signal;
-  reduced_(index) = (target - row.dot(reduced_.head(index))) / pivot;
+  const VectorView before = factor_.last_row();
+  const double target = (targets_(tap) - settings_.mean) / settings_.signal;
+  reduced_(row) = (target - before.dot(reduced_.head(row))) / pivot;
 
-  auto column = rows_.col(index);
+  auto column = rows_.col(row);
   kernel_->covariance(candidates_, place, column);
-  if (index > 0) column.noalias() -= rows_.leftCols(index) * row;
+  if (row > 0) column.noalias() -= rows_.leftCols(row) * before;
   column /= pivot;
-  mean_ += reduced_(index) * column;
+  mean_ += reduced_(row) * column;
   variance_ -= column.cwiseAbs2();
+  if (settings_.mean_ratio > 0.0) {
+    constant_(row) = (1.0 - before.dot(constant_.head(row))) / pivot;
+    explained_ += constant_(row) * column;
+  }
   return true;
 }
 
+bool Process::refactor(const std::vector<int>& taps) {
+  factor_.clear();
+  mean_.setZero();
+  explained_.setZero();
+  variance_ = prior_;
+  return std::all_of(taps.begin(), taps.end(), [this](int tap) { return append(tap); });
+}
+
 void Process::rebuild() {
-  const double unit = size_ * std::numeric_limits<double>::epsilon() * std::max(1.0, prior_.maxCoeff());
-  for (;;) {
-    factor_.clear();
-    mean_.setZero();
-    variance_ = prior_;
-    int done = 0;
-    while (done < size_ && append(done)) ++done;
-    if (done == size_) return;
-    jitter_ = std::max(10.0 * unit, 10.0 * jitter_);
+  std::vector<int> taps(static_cast<std::size_t>(size_));
+  std::iota(taps.begin(), taps.end(), 0);
+  const double unit = size_ * kEpsilon * prior_.maxCoeff();
+  while (!refactor(taps)) {
+    if (jitter_ >= kLastJitter * unit) {
+      // What is left of a matrix that no jitter makes positive definite: the taps that are independent of each other.
+      Eigen::MatrixXd covariance(size_, size_);
+      kernel_->covariance(points_.topRows(size_), points_.topRows(size_), covariance);
+      const double ratio = settings_.noise / settings_.signal;
+      covariance.diagonal().array() += ratio * ratio + jitter_;
+      ++pivoted_;
+      taps = independent_rows(covariance);
+      if (refactor(taps)) return;
+      // The guards of both factorisations differ by rounding: what the second refused ends the list.
+      taps.resize(static_cast<std::size_t>(factor_.size()));
+      refactor(taps);
+      return;
+    }
+    jitter_ = std::min(std::max(kFirstJitter * unit, 10.0 * jitter_), kLastJitter * unit);
     ++jitter_raised_;
   }
 }
 
-FitSummary Process::fit(const Fitting& fitting, Random& random) {
-  const Eigen::VectorXd relative = targets_.head(size_).array() - settings_.mean;
-  FitProblem problem{points_.topRows(size_), relative, *kernel_, settings_.signal, settings_.noise};
+FitSummary Process::fit(const std::vector<Process*>& processes, const Fitting& fitting, Random& random) {
+  Process& first = *processes.front();
+  std::vector<double> old;
+  for (const KernelParameter& one : first.kernel_->parameters()) old.push_back(one.value);
+  std::vector<ProcessSettings> fitted;
+  fitted.reserve(processes.size());
+  double noise_ratio = first.settings_.noise / first.settings_.signal;
+  FitProblem problem{first.points_.topRows(first.size_), *first.kernel_, noise_ratio, first.settings_.mean_ratio, {}};
+  for (const Process* process : processes) {
+    fitted.push_back(process->settings_);
+    problem.outputs.push_back(
+        {process->targets_.head(process->size_), fitted.back().signal, fitted.back().mean});
+  }
   FitSummary summary = fitting.fit(problem, random);
-  if (summary.changed) {
-    kernel_->variance(candidates_, prior_);
-    jitter_ = 0.0;
-    rebuild();
+  if (!summary.changed) return summary;
+
+  bool sound = std::isfinite(noise_ratio) && noise_ratio >= 0.0;
+  for (const KernelParameter& one : first.kernel_->parameters()) sound &= std::isfinite(one.value) && one.value > 0.0;
+  for (const ProcessSettings& one : fitted) {
+    sound &= std::isfinite(one.signal) && one.signal > 0.0 && std::isfinite(one.mean);
+  }
+  if (!sound) {
+    first.kernel_->set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
+    summary.changed = false;
+    summary.failed = true;
+    summary.reason = "a number that is not finite was refused; " + summary.reason;
+    return summary;
+  }
+  for (std::size_t i = 0; i < processes.size(); ++i) {
+    Process& process = *processes[i];
+    process.settings_ = fitted[i];
+    process.settings_.noise = noise_ratio * fitted[i].signal;
+    process.kernel_->variance(process.candidates_, process.prior_);
+    process.jitter_ = 0.0;
+    process.rebuild();
   }
   return summary;
 }
 
-Eigen::VectorXd Process::mean() const { return (settings_.signal * mean_.array() + settings_.mean).matrix(); }
+double Process::constant_precision() const {
+  return 1.0 / prior_of_constant() + constant_.head(factor_.size()).squaredNorm();
+}
 
-Eigen::VectorXd Process::variance() const { return variance_.cwiseMax(0.0) * (settings_.signal * settings_.signal); }
+Eigen::VectorXd Process::mean() const {
+  Eigen::VectorXd standard = mean_;
+  if (settings_.mean_ratio > 0.0) {
+    const int n = factor_.size();
+    const double constant = constant_.head(n).dot(reduced_.head(n)) / constant_precision();
+    standard.array() += constant * (1.0 - explained_.array());
+  }
+  return (settings_.signal * standard.array() + settings_.mean).matrix();
+}
 
-Eigen::VectorXd Process::relative_variance() const { return variance_.cwiseMax(0.0).cwiseQuotient(prior_); }
+Eigen::VectorXd Process::standard_variance() const {
+  if (!(settings_.mean_ratio > 0.0)) return variance_;
+  return variance_.array() + (1.0 - explained_.array()).square() / constant_precision();
+}
 
-int Process::variances_clamped() const { return static_cast<int>((variance_.array() < 0.0).count()); }
+Eigen::VectorXd Process::variance() const {
+  const Eigen::VectorXd prior = prior_.array() + prior_of_constant();
+  return standard_variance().cwiseMax(0.0).cwiseMin(prior) * (settings_.signal * settings_.signal);
+}
+
+Eigen::VectorXd Process::relative_variance() const {
+  const Eigen::VectorXd prior = prior_.array() + prior_of_constant();
+  return standard_variance().cwiseMax(0.0).cwiseMin(prior).cwiseQuotient(prior);
+}
+
+int Process::variances_clamped() const {
+  const Eigen::ArrayXd variance = standard_variance();
+  // A last digit above the prior is no news; below 0 every digit is.
+  const Eigen::ArrayXd most = (prior_.array() + prior_of_constant()) * (1.0 + 4.0 * kEpsilon);
+  return static_cast<int>((variance < 0.0 || variance > most).count());
+}
 
 double Process::log_marginal_likelihood() const {
-  if (size_ == 0) return 0.0;
-  return -0.5 * (reduced_.head(size_).squaredNorm() + factor_.log_determinant() + size_ * kLogTwoPi) -
-         size_ * std::log(settings_.signal);
+  const int n = factor_.size();
+  if (n == 0) return 0.0;
+  double square = reduced_.head(n).squaredNorm();
+  double log_determinant = factor_.log_determinant();
+  if (settings_.mean_ratio > 0.0) {
+    const double common = constant_.head(n).dot(reduced_.head(n));
+    square -= common * common / constant_precision();
+    log_determinant += std::log(constant_precision() * prior_of_constant());
+  }
+  return -0.5 * (square + log_determinant + n * kLogTwoPi) - n * std::log(settings_.signal);
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include <palpate/kernel.hpp>
 
 #include <memory>
+#include <vector>
 
 namespace palpate {
 
@@ -17,6 +18,8 @@ struct ProcessSettings {
   double signal = 1.0;
   double noise = 0.0;  ///< of one tap, independent from tap to tap, also at one place
   double mean = 0.0;   ///< prior mean, constant
+  /// Standard deviation, in signals, of an unknown constant that is added to the mean; 0: the mean is known.
+  double mean_ratio = 0.0;
 };
 
 /// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates.
@@ -30,8 +33,13 @@ struct ProcessSettings {
 /// (l, d) its row of L and b its entry of L^-1 targets. That is O(nM) time and memory for M candidates; what earlier
 /// taps brought is never computed again, unless the jitter or the hyperparameters change.
 ///
+/// An unknown constant in the mean is integrated out (the same, section 2.7): its posterior needs L^-1 1, which grows
+/// like L^-1 targets, and the map V^T L^-1 1.
+///
 /// A tap that makes the matrix singular in double precision (a duplicate without noise) raises the jitter: a variance
-/// added to the whole diagonal and reported by jitter(); it is part of the model from then on.
+/// added to the whole diagonal and reported by jitter(); it is part of the model from then on. A matrix that is
+/// singular even so (a kernel that is not positive definite) is factorised with pivoting, and taps that the others
+/// already tell everything about are set aside: they stay recorded but do not enter the posterior.
 class Process {
  public:
   /// `candidates` must outlive the process.
@@ -39,9 +47,6 @@ class Process {
 
   /// Adds a tap and updates the maps. O(nM).
   void add(const Target& place, double value);
-
-  /// Lets `fitting` choose the hyperparameters from the taps so far, and rebuilds if it changed them: O(n^2 M).
-  FitSummary fit(const Fitting& fitting, Random& random);
 
   int size() const { return size_; }
 
@@ -57,19 +62,34 @@ class Process {
 
   /// The variance added to the diagonal by need, square of the unit of the targets.
   double jitter() const { return jitter_ * settings_.signal * settings_.signal; }
-  /// How often jitter was raised.
+  /// How often jitter was raised, and how often pivoting was the last resort.
   int jitter_raised() const { return jitter_raised_; }
-  /// How many candidates' variances rounding had taken below 0 when a map was last read; they read as 0.
+  int pivoted() const { return pivoted_; }
+  /// How many taps do not enter the posterior.
+  int set_aside() const { return size_ - factor_.size(); }
+  /// How many candidates' variances rounding had taken out of [0, prior] when a map was last read; they read as its
+  /// ends.
   int variances_clamped() const;
+  /// Estimate of the condition number of the covariance of the taps, noise and jitter included.
   double condition() const { return factor_.condition(); }
 
   const ProcessSettings& settings() const { return settings_; }
   const Kernel& kernel() const { return *kernel_; }
 
+  /// Lets `fitting` choose the hyperparameters of `processes` from their taps, and rebuilds if it changed them,
+  /// O(n^2 M). Several processes fitted together share kernel and places, and afterwards their ratio of noise to
+  /// signal. Numbers that are not finite are refused: then the old ones stay.
+  static FitSummary fit(const std::vector<Process*>& processes, const Fitting& fitting, Random& random);
+
  private:
-  bool append(int index);
+  bool append(int tap);
   void rebuild();
+  bool refactor(const std::vector<int>& taps);
   void reserve(int taps);
+  /// Precision of the unknown constant after the taps: 1 / mean_ratio^2 + 1^T K^-1 1.
+  double constant_precision() const;
+  Eigen::VectorXd standard_variance() const;
+  double prior_of_constant() const { return settings_.mean_ratio * settings_.mean_ratio; }
 
   std::shared_ptr<Kernel> kernel_;
   ProcessSettings settings_;
@@ -77,17 +97,21 @@ class Process {
   Eigen::VectorXd prior_;  ///< kernel variance at each candidate
 
   int size_ = 0;
-  Points points_;            ///< first size_ rows
+  Points points_;            ///< first size_ rows, in the order of the taps
   Eigen::VectorXd targets_;  ///< as given
 
   Factor factor_;
-  Eigen::VectorXd reduced_;  ///< L^-1 standardised targets
-  Eigen::MatrixXd rows_;     ///< M x n: V^T, a tap a column
-  Eigen::VectorXd mean_;     ///< standardised
+  Points factored_;            ///< the points of the rows of factor_: those of the taps unless some are set aside
+  Eigen::VectorXd reduced_;    ///< L^-1 standardised targets
+  Eigen::VectorXd constant_;   ///< L^-1 1; only with an unknown constant
+  Eigen::MatrixXd rows_;       ///< M x n: V^T, a row of the factor a column
+  Eigen::VectorXd mean_;       ///< standardised, without the unknown constant
+  Eigen::VectorXd explained_;  ///< V^T L^-1 1: how much of the constant the taps tell at each candidate
   Eigen::VectorXd variance_;
   Eigen::VectorXd covariance_;  ///< scratch: of the new tap with the earlier ones
   double jitter_ = 0.0;         ///< relative to signal^2
   int jitter_raised_ = 0;
+  int pivoted_ = 0;
 };
 
 }  // namespace palpate

@@ -134,18 +134,38 @@ std::string to_json_text(const Row& row) {
   return out + "\n";
 }
 
+namespace {
+
+/// The names of all fields of all rows: a name stands behind the one that it follows in its row.
+std::vector<std::string> names_of(const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) {
+    std::size_t at = 0;  // where the next field of this row is expected
+    for (const auto& [name, value] : row.fields) {
+      if (at >= names.size() || names[at] != name) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        at = found != names.end() ? static_cast<std::size_t>(found - names.begin()) : at;
+        if (found == names.end()) names.insert(names.begin() + static_cast<std::ptrdiff_t>(at), name);
+      }
+      ++at;
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
 std::string to_csv(const std::vector<Row>& rows) {
-  const auto widest = std::max_element(rows.begin(), rows.end(),
-                                       [](const Row& a, const Row& b) { return a.fields.size() < b.fields.size(); });
-  if (widest == rows.end()) return {};
+  const std::vector<std::string> header = names_of(rows);
+  if (header.empty()) return {};
   std::string out;
-  for (const auto& [name, value] : widest->fields) out += (out.empty() ? "" : ",") + csv_text(name);
+  for (const std::string& name : header) out += (out.empty() ? "" : ",") + csv_text(name);
   out += "\n";
   for (const Row& row : rows) {
     std::string line;
     std::size_t at = 0;
-    for (const auto& [name, unused] : widest->fields) {
-      if (&name != &widest->fields.front().first) line += ",";
+    for (const std::string& name : header) {
+      if (&name != &header.front()) line += ",";
       // Rows have their fields in the same order, some lacking: a second look from the start is rarely needed.
       if (at < row.fields.size() && row.fields[at].first == name) {
         line += csv_cell(row.fields[at++].second);

@@ -94,11 +94,12 @@ bool depends_on_machine(const std::string& field) {
 std::string surface_csv(Experiment& experiment) {
   const TapBelief& belief = experiment.belief();
   const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
+  const Eigen::VectorXd surface = reconstruction(belief);
   const Truth* truth = experiment.truth();
   return grid_csv(experiment.candidates(), {{"height_mean", &belief.height_mean()},
                                             {"height_standard_deviation", &deviation},
                                             {"on_surface_probability", &belief.weight_mean()},
-                                            {"reconstructed_height", &reconstruction(belief)},
+                                            {"reconstructed_height", &surface},
                                             {"true_height", truth != nullptr ? &truth->height : nullptr}});
 }
 

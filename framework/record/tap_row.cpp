@@ -25,6 +25,12 @@ void add_process(Row& row, const std::string& name, const std::optional<ProcessS
   add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
   add("jitter", [](const ProcessState& s) { return s.jitter; });
   add("condition", [](const ProcessState& s) { return s.condition; });
+  if (state && state->fit) {
+    row.add(name + ".fit.changed", state->fit->changed);
+    row.add(name + ".fit.objective", state->fit->objective);
+    row.add(name + ".fit.evaluations", state->fit->evaluations);
+    row.add(name + ".fit.reason", state->fit->reason);
+  }
 }
 
 void add_head(Row& row, const TapRecord& tap) {
@@ -60,6 +66,7 @@ void add_state(Row& row, const TapRecord& tap) {
   row.add("max_weight", tap.max_weight);
   add_process(row, "height_process", tap.height_process);
   add_process(row, "weight_process", tap.weight_process);
+  if (tap.surface_process) add_process(row, "surface_process", tap.surface_process);
   row.add("true_on_surface", tap.true_on_surface);
   row.add("rmse_m", tap.errors.rmse);
   row.add("rmse_on_surface_m", tap.errors.rmse_on_surface);

@@ -11,7 +11,7 @@ class Fixed final : public Fitting {
   Fixed(const Options&, const Context&) {}
 
   bool due(int) const override { return false; }
-  FitSummary fit(FitProblem&, Random&) const override { return {false, 0.0, 0, "hyperparameters are fixed"}; }
+  FitSummary fit(FitProblem&, Random&) const override { return {false, false, 0.0, 0, "hyperparameters are fixed"}; }
 };
 
 PALPATE_PLUGIN(Fitting, Fixed, "fixed", "keep the hyperparameters of the config, as the paper does")

@@ -4,13 +4,21 @@
 
 namespace palpate::kernels {
 
-struct Matern32Shape {
+struct Matern32Shape : PlainShape {
+  using PlainShape::PlainShape;
+
   template <class Array>
-  static void apply(Array r2) {
+  void apply(Array r2) const {
     r2 = (3.0 * r2).sqrt();
     // exp(-s) underflows to 0 long before s overflows; without the bound, infinity times 0 would be NaN.
     r2 = r2.min(800.0);
     r2 = (1.0 + r2) * (-r2).exp();
+  }
+  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
+    const Chunk s = (3.0 * r2).sqrt();
+    g = (-s).exp();
+    k = (1.0 + s) * g;
+    g *= 3.0;
   }
 };
 

@@ -4,13 +4,21 @@
 
 namespace palpate::kernels {
 
-struct Matern52Shape {
+struct Matern52Shape : PlainShape {
+  using PlainShape::PlainShape;
+
   template <class Array>
-  static void apply(Array r2) {
+  void apply(Array r2) const {
     r2 = (5.0 * r2).sqrt();
     // exp(-s) underflows to 0 long before s overflows; without the bound, infinity times 0 would be NaN.
     r2 = r2.min(800.0);
     r2 = (1.0 + r2 + r2.square() / 3.0) * (-r2).exp();
+  }
+  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
+    const Chunk s = (5.0 * r2).sqrt().min(1e150);
+    g = (-s).exp();
+    k = (1.0 + s + s.square() / 3.0) * g;
+    g *= (5.0 / 3.0) * (1.0 + s);
   }
 };
 

@@ -4,10 +4,16 @@
 
 namespace palpate::kernels {
 
-struct RbfShape {
+struct RbfShape : PlainShape {
+  using PlainShape::PlainShape;
+
   template <class Array>
-  static void apply(Array r2) {
+  void apply(Array r2) const {
     r2 = (-0.5 * r2).exp();
+  }
+  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
+    k = (-0.5 * r2).exp();
+    g = k;
   }
 };
 

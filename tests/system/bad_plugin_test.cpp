@@ -86,7 +86,7 @@ TEST(BadPlugin, WithAnotherMagicIsNamed) {
 }
 
 TEST(BadPlugin, OfAnotherAbiIsRefusedBeforeAnythingElseIsRead) {
-  expect_broken("other_abi", "comparing the ABI: built for ABI 42, the program has 1");
+  expect_broken("other_abi", "comparing the ABI: built for ABI 43, the program has 2");
 }
 
 TEST(BadPlugin, OfAnotherAlignmentNamesWhatDiffers) {

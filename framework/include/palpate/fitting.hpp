@@ -6,28 +6,40 @@
 #include <palpate/random.hpp>
 
 #include <string>
+#include <vector>
 
 namespace palpate {
 
-/// What a fit may read and change. Targets are relative to the prior mean of the process.
-struct FitProblem {
-  const PointsView points;   ///< n x 2, metres; n >= 1
-  const VectorView targets;  ///< n; metres for the height process, labels for the weight process
-  Kernel& kernel;            ///< its hyperparameters may be changed
+/// One quantity that was measured at the points.
+struct FitOutput {
+  const VectorView targets;  ///< n; metres for heights, no unit for labels
   double& signal;            ///< standard deviation of the prior, unit of the targets
-  double& noise;             ///< standard deviation of the noise of one tap, unit of the targets
+  double& mean;              ///< prior mean, unit of the targets
+};
+
+/// What a fit may read and change. The model of output i is
+///     targets_i ~ N(mean_i, signal_i^2 (k + mean_ratio^2 + noise_ratio^2 I)),
+/// so outputs that are fitted together share the kernel and the ratio of noise to signal, and with them one
+/// factorisation.
+struct FitProblem {
+  const PointsView points;  ///< n x 2, metres; n >= 1
+  Kernel& kernel;           ///< its hyperparameters may be changed
+  double& noise_ratio;      ///< standard deviation of the noise of one tap, in signals
+  const double mean_ratio;  ///< standard deviation of the unknown constant that is added to the mean, in signals; >= 0
+  std::vector<FitOutput> outputs;  ///< one, or several that share their hyperparameters
 };
 
 /// What a fit did, in numbers and words.
 struct FitSummary {
   bool changed = false;    ///< the problem's hyperparameters are new; false leaves them exactly as they were
-  double objective = 0.0;  ///< value reached, by the fit's own measure
+  bool failed = false;     ///< no better values were found although they were looked for; never with `changed`
+  double objective = 0.0;  ///< value reached, by the fit's own measure; larger is better
   int evaluations = 0;     ///< of the objective
   std::string reason;      ///< why it ended, one line
 };
 
-/// Law: never throws for numerical reasons. A fit that fails restores the old hyperparameters, reports `changed`
-/// false and says why.
+/// Law: never throws for numerical reasons. A fit that fails leaves the old hyperparameters, reports `changed` false
+/// and `failed` true, and says why.
 class Fitting {
  public:
   static constexpr const char* kKind = "fitting";
@@ -38,8 +50,13 @@ class Fitting {
   /// same taps.
   virtual bool due(int taps) const = 0;
 
+  /// Why this fitting cannot work with such a kernel, one line; empty if it can. Asked once, before the first tap.
+  virtual std::string objection(const Kernel& kernel) const;
+
   /// Fits in place. `random` is the stream of this process at this tap.
   virtual FitSummary fit(FitProblem& problem, Random& random) const = 0;
 };
+
+inline std::string Fitting::objection(const Kernel&) const { return {}; }
 
 }  // namespace palpate

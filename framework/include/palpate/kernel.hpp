@@ -2,6 +2,7 @@
 // Plugin kind `kernel`: how alike the heights at two places are.
 #pragma once
 
+#include <palpate/options.hpp>
 #include <palpate/types.hpp>
 
 #include <string>
@@ -9,10 +10,12 @@
 
 namespace palpate {
 
-/// A named hyperparameter of a kernel as it stands now, for the record.
+/// A named hyperparameter of a kernel as it stands now. All are positive, so that fits work on their logarithms.
 struct KernelParameter {
-  std::string name;  ///< the option it came from
-  double value;      ///< SI
+  std::string name;  ///< the option it came from, dotted where kernels nest: "kernels.0.length_scale"
+  double value;      ///< SI, positive
+  /// `metre` for a distance over the area; fits scale their expectations by the size of the area.
+  Unit unit = Unit::none;
 };
 
 /// The shape of a covariance function; signal variance and noise belong to the process, not to the kernel.
@@ -35,6 +38,21 @@ class Kernel {
 
   /// The hyperparameters in the order of the options.
   virtual std::vector<KernelParameter> parameters() const = 0;
+
+  /// Whether a fit may change the hyperparameters; then the two methods below are implemented too. A kernel without
+  /// them serves every config with `fitting: fixed`.
+  virtual bool differentiable() const { return false; }
+
+  /// Takes new hyperparameters: P values in the order of parameters(), positive and finite.
+  virtual void set_parameters(const VectorView& values);
+
+  /// Covariances with one point, and what they change with: `a` n x 2, `b` 1 x 2, `value` n, `slopes` n x P with
+  /// slopes(i, p) = d k(a_i, b) / d log parameter p. `value` equals covariance(a, b) within 8 ulp; the slopes are
+  /// finite for all finite points. Never throws.
+  virtual void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const;
 };
+
+inline void Kernel::set_parameters(const VectorView&) {}
+inline void Kernel::derivatives(const PointsView&, const PointsView&, VectorOut, MatrixOut) const {}
 
 }  // namespace palpate

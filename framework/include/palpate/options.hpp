@@ -122,6 +122,8 @@ class Fields {
   /// Another plugin, of the kind `choice.kind`.
   virtual void plugin(PluginChoice& choice, const Field& field) = 0;
   virtual void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) = 0;
+  /// A list of plugins of one kind.
+  virtual void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) = 0;
   /// A law between fields: when `holds` is false, reading fails with `reason` at the place of `field`, which may be a
   /// dotted path to a field of a nested group.
   virtual void require(bool holds, const char* field, const std::string& reason) = 0;

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// A kernel times a constant: the share that it has in a sum.
+#include <palpate/kernel.hpp>
+#include <palpate/plugin.hpp>
+
+namespace palpate::kernels {
+
+struct ScaleOptions : Options {
+  double factor = 1.0;
+  PluginChoice kernel{"kernel", {}, nullptr};
+
+  void list(Fields& fields) override {
+    fields.real(factor, Field("factor", "by which covariances are multiplied").above(0).at_most(1e12));
+    fields.plugin(kernel, Field("kernel", "what is multiplied, {type: ..., ...}").needed());
+  }
+};
+
+class Scale final : public Kernel {
+ public:
+  using Options = ScaleOptions;
+
+  Scale(const Options& options, const Context& context)
+      : factor_(options.factor), inner_(context.create<Kernel>(options.kernel)) {}
+
+  void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
+    inner_->covariance(a, b, out);
+    out *= factor_;
+  }
+
+  void variance(const PointsView& a, VectorOut out) const override {
+    inner_->variance(a, out);
+    out *= factor_;
+  }
+
+  std::vector<KernelParameter> parameters() const override {
+    std::vector<KernelParameter> out{{"factor", factor_}};
+    for (KernelParameter one : inner_->parameters()) {
+      one.name = "kernel." + one.name;
+      out.push_back(std::move(one));
+    }
+    return out;
+  }
+
+  bool differentiable() const override { return inner_->differentiable(); }
+
+  void set_parameters(const VectorView& values) override {
+    factor_ = values(0);
+    inner_->set_parameters(values.tail(values.size() - 1));
+  }
+
+  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
+    inner_->derivatives(a, b, value, slopes.rightCols(slopes.cols() - 1));
+    value *= factor_;
+    slopes.rightCols(slopes.cols() - 1) *= factor_;
+    slopes.col(0) = value;  // d k / d log factor = k
+  }
+
+ private:
+  double factor_;
+  std::shared_ptr<Kernel> inner_;
+};
+
+PALPATE_PLUGIN(Kernel, Scale, "scale", "a kernel times a constant: its share in a sum")
+
+}  // namespace palpate::kernels
