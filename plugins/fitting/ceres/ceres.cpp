@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Hyperparameters from the taps: the largest marginal likelihood, or leave-one-out predictive density, weighted by what
+// is reasonable to expect of a surface in an area of this size (Rasmussen and Williams 2006, chapter 5).
+#include "objective.hpp"
+#include "search.hpp"
+
+#include <palpate/fitting.hpp>
+#include <palpate/plugin.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace palpate::fitting {
+
+struct CeresOptions : Options {
+  enum class Priors { weak, none };
+  enum class Mean { keep, fit };
+
+  Measure objective = Measure::log_marginal_likelihood;
+  Priors priors = Priors::weak;
+  Mean mean = Mean::keep;
+  std::int64_t every = 1;
+  std::int64_t starts = 3;
+
+  void list(Fields& fields) override {
+    fields.choice(objective, Field("objective", "what is maximised"),
+                  {{"lml", "log marginal likelihood of the targets", {}},
+                   {"loo", "log predictive density of each target, given the others", {}}});
+    fields.choice(priors, Field("priors", "what is expected of the hyperparameters before any tap"),
+                  {{"weak",
+                    "log-normal densities: length scales 1/8 of the area's longer side, within a factor of 2.7; signal "
+                    "the spread of the targets, 2.7; noise 1 % of the signal, 4.5; other kernel parameters 1, 4.5; "
+                    "mean 0 within 3 spreads (factors are one standard deviation of the logarithm)",
+                    {}},
+                   {"none", "nothing; needs more taps than hyperparameters", {}}});
+    fields.choice(mean, Field("mean", "of the prior"),
+                  {{"keep", "stays as the config says", {}}, {"fit", "one constant, fitted with the others", {}}});
+    fields.integer(every, Field("every", "fit after each so many taps").at_least(1).at_most(100000));
+    fields.integer(starts, Field("starts", "ascents: one from the present values or better ones near them, the others "
+                                           "from random places within the expectations")
+                               .at_least(1)
+                               .at_most(1000));
+  }
+};
+
+namespace {
+
+/// Above this number of points a part of them finds the region of the optimum, and all of them only the optimum.
+constexpr Eigen::Index kPart = 96;
+/// Largest slope at the end, per point and in units of the curvature: the objective is then within about 1e-8 of its
+/// maximum.
+constexpr double kFine = 1e-4;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+bool better(const Spot& a, const Spot& b) { return a.valid && (!b.valid || a.value > b.value); }
+
+/// What every start came to, in words.
+std::string told(const std::vector<Spot>& spots, const Model& model) {
+  std::string values;
+  for (const Spot& spot : spots) {
+    values += (values.empty() ? "" : ", ") + (spot.valid ? number(model.total(spot.value)) : "nothing");
+  }
+  return std::to_string(spots.size()) + (spots.size() == 1 ? " start: " : " starts: ") + values;
+}
+
+/// Two in five of the points, evenly over their order.
+Model part_of(const Model& all) {
+  Model part = all;
+  const Eigen::Index count = std::max(kPart / 2, 2 * all.size() / 5);
+  part.points.resize(count, 2);
+  part.targets.resize(count, all.outputs());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    part.points.row(i) = all.points.row(i * all.size() / count);
+    part.targets.row(i) = all.targets.row(i * all.size() / count);
+  }
+  return part;
+}
+
+}  // namespace
+
+class Ceres final : public Fitting {
+ public:
+  using Options = CeresOptions;
+
+  Ceres(const Options& options, const Context& context)
+      : options_(options), side_(std::max(context.scene.area().width, context.scene.area().depth)) {}
+
+  bool due(int taps) const override { return taps > 0 && taps % options_.every == 0; }
+
+  std::string objection(const Kernel& kernel) const override {
+    return kernel.differentiable() ? "" : "fitting/ceres needs a kernel with derivatives, this one has none";
+  }
+
+  FitSummary fit(FitProblem& problem, Random& random) const override;
+
+ private:
+  std::vector<Expectation> expectations(const Model& model) const;
+  /// The optima that the ascents found, the best first.
+  std::vector<Spot> search(const Model& model, const std::vector<Expectation>& expected, const Eigen::VectorXd& now,
+                           Random& random, int& evaluations) const;
+  bool with_priors() const { return options_.priors == Options::Priors::weak; }
+
+  Options options_;
+  double side_;  ///< of the area, the longer one, metres
+};
+
+namespace {
+
+Model model_of(const FitProblem& problem, bool fit_means) {
+  const auto outputs = static_cast<Eigen::Index>(problem.outputs.size());
+  Model model{problem.points,     Eigen::MatrixXd(problem.points.rows(), outputs),
+              Eigen::VectorXd(outputs), problem.kernel,
+              problem.mean_ratio, Eigen::VectorXd(outputs),
+              fit_means};
+  for (Eigen::Index i = 0; i < outputs; ++i) {
+    const FitOutput& output = problem.outputs[static_cast<std::size_t>(i)];
+    const Eigen::VectorXd relative = output.targets.array() - output.mean;
+    // stableNorm, for targets whose squares overflow or vanish.
+    model.scales(i) = relative.stableNorm() / std::sqrt(static_cast<double>(relative.size()));
+    model.targets.col(i) = output.targets / model.scales(i);
+    model.means(i) = output.mean / model.scales(i);
+  }
+  return model;
+}
+
+/// The present values, on the scale of the search.
+Eigen::VectorXd present(const FitProblem& problem, const Model& model, const std::vector<Expectation>& expected) {
+  std::vector<double> x;
+  for (const KernelParameter& one : problem.kernel.parameters()) x.push_back(std::log(one.value));
+  x.push_back(2.0 * std::log(problem.noise_ratio));
+  for (std::size_t i = 0; i < problem.outputs.size(); ++i) {
+    x.push_back(2.0 * std::log(problem.outputs[i].signal / model.scales(static_cast<Eigen::Index>(i))));
+  }
+  if (model.fit_means) x.insert(x.end(), model.means.data(), model.means.data() + model.means.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i], expected[i].least, expected[i].most);
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
+  const auto count = static_cast<Eigen::Index>(problem.kernel.parameters().size());
+  problem.kernel.set_parameters(x.head(count).array().exp().matrix());
+  problem.noise_ratio = std::exp(0.5 * x(count));
+  const Eigen::Index outputs = model.outputs();
+  for (Eigen::Index i = 0; i < outputs; ++i) {
+    FitOutput& output = problem.outputs[static_cast<std::size_t>(i)];
+    output.signal = model.scales(i) * std::exp(0.5 * x(count + 1 + i));
+    if (model.fit_means) output.mean = model.scales(i) * x(count + 1 + outputs + i);
+  }
+}
+
+}  // namespace
+
+std::vector<Expectation> Ceres::expectations(const Model& model) const {
+  const auto log_normal = [](double median, double spread, double factor) {
+    return Expectation{std::log(median), spread, std::log(median / factor), std::log(median * factor)};
+  };
+  std::vector<Expectation> out;
+  for (const KernelParameter& one : model.kernel.parameters()) {
+    out.push_back(one.unit == Unit::metre ? log_normal(side_ / 8.0, 1.0, 1e4) : log_normal(1.0, 1.5, 1e4));
+  }
+  // Squares of noise and signal: spreads twice those of the standard deviations.
+  out.push_back(log_normal(1e-4, 3.0, 1e8));
+  for (Eigen::Index i = 0; i < model.outputs(); ++i) out.push_back(log_normal(1.0, 2.0, 1e8));
+  for (Eigen::Index i = 0; model.fit_means && i < model.outputs(); ++i) out.push_back({0.0, 3.0, -1e3, 1e3});
+  return out;
+}
+
+std::vector<Spot> Ceres::search(const Model& model, const std::vector<Expectation>& expected,
+                                const Eigen::VectorXd& now, Random& random, int& evaluations) const {
+  Objective objective(model, options_.objective, expected, with_priors());
+  std::vector<Spot> spots;
+  if (model.size() <= kPart) {
+    for (std::int64_t i = 0; i < options_.starts; ++i) {
+      const Eigen::VectorXd start =
+          i == 0 ? look_around(objective, model, now, expected) : random_start(expected, random);
+      spots.push_back(ascend(objective, start, metric_at(objective, start), kFine));
+    }
+  } else {
+    // A part of the points finds the region and its curvature; all of them decide between the optima of the part.
+    const Model part = part_of(model);
+    spots = search(part, expected, now, random, evaluations);
+    for (Spot& spot : spots) spot.valid = spot.valid && objective.evaluate(spot.x.data(), &spot.value, nullptr);
+    std::sort(spots.begin(), spots.end(), better);
+    Objective rough(part, options_.objective, expected, with_priors());
+    spots.front() = ascend(objective, spots.front().x, metric_at(rough, spots.front().x), kFine);
+    evaluations += rough.evaluations();
+  }
+  evaluations += objective.evaluations();
+  std::sort(spots.begin(), spots.end(), better);
+  return spots;
+}
+
+FitSummary Ceres::fit(FitProblem& problem, Random& random) const {
+  FitSummary summary;
+  const bool fit_means = options_.mean == Options::Mean::fit;
+  const Model model = model_of(problem, fit_means);
+  if (!(model.scales.array() > 0.0).all() || !model.scales.allFinite() || !model.targets.allFinite()) {
+    summary.reason = "every target equals the prior mean: they tell nothing";
+    return summary;
+  }
+  const std::vector<Expectation> expected = expectations(model);
+  if (!with_priors() && model.size() * model.outputs() <= static_cast<Eigen::Index>(expected.size())) {
+    summary.reason = "without priors there must be more taps than hyperparameters";
+    return summary;
+  }
+  Eigen::VectorXd old(static_cast<Eigen::Index>(problem.kernel.parameters().size()));
+  for (Eigen::Index i = 0; i < old.size(); ++i) {
+    old(i) = problem.kernel.parameters()[static_cast<std::size_t>(i)].value;
+  }
+  const Eigen::VectorXd now = present(problem, model, expected);
+  Objective full(model, options_.objective, expected, with_priors());
+  double value_now = 0.0;
+  const bool known = full.evaluate(now.data(), &value_now, nullptr);
+  ++summary.evaluations;
+
+  const std::vector<Spot> spots = search(model, expected, now, random, summary.evaluations);
+  const Spot& best = spots.front();
+  summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent came to a finite value";
+  if (best.valid && (!known || best.value > value_now)) {
+    summary.changed = true;
+    summary.objective = model.total(best.value);
+    take(best.x, model, problem);
+    return summary;
+  }
+  problem.kernel.set_parameters(old);
+  summary.failed = !best.valid;
+  summary.objective = known ? model.total(value_now) : 0.0;
+  if (best.valid) summary.reason = "nothing is better than the present values; " + summary.reason;
+  return summary;
+}
+
+PALPATE_PLUGIN(Fitting, Ceres, "ceres", "fit kernel, signal and noise to the taps, by marginal likelihood or leave-one-out")
+
+}  // namespace palpate::fitting

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// What a fit maximises, as a function of the logarithms of the hyperparameters, with its gradient.
+#pragma once
+
+#include <palpate/fitting.hpp>
+#include <palpate/types.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace palpate::fitting {
+
+enum class Measure { log_marginal_likelihood, leave_one_out };
+
+/// Where one hyperparameter is expected, on the scale of the search: a normal density, and limits beyond which a
+/// smooth wall rises, so far out that no likelihood of sane data reaches them.
+struct Expectation {
+  double centre = 0.0;
+  double spread = 1.0;
+  double least = 0.0;
+  double most = 0.0;
+};
+
+/// The data and the model of a fit, or those of a part of its points.
+///
+/// Hyperparameters in the order of the search: log of each kernel parameter (P), log of the squared noise ratio, then
+/// for each output log of the squared signal, then for each output its mean if that is fitted too. Signals and means
+/// are in units of `scales`, so that all are of order 1.
+struct Model {
+  Points points;            ///< n x 2, metres
+  Eigen::MatrixXd targets;  ///< n x m, each column divided by its scale
+  Eigen::VectorXd scales;   ///< m: unit of the targets
+  Kernel& kernel;           ///< changed by every evaluation
+  double mean_ratio = 0.0;
+  Eigen::VectorXd means;  ///< m, for when they are not fitted
+  bool fit_means = false;
+
+  Eigen::Index size() const { return points.rows(); }
+  Eigen::Index outputs() const { return targets.cols(); }
+
+  /// A value of the objective for all points together, targets in their own unit: what is reported.
+  double total(double value) const;
+};
+
+/// The measure per point and output, plus the log density of the expectations if they are given.
+///
+/// Log marginal likelihood: Rasmussen and Williams 2006, equations 2.30 and 5.9. Leave-one-out log predictive density:
+/// equations 5.10 to 5.13. Every derivative is the sum over the entries of dF/dK times dK: one inverse serves all.
+class Objective {
+ public:
+  /// `expectations`: one for each hyperparameter, or none: then walls are all there is. All three must outlive it.
+  Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors);
+
+  int size() const { return static_cast<int>(expectations_.size()); }
+  int evaluations() const { return evaluations_; }
+
+  /// Value at x, and its gradient unless that is null. False where the value is no finite number.
+  bool evaluate(const double* x, double* value, double* gradient);
+
+  /// The squared signal of each output at which the likelihood is largest, everything else given; and the log marginal
+  /// likelihood there, per point and output, without priors. Not finite when the matrix cannot be factorised.
+  double profiled(const Eigen::VectorXd& kernel_logs, double log_noise, Eigen::VectorXd& log_signals);
+
+ private:
+  void set_kernel(const double* logs);
+  void fill(bool slopes);
+  bool decompose(double noise);
+  void solve(const Eigen::MatrixXd& targets);
+  double likelihood(const double* log_signals) const;
+  void likelihood_gradient(double* gradient);
+  double leave_one_out(double* gradient);
+  void contract(double* gradient) const;
+  double expectations(const double* x, double* gradient) const;
+
+  const Model& model_;
+  Measure measure_;
+  const std::vector<Expectation>& expectations_;
+  bool priors_;
+  int evaluations_ = 0;
+
+  Eigen::Index parameters_;    ///< of the kernel
+  Eigen::MatrixXd covariance_; ///< K, its factor, and its inverse, one after the other; lower triangle
+  Eigen::MatrixXd slopes_;     ///< n x nP: column jP + p is column j of dK / d log parameter p, from row j on
+  Eigen::MatrixXd adjoint_;    ///< dF/dK, lower triangle
+  Eigen::MatrixXd standard_;   ///< n x m: (targets - mean) / signal
+  Eigen::MatrixXd solved_;     ///< n x m: covariance^-1 standard, the unknown constant integrated out
+  Eigen::VectorXd squares_;    ///< m: standard^T covariance^-1 standard
+  Eigen::VectorXd ones_;       ///< K^-1 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
+  double log_determinant_ = 0.0;
+  double noise_ = 0.0;  ///< squared noise ratio
+};
+
+}  // namespace palpate::fitting
