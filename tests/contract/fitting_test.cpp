@@ -20,7 +20,8 @@ namespace {
 struct Data {
   std::string name;
   Points points;
-  Eigen::VectorXd targets;
+  Eigen::MatrixXd targets;  ///< an output a column
+  double mean_ratio = 0.0;
 };
 
 /// Data that make a covariance singular, a likelihood flat or a sum overflow, and some that are well behaved.
@@ -44,17 +45,27 @@ std::vector<Data> data() {
   out.push_back({"huge", points, 1e160 * wave});
   out.push_back({"tiny", points, 1e-200 * wave});
   out.push_back({"far apart", 1e150 * points, wave});
+  out.push_back({"free level", points, wave, 10.0});
+  out.push_back({"free level of one point", points.topRows(1), wave.head(1), 10.0});
+  Eigen::MatrixXd both(kCount, 2);
+  both << wave, (wave.array() > 0.0).cast<double>();
+  out.push_back({"heights and labels together", points, both});
+  both.col(1).setOnes();
+  out.push_back({"labels that are all alike", points, both});
   return out;
 }
 
 /// Everything that a fit may change.
 struct State {
   std::shared_ptr<Kernel> kernel = make<Kernel>(contract_host(), "rbf");
-  double signal = 1.0;
-  double noise = 1e-4;
+  double noise_ratio = 1e-4;
+  std::vector<double> signals;
+  std::vector<double> means;
 
   std::vector<double> numbers() const {
-    std::vector<double> out{signal, noise};
+    std::vector<double> out{noise_ratio};
+    out.insert(out.end(), signals.begin(), signals.end());
+    out.insert(out.end(), means.begin(), means.end());
     for (const KernelParameter& parameter : kernel->parameters()) out.push_back(parameter.value);
     return out;
   }
@@ -64,9 +75,16 @@ bool same_bytes(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-FitSummary fit(const Fitting& fitting, const Data& data, State& state, std::uint64_t stream = 7) {
-  FitProblem problem{data.points, data.targets, *state.kernel, state.signal, state.noise};
-  Random random(stream, "contract/fitting");
+FitSummary fit(const Fitting& fitting, const Data& data, State& state) {
+  const auto outputs = static_cast<std::size_t>(data.targets.cols());
+  state.signals.assign(outputs, 1.0);
+  state.means.assign(outputs, 0.0);
+  FitProblem problem{data.points, *state.kernel, state.noise_ratio, data.mean_ratio, {}};
+  for (std::size_t i = 0; i < outputs; ++i) {
+    problem.outputs.push_back(
+        {data.targets.col(static_cast<Eigen::Index>(i)), state.signals[i], state.means[i]});
+  }
+  Random random(7, "contract/fitting");
   return fitting.fit(problem, random);
 }
 
@@ -87,18 +105,23 @@ TEST_P(FittingContract, NeverThrowsAndLeavesSoundNumbers) {
     EXPECT_TRUE(std::isfinite(summary.objective)) << one.name;
     EXPECT_GE(summary.evaluations, 0) << one.name;
     for (const double number : state.numbers()) EXPECT_TRUE(std::isfinite(number)) << one.name;
-    EXPECT_GT(state.signal, 0.0) << one.name;
-    EXPECT_GE(state.noise, 0.0) << one.name;
+    for (const KernelParameter& parameter : state.kernel->parameters()) EXPECT_GT(parameter.value, 0.0) << one.name;
+    for (const double signal : state.signals) EXPECT_GT(signal, 0.0) << one.name;
+    EXPECT_GE(state.noise_ratio, 0.0) << one.name;
+    EXPECT_FALSE(summary.changed && summary.failed) << one.name;
   }
 }
 
 TEST_P(FittingContract, ChangesNothingUnlessItSaysSo) {
   for (const Data& one : data()) {
     State state;
-    const std::vector<double> before = state.numbers();
+    State before;
     const FitSummary summary = fit(*fitting_, one, state);
     if (summary.changed) continue;
-    EXPECT_TRUE(same_bytes(state.numbers(), before)) << one.name;
+    const auto outputs = static_cast<std::size_t>(one.targets.cols());
+    before.signals.assign(outputs, 1.0);
+    before.means.assign(outputs, 0.0);
+    EXPECT_TRUE(same_bytes(state.numbers(), before.numbers())) << one.name;
   }
 }
 
@@ -111,6 +134,14 @@ TEST_P(FittingContract, GivesTheSameAnswerToTheSameQuestion) {
     EXPECT_EQ(a.changed, b.changed) << one.name;
     EXPECT_EQ(a.evaluations, b.evaluations) << one.name;
     EXPECT_TRUE(same_bytes(first.numbers(), second.numbers())) << one.name;
+  }
+}
+
+TEST_P(FittingContract, ObjectsInOneLineIfAtAll) {
+  for (const char* kernel : {"rbf", "matern12", "rational_quadratic"}) {
+    const std::string objection = fitting_->objection(*make<Kernel>(contract_host(), kernel));
+    EXPECT_EQ(objection.find('\n'), std::string::npos) << objection;
+    EXPECT_EQ(objection, fitting_->objection(*make<Kernel>(contract_host(), kernel)));
   }
 }
 
