@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace palpate::test {
 namespace {
@@ -65,6 +68,129 @@ TEST(CeresFit, FindsTheOptimumFromNineteenOfTwentyBadStarts) {
 
 TEST(CeresFit, FindsTheOptimumFromEveryBadStartWithSeveralAscents) {
   EXPECT_EQ(found_from_bad_starts("{priors: none, starts: 4}"), 20);
+}
+
+/// Taps of a flat object 5 cm above the desk, the first `on` of `count` on it.
+FitData few_taps(int count, int on) {
+  Random random(6, "few taps");
+  FitData data{Points(count, 2), Eigen::VectorXd(count)};
+  for (int i = 0; i < count; ++i) {
+    data.points.row(i) << 0.23 * random.uniform(), 0.23 * random.uniform();
+    data.targets(i) = i < on ? 0.05 + 0.002 * random.uniform() : 0.0;
+  }
+  return data;
+}
+
+TEST(CeresFit, StaysReasonableWithOneToThreeTaps) {
+  for (const std::string measure : {"lml", "loo"}) {
+    for (int count = 1; count <= 3; ++count) {
+      for (int on = 1; on <= count; ++on) {
+        FitState state;
+        const FitSummary summary = state.fit(*ceres("{objective: " + measure + "}"), few_taps(count, on));
+        SCOPED_TRACE(measure + ", " + std::to_string(count) + " taps: " + summary.reason);
+        EXPECT_TRUE(summary.changed);
+        EXPECT_GT(state.length_scale(), 0.005);  // no collapse to pure noise ...
+        EXPECT_LT(state.noise_ratio, 1.0);
+        EXPECT_LT(state.length_scale(), 0.23);  // ... and no length scale at infinity
+        EXPECT_GT(state.signal, 0.02);
+        EXPECT_LT(state.signal, 0.2);
+      }
+    }
+  }
+}
+
+TEST(CeresFit, KeepsTheOldValuesWhenTheTapsTellNothing) {
+  FitState state(0.02, 4.0, 1e-2);
+  const FitSummary summary = state.fit(*ceres("{}"), few_taps(5, 0));
+  EXPECT_FALSE(summary.changed);
+  EXPECT_FALSE(summary.failed);
+  EXPECT_EQ(summary.reason, "every target equals the prior mean: they tell nothing");
+  EXPECT_EQ(state.signal, 2.0);
+  EXPECT_EQ(state.length_scale(), 0.02);
+}
+
+TEST(CeresFit, WantsMoreTapsThanHyperparametersWithoutPriors) {
+  FitState state;
+  const FitSummary summary = state.fit(*ceres("{priors: none}"), few_taps(3, 2));
+  EXPECT_FALSE(summary.changed);
+  EXPECT_EQ(summary.reason, "without priors there must be more taps than hyperparameters");
+}
+
+TEST(CeresFit, DoesNotFitTwiceToTheSameTaps) {
+  const FitData data = fit_data(50);
+  FitState state;
+  ASSERT_TRUE(state.fit(*ceres("{}"), data).changed);
+  const FitSummary again = state.fit(*ceres("{}"), data);
+  EXPECT_FALSE(again.failed);
+  EXPECT_FALSE(again.changed && again.objective > state.fit(*ceres("{}"), data).objective * (1 + 1e-6)) << again.reason;
+}
+
+/// A kernel that fits work with, but whose covariances are no numbers.
+class Broken final : public Kernel {
+ public:
+  void covariance(const PointsView&, const PointsView&, MatrixOut out) const override { out.setConstant(std::nan("")); }
+  void variance(const PointsView&, VectorOut out) const override { out.setConstant(std::nan("")); }
+  std::vector<KernelParameter> parameters() const override { return {{"length_scale", value_, Unit::metre}}; }
+  bool differentiable() const override { return true; }
+  void set_parameters(const VectorView& values) override { value_ = values(0); }
+  void derivatives(const PointsView&, const PointsView&, VectorOut value, MatrixOut slopes) const override {
+    value.setConstant(std::nan(""));
+    slopes.setConstant(std::nan(""));
+  }
+
+ private:
+  double value_ = 0.017;
+};
+
+TEST(CeresFit, ThatFailsKeepsTheOldValuesAndSaysWhy) {
+  FitState state;
+  state.kernel = std::make_shared<Broken>();
+  for (const int count : {12, 200}) {
+    const FitSummary summary = state.fit(*ceres("{}"), few_taps(count, 6));
+    EXPECT_FALSE(summary.changed);
+    EXPECT_TRUE(summary.failed);
+    EXPECT_EQ(summary.reason, "no ascent came to a finite value");
+    EXPECT_EQ(state.length_scale(), 0.017);
+    EXPECT_EQ(state.signal, 1.0);
+  }
+}
+
+TEST(CeresFit, SharesOneKernelAmongOutputsAndGivesEachItsSignal) {
+  const FitData data = fit_data(50);
+  FitState alone;
+  alone.fit(*ceres("{priors: none}"), data);
+  // The same targets ten times as large: kernel and noise ratio are those of one output, the signal ten times.
+  FitState both;
+  double signal = 1.0;
+  double mean = 0.0;
+  const Eigen::VectorXd large = 10.0 * data.targets;
+  FitProblem problem{
+      data.points, *both.kernel, both.noise_ratio, 0.0, {{data.targets, both.signal, both.mean}, {large, signal, mean}}};
+  Random random(1, "fit");
+  ASSERT_TRUE(ceres("{priors: none}")->fit(problem, random).changed);
+  EXPECT_NEAR(both.length_scale(), alone.length_scale(), 1e-3 * alone.length_scale());
+  EXPECT_NEAR(both.noise_ratio, alone.noise_ratio, 1e-2 * alone.noise_ratio);
+  EXPECT_NEAR(both.signal, alone.signal, 1e-2 * alone.signal);
+  EXPECT_NEAR(signal, 10.0 * both.signal, 1e-2 * signal);
+}
+
+TEST(CeresFit, FindsTheConstantMean) {
+  FitData data = fit_data(200);
+  data.targets.array() += 3.0;
+  FitState state;
+  state.mean = 2.5;
+  ASSERT_TRUE(state.fit(*ceres("{priors: none, mean: fit}"), data).changed);
+  EXPECT_NEAR(state.mean, 3.0, 0.15);
+  EXPECT_NEAR(state.signal, 0.31, 0.05);
+  FitState kept;
+  kept.mean = 2.5;
+  kept.fit(*ceres("{priors: none}"), data);
+  EXPECT_EQ(kept.mean, 2.5);
+}
+
+TEST(CeresFit, IsDueEveryFewTaps) {
+  const auto fitting = ceres("{every: 5}");
+  for (int taps = 0; taps < 30; ++taps) EXPECT_EQ(fitting->due(taps), taps > 0 && taps % 5 == 0) << taps;
 }
 
 }  // namespace

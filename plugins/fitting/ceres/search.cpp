@@ -64,7 +64,8 @@ Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::Mat
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, u.data(), &summary);
   const Eigen::VectorXd x = start + metric * u;
-  const bool valid = std::isfinite(summary.final_cost) && summary.initial_cost >= summary.final_cost && x.allFinite();
+  // An ascent that ends in trouble has still come as far as it says, but for one that could not begin.
+  const bool valid = !summary.iterations.empty() && std::isfinite(summary.final_cost) && x.allFinite();
   return {x, -summary.final_cost, valid, first_sentence(summary.message)};
 }
 
