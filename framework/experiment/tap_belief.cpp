@@ -40,9 +40,9 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = height.fitting.value_or(options.fitting);
   height_ = make_model("fitting/height", height_kernel, height_fitting, {height.signal, height.noise, 0.0}, context);
-  weight_ = make_model("fitting/weight", weight.kernel.value_or(options.kernel),
-                       weight.fitting.value_or(options.fitting), {weight.signal, weight.noise, weight.prior_mean},
-                       context);
+  weight_ =
+      make_model("fitting/weight", weight.kernel.value_or(options.kernel), weight.fitting.value_or(options.fitting),
+                 {weight.signal, weight.noise, weight.prior_mean}, context);
   if (shared_) weight_.kernel = height_.kernel;
   if (two_part_) {
     object_ = make_model("fitting/surface", height_kernel, height_fitting,

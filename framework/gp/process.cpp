@@ -113,8 +113,7 @@ FitSummary Process::fit(const std::vector<Process*>& processes, const Fitting& f
   FitProblem problem{first.points_.topRows(first.size_), *first.kernel_, noise_ratio, first.settings_.mean_ratio, {}};
   for (const Process* process : processes) {
     fitted.push_back(process->settings_);
-    problem.outputs.push_back(
-        {process->targets_.head(process->size_), fitted.back().signal, fitted.back().mean});
+    problem.outputs.push_back({process->targets_.head(process->size_), fitted.back().signal, fitted.back().mean});
   }
   FitSummary summary = fitting.fit(problem, random);
   if (!summary.changed) return summary;

@@ -13,8 +13,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kNoise = 0.002;   // m
-constexpr double kSignal = 0.05;   // m
+constexpr double kNoise = 0.002;  // m
+constexpr double kSignal = 0.05;  // m
 
 /// Standard normal, by Box and Muller.
 double normal(Random& random) {
@@ -59,8 +59,13 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
   for (int seed = 0; seed < kSurfaces; ++seed) {
     const auto drawn = test::make<Kernel>(test::shared_host(), kernel, "{length_scale: 4 cm}");
     const auto surface = std::make_shared<DrawnSurface>(*drawn, candidates, level, static_cast<std::uint64_t>(seed));
-    std::vector<std::string> all{"seed=" + std::to_string(seed), "kernel=" + kernel, "kernel.length_scale=4cm",
-                                 "height.signal=5cm", "height.noise=2mm", "candidates.count=12", "taps=25",
+    std::vector<std::string> all{"seed=" + std::to_string(seed),
+                                 "kernel=" + kernel,
+                                 "kernel.length_scale=4cm",
+                                 "height.signal=5cm",
+                                 "height.noise=2mm",
+                                 "candidates.count=12",
+                                 "taps=25",
                                  "acquisition=random"};
     all.insert(all.end(), overrides.begin(), overrides.end());
     const ResolvedConfig config = test::shipped_config("paper/object_i.yaml", all);
@@ -78,7 +83,8 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
 }
 
 TEST(Calibration, HoldsOnSurfacesDrawnFromTheModel) {
-  for (const char* kernel : {"rbf", "matern12", "matern52"}) EXPECT_NEAR(coverage(kernel, {}, 0.0), 0.95, 0.02) << kernel;
+  for (const char* kernel : {"rbf", "matern12", "matern52"})
+    EXPECT_NEAR(coverage(kernel, {}, 0.0), 0.95, 0.02) << kernel;
 }
 
 TEST(Calibration, HoldsForAnUnknownLevelOfATwoPartSurface) {

@@ -164,8 +164,11 @@ TEST(CeresFit, SharesOneKernelAmongOutputsAndGivesEachItsSignal) {
   double signal = 1.0;
   double mean = 0.0;
   const Eigen::VectorXd large = 10.0 * data.targets;
-  FitProblem problem{
-      data.points, *both.kernel, both.noise_ratio, 0.0, {{data.targets, both.signal, both.mean}, {large, signal, mean}}};
+  FitProblem problem{data.points,
+                     *both.kernel,
+                     both.noise_ratio,
+                     0.0,
+                     {{data.targets, both.signal, both.mean}, {large, signal, mean}}};
   Random random(1, "fit");
   ASSERT_TRUE(ceres("{priors: none}")->fit(problem, random).changed);
   EXPECT_NEAR(both.length_scale(), alone.length_scale(), 1e-3 * alone.length_scale());

@@ -36,8 +36,9 @@ void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; 
 std::vector<Setting> settings() {
   const Measure loo = Measure::leave_one_out;
   const Measure lml = Measure::log_marginal_likelihood;
-  const std::string sum = "{kernels: [{type: scale, factor: 2, kernel: {type: rbf, length_scale: 5 cm}}, "
-                          "{type: rational_quadratic, length_scale: 2 cm}]}";
+  const std::string sum =
+      "{kernels: [{type: scale, factor: 2, kernel: {type: rbf, length_scale: 5 cm}}, "
+      "{type: rational_quadratic, length_scale: 2 cm}]}";
   return {{"rbf", "rbf", "{length_scale: 4 cm}"},
           {"rbf_per_axis", "rbf", "{length_scale: 4 cm, length_scale_y: 7 cm}"},
           {"matern12", "matern12", "{length_scale: 4 cm}"},

@@ -39,8 +39,9 @@ struct CeresOptions : Options {
     fields.choice(mean, Field("mean", "of the prior"),
                   {{"keep", "stays as the config says", {}}, {"fit", "one constant, fitted with the others", {}}});
     fields.integer(every, Field("every", "fit after each so many taps").at_least(1).at_most(100000));
-    fields.integer(starts, Field("starts", "ascents: one from the present values or better ones near them, the others "
-                                           "from random places within the expectations")
+    fields.integer(starts, Field("starts",
+                                 "ascents: one from the present values or better ones near them, the others "
+                                 "from random places within the expectations")
                                .at_least(1)
                                .at_most(1000));
   }
@@ -116,9 +117,12 @@ namespace {
 
 Model model_of(const FitProblem& problem, bool fit_means) {
   const auto outputs = static_cast<Eigen::Index>(problem.outputs.size());
-  Model model{problem.points,     Eigen::MatrixXd(problem.points.rows(), outputs),
-              Eigen::VectorXd(outputs), problem.kernel,
-              problem.mean_ratio, Eigen::VectorXd(outputs),
+  Model model{problem.points,
+              Eigen::MatrixXd(problem.points.rows(), outputs),
+              Eigen::VectorXd(outputs),
+              problem.kernel,
+              problem.mean_ratio,
+              Eigen::VectorXd(outputs),
               fit_means};
   for (Eigen::Index i = 0; i < outputs; ++i) {
     const FitOutput& output = problem.outputs[static_cast<std::size_t>(i)];
@@ -240,6 +244,7 @@ FitSummary Ceres::fit(FitProblem& problem, Random& random) const {
   return summary;
 }
 
-PALPATE_PLUGIN(Fitting, Ceres, "ceres", "fit kernel, signal and noise to the taps, by marginal likelihood or leave-one-out")
+PALPATE_PLUGIN(Fitting, Ceres, "ceres",
+               "fit kernel, signal and noise to the taps, by marginal likelihood or leave-one-out")
 
 }  // namespace palpate::fitting

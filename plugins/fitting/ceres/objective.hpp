@@ -78,14 +78,14 @@ class Objective {
   bool priors_;
   int evaluations_ = 0;
 
-  Eigen::Index parameters_;    ///< of the kernel
-  Eigen::MatrixXd covariance_; ///< K, its factor, and its inverse, one after the other; lower triangle
-  Eigen::MatrixXd slopes_;     ///< n x nP: column jP + p is column j of dK / d log parameter p, from row j on
-  Eigen::MatrixXd adjoint_;    ///< dF/dK, lower triangle
-  Eigen::MatrixXd standard_;   ///< n x m: (targets - mean) / signal
-  Eigen::MatrixXd solved_;     ///< n x m: covariance^-1 standard, the unknown constant integrated out
-  Eigen::VectorXd squares_;    ///< m: standard^T covariance^-1 standard
-  Eigen::VectorXd ones_;       ///< K^-1 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
+  Eigen::Index parameters_;     ///< of the kernel
+  Eigen::MatrixXd covariance_;  ///< K, its factor, and its inverse, one after the other; lower triangle
+  Eigen::MatrixXd slopes_;      ///< n x nP: column jP + p is column j of dK / d log parameter p, from row j on
+  Eigen::MatrixXd adjoint_;     ///< dF/dK, lower triangle
+  Eigen::MatrixXd standard_;    ///< n x m: (targets - mean) / signal
+  Eigen::MatrixXd solved_;      ///< n x m: covariance^-1 standard, the unknown constant integrated out
+  Eigen::VectorXd squares_;     ///< m: standard^T covariance^-1 standard
+  Eigen::VectorXd ones_;        ///< K^-1 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
   double log_determinant_ = 0.0;
   double noise_ = 0.0;  ///< squared noise ratio
 };
