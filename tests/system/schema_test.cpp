@@ -90,6 +90,7 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", rbf}})) << "no list";
   EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({{{"length_scale", "2 cm"}}})}}))
       << "an item without type";
+  EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({"rbf"})}})) << "a name in a list";
   EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({{{"type", "rfb"}}})}})) << "unknown type";
   EXPECT_TRUE(refused("/kernel", {{"type", "scale"}, {"factor", "2 cm"}, {"kernel", rbf}})) << "a length for a number";
   EXPECT_TRUE(refused("/surface", "two_parts")) << "unknown choice";

@@ -153,7 +153,8 @@ TEST(Schema, KnowsTheJsonTypeOfEveryField) {
   EXPECT_EQ(at("properties.parts.items.additionalProperties"), "false");
   EXPECT_EQ(at("properties.kernel.$ref"), "#/definitions/kernel");
   EXPECT_EQ(at("properties.kernels.type"), "array");
-  EXPECT_EQ(at("properties.kernels.items.$ref"), "#/definitions/kernel");
+  EXPECT_EQ(at("properties.kernels.items.allOf.0.$ref"), "#/definitions/kernel");
+  EXPECT_EQ(at("properties.kernels.items.allOf.1.required.0"), "type");
 }
 
 }  // namespace
