@@ -48,7 +48,8 @@ void WeightOptions::list(Fields& fields) {
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
   const bool shared = hyperparameters == Hyperparameters::shared;
   fields.require(!shared || !kernel, "kernel", "the labels have the heights' kernel when hyperparameters are shared");
-  fields.require(!shared || !fitting, "fitting", "the labels are fitted with the heights when hyperparameters are shared");
+  fields.require(!shared || !fitting, "fitting",
+                 "the labels are fitted with the heights when hyperparameters are shared");
 }
 
 void StopOptions::list(Fields& fields) {
@@ -79,9 +80,10 @@ void ExperimentOptions::list(Fields& fields) {
   fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes"));
   fields.section(height, Field("height", "the process of the heights above the desk"));
   fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk"));
-  fields.choice(surface, Field("surface", "how the surface is reconstructed; u and w do not depend on it"),
-                {{"single", "one process for the heights of object and desk, as the paper has it", {}},
-                 {"two_part", "heights from the taps on an object alone, where the weight is at least 1/2; else desk", {}}});
+  fields.choice(
+      surface, Field("surface", "how the surface is reconstructed; u and w do not depend on it"),
+      {{"single", "one process for the heights of object and desk, as the paper has it", {}},
+       {"two_part", "heights from the taps on an object alone, where the weight is at least 1/2; else desk", {}}});
   fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),
                 {{"auto", "the fastest that is exact enough", {}}, {"dense", "any kernel, any candidates", {}}});
   fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate"));

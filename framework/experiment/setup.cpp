@@ -17,8 +17,12 @@ constexpr const char* kHeightRefused = "the backend reported a height that is no
 
 ProcessState state_of(const Process& process, const TapBelief& belief) {
   const FitSummary* fit = belief.last_fit(process);
-  return {process.kernel().parameters(), process.settings(),  process.log_marginal_likelihood(),
-          process.jitter(),              process.condition(), fit ? std::optional<FitSummary>(*fit) : std::nullopt};
+  return {process.kernel().parameters(),
+          process.settings(),
+          process.log_marginal_likelihood(),
+          process.jitter(),
+          process.condition(),
+          fit ? std::optional<FitSummary>(*fit) : std::nullopt};
 }
 
 }  // namespace
@@ -35,7 +39,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),
       allowed_(static_cast<std::size_t>(candidates_.size()), true),
       tapped_(allowed_.size(), false) {
-  result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0}, {"jitter", 0},
+  result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
 
