@@ -25,6 +25,14 @@ bool is_group(const std::string& path) {
   return std::find(kGroups.begin(), kGroups.end(), last_key(path)) != kGroups.end();
 }
 
+/// Whether `path` leads into a group, as kernel.kernels.0.kernel does: to a plugin inside another.
+bool is_inner(const std::string& path) {
+  for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
+    if (is_group(path.substr(0, dot))) return true;
+  }
+  return false;
+}
+
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-';
@@ -204,7 +212,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   std::vector<Choice> choices = take_defaults(own);
   take_names(own, "", choices);
   for (const Override& one : overrides) {
-    if (!is_group(one.path) || !one.value.is_scalar()) continue;
+    if (!is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
     const auto at_path = [&](const Choice& choice) { return choice.path == one.path; };
     choices.erase(std::remove_if(choices.begin(), choices.end(), at_path), choices.end());
     choices.push_back({one.path, one.value.text, one.value.place, one.value.layer});
@@ -226,7 +234,10 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   }
   tree.merge(own);
   for (const Override& one : overrides) {
-    if (is_group(one.path) && one.value.is_scalar()) continue;
+    if (is_group(one.path) && one.value.is_scalar()) {
+      if (is_inner(one.path)) choose_inner(tree, {one.path, one.value.text, one.value.place, one.value.layer}, beside);
+      continue;
+    }
     Tree& slot = tree.at_path(one.path, one.value.place);
     if (is_group(one.path) && slot.is_map() && one.value.is_map()) {
       slot.merge(one.value);
@@ -236,6 +247,19 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   }
   inherit_shared(tree);
   return tree;
+}
+
+void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& beside) {
+  Tree& slot = tree.at_path(choice.path, choice.place);
+  std::vector<std::string> chain;
+  Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+  content.set_layer(kFileLayer - 1);
+  set_layer_of_type(content, choice.layer, choice.place);
+  const Tree* type = content.find("type");
+  const Tree chosen = type != nullptr ? *type : Tree{};
+  if (slot.is_map()) content.merge(slot);
+  if (type != nullptr) content.at("type") = chosen;
+  slot = std::move(content);
 }
 
 void inherit_shared(Tree& tree) {

@@ -50,6 +50,8 @@ class Composer {
 
   const Tree& load(const std::filesystem::path& file);
   std::vector<Choice> take_defaults(Tree& own) const;
+  /// A plugin inside another, for example an item of a list: it is there only once the whole tree is.
+  void choose_inner(Tree& tree, const Choice& choice, const std::filesystem::path& beside);
   void take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const;
   std::filesystem::path find_group(const std::string& group, const std::string& name,
                                    const std::filesystem::path& beside) const;

@@ -184,10 +184,17 @@ Tree field_schema(const FieldDescription& field) {
       out.at("$ref") = quoted("#/definitions/" + field.kind);
       break;
     case Type::plugins: {
-      Tree item = Tree::map();
-      item.at("$ref") = quoted("#/definitions/" + field.kind);
+      // In a list no group is chosen by its name: every item is a map with a type.
+      Tree plugin = Tree::map();
+      plugin.at("$ref") = quoted("#/definitions/" + field.kind);
+      Tree typed = Tree::map();
+      typed.at("type") = quoted("object");
+      typed.at("required") = Tree::list();
+      typed.at("required").items.push_back(quoted("type"));
+      Tree both = Tree::list();
+      both.items = {std::move(plugin), std::move(typed)};
       out.at("type") = quoted("array");
-      out.at("items") = std::move(item);
+      out.at("items").at("allOf") = std::move(both);
       break;
     }
   }

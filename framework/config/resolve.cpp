@@ -31,6 +31,8 @@ class Resolver final : public Fields {
   void set_type(const Tree& type) {
     known_.emplace_back("type");
     type_layer_ = std::max(type_layer_, type.layer);
+    // What the type needs is missing where it was chosen, not in the group file that it was laid over.
+    if (type.place.file) output_.place = type.place;
   }
 
   /// Refuses keys that no field has claimed.
@@ -155,8 +157,7 @@ class Resolver final : public Fields {
   void plugin(PluginChoice& choice, const Field& field) override {
     const Tree* tree = claim(field);
     if (tree == nullptr && !choice.type.empty()) {
-      static const Tree nothing = Tree::map();
-      output_.at(field.name) = read_plugin(choice, nothing, nullptr, path_ + field.name);
+      output_.at(field.name) = read_default(choice, path_ + field.name);
       return;
     }
     if (tree == nullptr || tree->kind == Tree::Kind::null) {
@@ -177,16 +178,19 @@ class Resolver final : public Fields {
   }
 
   void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) override {
-    Tree list = Tree::list();
-    if (const Tree* tree = claim(field)) {
+    const Tree* tree = claim(field);
+    if (tree != nullptr) {
       if (tree->kind != Tree::Kind::list) {
         throw Error(tree->place.text(), fmt::format("{}: expects a list", name(field)),
                     "write [{type: ...}, {type: ...}]");
       }
       choices.assign(tree->items.size(), PluginChoice{kind, {}, nullptr});
-      for (std::size_t i = 0; i < choices.size(); ++i) {
-        list.items.push_back(read_typed(choices[i], tree->items[i], fmt::format("{}{}.{}", path_, field.name, i)));
-      }
+    }
+    Tree list = Tree::list();
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      const std::string path = fmt::format("{}{}.{}", path_, field.name, i);
+      list.items.push_back(tree != nullptr ? read_typed(choices[i], tree->items[i], path)
+                                           : read_default(choices[i], path));
     }
     output_.at(field.name) = std::move(list);
   }
@@ -263,6 +267,12 @@ class Resolver final : public Fields {
     const std::int64_t value = read_integer(tree, name(field));
     checked(static_cast<double>(value), tree, field);
     return value;
+  }
+
+  /// A plugin that the config does not say.
+  Tree read_default(PluginChoice& choice, const std::string& path) {
+    static const Tree nothing = Tree::map();
+    return read_plugin(choice, nothing, nullptr, path);
   }
 
   /// A plugin at `path` whose group must name its type.

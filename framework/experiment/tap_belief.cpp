@@ -40,9 +40,10 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = height.fitting.value_or(options.fitting);
   height_ = make_model("fitting/height", height_kernel, height_fitting, {height.signal, height.noise, 0.0}, context);
-  weight_ =
-      make_model("fitting/weight", weight.kernel.value_or(options.kernel), weight.fitting.value_or(options.fitting),
-                 {weight.signal, weight.noise, weight.prior_mean}, context);
+  // Labels that share have the heights' kernel and are fitted by the heights' fitting, whatever the shared ones are.
+  weight_ = make_model("fitting/weight", shared_ ? height_kernel : weight.kernel.value_or(options.kernel),
+                       shared_ ? height_fitting : weight.fitting.value_or(options.fitting),
+                       {weight.signal, weight.noise, weight.prior_mean}, context);
   if (shared_) weight_.kernel = height_.kernel;
   if (two_part_) {
     object_ = make_model("fitting/surface", height_kernel, height_fitting,

@@ -16,7 +16,7 @@ struct Matern32Shape : PlainShape {
   }
   void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
     const Chunk s = (3.0 * r2).sqrt();
-    g = (-s).exp();
+    g = faded_exp(s);
     k = (1.0 + s) * g;
     g *= 3.0;
   }

@@ -15,6 +15,12 @@ struct RationalQuadraticOptions : StationaryOptions {
   }
 };
 
+/// t, the same for covariance and slopes also where r^2 overflows: with a small alpha the kernel is not yet 0 there.
+template <class Array>
+auto bounded_t(const Array& r2, double alpha) {
+  return (r2.min(kFarthest) / (2.0 * alpha)).min(kFarthest);
+}
+
 class RationalQuadraticShape {
  public:
   using Options = RationalQuadraticOptions;
@@ -22,10 +28,10 @@ class RationalQuadraticShape {
 
   template <class Array>
   void apply(Array r2) const {
-    r2 = (1.0 + r2 / (2.0 * alpha_)).pow(-alpha_);
+    r2 = (1.0 + bounded_t(r2, alpha_)).pow(-alpha_);
   }
   void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    const Chunk base = 1.0 + r2 / (2.0 * alpha_);
+    const Chunk base = 1.0 + bounded_t(r2, alpha_);
     k = base.pow(-alpha_);
     g = k / base;
   }
@@ -35,7 +41,7 @@ class RationalQuadraticShape {
 
   /// d log k / d log alpha = alpha (t / (1 + t) - log(1 + t)).
   void own_slopes(const Chunk& r2, const Chunk& k, MatrixOut out) const {
-    const Chunk t = r2 / (2.0 * alpha_);
+    const Chunk t = bounded_t(r2, alpha_);
     out.col(0) = alpha_ * k * (t / (1.0 + t) - t.log1p());
   }
 

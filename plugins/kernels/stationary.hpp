@@ -31,13 +31,20 @@ struct StationaryOptions : Options {
 constexpr Eigen::Index kChunk = 128;
 using Chunk = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kChunk, 1>;
 
+/// Squares of scaled distances end here in slopes, so that no infinity meets a covariance of 0 and becomes NaN.
+constexpr double kFarthest = 1e300;
+
+/// exp(-z) for the exponentials of slopes, 0 where it is 0 to double precision. Eigen's packets stop at the smallest
+/// normal number instead, which times a distance of 1e300 would be a slope.
+inline Chunk faded_exp(const Chunk& z) { return (z < 746.0).select((-z).exp(), 0.0); }
+
 /// A kernel of unit variance, k(a, b) = f(r^2) with r^2 = ((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2.
 ///
 /// `Shape` is f and its parameters beyond the length scales, of which there may be none:
 ///     using Options;                             derived from StationaryOptions
 ///     explicit Shape(const Options&);
 ///     void apply(r2) const;                      f, in place; r2 up to infinity
-///     void slopes(r2, k, g) const;               k = f and g = -2 df/dr^2; r2 up to 2e300
+///     void slopes(r2, k, g) const;               k = f and g = -2 df/dr^2; r2 up to 2 kFarthest
 ///     std::vector<KernelParameter> parameters() const;
 ///     void set_parameters(values);
 ///     void own_slopes(r2, k, out) const;         out(i, p) = dk/d log parameter p
@@ -82,7 +89,6 @@ class Stationary final : public Kernel {
   void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
     for (Eigen::Index from = 0; from < a.rows(); from += kChunk) {
       const Eigen::Index count = std::min(kChunk, a.rows() - from);
-      // Bounded, so that no infinity meets a covariance of 0 and becomes NaN.
       const Chunk x2 = ((a.col(0).segment(from, count).array() - b(0, 0)) / along_x_).square().min(kFarthest);
       const Chunk y2 = ((a.col(1).segment(from, count).array() - b(0, 1)) / along_y_).square().min(kFarthest);
       const Chunk r2 = x2 + y2;
@@ -102,8 +108,6 @@ class Stationary final : public Kernel {
   }
 
  private:
-  static constexpr double kFarthest = 1e300;
-
   Eigen::Index axes() const { return per_axis_ ? 2 : 1; }
 
   Shape shape_;

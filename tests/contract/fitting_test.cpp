@@ -81,8 +81,7 @@ FitSummary fit(const Fitting& fitting, const Data& data, State& state) {
   state.means.assign(outputs, 0.0);
   FitProblem problem{data.points, *state.kernel, state.noise_ratio, data.mean_ratio, {}};
   for (std::size_t i = 0; i < outputs; ++i) {
-    problem.outputs.push_back(
-        {data.targets.col(static_cast<Eigen::Index>(i)), state.signals[i], state.means[i]});
+    problem.outputs.push_back({data.targets.col(static_cast<Eigen::Index>(i)), state.signals[i], state.means[i]});
   }
   Random random(7, "contract/fitting");
   return fitting.fit(problem, random);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The laws of kernel.hpp, over every kernel found, with its default options and with each real option at extremes.
-#include "config/describe.hpp"
-#include "support/plugins.hpp"
+// The laws of kernel.hpp, over every kernel found, with its default options and with each real option at extremes, and
+// over compositions.
+#include "contract/kernel_cases.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/kernel.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -11,67 +10,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
 #include <thread>
 #include <vector>
 
 namespace palpate::test {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-/// Two values of one pair of points. Eigen computes most elements of a column by packets and the rest by scalars, with
-/// different exponentials of 1 to 2 ulp error each; a kernel may combine a few such. Below 1e-300 packets stop at the
-/// smallest normal number where scalars go on to 0.
-void expect_same_value(double a, double b) {
-  EXPECT_NEAR(a, b, 8 * kEpsilon * std::max(std::abs(a), std::abs(b)) + 1e-300);
-}
-
-/// Points spread over `extent` metres; every tenth is a copy of an earlier one.
-Points spread(Eigen::Index count, double extent, std::uint64_t seed) {
-  Random random(seed, "contract/kernel");
-  Points points(count, 2);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    points.row(i) << extent * random.uniform(), extent * random.uniform();
-    if (i % 10 == 9) points.row(i) = points.row(i / 2);
-  }
-  return points;
-}
-
-Eigen::MatrixXd covariance(const Kernel& kernel, const Points& a, const Points& b) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Constant(a.rows(), b.rows(), std::numeric_limits<double>::quiet_NaN());
-  kernel.covariance(a, b, out);
-  return out;
-}
-
-Eigen::VectorXd variance(const Kernel& kernel, const Points& a) {
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(a.rows(), std::numeric_limits<double>::quiet_NaN());
-  kernel.variance(a, out);
-  return out;
-}
-
-class KernelContract : public testing::TestWithParam<std::string> {
+class KernelContract : public testing::TestWithParam<KernelCase> {
  protected:
-  void SetUp() override {
-    kernels_.push_back(make<Kernel>(contract_host(), GetParam()));
-    for (const FieldDescription& field :
-         describe_fields([&](Fields& fields) { contract_host().describe("kernel", GetParam(), fields); })) {
-      if (field.type != FieldDescription::Type::real) continue;
-      for (const char* value : {"1e-300", "1e-3", "1", "1e300"}) {
-        const std::string unit = field.unit == Unit::metre ? " m" : "";
-        try {
-          kernels_.push_back(make<Kernel>(contract_host(), GetParam(), "{" + field.name + ": " + value + unit + "}"));
-        } catch (const Error&) {
-          // Out of the option's range: not legal, so not tested.
-        }
-      }
-    }
-  }
+  void SetUp() override { kernels_ = variants(GetParam()); }
 
-  /// The kernel with default options first, then with one option changed.
   std::vector<std::shared_ptr<Kernel>> kernels_;
 };
 
@@ -150,13 +99,8 @@ TEST_P(KernelContract, RowsMayComeInAnyOrder) {
 }
 
 TEST_P(KernelContract, IsFiniteAtExtremesOfScale) {
-  // 13 rows, so that packets and the scalars behind them both meet every scale.
-  const std::vector<double> scales{0.0, 1e-310, 1e-300, 1e-200, 1e-100, 1e-9, 1e-3, 1.0, 1e3, 1e9, 1e100, 1e200, 1e300};
-  const auto count = static_cast<Eigen::Index>(scales.size());
-  Points a(count, 2);
-  for (Eigen::Index i = 0; i < count; ++i)
-    a.row(i) << scales[static_cast<std::size_t>(i)], -scales[static_cast<std::size_t>(i)];
-  Points b(2 * count, 2);
+  const Points a = points_of_every_scale();
+  Points b(2 * a.rows(), 2);
   b << a, -a.colwise().reverse();
   for (const auto& kernel : kernels_) {
     EXPECT_TRUE(covariance(*kernel, a, b).allFinite());
@@ -213,12 +157,13 @@ TEST_P(KernelContract, NamesItsParameters) {
     for (const KernelParameter& parameter : kernel->parameters()) {
       EXPECT_FALSE(parameter.name.empty());
       EXPECT_TRUE(std::isfinite(parameter.value)) << parameter.name;
+      EXPECT_GT(parameter.value, 0.0) << parameter.name;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, KernelContract, testing::ValuesIn(plugins_under_contract("kernel")),
-                         [](const auto& one) { return test_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(Every, KernelContract, testing::ValuesIn(kernel_cases()),
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace palpate::test

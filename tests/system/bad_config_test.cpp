@@ -80,8 +80,8 @@ std::vector<Case> cases() {
            "bad.yaml:10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
            "bad.yaml:10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, "
-           "weight, posterior, "
-           "acquisition, fitting, fallback, repeat, tie_tolerance, stop, scene, backend, log"),
+           "weight, surface, "
+           "posterior, acquisition, fitting, fallback, repeat, tie_tolerance, stop, scene, backend, log"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",
             "configs/kernel/rbf.yaml:3:3: unknown option 'length_scal', did you mean 'length_scale'?"),
       typed("TypoInAnOverride", {"kernel.length_scal=2cm"},
@@ -183,7 +183,8 @@ std::vector<Case> cases() {
       line("UnknownPlugin", "kernel: {type: matern53}",
            "bad.yaml:10:16: no plugin kernel/matern53, did you mean 'matern52'?"),
       typed("UnknownPluginOnTheCommandLine", {"kernel=periodic"},
-            "command line: no plugin kernel/periodic, known: matern32, matern52, rbf"),
+            "command line: no plugin kernel/periodic, known: matern12, matern32, matern52, product, "
+            "rational_quadratic, rbf, scale, sum"),
       whole("NoBackend", without("  - backend"),
             "bad.yaml:1:1: no backend is chosen, write backend: {type: ...} or name a group under 'defaults'"),
       line("PluginWithoutType", "height: {kernel: }",
@@ -214,7 +215,43 @@ std::vector<Case> cases() {
            "lower the "
            "object"),
 
+      line("LabelsOfTheirOwnKernelThatShare", "weight: {hyperparameters: shared, kernel: {type: rbf}}",
+           "bad.yaml:10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared"),
+      line("LabelsOfTheirOwnFittingThatShare", "weight: {hyperparameters: shared, fitting: {type: fixed}}",
+           "bad.yaml:10:44: weight.fitting: the labels are fitted with the heights when hyperparameters are shared"),
+
+      // Plugins inside plugins, and how the surface is made
+      line("UnknownSurface", "surface: two_parts",
+           "bad.yaml:10:10: surface: unknown value 'two_parts', did you mean 'two_part'?"),
+      line("UnknownHyperparameters", "weight: {hyperparameters: both}",
+           "bad.yaml:10:27: weight.hyperparameters: unknown value 'both', known: own, shared"),
+      line("NoKernelInASum", "kernel: {type: sum, kernels: []}",
+           "bad.yaml:10:30: kernel.kernels: needs at least one kernel"),
+      line("SumWithoutKernels", "kernel: {type: sum}",
+           "bad.yaml:10:16: 'kernel.kernels' is missing, the parts, each "
+           "{type: ..., ...}"),
+      line("SumOfSomethingElse", "kernel: {type: sum, kernels: rbf}",
+           "bad.yaml:10:30: kernel.kernels: expects a list, write [{type: ...}, {type: ...}]"),
+      line("NameWhereAKernelBelongs", "kernel: {type: sum, kernels: [rbf, matern32]}",
+           "bad.yaml:10:31: kernel.kernels.0 is not a group of options, write {type: ...}"),
+      line("KernelWithoutTypeInASum", "kernel: {type: sum, kernels: [{length_scale: 2 cm}]}",
+           "bad.yaml:10:31: kernel.kernels.0 has no type, 'palpate plugins kernel' lists the types"),
+      line("UnknownKernelInASum", "kernel: {type: sum, kernels: [{type: rbf}, {type: matern53}]}",
+           "bad.yaml:10:51: no plugin kernel/matern53, did you mean 'matern52'?"),
+      line("TypoInAKernelOfAProduct",
+           "kernel: {type: product, kernels: [{type: scale, kernel: {type: rbf, lenght_scale: 2 cm}}]}",
+           "bad.yaml:10:69: unknown option 'lenght_scale', did you mean 'length_scale'?"),
+      line("FactorOfZero", "kernel: {type: scale, factor: 0, kernel: {type: rbf}}",
+           "bad.yaml:10:31: kernel.factor: 0 is out of range, it must be above 0"),
+      line("ScaleOfNothing", "kernel: {type: scale}",
+           "bad.yaml:10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
+      line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-3}",
+           "bad.yaml:10:43: kernel.alpha: 1e-3 is out of range, it must be at least 0.01"),
+
       // The command line
+      typed("OverrideOfAKernelThatIsNotThere",
+            {"kernel={type: sum, kernels: [{type: rbf}]}", "kernel.kernels.1.factor=2"},
+            "command line: 'kernel.kernels.1.factor': the list has no item '1', its items are 0 to 0"),
       typed("OverrideWithoutEqualsSign", {"seed"},
             "command line: 'seed' is not KEY=VALUE, for example kernel.length_scale=2cm"),
       typed("OverrideWithoutKey", {"=1"}, "command line: '=1' is not KEY=VALUE, for example kernel.length_scale=2cm"),

@@ -356,11 +356,13 @@ TEST(Plugins, ListsEveryOneAndTheOptionsOfOne) {
   const TemporaryFolder folder;
   const Ended all = test::palpate({"plugins"}, folder.path());
   EXPECT_EQ(all.status, 0) << all.err;
-  for (const char* name :
-       {"rbf", "matern32", "matern52", "uncertainty", "weighted", "random", "grid", "fixed", "simulator", "replay"}) {
+  for (const char* name : {"rbf", "matern12", "matern32", "matern52", "rational_quadratic", "sum", "product", "scale",
+                           "uncertainty", "weighted", "random", "grid", "fixed", "simulator", "replay"}) {
     EXPECT_THAT(all.out, HasSubstr(name));
   }
-  EXPECT_EQ(lines(test::palpate({"plugins", "kernel"}, folder.path()).out), 3);
+  EXPECT_EQ(lines(test::palpate({"plugins", "kernel"}, folder.path()).out), 8);
+  EXPECT_THAT(test::palpate({"plugins", "kernel/sum"}, folder.path()).out,
+              testing::ContainsRegex("kernels +list of plugins of kind kernel +required +the parts"));
   const Ended one = test::palpate({"plugins", "kernel/rbf"}, folder.path());
   EXPECT_THAT(one.out, HasSubstr("length_scale"));
   EXPECT_THAT(one.out, HasSubstr("> 0 m"));

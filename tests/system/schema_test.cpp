@@ -84,6 +84,16 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/fallback", "uncertain")) << "unknown choice";
   EXPECT_TRUE(refused("/scene/objects/0/type", "cube")) << "unknown shape";
   EXPECT_FALSE(refused("/kernel", "matern52")) << "a group by name is legal";
+  const Json rbf = {{"type", "rbf"}, {"length_scale", "2 cm"}};
+  const Json scaled = {{"type", "scale"}, {"factor", 2}, {"kernel", rbf}};
+  EXPECT_FALSE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({rbf, scaled})}}));
+  EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", rbf}})) << "no list";
+  EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({{{"length_scale", "2 cm"}}})}}))
+      << "an item without type";
+  EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({"rbf"})}})) << "a name in a list";
+  EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({{{"type", "rfb"}}})}})) << "unknown type";
+  EXPECT_TRUE(refused("/kernel", {{"type", "scale"}, {"factor", "2 cm"}, {"kernel", rbf}})) << "a length for a number";
+  EXPECT_TRUE(refused("/surface", "two_parts")) << "unknown choice";
 }
 
 }  // namespace

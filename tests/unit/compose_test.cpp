@@ -128,6 +128,52 @@ TEST_F(Compose, LetsAnOverrideReachAnItemOfAList) {
   EXPECT_EQ(value(text, "scene.objects.1.type", {"scene.objects.0.height=5cm"}), "slope");
 }
 
+/// A kernel made of kernels, in a list.
+constexpr const char* kNested =
+    "kernel:\n  type: sum\n  kernels:\n    - {type: scale, factor: 2, kernel: {type: spline, length_scale: 5 cm}}\n"
+    "    - {type: rbf}\n";
+
+TEST_F(Compose, LetsAnOverrideReachAPluginInsideAnother) {
+  const char* const path = "kernel.kernels.0.kernel.length_scale";
+  EXPECT_EQ(value(kNested, path, {"kernel.kernels.0.kernel.length_scale=3cm"}), "3cm");
+  EXPECT_EQ(value(kNested, "kernel.kernels.1.type", {"kernel.kernels.0.kernel.length_scale=3cm"}), "rbf");
+  folder_.write("kernel/sum.yaml", kNested);
+  EXPECT_EQ(value("kernel: sum\n", path, {"kernel.kernels.0.kernel.length_scale=3cm"}), "3cm");
+  EXPECT_EQ(value("height: {kernel: sum}\n", std::string("height.") + path,
+                  {"height.kernel.kernels.0.kernel.length_scale=3cm"}),
+            "3cm");
+}
+
+TEST_F(Compose, LetsAnOverrideNameTheGroupOfAPluginInsideAnother) {
+  // By the rule for groups everywhere: what the file says stays, what a group said does not.
+  const char* const path = "kernel.kernels.0.kernel";
+  const Tree tree = compose(kNested, {"kernel.kernels.0.kernel=rough"});
+  EXPECT_EQ(tree.find_path(path)->find("type")->text, "matern");
+  EXPECT_EQ(tree.find_path(path)->find("type")->layer, kCommandLineLayer);
+  EXPECT_EQ(tree.find_path(path)->find("length_scale")->text, "5 cm");
+  EXPECT_EQ(tree.find_path(path)->find("nu")->text, "1.5");
+  EXPECT_EQ(tree.find_path("kernel.kernels.0.factor")->text, "2");
+  folder_.write("kernel/sum.yaml", kNested);
+  EXPECT_EQ(value("kernel: sum\n", "kernel.kernels.0.kernel.type", {"kernel.kernels.0.kernel=rough"}), "matern");
+  EXPECT_EQ(value("kernel: sum\n", "kernel.kernels.0.kernel.length_scale", {"kernel.kernels.0.kernel=rough"}),
+            "2.5 cm");
+  EXPECT_EQ(
+      value(kNested, "kernel.kernels.0.kernel.type", {"kernel.kernels.0.kernel=rough", "kernel.kernels.0.kernel=rbf"}),
+      "rbf")
+      << "the last one wins";
+}
+
+TEST_F(Compose, RefusesAnItemBeyondTheEndOfAList) {
+  EXPECT_EQ(refusal(kNested, {"kernel.kernels.2.length_scale=3cm"}),
+            "command line: 'kernel.kernels.2.length_scale': the list has no item '2', its items are 0 to 1");
+  EXPECT_EQ(refusal(kNested, {"kernel.kernels.-1.length_scale=3cm"}),
+            "command line: 'kernel.kernels.-1.length_scale': the list has no item '-1', its items are 0 to 1");
+  EXPECT_EQ(refusal(kNested, {"kernel.kernels.5.kernel=rough"}),
+            "command line: 'kernel.kernels.5.kernel': the list has no item '5', its items are 0 to 1");
+  EXPECT_EQ(refusal("kernel: {type: sum, kernels: []}\n", {"kernel.kernels.0.length_scale=3cm"}),
+            "command line: 'kernel.kernels.0.length_scale': the list has no item '0', it is empty");
+}
+
 TEST_F(Compose, BuildsAGroupOnAnotherOfItsKind) {
   folder_.write("kernel/wide.yaml", "defaults:\n  - kernel: rough\nkernel:\n  length_scale: 5 cm\n");
   EXPECT_EQ(value("kernel: wide\n", "kernel.length_scale"), "5 cm");

@@ -25,6 +25,7 @@ struct Sample : Options {
   Part part;
   std::vector<Part> parts;
   PluginChoice kernel{"kernel", "rbf", nullptr};
+  std::vector<PluginChoice> kernels;
 
   void list(Fields& fields) override {
     fields.real(length, Field("length", "a reach").in(Unit::metre).above(0).from("a paper"));
@@ -39,6 +40,7 @@ struct Sample : Options {
     fields.section(part, Field("part", "one part"));
     fields.sections(parts, Field("parts", "all parts"));
     fields.plugin(kernel, Field("kernel", "a shape"));
+    fields.plugins(kernels, "kernel", Field("kernels", "several shapes").needed());
     fields.require(false, "count", "a law that only reading checks");
   }
 };
@@ -51,15 +53,15 @@ std::vector<FieldDescription> described() {
 TEST(Describe, ListsFieldsInTheirOrder) {
   std::string names;
   for (const FieldDescription& field : described()) names += field.name + " ";
-  EXPECT_EQ(names, "length limit at count clip name design part parts kernel ");
+  EXPECT_EQ(names, "length limit at count clip name design part parts kernel kernels ");
 }
 
 TEST(Describe, NamesTypesInWords) {
   std::vector<std::string> types;
   for (const FieldDescription& field : described()) types.push_back(field.type_name());
-  EXPECT_EQ(types,
-            (std::vector<std::string>{"length", "time", "2 lengths", "whole number", "true or false", "text",
-                                      "one of random, grid", "group", "list of groups", "plugin of kind kernel"}));
+  EXPECT_EQ(types, (std::vector<std::string>{"length", "time", "2 lengths", "whole number", "true or false", "text",
+                                             "one of random, grid", "group", "list of groups", "plugin of kind kernel",
+                                             "list of plugins of kind kernel"}));
 }
 
 TEST(Describe, WritesRangesWithTheirUnit) {
@@ -118,6 +120,8 @@ TEST(Describe, GivesATreeThatIsValidJson) {
   EXPECT_EQ(tree.find_path("3.default")->kind, Tree::Kind::null);
   EXPECT_EQ(tree.find_path("6.cases.1.options.0.name")->text, "side");
   EXPECT_EQ(tree.find_path("7.options.0.name")->text, "width");
+  EXPECT_EQ(tree.find_path("10.type")->text, "list of plugins of kind kernel");
+  EXPECT_EQ(tree.find_path("10.required")->text, "true");
 }
 
 TEST(Schema, AllowsExactlyTheFieldsAndThoseOfTheCases) {
@@ -126,7 +130,7 @@ TEST(Schema, AllowsExactlyTheFieldsAndThoseOfTheCases) {
   EXPECT_EQ(schema.find("additionalProperties")->text, "false");
   std::string names;
   for (const Tree::Entry& entry : schema.find("properties")->entries) names += entry.key + " ";
-  EXPECT_EQ(names, "length limit at count clip name design side part parts kernel ");
+  EXPECT_EQ(names, "length limit at count clip name design side part parts kernel kernels ");
 }
 
 TEST(Schema, TakesAQuantityForATextWithAUnit) {
@@ -148,6 +152,9 @@ TEST(Schema, KnowsTheJsonTypeOfEveryField) {
   EXPECT_EQ(at("properties.part.properties.width.type"), "string");
   EXPECT_EQ(at("properties.parts.items.additionalProperties"), "false");
   EXPECT_EQ(at("properties.kernel.$ref"), "#/definitions/kernel");
+  EXPECT_EQ(at("properties.kernels.type"), "array");
+  EXPECT_EQ(at("properties.kernels.items.allOf.0.$ref"), "#/definitions/kernel");
+  EXPECT_EQ(at("properties.kernels.items.allOf.1.required.0"), "type");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST(PluginHost, OpensTheNamedFileAndNoOther) {
   folder.write("kernel/broken.so", "no library");
   const PluginHost host({folder.path()});
   EXPECT_FALSE(mapped(file));
-  EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 1U);
+  EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 2U);
   EXPECT_TRUE(mapped(file));
   EXPECT_FALSE(mapped(fs::canonical(folder.path()) / "kernel" / "matern32.so"));
 }
@@ -121,7 +121,9 @@ TEST(PluginHost, KeepsALibraryWhenItsObjectsAreGone) {
 
 TEST(PluginHost, DescribesOptions) {
   const std::vector<FieldDescription> options = options_of(shared_host(), "kernel", "rbf");
-  ASSERT_EQ(options.size(), 1U);
+  ASSERT_EQ(options.size(), 2U);
+  EXPECT_EQ(options[1].name, "length_scale_y");
+  EXPECT_EQ(options[1].default_value, "none");
   EXPECT_EQ(options[0].name, "length_scale");
   EXPECT_EQ(options[0].type_name(), "length");
   EXPECT_EQ(options[0].range, "> 0 m");
@@ -165,7 +167,7 @@ TEST(PluginHost, SearchPathWithoutTheVariableIsTheShippedFolder) {
 
 TEST(PluginHost, MissingFoldersAreNoError) {
   const PluginHost host({"/nowhere", plugin_folder()});
-  EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 1U);
+  EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 2U);
 }
 
 TEST(PluginHost, ListsShippedPluginsSortedAndSound) {
@@ -176,7 +178,7 @@ TEST(PluginHost, ListsShippedPluginsSortedAndSound) {
     names.push_back(row.name);
   }
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
-  EXPECT_THAT(names, testing::IsSupersetOf({"matern32", "matern52", "rbf"}));
+  EXPECT_THAT(names, testing::IsSupersetOf({"matern32", "matern52", "product", "rbf", "scale", "sum"}));
 }
 
 TEST(PluginHost, CatchesAnErrorOfTheConstructorByItsType) {

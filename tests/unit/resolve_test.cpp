@@ -58,13 +58,32 @@ struct Pair : Options {
   }
 };
 
-/// Knows kernel/smooth with one option and kernel/rough with two.
+struct Several : Options {
+  std::vector<PluginChoice> parts;
+  void list(Fields& fields) override {
+    fields.plugins(parts, "kernel", Field("parts", "some kernels").needed());
+    fields.require(!parts.empty(), "parts", "needs at least one kernel");
+  }
+};
+
+struct SeveralByDefault : Options {
+  std::vector<PluginChoice> parts{{"kernel", "smooth", nullptr}, {"kernel", "rough", nullptr}};
+  void list(Fields& fields) override { fields.plugins(parts, "kernel", Field("parts", "some kernels")); }
+};
+
+/// Knows kernel/smooth with one option, kernel/rough with two, and kernel/many, which has kernels inside.
 class TwoPlugins final : public PluginSource {
  public:
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override {
     double scale = 0.1;
     double nu = 1.5;
-    if (name != "smooth" && name != "rough") throw Error("", "no plugin " + kind + "/" + name, "known: rough, smooth");
+    if (name == "many") {
+      Several().list(fields);
+      return;
+    }
+    if (name != "smooth" && name != "rough") {
+      throw Error("", "no plugin " + kind + "/" + name, suggestion(name, {"rough", "smooth"}));
+    }
     fields.real(scale, Field("scale", "its reach").in(Unit::metre).above(0));
     if (name == "rough") fields.real(nu, Field("nu", "its order"));
   }
@@ -266,6 +285,77 @@ TEST(ResolvePlugin, DropsAndListsOptionsThatALaterTypeLacks) {
   EXPECT_EQ(notes.dropped[0].place, "c.yaml:1:41");
 }
 
+TEST(ResolvePlugins, ReadsAListInItsOrderWithOptionsOfEach) {
+  Several several;
+  ResolveNotes notes;
+  const Tree tree = resolved(several, "parts: [{type: rough, nu: 2.5}, {scale: 2 cm, type: smooth}]\n", &notes);
+  ASSERT_EQ(several.parts.size(), 2U);
+  EXPECT_EQ(several.parts[0].kind, "kernel");
+  EXPECT_EQ(several.parts[0].type, "rough");
+  EXPECT_EQ(several.parts[0].options->find("nu")->text, "2.5");
+  EXPECT_EQ(several.parts[1].type, "smooth");
+  EXPECT_EQ(tree.find_path("parts.0.scale")->text, "0.1 m") << "a default";
+  EXPECT_EQ(tree.find_path("parts.1.scale")->text, "0.02 m");
+  EXPECT_EQ(notes.plugins.count({"kernel", "rough"}), 1U);
+  EXPECT_EQ(notes.plugins.count({"kernel", "smooth"}), 1U);
+  std::string origins;
+  for (const auto& one : notes.origins) origins += one.path + "@" + one.place + " ";
+  EXPECT_EQ(origins,
+            "parts.0.type@c.yaml:1:16 parts.0.scale@default parts.0.nu@c.yaml:1:27 parts.1.type@c.yaml:1:53 "
+            "parts.1.scale@c.yaml:1:41 ");
+}
+
+TEST(ResolvePlugins, ReadsListsInsideLists) {
+  Several several;
+  const std::string text = "parts: [{type: many, parts: [{type: smooth}, {type: many, parts: [{type: rough}]}]}]\n";
+  const Tree tree = resolved(several, text);
+  EXPECT_EQ(tree.find_path("parts.0.parts.1.parts.0.nu")->text, "1.5");
+  Several again;
+  EXPECT_EQ(resolved(again, to_yaml(tree)).canonical(), tree.canonical()) << "its own output reads as the same";
+}
+
+TEST(ResolvePlugins, FillsInTheListOfTheDefaults) {
+  SeveralByDefault several;
+  EXPECT_EQ(to_yaml(resolved(several, "{}")),
+            "parts:\n  - type: smooth\n    scale: 0.1 m\n  - type: rough\n    scale: 0.1 m\n    nu: 1.5\n");
+  EXPECT_EQ(several.parts[1].options->find("nu")->text, "1.5");
+  SeveralByDefault other;
+  resolved(other, "parts: [{type: rough}]\n");
+  EXPECT_EQ(other.parts.size(), 1U) << "a list takes the place of the defaults";
+}
+
+TEST(ResolvePlugins, RefusesWhatIsNoListOfPlugins) {
+  const char* const list = "parts: expects a list, write [{type: ...}, {type: ...}]";
+  EXPECT_EQ(refusal<Several>("parts: rough\n"), std::string("c.yaml:1:8: ") + list);
+  EXPECT_EQ(refusal<Several>("parts: {type: rough}\n"), std::string("c.yaml:1:8: ") + list);
+  EXPECT_EQ(refusal<Several>("# none\nparts:\n"), std::string("c.yaml:2:1: ") + list);
+  EXPECT_EQ(refusal<Several>("parts: []\n"), "c.yaml:1:8: parts: needs at least one kernel");
+  EXPECT_EQ(refusal<Several>("# nothing\n{}\n"), "c.yaml:2:1: 'parts' is missing, some kernels");
+  EXPECT_EQ(refusal<Several>("part: []\n"), "c.yaml:1:1: unknown option 'part', did you mean 'parts'?");
+}
+
+TEST(ResolvePlugins, PlacesABadItemAtTheItemAndNamesItsPath) {
+  EXPECT_EQ(refusal<Several>("parts: [{type: rough}, rough]\n"),
+            "c.yaml:1:24: parts.1 is not a group of options, write {type: ...}");
+  EXPECT_EQ(refusal<Several>("parts: [{type: rough}, {scale: 1 cm}]\n"),
+            "c.yaml:1:24: parts.1 has no type, 'palpate plugins kernel' lists the types");
+  EXPECT_EQ(refusal<Several>("parts: [{type: ruogh}]\n"), "c.yaml:1:16: no plugin kernel/ruogh, did you mean 'rough'?");
+  EXPECT_EQ(refusal<Several>("parts: [{type: smooth, scle: 1 cm}]\n"),
+            "c.yaml:1:24: unknown option 'scle', did you mean 'scale'?");
+  EXPECT_EQ(refusal<Several>("parts: [{type: many, parts: [{type: smooth}, {type: smooth, scale: 0 m}]}]\n"),
+            "c.yaml:1:68: parts.0.parts.1.scale: 0 m is out of range, it must be above 0 m");
+}
+
+TEST(ResolvePlugins, DropsOptionsThatALaterTypeOfAnItemLacks) {
+  Tree input = parse_yaml("parts: [{type: smooth, scale: 3 cm, nu: 2.5}]\n", "c.yaml");
+  input.find("parts")->items[0].find("type")->layer = kCommandLineLayer;
+  Several several;
+  ResolveNotes notes;
+  resolve(several, input, TwoPlugins(), notes);
+  ASSERT_EQ(notes.dropped.size(), 1U);
+  EXPECT_EQ(notes.dropped[0].path, "parts.0.nu");
+}
+
 TEST(ResolvedConfig, HasTheSameIdHoweverALengthIsWritten) {
   const std::string id = test::shipped_config("paper/object_i.yaml", {"kernel.length_scale=1.7cm"}).id;
   for (const char* text :
@@ -299,7 +389,8 @@ TEST(ResolvedConfig, PutsAllElseIntoTheId) {
   for (const char* text :
        {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "weight.clip=true",
         "posterior=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
-        "stop.robot_time=9min", "scene.desk=1cm", "backend.motion.pause=0s", "kernel=matern32"}) {
+        "stop.robot_time=9min", "scene.desk=1cm", "backend.motion.pause=0s", "kernel=matern32",
+        "kernel=swell_and_texture", "surface=two_part", "weight.hyperparameters=shared"}) {
     EXPECT_NE(test::shipped_config("paper/object_i.yaml", {text}).id, id) << text;
   }
 }
@@ -308,7 +399,8 @@ TEST(ResolvedConfig, ReadsBackAsTheSameConfig) {
   for (const char* file :
        {"paper/object_i.yaml", "paper/object_i_right.yaml", "paper/object_ii.yaml", "paper/comparison.yaml"}) {
     const ResolvedConfig config =
-        test::shipped_config(file, {"height.kernel=matern52", "candidates.spacing=5mm", "candidates.count=none"});
+        test::shipped_config(file, {"height.kernel=matern52", "weight.kernel=swell_and_texture", "surface=two_part",
+                                    "candidates.spacing=5mm", "candidates.count=none"});
     const ResolvedConfig again =
         resolve_experiment(parse_yaml(to_yaml(config.tree), "again.yaml"), test::shared_host());
     EXPECT_EQ(again.id, config.id) << file;

@@ -145,6 +145,51 @@ TEST(Csv, LeavesCellsEmptyThatARowLacks) {
   EXPECT_EQ(to_csv({part, whole, swapped}), "a,b,c\n4,,5\n1,2,3\n7,,6\n");
 }
 
+TEST(Csv, HasTheNamesOfAllRowsEachBehindTheOneThatItFollows) {
+  Row start;
+  start.add("tap", 1);
+  start.add("signal", 1.5);
+  start.add("rmse", 2);
+  Row fitted;
+  fitted.add("tap", 2);
+  fitted.add("kernel.length_scale", 0.5);
+  fitted.add("signal", 2.5);
+  fitted.add("fit.changed", true);
+  fitted.add("fit.reason", "converged, almost");
+  fitted.add("rmse", 1);
+  Row unfitted;
+  unfitted.add("tap", 3);
+  unfitted.add("kernel.length_scale", 0.25);
+  unfitted.add("signal", 2.5);
+  unfitted.add("rmse", 1);
+  unfitted.add("last", std::optional<double>());
+  EXPECT_EQ(to_csv({start, fitted, unfitted}),
+            "tap,kernel.length_scale,signal,fit.changed,fit.reason,rmse,last\n"
+            "1,,1.5,,,2,\n"
+            "2,0.5,2.5,true,\"converged, almost\",1,\n"
+            "3,0.25,2.5,,,1,\n");
+}
+
+TEST(Csv, HasEveryNameOnce) {
+  Row first;
+  first.add("a", 1);
+  first.add("b", 2);
+  Row second;
+  second.add("b", 3);
+  second.add("new", 4);
+  second.add("a", 5);
+  EXPECT_EQ(to_csv({first, second}), "a,b,new\n1,2,\n5,3,4\n");
+}
+
+TEST(Row, NestsPartsOfAListByTheirNumbers) {
+  Row row;
+  row.add("kernel.kernels.0.factor", 1);
+  row.add("kernel.kernels.0.kernel.length_scale", 2);
+  row.add("kernel.kernels.1.alpha", 3);
+  EXPECT_EQ(to_json_line(row),
+            R"({"kernel": {"kernels": {"0": {"factor": 1, "kernel": {"length_scale": 2}}, "1": {"alpha": 3}}}})");
+}
+
 TEST(Csv, OfNoRowsIsEmpty) { EXPECT_EQ(to_csv({}), ""); }
 
 }  // namespace

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// The laws of kernel.hpp for kernels whose hyperparameters a fit may change.
+#include "contract/kernel_cases.hpp"
+#include "support/support.hpp"
+
+#include <palpate/kernel.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+/// Points, and one more with which the first of them has the distance 0.
+struct Places {
+  explicit Places(Eigen::Index count, double extent = 0.05) : a(spread(count, extent, 21)), b(a.row(0)) {}
+  Points a;
+  Points b;
+};
+
+class KernelDerivatives : public testing::TestWithParam<KernelCase> {
+ protected:
+  void SetUp() override {
+    kernels_ = variants(GetParam());
+    if (!kernels_.front()->differentiable()) {
+      GTEST_SKIP() << "kernel/" << GetParam().type << " is not differentiable: no fit may change it";
+    }
+  }
+
+  std::vector<std::shared_ptr<Kernel>> kernels_;
+};
+
+TEST_P(KernelDerivatives, ComeWithTheCovariance) {
+  // More than one piece of 128 rows, by which the shipped kernels work.
+  const Places at(300);
+  for (const auto& kernel : kernels_) {
+    const Eigen::MatrixXd expected = covariance(*kernel, at.a, at.b);
+    const Eigen::VectorXd value = derivatives(*kernel, at.a, at.b).value;
+    for (Eigen::Index i = 0; i < at.a.rows(); ++i) expect_same_value(value(i), expected(i, 0));
+  }
+}
+
+/// Change of the covariances with log parameter `which`: central differences at two steps, extrapolated to step 0.
+Eigen::VectorXd differences(Kernel& kernel, Eigen::Index which, const Places& at, double step) {
+  const Eigen::VectorXd here = parameter_values(kernel);
+  const auto value = [&](double change) -> Eigen::VectorXd {
+    Eigen::VectorXd there = here;
+    there(which) *= std::exp(change);
+    kernel.set_parameters(there);
+    return covariance(kernel, at.a, at.b).col(0);
+  };
+  const Eigen::VectorXd wide = (value(2 * step) - value(-2 * step)) / (4 * step);
+  const Eigen::VectorXd narrow = (value(step) - value(-step)) / (2 * step);
+  kernel.set_parameters(here);
+  return (4 * narrow - wide) / 3;
+}
+
+TEST_P(KernelDerivatives, EqualFiniteDifferences) {
+  // The extrapolation leaves step^4 / 30 times the fifth derivative, which stays below some thousand variances for the
+  // kernels in use; differences lose some 1000 ulp of the variance (the power of a rational quadratic with alpha =
+  // 1000) over the step. At 1e-3 both are below 1e-9.
+  constexpr double kStep = 1e-3;
+  for (const Eigen::Index count : {7, 40}) {
+    const Places at(count);
+    for (const auto& kernel : kernels_) {
+      const Eigen::MatrixXd slopes = derivatives(*kernel, at.a, at.b).slopes;
+      const double tolerance = 1e-9 * variance(*kernel, at.a).maxCoeff();
+      for (Eigen::Index p = 0; p < slopes.cols(); ++p) {
+        const Eigen::VectorXd expected = differences(*kernel, p, at, kStep);
+        EXPECT_LE((slopes.col(p) - expected).cwiseAbs().maxCoeff(), tolerance)
+            << kernel->parameters()[static_cast<std::size_t>(p)].name << " = "
+            << kernel->parameters()[static_cast<std::size_t>(p)].value;
+      }
+    }
+  }
+}
+
+TEST_P(KernelDerivatives, AreFiniteAtExtremesOfScale) {
+  const Points a = points_of_every_scale();
+  const auto& kernel = kernels_.front();
+  const std::vector<KernelParameter> parameters = kernel->parameters();
+  const Eigen::VectorXd values = parameter_values(*kernel);
+  for (const double length : {1e-300, 1e-150, 1e-3, 1.0, 1e150, 1e300}) {
+    for (const double number : {1e-30, 1e-3, 1.0, 1e3, 1e30}) {
+      Eigen::VectorXd extreme = values;
+      for (Eigen::Index p = 0; p < values.size(); ++p) {
+        extreme(p) = parameters[static_cast<std::size_t>(p)].unit == Unit::metre ? length : number;
+      }
+      kernel->set_parameters(extreme);
+      EXPECT_TRUE(covariance(*kernel, a, -a).allFinite()) << length << ", " << number;
+      for (Eigen::Index j = 0; j < a.rows(); ++j) {
+        for (const double sign : {1.0, -1.0}) {
+          const Derivatives out = derivatives(*kernel, a, sign * a.row(j));
+          EXPECT_TRUE(out.value.allFinite()) << length << ", " << number << ", point " << j;
+          EXPECT_TRUE(out.slopes.allFinite()) << length << ", " << number << ", point " << j;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(KernelDerivatives, FollowTheParametersThatWereSet) {
+  const Places at(20);
+  for (const auto& kernel : kernels_) {
+    const Eigen::VectorXd before = parameter_values(*kernel);
+    const Eigen::MatrixXd covariances = covariance(*kernel, at.a, at.b);
+    Eigen::VectorXd other(before.size());
+    for (Eigen::Index p = 0; p < other.size(); ++p) other(p) = 0.011 * static_cast<double>(p + 2);
+    const std::vector<KernelParameter> old = kernel->parameters();
+    kernel->set_parameters(other);
+    EXPECT_EQ(parameter_values(*kernel), other);
+    const std::vector<KernelParameter> now = kernel->parameters();
+    for (std::size_t p = 0; p < now.size(); ++p) {
+      EXPECT_EQ(now[p].name, old[p].name);
+      EXPECT_EQ(now[p].unit, old[p].unit);
+    }
+    const Eigen::MatrixXd moved = covariance(*kernel, at.a, at.b);
+    const Eigen::VectorXd value = derivatives(*kernel, at.a, at.b).value;
+    for (Eigen::Index i = 0; i < at.a.rows(); ++i) expect_same_value(value(i), moved(i, 0));
+    const Eigen::VectorXd own = variance(*kernel, at.b);
+    expect_same_value(own(0), covariance(*kernel, at.b, at.b)(0, 0));
+    kernel->set_parameters(before);
+    EXPECT_EQ(parameter_values(*kernel), before);
+    EXPECT_TRUE(covariance(*kernel, at.a, at.b) == covariances)
+        << "the old parameters do not bring back the old kernel";
+  }
+}
+
+TEST_P(KernelDerivatives, OfABatchEqualThoseRowByRow) {
+  const Places at(23);
+  for (const auto& kernel : kernels_) {
+    const Derivatives batch = derivatives(*kernel, at.a, at.b);
+    for (Eigen::Index i = 0; i < at.a.rows(); ++i) {
+      const Derivatives one = derivatives(*kernel, at.a.row(i), at.b);
+      expect_same_value(batch.value(i), one.value(0));
+      for (Eigen::Index p = 0; p < batch.slopes.cols(); ++p) {
+        // Where a slope is a difference of larger terms, those terms have the 8 ulp: as large as the value.
+        EXPECT_NEAR(batch.slopes(i, p), one.slopes(0, p),
+                    8 * kEpsilon * std::max(std::abs(one.slopes(0, p)), std::abs(one.value(0))) + 1e-300);
+      }
+    }
+  }
+}
+
+TEST_P(KernelDerivatives, WriteTheirOutputsAndNothingBeside) {
+  const Places at(5);
+  for (const auto& kernel : kernels_) {
+    const auto parameters = static_cast<Eigen::Index>(kernel->parameters().size());
+    Eigen::VectorXd along = Eigen::VectorXd::Constant(9, 7.25);
+    Eigen::MatrixXd around = Eigen::MatrixXd::Constant(9, parameters + 2, 7.25);
+    kernel->derivatives(at.a, at.b, along.segment(2, 5), around.block(2, 1, 5, parameters));
+    EXPECT_TRUE((along.head(2).array() == 7.25).all());
+    EXPECT_TRUE((along.tail(2).array() == 7.25).all());
+    EXPECT_TRUE((around.topRows(2).array() == 7.25).all());
+    EXPECT_TRUE((around.bottomRows(2).array() == 7.25).all());
+    EXPECT_TRUE((around.leftCols(1).array() == 7.25).all());
+    EXPECT_TRUE((around.rightCols(1).array() == 7.25).all());
+  }
+}
+
+TEST_P(KernelDerivatives, OfNoPointsAreNone) {
+  const Places at(1);
+  for (const auto& kernel : kernels_) EXPECT_EQ(derivatives(*kernel, Points(0, 2), at.b).slopes.rows(), 0);
+}
+
+TEST_P(KernelDerivatives, BelongToParametersOfDifferentNames) {
+  for (const auto& kernel : kernels_) {
+    std::set<std::string> names;
+    for (const KernelParameter& one : kernel->parameters()) names.insert(one.name);
+    EXPECT_EQ(names.size(), kernel->parameters().size());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, KernelDerivatives, testing::ValuesIn(kernel_cases()),
+                         [](const auto& one) { return one.param.name; });
+
+TEST(ShippedKernel, IsDifferentiableWhicheverItIs) {
+  const std::vector<KernelCase> cases = kernel_cases();
+  int shipped = 0;
+  for (const PluginListing& row : shared_host().list("kernel", "")) {
+    ++shipped;
+    bool tried = false;
+    for (const KernelCase& one : cases) {
+      if (one.type != row.name) continue;
+      tried = true;
+      EXPECT_TRUE(make<Kernel>(contract_host(), one.type, one.options)->differentiable()) << one.name;
+    }
+    EXPECT_TRUE(tried) << "kernel/" << row.name << " needs options and has no case in kernel_cases.hpp";
+  }
+  EXPECT_GE(shipped, 8);
+}
+
+}  // namespace
+}  // namespace palpate::test
