@@ -171,6 +171,10 @@ void add_sizes(Matrix& matrix) {
     jittered.layout = Layout::duplicates;
     jittered.noise_variance = 0.0;
   }
+  Case& alike = matrix.add("1000 points length 1 noise 0");
+  alike.points = 1000;
+  alike.length = 1.0;
+  alike.noise_variance = 0.0;
 }
 
 void spread(Points& out, Random& random) {

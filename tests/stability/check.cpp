@@ -36,7 +36,8 @@ class Bringing final : public Fitting {
   const Case& one_;
 };
 
-Process processed(const Problem& problem, const Points& candidates) {
+/// `sound` becomes false if there ever was a number that is none.
+Process processed(const Problem& problem, const Points& candidates, bool& sound) {
   const Case& one = problem.one;
   // Before a fit the matrix is as singular as can be.
   const double length_scale = one.refit ? 1e4 * kSide : one.length_scale();
@@ -47,6 +48,7 @@ Process processed(const Problem& problem, const Points& candidates) {
   Process process(kernel, {signal, noise, one.mean, one.mean_ratio}, candidates);
   for (Eigen::Index i = 0; i < problem.values.size(); ++i) {
     process.add({problem.places(i, 0), problem.places(i, 1)}, problem.values(i));
+    sound &= process.mean().allFinite() && process.variance().allFinite();
   }
   Random random(1, "stability");
   if (one.refit) Process::fit({&process}, Bringing(one), random);
@@ -62,8 +64,8 @@ struct Answer {
   std::string trouble;
 };
 
-std::string trouble_of(const Process& process, const Answer& answer, const Case& one) {
-  const bool finite = answer.mean.allFinite() && answer.variance.allFinite() && answer.tap_mean.allFinite() &&
+std::string trouble_of(const Process& process, const Answer& answer, const Case& one, bool sound) {
+  const bool finite = sound && answer.mean.allFinite() && answer.variance.allFinite() && answer.tap_mean.allFinite() &&
                       std::isfinite(process.log_marginal_likelihood()) && std::isfinite(process.condition());
   if (!finite) return "not a number";
   if (!(answer.jitter <= kJitterLimit * one.points * kEps)) return "jitter";
@@ -77,7 +79,8 @@ Answer answered(const Problem& problem) {
   const Eigen::Index count = problem.probes.rows();
   Points candidates(count + problem.places.rows(), 2);
   candidates << problem.probes, problem.places;
-  const Process process = processed(problem, candidates);
+  bool sound = true;
+  const Process process = processed(problem, candidates, sound);
   const LongVector mean = (process.mean().cast<long double>().array() - one.mean) / one.signal;
   const LongVector variance = process.variance().cast<long double>() / one.signal / one.signal;
   Answer out{mean.head(count),
@@ -85,7 +88,7 @@ Answer answered(const Problem& problem) {
              mean.tail(problem.places.rows()),
              process.jitter() / one.signal / one.signal,
              {}};
-  out.trouble = trouble_of(process, out, one);
+  out.trouble = trouble_of(process, out, one, sound);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <boost/math/constants/constants.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate::stability {
 
@@ -65,16 +66,33 @@ void Oracle::backward(Row& b) const {
   }
 }
 
-Oracle::Posterior Oracle::at(double x, double y) const {
+Oracle::Row Oracle::covariances_with(double x, double y) const {
   Row row;
   row.reserve(alpha_.size());
+  for (Eigen::Index i = 0; i < places_.rows(); ++i) row.push_back(kernel(x, y, places_(i, 0), places_(i, 1)));
+  return row;
+}
+
+// The mean k_*^T A^-1 y changes by -w^T E alpha, w = A^-1 k_*, for a small change E of A.
+void Oracle::nudge_covariances(double x, double y) {
+  Row weights = covariances_with(x, y);
+  forward(weights);
+  backward(weights);
+  for (std::size_t i = 0; i < covariance_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto size = static_cast<double>(covariance_[i][j]);
+      const double ulp = std::nextafter(size, 2.0 * size) - size;
+      const bool raises = weights[i] * alpha_[j] + weights[j] * alpha_[i] < 0;
+      covariance_[i][j] += raises ? ulp : -ulp;
+    }
+  }
+}
+
+Oracle::Posterior Oracle::at(double x, double y) const {
+  Row row = covariances_with(x, y);
   Posterior out;
   out.mean = 0;
-  for (std::size_t i = 0; i < alpha_.size(); ++i) {
-    const auto tap = static_cast<Eigen::Index>(i);
-    row.push_back(kernel(x, y, places_(tap, 0), places_(tap, 1)));
-    out.mean += row.back() * alpha_[i];
-  }
+  for (std::size_t i = 0; i < row.size(); ++i) out.mean += row[i] * alpha_[i];
   out.variance = kernel(x, y, x, y);
   forward(row);
   for (const Real& v : row) out.variance -= v * v;

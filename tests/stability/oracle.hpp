@@ -25,6 +25,10 @@ class Oracle {
   /// definite even with 100 digits.
   bool factorise(double jitter);
 
+  /// Moves every covariance of two different taps by one unit in the last place of a double, each in the direction
+  /// that raises the mean at (x, y). Factorise before, and again afterwards.
+  void nudge_covariances(double x, double y);
+
   struct Posterior {
     Real mean;             ///< standardised
     Real variance;         ///< in squares of the signal
@@ -43,6 +47,7 @@ class Oracle {
 
  private:
   using Row = std::vector<Real>;
+  Row covariances_with(double x, double y) const;
   Real kernel(double ax, double ay, double bx, double by) const;
   void forward(Row& b) const;
   void backward(Row& b) const;

@@ -159,8 +159,9 @@ class Doubling final : public Fitting {
  public:
   bool due(int) const override { return true; }
   FitSummary fit(FitProblem& problem, Random&) const override {
-    problem.signal *= 2;
-    return {true, 0.0, 1, "doubled"};
+    problem.outputs.front().signal *= 2;
+    problem.noise_ratio /= 2;
+    return {true, false, 0.0, 1, "doubled"};
   }
 };
 
@@ -169,7 +170,7 @@ TEST(Process, AFitThatChangesHyperparametersLeavesWhatAFreshProcessWouldHave) {
   const Data data = draw(12, 4);
   Process fitted = processed(data, {1.0, 0.1, 0.0}, candidates);
   Random random(1, "test");
-  fitted.fit(Doubling{}, random);
+  Process::fit({&fitted}, Doubling{}, random);
   const Process fresh = processed(data, {2.0, 0.1, 0.0}, candidates);
   EXPECT_EQ((fitted.mean() - fresh.mean()).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_EQ((fitted.variance() - fresh.variance()).cwiseAbs().maxCoeff(), 0.0);
