@@ -229,8 +229,10 @@ Points places(const Case& one) {
     case Layout::grid: {
       const auto columns = static_cast<Eigen::Index>(std::ceil(std::sqrt(one.points)));
       for (Eigen::Index i = 0; i < out.rows(); ++i) {
-        out(i, 0) = kSide * (static_cast<double>(i % columns) + 0.5) / static_cast<double>(columns);
-        out(i, 1) = kSide * (static_cast<double>(i / columns) + 0.5) / static_cast<double>(columns);
+        const Eigen::Index row = i / columns;
+        const Eigen::Index column = i - row * columns;
+        out(i, 0) = kSide * (static_cast<double>(column) + 0.5) / static_cast<double>(columns);
+        out(i, 1) = kSide * (static_cast<double>(row) + 0.5) / static_cast<double>(columns);
       }
       break;
     }

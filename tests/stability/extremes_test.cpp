@@ -87,6 +87,11 @@ TEST(ExtremesTable, HoldsManyCasesOnBothSidesOfWhatDoublePrecisionCanHold) {
   EXPECT_GE(static_cast<int>(rows.size()) - beyond, 100);
 }
 
+TEST(ExtremesTable, TheReadmeCountsTheCasesThatThereAre) {
+  EXPECT_THAT(test::text_of(test::source_folder() / "README.md"),
+              ::testing::HasSubstr(fmt::format("\n{} cases", cases().size())));
+}
+
 // Why the scale of a mean is the largest posterior mean where that exceeds the prior: the last digits of the
 // covariances, which no computation in double precision has, are worth more than the bound without it.
 TEST(ExtremesScale, AMeanThatOvershootsIsMovedBeyondTheBoundOfOneThatDoesNotByTheLastDigitsOfTheCovariances) {

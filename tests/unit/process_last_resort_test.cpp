@@ -41,16 +41,16 @@ Process process_of(double (*shape)(double), double noise = 0.0, double mean_rati
   return Process(std::make_shared<Shaped>(shape), {signal, noise, 0.0, mean_ratio}, kCandidates.points);
 }
 
-void expect_numbers(const Process& process) {
-  const double prior = process.settings().signal * process.settings().signal *
-                       (1.0 + process.settings().mean_ratio * process.settings().mean_ratio);
+void expect_numbers(const Process& process, double kernel_variance = 1.0) {
+  const double square = process.settings().signal * process.settings().signal;
+  const double prior = square * (kernel_variance + process.settings().mean_ratio * process.settings().mean_ratio);
   EXPECT_TRUE(process.mean().allFinite());
   EXPECT_TRUE(process.variance().allFinite());
   EXPECT_GE(process.variance().minCoeff(), 0.0);
   EXPECT_LE(process.variance().maxCoeff(), prior * (1 + 4 * kEps));
   EXPECT_TRUE(std::isfinite(process.log_marginal_likelihood()));
   EXPECT_TRUE(std::isfinite(process.condition()));
-  const double limit = 100 * process.size() * kEps * process.settings().signal * process.settings().signal;
+  const double limit = 100 * process.size() * kEps * square * kernel_variance;
   EXPECT_LE(process.jitter(), limit * (1 + 4 * kEps));
 }
 
@@ -65,6 +65,18 @@ TEST(LastResort, DuplicatesWithoutNoiseNeedJitterButNoTapIsSetAside) {
     EXPECT_EQ(process.pivoted(), 0);
     EXPECT_EQ(process.set_aside(), 0);
     EXPECT_LE(process.jitter_raised(), 3) << "each step is worth ten times more taps";
+  }
+}
+
+TEST(LastResort, JitterIsInProportionToTheVarianceOfTheKernel) {
+  for (const double variance : {1e-6, 1e6}) {
+    Process process(std::make_shared<Shaped>([variance](double r) { return variance * bell(r); }), {2.0, 0.0, 0.0, 0.0},
+                    kCandidates.points);
+    for (int i = 0; i < 6; ++i) {
+      process.add({0.3, 0.3}, 1.0);
+      expect_numbers(process, variance);
+    }
+    EXPECT_GT(process.jitter(), kEps * variance);
   }
 }
 
