@@ -7,7 +7,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -53,14 +56,102 @@ TEST(Factor, RefusesWhatIsNotANumber) {
   EXPECT_EQ(factor.size(), 0);
 }
 
-TEST(Factor, ConditionIsALowerBoundOfTheTrueOne) {
-  const Eigen::MatrixXd matrix = positive_definite(20, 9);
+Factor factor_of(const Eigen::MatrixXd& matrix) {
   Factor factor;
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(factor.append(matrix.col(i).head(i), matrix(i, i)));
+  for (int i = 0; i < matrix.rows(); ++i) EXPECT_TRUE(factor.append(matrix.col(i).head(i), matrix(i, i)));
+  return factor;
+}
+
+double condition_of(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd eigenvalues = matrix.selfadjointView<Eigen::Lower>().eigenvalues();
-  const double condition = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
-  EXPECT_LE(factor.condition(), condition);
-  EXPECT_GE(factor.condition(), condition / 400.0);
+  return eigenvalues.maxCoeff() / eigenvalues.minCoeff();
+}
+
+/// The covariance of n points on a line from 0 to 1 with the squared-exponential kernel.
+Eigen::MatrixXd smooth(int n, double length_scale, double noise) {
+  Eigen::MatrixXd out(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) out(i, j) = std::exp(-0.5 * std::pow((i - j) / (n * length_scale), 2));
+  }
+  return out + noise * Eigen::MatrixXd::Identity(n, n);
+}
+
+/// All covariances alike: one eigenvalue is large.
+Eigen::MatrixXd alike(int n, double noise) {
+  return Eigen::MatrixXd::Ones(n, n) + noise * Eigen::MatrixXd::Identity(n, n);
+}
+
+TEST(Factor, ConditionOfADiagonalIsExact) {
+  const Eigen::MatrixXd matrix = Eigen::Vector4d(3.0, 0.25, 16.0, 1.0).asDiagonal();
+  EXPECT_DOUBLE_EQ(factor_of(matrix).condition(), 64.0);
+  EXPECT_EQ(Factor().condition(), 1.0);
+}
+
+TEST(Factor, ConditionIsALowerBoundWithinAFactorOfTheTrueOne) {
+  std::vector<Eigen::MatrixXd> matrices;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) matrices.push_back(positive_definite(20, seed));
+  for (const int n : {2, 10, 60}) {
+    for (const double noise : {1e-10, 1e-6, 1e-2, 1.0}) {
+      matrices.push_back(alike(n, noise));
+      for (const double length_scale : {0.01, 0.1, 1.0}) matrices.push_back(smooth(n, length_scale, noise));
+    }
+  }
+  double worst = 1.0;
+  for (const Eigen::MatrixXd& matrix : matrices) {
+    const double ratio = condition_of(matrix) / factor_of(matrix).condition();
+    // Up to what the eigenvalues themselves are rounded by.
+    EXPECT_GE(ratio, 1.0 - 1e-4);
+    worst = std::max(worst, ratio);
+  }
+  EXPECT_LE(worst, 10.0);
+  RecordProperty("worst", std::to_string(worst));
+}
+
+TEST(Factor, ConditionFollowsAFactorThatWasClearedAndGrownAgain) {
+  Factor factor = factor_of(smooth(30, 1.0, 1e-6));
+  factor.clear();
+  EXPECT_EQ(factor.condition(), 1.0);
+  const Eigen::MatrixXd matrix = positive_definite(20, 4);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(factor.append(matrix.col(i).head(i), matrix(i, i)));
+  EXPECT_EQ(factor.condition(), factor_of(matrix).condition());
+}
+
+TEST(IndependentRows, OfAnIndependentMatrixAreAllTheLeastExplainedFirst) {
+  Eigen::MatrixXd matrix = Eigen::Vector4d(3.0, 0.25, 16.0, 1.0).asDiagonal();
+  EXPECT_EQ(independent_rows(matrix), (std::vector<int>{2, 0, 3, 1}));
+}
+
+TEST(IndependentRows, AreAsManyAsTheRank) {
+  for (const int rank : {1, 3, 17}) {
+    Random random(static_cast<std::uint64_t>(rank), "factor_test");
+    Eigen::MatrixXd a(30, rank);
+    for (Eigen::Index i = 0; i < a.size(); ++i) a(i) = random.uniform() - 0.5;
+    Eigen::MatrixXd matrix = a * a.transpose();
+    std::vector<int> rows = independent_rows(matrix);
+    EXPECT_EQ(static_cast<int>(rows.size()), rank);
+    std::sort(rows.begin(), rows.end());
+    EXPECT_EQ(std::unique(rows.begin(), rows.end()), rows.end()) << "a row was taken twice";
+  }
+}
+
+TEST(IndependentRows, OfDuplicatesIsOneEach) {
+  Eigen::MatrixXd matrix = smooth(10, 0.1, 0.0).replicate(2, 2);
+  std::vector<int> rows = independent_rows(matrix);
+  for (int& row : rows) row %= 10;
+  std::sort(rows.begin(), rows.end());
+  EXPECT_EQ(rows, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST(IndependentRows, LeaveOutWhatIsIndefiniteOrNotANumber) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(5, 5);
+  matrix(0, 1) = matrix(1, 0) = 2.0;  // more alike than a point is to itself
+  matrix.row(3).setConstant(std::nan(""));
+  matrix.col(3).setConstant(std::nan(""));
+  EXPECT_EQ(independent_rows(matrix), (std::vector<int>{0, 2, 4}));
+  Eigen::MatrixXd nothing = -Eigen::MatrixXd::Identity(3, 3);
+  EXPECT_TRUE(independent_rows(nothing).empty());
+  Eigen::MatrixXd empty(0, 0);
+  EXPECT_TRUE(independent_rows(empty).empty());
 }
 
 }  // namespace

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// Every extreme case against an oracle with 100 digits; the criterion stands in check.hpp, the cases in cases.cpp.
+#include "stability/check.hpp"
+#include "stability/oracle.hpp"
+#include "stability/reference.hpp"
+#include "support/support.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace palpate::stability {
+
+/// Lists of tests show a case by its name.
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSlow = true;
+#else
+constexpr bool kSlow = false;
+#endif
+
+class Extremes : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Extremes, HoldTheBound) {
+  if (kSlow && GetParam().points > kOraclePoints) GTEST_SKIP() << "takes minutes under a sanitizer; release runs it";
+  const Row row = check(GetParam());
+  EXPECT_EQ(row.trouble, "") << header() << '\n' << text(row);
+  RecordProperty("row", text(row));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Extremes, ::testing::ValuesIn(cases()), [](const auto& one) {
+  std::string name = one.param.name;
+  for (char& letter : name) letter = std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
+  return name;
+});
+
+using Cells = std::map<std::string, std::string>;
+
+/// The rows of a table by the names of their columns.
+std::vector<Cells> rows_of(const std::string& table) {
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, header());
+  std::vector<Cells> out;
+  while (std::getline(lines, line)) {
+    std::istringstream names(header());
+    std::istringstream cells(line);
+    out.emplace_back();
+    for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
+      out.back()[name] = cell;
+    }
+  }
+  return out;
+}
+
+double number(const Cells& row, const std::string& column) { return std::strtod(row.at(column).c_str(), nullptr); }
+
+TEST(ExtremesTable, TheRecordedOneHasEveryCaseAndEveryRowHolds) {
+  const std::vector<Cells> rows = rows_of(test::text_of(test::source_folder() / "runs/reference/stability.csv"));
+  ASSERT_EQ(rows.size(), cases().size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("case"), cases()[i].name);
+    EXPECT_EQ(rows[i].at("verdict"), "holds") << rows[i].at("case");
+    EXPECT_LE(number(rows[i], "mean_error"), number(rows[i], "mean_bound")) << rows[i].at("case");
+    EXPECT_LE(number(rows[i], "variance_error"), number(rows[i], "variance_bound")) << rows[i].at("case");
+  }
+}
+
+TEST(ExtremesTable, HoldsManyCasesOnBothSidesOfWhatDoublePrecisionCanHold) {
+  const std::vector<Cells> rows = rows_of(test::text_of(test::source_folder() / "runs/reference/stability.csv"));
+  int beyond = 0;
+  for (const Cells& row : rows) beyond += number(row, "condition") >= kBeyond ? 1 : 0;
+  EXPECT_GE(beyond, 40);
+  EXPECT_GE(static_cast<int>(rows.size()) - beyond, 100);
+}
+
+TEST(ExtremesTable, TheReadmeCountsTheCasesThatThereAre) {
+  EXPECT_THAT(test::text_of(test::source_folder() / "README.md"),
+              ::testing::HasSubstr(fmt::format("\n{} cases", cases().size())));
+}
+
+// Why the scale of a mean is the largest posterior mean where that exceeds the prior: the last digits of the
+// covariances, which no computation in double precision has, are worth more than the bound without it.
+TEST(ExtremesScale, AMeanThatOvershootsIsMovedBeyondTheBoundOfOneThatDoesNotByTheLastDigitsOfTheCovariances) {
+  const auto rough = std::find_if(cases().begin(), cases().end(),
+                                  [](const Case& one) { return one.name == "rbf_rough_data_length_1_noise_1e-08"; });
+  ASSERT_NE(rough, cases().end());
+  const Problem problem(*rough);
+  Oracle oracle(*rough, problem.places, problem.values);
+  ASSERT_TRUE(oracle.factorise(0.0));
+  Eigen::Index farthest = 0;
+  OracleRoute(problem).solve(0.0)->mean.cwiseAbs().maxCoeff(&farthest);
+  const Target probe{problem.probes(farthest, 0), problem.probes(farthest, 1)};
+  const Real exact = oracle.at(probe.x, probe.y).mean;
+  oracle.nudge_covariances(probe.x, probe.y);
+  ASSERT_TRUE(oracle.factorise(0.0));
+  const auto moved = static_cast<double>(Real(abs(oracle.at(probe.x, probe.y).mean - exact)));
+  const double bound = rough->points * std::numeric_limits<double>::epsilon() * spectrum(problem).condition();
+  EXPECT_GT(static_cast<double>(Real(abs(exact))), 3.0);
+  EXPECT_GT(moved, 3.0 * bound);
+  RecordProperty("moved", fmt::format("{:.2g}, bound {:.2g}", moved, bound));
+}
+
+/// The table of a few cases, as a program that may be broken on purpose prints it.
+test::Ended table_of(const char* program) {
+  const test::TemporaryFolder folder;
+  return test::run_program({program, "duplicates_noise_0", "one_place_noise_0", "pairs_noise_0", "17_points"},
+                           folder.path());
+}
+
+TEST(BrokenOnPurpose, TheSoundFactorisationHoldsInTheFewCasesThatAreToFail) {
+  const test::Ended ended = table_of(PALPATE_STABILITY_TABLE);
+  EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
+  EXPECT_GE(rows_of(ended.out).size(), 5U);
+}
+
+TEST(BrokenOnPurpose, WithoutThePivotGuardTheTableFails) {
+  const test::Ended ended = table_of(PALPATE_STABILITY_WITHOUT_GUARD);
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, ::testing::ContainsRegex("\nduplicates_noise_0,.*fails: not a number\n"));
+  EXPECT_THAT(ended.out, ::testing::ContainsRegex("\n17_points_noise_1e-08,.*holds\n")) << "it breaks no sound matrix";
+}
+
+TEST(BrokenOnPurpose, WithAJitterThatShowsTheTableFails) {
+  const test::Ended ended = table_of(PALPATE_STABILITY_LARGE_JITTER);
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, ::testing::ContainsRegex("\nduplicates_noise_0,.*fails: jitter\n"));
+  EXPECT_THAT(ended.out, ::testing::ContainsRegex("\n17_points_noise_1e-08,.*holds\n"));
+}
+
+}  // namespace
+}  // namespace palpate::stability

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// What a process does with matrices that no Cholesky factorisation takes: it raises the jitter within its limits,
+// and at the very last sets taps aside. It never gives a number that is none.
+#include "gp/process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// Any function of the distance, a covariance or not.
+class Shaped final : public Kernel {
+ public:
+  explicit Shaped(std::function<double(double)> shape) : shape_(std::move(shape)) {}
+  void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      for (Eigen::Index j = 0; j < b.rows(); ++j) out(i, j) = shape_((a.row(i) - b.row(j)).norm());
+    }
+  }
+  void variance(const PointsView& a, VectorOut out) const override { out.head(a.rows()).setConstant(shape_(0.0)); }
+  std::vector<KernelParameter> parameters() const override { return {}; }
+
+ private:
+  std::function<double(double)> shape_;
+};
+
+double bell(double r) { return std::exp(-0.5 * r * r / (0.3 * 0.3)); }
+/// Not positive semi-definite: the Fourier transform of a box has negative values.
+double box(double r) { return r < 0.5 ? 1.0 : 0.0; }
+double hole(double r) { return r > 0.45 && r < 0.55 ? std::nan("") : bell(r); }
+
+const Candidates kCandidates = grid_by_count({1.0, 1.0}, 5);
+
+Process process_of(double (*shape)(double), double noise = 0.0, double mean_ratio = 0.0, double signal = 1.0) {
+  return Process(std::make_shared<Shaped>(shape), {signal, noise, 0.0, mean_ratio}, kCandidates.points);
+}
+
+void expect_numbers(const Process& process, double kernel_variance = 1.0) {
+  const double square = process.settings().signal * process.settings().signal;
+  const double prior = square * (kernel_variance + process.settings().mean_ratio * process.settings().mean_ratio);
+  EXPECT_TRUE(process.mean().allFinite());
+  EXPECT_TRUE(process.variance().allFinite());
+  EXPECT_GE(process.variance().minCoeff(), 0.0);
+  EXPECT_LE(process.variance().maxCoeff(), prior * (1 + 4 * kEps));
+  EXPECT_TRUE(std::isfinite(process.log_marginal_likelihood()));
+  EXPECT_TRUE(std::isfinite(process.condition()));
+  const double limit = 100 * process.size() * kEps * square * kernel_variance;
+  EXPECT_LE(process.jitter(), limit * (1 + 4 * kEps));
+}
+
+TEST(LastResort, DuplicatesWithoutNoiseNeedJitterButNoTapIsSetAside) {
+  for (const double signal : {1e-12, 1.0, 1e12}) {
+    Process process = process_of(bell, 0.0, 0.0, signal);
+    for (int i = 0; i < 60; ++i) {
+      process.add({0.3 + 0.1 * (i % 3), 0.3}, signal * (i % 3));
+      expect_numbers(process);
+    }
+    EXPECT_GT(process.jitter(), 0.0);
+    EXPECT_EQ(process.pivoted(), 0);
+    EXPECT_EQ(process.set_aside(), 0);
+    EXPECT_LE(process.jitter_raised(), 3) << "each step is worth ten times more taps";
+  }
+}
+
+TEST(LastResort, JitterIsInProportionToTheVarianceOfTheKernel) {
+  for (const double variance : {1e-6, 1e6}) {
+    Process process(std::make_shared<Shaped>([variance](double r) { return variance * bell(r); }), {2.0, 0.0, 0.0, 0.0},
+                    kCandidates.points);
+    for (int i = 0; i < 6; ++i) {
+      process.add({0.3, 0.3}, 1.0);
+      expect_numbers(process, variance);
+    }
+    EXPECT_GT(process.jitter(), kEps * variance);
+  }
+}
+
+TEST(LastResort, OneValueForAPlaceTappedOftenIsTheirAverage) {
+  Process process = process_of(bell);
+  for (const double value : {1.0, 2.0, 3.0, 2.0}) process.add(kCandidates.target(12), value);
+  // Contradictory taps without noise: rounding, eps, against a jitter of 10 n eps leaves 1 / (10 n) of their spread.
+  EXPECT_NEAR(process.mean()(12), 2.0, 2.0 / (10 * 4));
+  EXPECT_NEAR(process.relative_variance()(12), 0.0, 1e-12);
+}
+
+TEST(LastResort, AKernelThatIsNoCovarianceIsMetByPivoting) {
+  Process process = process_of(box);
+  for (int i = 0; i < 25; ++i) {
+    process.add(kCandidates.target(i), std::sin(i));
+    expect_numbers(process);
+  }
+  EXPECT_GT(process.pivoted(), 0);
+  EXPECT_GT(process.set_aside(), 0);
+  EXPECT_LT(process.set_aside(), 25);
+  EXPECT_EQ(process.size(), 25) << "they stay recorded";
+}
+
+TEST(LastResort, PivotingWorksWithAnUnknownMeanToo) {
+  Process process = process_of(box, 1e-6, 10.0);
+  for (int i = 0; i < 25; ++i) process.add(kCandidates.target(i), 3.0);
+  expect_numbers(process);
+  EXPECT_GT(process.set_aside(), 0);
+}
+
+TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
+  // The candidates keep clear of the hole: theirs are numbers.
+  const Points candidates = (Points(2, 2) << 0.0, 0.0, 0.1, 0.0).finished();
+  Process process(std::make_shared<Shaped>(hole), {1.0, 0.1, 0.0, 0.0}, candidates);
+  process.add({0.0, 0.1}, 1.0);
+  const Eigen::VectorXd before = process.mean();
+  process.add({0.0, 0.6}, 5.0);
+  EXPECT_TRUE(process.mean().allFinite());
+  EXPECT_EQ(process.size(), 2);
+  EXPECT_EQ(process.set_aside(), 1);
+  EXPECT_LT((process.mean() - before).cwiseAbs().maxCoeff(), 1e-10) << "it told nothing";
+  process.add({0.05, 0.15}, 1.0);
+  EXPECT_TRUE(process.mean().allFinite());
+  EXPECT_EQ(process.set_aside(), 1) << "a later tap counts again";
+}
+
+TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
+  const Points candidates = Points::Zero(1, 2);
+  Process process(std::make_shared<Shaped>([](double r) { return r == 0.0 ? 1.0 : std::nan(""); }),
+                  {1.0, 0.0, 0.0, 0.0}, candidates);
+  process.add({0.0, 0.0}, 1.0);
+  process.add({0.1, 0.0}, 1.0);
+  process.add({0.2, 0.0}, 1.0);
+  EXPECT_TRUE(process.mean().allFinite());
+  EXPECT_TRUE(process.variance().allFinite());
+  EXPECT_EQ(process.set_aside(), 2);
+}
+
+TEST(LastResort, JitterThatOnceWasNeededGoesWithTheHyperparametersThatNeededIt) {
+  class Noisy final : public Fitting {
+   public:
+    bool due(int) const override { return true; }
+    FitSummary fit(FitProblem& problem, Random&) const override {
+      problem.noise_ratio = 0.1;
+      FitSummary summary;
+      summary.changed = true;
+      return summary;
+    }
+  };
+  Process process = process_of(bell);
+  for (int i = 0; i < 8; ++i) process.add({0.5, 0.5}, 1.0);
+  EXPECT_GT(process.jitter(), 0.0);
+  Random random(1, "test");
+  Process::fit({&process}, Noisy(), random);
+  EXPECT_EQ(process.jitter(), 0.0);
+  EXPECT_DOUBLE_EQ(process.settings().noise, 0.1);
+  expect_numbers(process);
+}
+
+}  // namespace
+}  // namespace palpate
