@@ -2,8 +2,6 @@
 #include "config/resolve.hpp"
 
 #include "config/yaml.hpp"
-#include "experiment/resolved.hpp"
-#include "support/runs.hpp"
 
 #include <palpate/error.hpp>
 
@@ -354,103 +352,6 @@ TEST(ResolvePlugins, DropsOptionsThatALaterTypeOfAnItemLacks) {
   resolve(several, input, TwoPlugins(), notes);
   ASSERT_EQ(notes.dropped.size(), 1U);
   EXPECT_EQ(notes.dropped[0].path, "parts.0.nu");
-}
-
-TEST(ResolvedConfig, HasTheSameIdHoweverALengthIsWritten) {
-  const std::string id = test::shipped_config("paper/object_i.yaml", {"kernel.length_scale=1.7cm"}).id;
-  for (const char* text :
-       {"kernel.length_scale=17 mm", "kernel.length_scale=0.017m", "kernel.length_scale=+1.70e-2 m"}) {
-    EXPECT_EQ(test::shipped_config("paper/object_i.yaml", {text}).id, id) << text;
-  }
-  EXPECT_NE(test::shipped_config("paper/object_i.yaml", {"kernel.length_scale=1.8cm"}).id, id);
-}
-
-TEST(ResolvedConfig, HasAnIdOfTwelveHexadecimalDigits) {
-  const std::string id = test::shipped_config("paper/object_i.yaml").id;
-  EXPECT_EQ(id.size(), 12U);
-  EXPECT_EQ(id.find_first_not_of("0123456789abcdef"), std::string::npos);
-}
-
-TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
-  EXPECT_EQ(
-      test::shipped_config("paper/object_i.yaml", {"repeat=forbid", "weight.prior_mean=0", "backend.hover=15cm"}).id,
-      test::shipped_config("paper/object_i.yaml").id);
-}
-
-TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
-  EXPECT_EQ(
-      test::shipped_config("paper/object_i.yaml", {"name=other", "log.maps=true", "log.sync=none", "log.surface=false"})
-          .id,
-      test::shipped_config("paper/object_i.yaml").id);
-}
-
-TEST(ResolvedConfig, PutsAllElseIntoTheId) {
-  const std::string id = test::shipped_config("paper/object_i.yaml").id;
-  for (const char* text :
-       {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "weight.clip=true",
-        "posterior=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
-        "stop.robot_time=9min", "scene.desk=1cm", "backend.motion.pause=0s", "kernel=matern32",
-        "kernel=swell_and_texture", "surface=two_part", "weight.hyperparameters=shared"}) {
-    EXPECT_NE(test::shipped_config("paper/object_i.yaml", {text}).id, id) << text;
-  }
-}
-
-TEST(ResolvedConfig, ReadsBackAsTheSameConfig) {
-  for (const char* file :
-       {"paper/object_i.yaml", "paper/object_i_right.yaml", "paper/object_ii.yaml", "paper/comparison.yaml"}) {
-    const ResolvedConfig config =
-        test::shipped_config(file, {"height.kernel=matern52", "weight.kernel=swell_and_texture", "surface=two_part",
-                                    "candidates.spacing=5mm", "candidates.count=none"});
-    const ResolvedConfig again =
-        resolve_experiment(parse_yaml(to_yaml(config.tree), "again.yaml"), test::shared_host());
-    EXPECT_EQ(again.id, config.id) << file;
-    EXPECT_EQ(to_yaml(again.tree), to_yaml(config.tree)) << file;
-  }
-}
-
-TEST(ResolvedConfig, DropsWhatTheCommandLinesPluginLacks) {
-  const ResolvedConfig config =
-      test::shipped_config("paper/object_i.yaml", {"acquisition=grid", "acquisition.type=weighted"});
-  ASSERT_EQ(config.notes.dropped.size(), 1U);
-  EXPECT_EQ(config.notes.dropped[0].path, "acquisition.count");
-}
-
-std::string refused_config(const std::vector<std::string>& overrides) {
-  try {
-    test::shipped_config("paper/object_i.yaml", overrides);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-TEST(ResolvedConfig, RefusesAGridThatIsTooFineForAnyComputer) {
-  EXPECT_EQ(
-      refused_config({"candidates={spacing: 1 um}", "candidates.count=none"}),
-      "command line: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are possible");
-  EXPECT_EQ(refused_config({"candidates.spacing=1e-300 m", "candidates.count=none"}).substr(0, 34),
-            "command line: candidates.spacing: ");
-  EXPECT_EQ(refused_config({"candidates.spacing=0.115 mm", "candidates.count=none"}), "accepted")
-      << "2000 cells a side";
-}
-
-TEST(ResolvedConfig, RefusesMoreInitialTapsThanCandidates) {
-  EXPECT_EQ(
-      refused_config({"candidates.count=2", "initial.count=5"}),
-      "command line: initial.count: 5 taps, but there are only 4 candidates, take fewer first taps or more candidates");
-  EXPECT_EQ(refused_config({"candidates.count=2", "initial.count=4"}), "accepted");
-}
-
-TEST(Slug, KeepsLettersDigitsAndThreeSigns) { EXPECT_EQ(slug("Object_I-2.b"), "Object_I-2.b"); }
-
-TEST(Slug, PutsOneDashForAllElse) { EXPECT_EQ(slug("a /\\ b\nc"), "a-b-c"); }
-
-TEST(Slug, IsNeverEmptyHiddenLongOrAPath) {
-  EXPECT_EQ(slug(""), "experiment");
-  EXPECT_EQ(slug("///"), "experiment");
-  EXPECT_EQ(slug(".."), "experiment");
-  EXPECT_EQ(slug("../../etc"), "etc");
-  EXPECT_EQ(slug(std::string(100, 'a')), std::string(64, 'a'));
 }
 
 }  // namespace
