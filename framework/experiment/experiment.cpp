@@ -87,7 +87,7 @@ std::optional<std::string> Experiment::stop_reason() const {
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";
   if (stop.max_standard_deviation && result_.taps >= options_.initial.count &&
-      std::sqrt(belief_.height_variance().maxCoeff()) <= *stop.max_standard_deviation) {
+      std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
   }
   return std::nullopt;

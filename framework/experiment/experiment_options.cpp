@@ -53,11 +53,12 @@ void WeightOptions::list(Fields& fields) {
 }
 
 void StopOptions::list(Fields& fields) {
-  fields.real(max_standard_deviation,
-              Field("max_standard_deviation",
-                    "stop when no candidate's height is less certain than this; builds the process of the surface")
-                  .in(Unit::metre)
-                  .above(0));
+  fields.real(
+      max_standard_deviation,
+      Field("max_standard_deviation",
+            "stop when no candidate's height is less certain than this, all taps seen; builds the height process")
+          .in(Unit::metre)
+          .above(0));
   fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
 }
 
@@ -81,7 +82,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(height, Field("height", "the process of the heights above the desk"));
   fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk"));
   fields.choice(
-      surface, Field("surface", "how the surface is reconstructed; u and w do not depend on it"),
+      surface, Field("surface", "how the surface is reconstructed; the taps do not depend on it"),
       {{"single", "one process for the heights of object and desk, as the paper has it", {}},
        {"two_part", "heights from the taps on an object alone, where the weight is at least 1/2; else desk", {}}});
   fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),

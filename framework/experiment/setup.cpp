@@ -78,13 +78,13 @@ void Experiment::describe_state(TapRecord& tap) {
   const PhaseClock::Scope log(clock_, Phase::log);
   if (const Process* height = belief_.height_process()) {
     tap.uncertainty = belief_.uncertainty()(tap.candidate);
-    tap.height_process = state_of(*height, belief_);
-  }
-  if (const Process* surface = belief_.surface_process()) {
-    const Eigen::ArrayXd deviation = belief_.height_variance().array().sqrt();
+    const Eigen::ArrayXd deviation = belief_.all_taps_variance().array().sqrt();
     tap.max_standard_deviation = deviation.maxCoeff();
     tap.mean_standard_deviation = deviation.mean();
-    if (belief_.two_part()) tap.surface_process = state_of(*surface, belief_);
+    tap.height_process = state_of(*height, belief_);
+  }
+  if (belief_.two_part()) {
+    if (const Process* surface = belief_.surface_process()) tap.surface_process = state_of(*surface, belief_);
   }
   if (const Process* weight = belief_.weight_process()) {
     tap.weight = belief_.weight()(tap.candidate);

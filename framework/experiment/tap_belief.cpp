@@ -132,7 +132,12 @@ const Eigen::VectorXd& TapBelief::height_mean() const {
               [this](const Process& process) -> Eigen::VectorXd { return process.mean().array() + desk_; });
 }
 
+const Eigen::VectorXd& TapBelief::all_taps_variance() const {
+  return read(all_taps_map_, height_, [](const Process& process) { return process.variance(); });
+}
+
 const Eigen::VectorXd& TapBelief::height_variance() const {
+  if (!two_part_) return all_taps_variance();
   return read(variance_map_, surface(), [](const Process& process) { return process.variance(); });
 }
 

@@ -37,6 +37,9 @@ class TapBelief final : public Belief {
   const Eigen::VectorXd& height_mean() const override;
   const Eigen::VectorXd& height_variance() const override;
 
+  /// Variance of the height process, all taps seen, square metres: height_variance() unless the surface is two_part.
+  const Eigen::VectorXd& all_taps_variance() const;
+
   /// The mean of the weight process as it comes, whatever `weight.clip` says.
   const Eigen::VectorXd& weight_mean() const;
 
@@ -103,7 +106,7 @@ class TapBelief final : public Belief {
   mutable Model weight_;
   mutable Model object_;  ///< heights of the taps on an object
   mutable int failed_fits_ = 0;
-  mutable Map uncertainty_map_, weight_map_, weight_mean_map_, mean_map_, variance_map_;
+  mutable Map uncertainty_map_, weight_map_, weight_mean_map_, mean_map_, variance_map_, all_taps_map_;
 };
 
 }  // namespace palpate

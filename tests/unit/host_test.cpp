@@ -136,7 +136,7 @@ TEST(PluginHost, OffersTheNearestName) {
 }
 
 TEST(PluginHost, NamesWithoutANeighbourListWhatThereIs) {
-  EXPECT_THAT(refusal_of("fitting", "zzzzzzzzzzzz"), HasSubstr("no plugin fitting/zzzzzzzzzzzz, known: fixed"));
+  EXPECT_THAT(refusal_of("fitting", "zzzzzzzzzzzz"), HasSubstr("no plugin fitting/zzzzzzzzzzzz, known: ceres, fixed"));
 }
 
 TEST(PluginHost, RefusesNamesWithAPath) {

@@ -135,24 +135,48 @@ TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
   experiment.run(mapper);
   for (const TapRecord& tap : mapper.taps) {
     EXPECT_FALSE(tap.surface_process || tap.errors.rmse || tap.errors.rmse_on_surface || tap.errors.rmse_height);
-    EXPECT_FALSE(tap.max_standard_deviation.has_value());
+    EXPECT_EQ(tap.max_standard_deviation.has_value(), tap.height_process.has_value());
     EXPECT_EQ(tap.errors.footprint_iou.has_value(), tap.weight_process.has_value());
   }
   EXPECT_TRUE(mapper.taps.back().height_process && mapper.taps.back().weight_process);
   EXPECT_EQ(mapper.last.substr(0, mapper.last.find('\n')), "x,y,u,w");
 }
 
-TEST(TwoPart, IsInTheRecordOfATapOnceAStopRuleReadsIt) {
-  const ResolvedConfig config =
-      shipped_config("paper/object_i_right.yaml", {"seed=3", "surface=two_part", "stop.max_standard_deviation=1um"});
+/// Reads the height as an acquisition might.
+class Reader final : public Journal {
+ public:
+  explicit Reader(Experiment& experiment) : experiment_(experiment) {}
+  TapRecord last;
+  void announce(const TapRecord&) override { experiment_.belief().height_mean(); }
+  void record(const TapRecord& tap, const std::array<double, kPhases>&) override { last = tap; }
+
+ private:
+  Experiment& experiment_;
+};
+
+TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyReadsIt) {
+  const ResolvedConfig config = shipped_config("paper/object_i_right.yaml", {"seed=3", "surface=two_part"});
   Experiment experiment(config.options, test::shared_host(), nullptr);
-  Mapper mapper(experiment);
-  experiment.run(mapper);
-  const TapRecord& tap = mapper.taps.back();
-  ASSERT_TRUE(tap.surface_process && tap.errors.rmse && tap.errors.rmse_height && tap.max_standard_deviation);
-  EXPECT_GT(*tap.max_standard_deviation, 1.0) << "far from the object its level is open, too";
+  Reader reader(experiment);
+  experiment.run(reader);
+  const TapRecord& tap = reader.last;
+  ASSERT_TRUE(tap.surface_process && tap.errors.rmse && tap.errors.rmse_height);
   EXPECT_EQ(tap.surface_process->settings.mean_ratio, 10.0);
-  EXPECT_EQ(mapper.last.substr(0, mapper.last.find('\n')), "x,y,height_mean,height_variance,u,w");
+  EXPECT_EQ(maps_csv(experiment.candidates(), experiment.belief()).substr(0, 31), "x,y,height_mean,height_variance");
+}
+
+TEST(TwoPart, StopsAtTheVeryTapThatTheSingleSurfaceStopsAt) {
+  const auto taps = [](const std::string& surface) {
+    const ResolvedConfig config =
+        shipped_config("paper/object_i.yaml", {"acquisition=uncertainty", "kernel.length_scale=13 cm", "taps=100",
+                                               "stop.max_standard_deviation=10 cm", "surface=" + surface});
+    Experiment experiment(config.options, test::shared_host(), nullptr);
+    test::Collector collector;
+    experiment.run(collector);
+    EXPECT_EQ(experiment.result().stop_reason, "max_standard_deviation");
+    return collector.taps.size();
+  };
+  EXPECT_EQ(taps("single"), taps("two_part"));
 }
 
 TEST(TwoPart, ErrorsOfARunAreThoseOfTheGatedSurface) {
