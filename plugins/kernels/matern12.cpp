@@ -13,7 +13,7 @@ struct Matern12Shape : PlainShape {
   }
   void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
     const Chunk r = r2.sqrt();
-    k = faded_exp(r);
+    k = (-r).exp();
     // At r = 0 the slope by the length scale, g r^2, is 0; the bound keeps g finite there.
     g = k / r.max(1e-150);
   }

@@ -16,7 +16,7 @@ struct Matern32Shape : PlainShape {
   }
   void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
     const Chunk s = (3.0 * r2).sqrt();
-    g = faded_exp(s);
+    g = (-s).exp();
     k = (1.0 + s) * g;
     g *= 3.0;
   }

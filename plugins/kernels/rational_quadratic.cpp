@@ -18,12 +18,13 @@ struct RationalQuadraticOptions : StationaryOptions {
 /// t, the same for covariance and slopes also where r^2 overflows: with a small alpha the kernel is not yet 0 there.
 template <class Array>
 auto bounded_t(const Array& r2, double alpha) {
-  return (r2.min(kFarthest) / (2.0 * alpha)).min(kFarthest);
+  return (r2.min(1e300) / (2.0 * alpha)).min(1e300);
 }
 
 class RationalQuadraticShape {
  public:
   using Options = RationalQuadraticOptions;
+  static constexpr double kFarthest = 1e300;
   explicit RationalQuadraticShape(const Options& options) : alpha_(options.alpha) {}
 
   template <class Array>

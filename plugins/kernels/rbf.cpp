@@ -12,7 +12,7 @@ struct RbfShape : PlainShape {
     r2 = (-0.5 * r2).exp();
   }
   void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    k = faded_exp(0.5 * r2);
+    k = (-0.5 * r2).exp();
     g = k;
   }
 };

@@ -31,17 +31,12 @@ struct StationaryOptions : Options {
 constexpr Eigen::Index kChunk = 128;
 using Chunk = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kChunk, 1>;
 
-/// Squares of scaled distances end here in slopes, so that no infinity meets a covariance of 0 and becomes NaN.
-constexpr double kFarthest = 1e300;
-
-/// exp(-z) for the exponentials of slopes, 0 where it is 0 to double precision. Eigen's packets stop at the smallest
-/// normal number instead, which times a distance of 1e300 would be a slope.
-inline Chunk faded_exp(const Chunk& z) { return (z < 746.0).select((-z).exp(), 0.0); }
-
 /// A kernel of unit variance, k(a, b) = f(r^2) with r^2 = ((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2.
 ///
 /// `Shape` is f and its parameters beyond the length scales, of which there may be none:
 ///     using Options;                             derived from StationaryOptions
+///     static constexpr double kFarthest;         squares of scaled distances end here in slopes, so that no infinity
+///                                                meets a covariance of 0 and becomes NaN
 ///     explicit Shape(const Options&);
 ///     void apply(r2) const;                      f, in place; r2 up to infinity
 ///     void slopes(r2, k, g) const;               k = f and g = -2 df/dr^2; r2 up to 2 kFarthest
@@ -89,8 +84,8 @@ class Stationary final : public Kernel {
   void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
     for (Eigen::Index from = 0; from < a.rows(); from += kChunk) {
       const Eigen::Index count = std::min(kChunk, a.rows() - from);
-      const Chunk x2 = ((a.col(0).segment(from, count).array() - b(0, 0)) / along_x_).square().min(kFarthest);
-      const Chunk y2 = ((a.col(1).segment(from, count).array() - b(0, 1)) / along_y_).square().min(kFarthest);
+      const Chunk x2 = ((a.col(0).segment(from, count).array() - b(0, 0)) / along_x_).square().min(Shape::kFarthest);
+      const Chunk y2 = ((a.col(1).segment(from, count).array() - b(0, 1)) / along_y_).square().min(Shape::kFarthest);
       const Chunk r2 = x2 + y2;
       Chunk k(count);
       Chunk g(count);
@@ -119,6 +114,8 @@ class Stationary final : public Kernel {
 /// The part of a shape that has no parameters of its own.
 struct PlainShape {
   using Options = StationaryOptions;
+  /// Exponentials of it are 0, or the smallest normal number, where Eigen's packets stop: 0 also times this.
+  static constexpr double kFarthest = 1e8;
   explicit PlainShape(const Options&) {}
   std::vector<KernelParameter> parameters() const { return {}; }
   void set_parameters(const VectorView&) {}

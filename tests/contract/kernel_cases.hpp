@@ -92,10 +92,10 @@ inline std::vector<std::shared_ptr<Kernel>> variants(const KernelCase& one) {
 }
 
 /// Two values of one pair of points. Eigen computes most elements of a column by packets and the rest by scalars, with
-/// different exponentials of 1 to 2 ulp error each; a kernel may combine a few such. Below 1e-300 packets stop at the
-/// smallest normal number where scalars go on to 0.
+/// different exponentials of 1 to 2 ulp error each; a kernel may combine a few such. What is below 1e-280 counts as 0:
+/// packets stop at the smallest normal number where scalars go on to 0, and slopes multiply it by squared distances.
 inline void expect_same_value(double a, double b) {
-  EXPECT_NEAR(a, b, 8 * kEpsilon * std::max(std::abs(a), std::abs(b)) + 1e-300);
+  EXPECT_NEAR(a, b, 8 * kEpsilon * std::max(std::abs(a), std::abs(b)) + 1e-280);
 }
 
 /// Points spread over `extent` metres; every tenth is a copy of an earlier one.

@@ -72,10 +72,10 @@ std::string told(const std::vector<Spot>& spots, const Model& model) {
   return std::to_string(spots.size()) + (spots.size() == 1 ? " start: " : " starts: ") + values;
 }
 
-/// Two in five of the points, evenly over their order.
+/// Half of the points, evenly over their order.
 Model part_of(const Model& all) {
   Model part = all;
-  const Eigen::Index count = std::max(kPart / 2, 2 * all.size() / 5);
+  const Eigen::Index count = std::max(kPart / 2, all.size() / 2);
   part.points.resize(count, 2);
   part.targets.resize(count, all.outputs());
   for (Eigen::Index i = 0; i < count; ++i) {
