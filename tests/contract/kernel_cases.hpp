@@ -91,11 +91,14 @@ inline std::vector<std::shared_ptr<Kernel>> variants(const KernelCase& one) {
   return out;
 }
 
+/// What is below counts as 0: packets stop at the smallest normal number where scalars go on to 0, and slopes multiply
+/// it by squared distances.
+constexpr double kNothing = 1e-280;
+
 /// Two values of one pair of points. Eigen computes most elements of a column by packets and the rest by scalars, with
-/// different exponentials of 1 to 2 ulp error each; a kernel may combine a few such. What is below 1e-280 counts as 0:
-/// packets stop at the smallest normal number where scalars go on to 0, and slopes multiply it by squared distances.
+/// different exponentials of 1 to 2 ulp error each; a kernel may combine a few such.
 inline void expect_same_value(double a, double b) {
-  EXPECT_NEAR(a, b, 8 * kEpsilon * std::max(std::abs(a), std::abs(b)) + 1e-280);
+  EXPECT_NEAR(a, b, 8 * kEpsilon * std::max(std::abs(a), std::abs(b)) + kNothing);
 }
 
 /// Points spread over `extent` metres; every tenth is a copy of an earlier one.
