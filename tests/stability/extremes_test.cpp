@@ -46,30 +46,17 @@ INSTANTIATE_TEST_SUITE_P(Cases, Extremes, ::testing::ValuesIn(cases()), [](const
   return name;
 });
 
-using Cells = std::map<std::string, std::string>;
+using test::Cells;
 
-/// The rows of a table by the names of their columns.
-std::vector<Cells> rows_of(const std::string& table) {
-  std::istringstream lines(table);
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line, header());
-  std::vector<Cells> out;
-  while (std::getline(lines, line)) {
-    std::istringstream names(header());
-    std::istringstream cells(line);
-    out.emplace_back();
-    for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
-      out.back()[name] = cell;
-    }
-  }
-  return out;
+/// The table that is kept with the project.
+std::vector<Cells> recorded_table() {
+  return test::csv_rows(test::text_of(test::source_folder() / "runs/reference/stability.csv"));
 }
 
 double number(const Cells& row, const std::string& column) { return std::strtod(row.at(column).c_str(), nullptr); }
 
 TEST(ExtremesTable, TheRecordedOneHasEveryCaseAndEveryRowHolds) {
-  const std::vector<Cells> rows = rows_of(test::text_of(test::source_folder() / "runs/reference/stability.csv"));
+  const std::vector<Cells> rows = recorded_table();
   ASSERT_EQ(rows.size(), cases().size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i].at("case"), cases()[i].name);
@@ -80,7 +67,7 @@ TEST(ExtremesTable, TheRecordedOneHasEveryCaseAndEveryRowHolds) {
 }
 
 TEST(ExtremesTable, HoldsManyCasesOnBothSidesOfWhatDoublePrecisionCanHold) {
-  const std::vector<Cells> rows = rows_of(test::text_of(test::source_folder() / "runs/reference/stability.csv"));
+  const std::vector<Cells> rows = recorded_table();
   int beyond = 0;
   for (const Cells& row : rows) beyond += number(row, "condition") >= kBeyond ? 1 : 0;
   EXPECT_GE(beyond, 40);
@@ -124,7 +111,7 @@ test::Ended table_of(const char* program) {
 TEST(BrokenOnPurpose, TheSoundFactorisationHoldsInTheFewCasesThatAreToFail) {
   const test::Ended ended = table_of(PALPATE_STABILITY_TABLE);
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
-  EXPECT_GE(rows_of(ended.out).size(), 5U);
+  EXPECT_GE(test::csv_rows(ended.out).size(), 5U);
 }
 
 TEST(BrokenOnPurpose, WithoutThePivotGuardTheTableFails) {

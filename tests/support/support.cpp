@@ -2,10 +2,12 @@
 #include "support/support.hpp"
 
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -79,6 +81,27 @@ Ended palpate(const std::vector<std::string>& words, const fs::path& folder,
   std::vector<std::string> all{program_file().string()};
   all.insert(all.end(), words.begin(), words.end());
   return run_program(all, folder, environment);
+}
+
+std::vector<Cells> csv_rows(const std::string& text) {
+  const auto split = [](const std::string& line) {
+    std::vector<std::string> out;
+    std::istringstream cells(line + ",");
+    for (std::string cell; std::getline(cells, cell, ',');) out.push_back(cell);
+    return out;
+  };
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> header = split(line);
+  std::vector<Cells> rows;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> cells = split(line);
+    if (cells.size() != header.size()) throw std::runtime_error("a row of another length: " + line);
+    rows.emplace_back();
+    for (std::size_t i = 0; i < header.size(); ++i) rows.back()[header[i]] = cells[i];
+  }
+  return rows;
 }
 
 fs::path source_folder() { return PALPATE_SOURCE_FOLDER; }

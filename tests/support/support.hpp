@@ -5,6 +5,7 @@
 #include "plugin/host.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,11 @@ Ended run_program(const std::vector<std::string>& words, const std::filesystem::
 /// Runs `palpate` of this build with `words` behind it, in `folder`.
 Ended palpate(const std::vector<std::string>& words, const std::filesystem::path& folder,
               const std::vector<std::string>& environment = {});
+
+/// The rows of a CSV text without quotes: cells by the names of the header. Throws std::runtime_error for a row of
+/// another length.
+using Cells = std::map<std::string, std::string>;
+std::vector<Cells> csv_rows(const std::string& text);
 
 /// The folder of the project's sources, the program and the plugins of this build.
 std::filesystem::path source_folder();

@@ -6,38 +6,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
+#include <cmath>
 #include <map>
-#include <sstream>
 
 namespace palpate {
 namespace {
 
 using test::TemporaryFolder;
 
-namespace fs = std::filesystem;
+using test::Cells;
 
-using Cells = std::map<std::string, std::string>;
-
-std::vector<Cells> read_csv(const fs::path& file) {
-  std::ifstream in(file);
-  const auto split = [](const std::string& line) {
-    std::vector<std::string> out;
-    std::stringstream stream(line + ",");
-    for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
-    return out;
-  };
-  std::string line;
-  std::getline(in, line);
-  const std::vector<std::string> header = split(line);
-  std::vector<Cells> rows;
-  while (std::getline(in, line)) {
-    const std::vector<std::string> cells = split(line);
-    Cells row;
-    for (std::size_t i = 0; i < header.size(); ++i) row[header[i]] = cells[i];
-    rows.push_back(std::move(row));
-  }
-  return rows;
+/// The table of the only sweep that ran in `folder`.
+std::vector<Cells> results_of(const TemporaryFolder& folder) {
+  return test::csv_rows(test::text_of(test::only_run(folder.path() / "runs") / "results.csv"));
 }
 
 double median(std::vector<double> values) {
@@ -54,7 +35,7 @@ TEST(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertainty)
   ASSERT_EQ(ended.status, 0) << ended.err;
   std::map<std::string, std::vector<double>> live;
   std::map<std::string, int> runs;
-  for (const Cells& row : read_csv(test::only_run(folder.path() / "runs") / "results.csv")) {
+  for (const Cells& row : results_of(folder)) {
     ++runs[row.at("acquisition")];
     const std::string hit = row.at("first_hit_tap");
     if (!hit.empty() && std::stoi(hit) <= 3)
@@ -70,6 +51,67 @@ TEST(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertainty)
   }
   EXPECT_EQ(median(live["weighted"]), 12.0);
   EXPECT_EQ(median(live["uncertainty"]), 2.0);
+}
+
+/// Mean and 95 % interval (normal approximation) of paired differences.
+struct Interval {
+  double mean, low, high;
+};
+
+Interval interval_of(const std::vector<double>& differences) {
+  const auto n = static_cast<double>(differences.size());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double one : differences) {
+    sum += one;
+    squares += one * one;
+  }
+  const double half = 1.96 * std::sqrt((squares / n - sum * sum / (n * n)) / (n - 1));
+  return {sum / n, sum / n - half, sum / n + half};
+}
+
+TEST(Paper, FittedHyperparametersKnowBetterThanFixedOnesWhatTheyDoNotKnow) {
+  const TemporaryFolder folder;
+  const std::string config = (test::source_folder() / "configs/sweep/fitting.yaml").string();
+  const test::Ended ended = test::palpate({"sweep", config, "surface=single", "taps=17", "--quiet"}, folder.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  std::map<std::string, std::map<std::string, Cells>> runs;  // by scene and seed, then by fitting
+  for (const Cells& row : results_of(folder)) {
+    runs[row.at("scene") + " " + row.at("seed")][row.at("fitting")] = row;
+  }
+  for (const std::string scene : {"object_i ", "object_ii ", "object_i_right "}) {
+    std::vector<double> nlpd;
+    std::vector<double> rmse;
+    for (auto& [key, pair] : runs) {
+      if (key.compare(0, scene.size(), scene) != 0) continue;
+      const auto difference = [&pair = pair](const char* field) {
+        return std::stod(pair.at("ceres").at(field)) - std::stod(pair.at("fixed").at(field));
+      };
+      nlpd.push_back(difference("nlpd"));
+      rmse.push_back(difference("rmse_m"));
+    }
+    ASSERT_EQ(nlpd.size(), 100U) << scene;
+    EXPECT_LT(interval_of(nlpd).high, 0.0) << scene;
+    EXPECT_LT(interval_of(rmse).low, 0.0) << scene << "no worse surface for it";
+  }
+}
+
+TEST(Paper, TwoPartSurfaceKnowsTheHeightOfTheObjectToACentimetre) {
+  const TemporaryFolder folder;
+  const std::string config = (test::source_folder() / "configs/paper/object_i_right.yaml").string();
+  const test::Ended ended =
+      test::palpate({"sweep", config, "surface=two_part", "seed=range(0,300)", "--quiet"}, folder.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  double sum = 0.0;
+  int live = 0;
+  for (const Cells& row : results_of(folder)) {
+    const std::string hit = row.at("first_hit_tap");
+    if (hit.empty() || std::stoi(hit) > 3) continue;
+    sum += std::stod(row.at("rmse_height_m"));
+    ++live;
+  }
+  ASSERT_GE(live, 100);
+  EXPECT_LE(sum / live, 0.01);
 }
 
 /// How many of 1000 starts find the object within the budget, and how many of them stall.
