@@ -75,6 +75,24 @@ void SweepLine::show(const SweepProgress& progress) {
              progress.failed, terminal_ && !last ? "" : "\n");
 }
 
+namespace {
+
+/// What had to be done about rounding, in one line; none when nothing was.
+void print_numerics(const Row& row) {
+  std::string line;
+  const auto add = [&](const char* kind, const char* words) {
+    const std::string count = number_at(row, (std::string("interventions.") + kind).c_str(), 1, "{:.0f}");
+    if (count != "0" && count != "-") line += fmt::format(fmt::runtime(words), line.empty() ? "" : ", ", count);
+  };
+  add("jitter", "{}jitter was raised {} times");
+  add("pivoted", "{}the covariance was pivoted {} times");
+  add("set_aside", "{}{} taps were set aside");
+  add("fit_failed", "{}{} fits failed");
+  if (!line.empty()) fmt::print("numerics: {}; runs/README.md says what that means\n", line);
+}
+
+}  // namespace
+
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;
   if (report.already_done) {
@@ -92,10 +110,7 @@ void print_summary(const RunReport& report) {
                number_at(row, "rmse_m", 100, "{:.2f}"), number_at(row, "rmse_on_surface_m", 100, "{:.2f}"),
                number_at(row, "footprint_iou", 1, "{:.2f}"));
   }
-  const std::string jitter = number_at(row, "interventions.jitter", 1, "{:.0f}");
-  if (jitter != "0" && jitter != "-") {
-    fmt::print("numerics: the covariance became singular, jitter was raised {} times\n", jitter);
-  }
+  print_numerics(row);
   fmt::print("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
 }
 

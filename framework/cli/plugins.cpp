@@ -60,7 +60,7 @@ int plugins(Program& program, const std::string& what, bool json) {
     print_one(program.host, rows.front());
   } else {
     for (const PluginListing& row : rows) {
-      if (row.trouble.empty()) fmt::print("{:<12} {:<14} {}\n", row.kind, row.name, row.summary);
+      if (row.trouble.empty()) fmt::print("{:<12} {:<19} {}\n", row.kind, row.name, row.summary);
     }
   }
   for (const PluginListing& row : rows) {

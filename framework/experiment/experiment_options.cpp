@@ -8,6 +8,13 @@
 #include <algorithm>
 
 namespace palpate {
+namespace {
+
+// Squares and ratios of squares of what is within these bounds are far from the ends of double precision.
+constexpr double kLeastSignal = 1e-12;
+constexpr double kMostSignal = 1e12;
+
+}  // namespace
 
 void InitialOptions::list(Fields& fields) {
   fields.choice(design, Field("design", "how the first taps are spread; always over different candidates"),
@@ -29,16 +36,20 @@ void CandidateOptions::list(Fields& fields) {
 void HeightOptions::list(Fields& fields) {
   fields.real(signal, Field("signal", "prior standard deviation of the height")
                           .in(Unit::metre)
-                          .above(0)
+                          .at_least(kLeastSignal)
+                          .at_most(kMostSignal)
                           .from("Sun and Min 2021: unit signal variance"));
-  fields.real(noise, Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0));
+  fields.real(
+      noise,
+      Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0).at_most(kMostSignal));
   fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
 }
 
 void WeightOptions::list(Fields& fields) {
-  fields.real(signal, Field("signal", "prior standard deviation of the label").above(0));
-  fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0));
+  fields.real(signal,
+              Field("signal", "prior standard deviation of the label").at_least(kLeastSignal).at_most(kMostSignal));
+  fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));
   fields.real(prior_mean, Field("prior_mean", "of the label where nothing is known").from("Sun and Min 2021: 0"));
   fields.flag(clip, Field("clip", "let the acquisitions see the weight clipped to [0, 1]"));
   fields.choice(hyperparameters, Field("hyperparameters", "what a fit chooses for the labels"),
@@ -47,9 +58,10 @@ void WeightOptions::list(Fields& fields) {
   fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
   const bool shared = hyperparameters == Hyperparameters::shared;
-  fields.require(!shared || !kernel, "kernel", "the labels have the heights' kernel when hyperparameters are shared");
+  fields.require(!shared || !kernel, "kernel",
+                 "the labels have the heights' kernel when hyperparameters are shared; take it away, or choose own");
   fields.require(!shared || !fitting, "fitting",
-                 "the labels are fitted with the heights when hyperparameters are shared");
+                 "the labels are fitted with the heights when hyperparameters are shared; take it away, or choose own");
 }
 
 void StopOptions::list(Fields& fields) {
@@ -82,7 +94,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(height, Field("height", "the process of the heights above the desk"));
   fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk"));
   fields.choice(
-      surface, Field("surface", "how the surface is reconstructed; the taps do not depend on it"),
+      surface, Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it"),
       {{"single", "one process for the heights of object and desk, as the paper has it", {}},
        {"two_part", "heights from the taps on an object alone, where the weight is at least 1/2; else desk", {}}});
   fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),

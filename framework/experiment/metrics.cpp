@@ -77,14 +77,16 @@ Calibration calibration(const TapBelief& belief, const Truth& truth, const std::
   int cells = 0;
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
     const double spread = variance(i) + noise;
-    if (!truth.on(i) || tapped[static_cast<std::size_t>(i)] || !(spread > 0.0)) continue;
+    if (!truth.on(i) || tapped[static_cast<std::size_t>(i)]) continue;
     const double error = truth.height(i) - mean(i);
-    log_density += -0.5 * (kLogTwoPi + std::log(spread) + error * error / spread);
+    log_density += -0.5 * (kLogTwoPi + std::log(spread) + error * error / spread);  // not finite when spread is 0
     inside += std::abs(error) <= kNormal975 * std::sqrt(spread) ? 1 : 0;
     ++cells;
   }
   if (cells == 0) return {};
-  return {-log_density / cells, static_cast<double>(inside) / cells};
+  const double coverage = static_cast<double>(inside) / cells;
+  if (!std::isfinite(log_density)) return {std::nullopt, coverage};
+  return {-log_density / cells, coverage};
 }
 
 }  // namespace palpate

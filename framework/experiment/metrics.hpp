@@ -41,7 +41,8 @@ Errors final_errors(const TapBelief& belief, const Truth& truth);
 
 /// Does the height model know what it does not know? Over the cells on an object that were not tapped, noise included.
 struct Calibration {
-  std::optional<double> nlpd;         ///< mean negative log predictive density, natural logarithm of 1/m
+  /// Mean negative log predictive density, natural logarithm of 1/m; absent where a cell is certain to the last digit.
+  std::optional<double> nlpd;
   std::optional<double> coverage_95;  ///< share of cells within the central 95 % interval
 };
 Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped);

@@ -106,17 +106,19 @@ RunResult Experiment::result() {
     out.errors = final_errors(belief_, *known);
     out.calibration = calibration(belief_, *known, tapped_);
   }
-  out.interventions["fit_failed"] = belief_.failed_fits();
-  std::vector<const Process*> processes{belief_.height_process(), belief_.weight_process()};
-  if (belief_.two_part()) processes.push_back(belief_.surface_process());
-  for (const Process* process : processes) {
-    if (process == nullptr) continue;
+  const auto take = [&](const Process* process, std::optional<ProcessState>& state) {
+    if (process == nullptr) return;
+    state = state_of(*process, belief_);
     out.jitter_max = std::max(out.jitter_max, process->jitter());
     out.interventions["jitter"] += process->jitter_raised();
     out.interventions["pivoted"] += process->pivoted();
     out.interventions["set_aside"] += process->set_aside();
     out.interventions["variance_clamped"] += process->variances_clamped();
-  }
+  };
+  take(belief_.height_process(), out.height_process);
+  take(belief_.weight_process(), out.weight_process);
+  if (belief_.two_part()) take(belief_.surface_process(), out.surface_process);
+  out.interventions["fit_failed"] = belief_.failed_fits();
   return out;
 }
 

@@ -9,8 +9,9 @@
 
 namespace palpate {
 
-// The level of an object is not known before it is touched: ten signals make it as good as free.
-constexpr double kFreeLevel = 10.0;
+// The level of an object is not known before it is touched: a thousand signals make it as good as free, unless the
+// surface varies by less than a thousandth of its height.
+constexpr double kFreeLevel = 1000.0;
 
 TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
                                        const ProcessSettings& settings, const Context& context) {
@@ -44,7 +45,10 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
   weight_ = make_model("fitting/weight", shared_ ? height_kernel : weight.kernel.value_or(options.kernel),
                        shared_ ? height_fitting : weight.fitting.value_or(options.fitting),
                        {weight.signal, weight.noise, weight.prior_mean}, context);
-  if (shared_) weight_.kernel = height_.kernel;
+  if (shared_) {
+    weight_.kernel = height_.kernel;
+    for (int taps = 1; taps <= options.taps; ++taps) fitted_together_ |= height_.fitting->due(taps);
+  }
   if (two_part_) {
     object_ = make_model("fitting/surface", height_kernel, height_fitting,
                          {height.signal, height.noise, 0.0, kFreeLevel}, context);
@@ -62,7 +66,7 @@ void TapBelief::observe(const Target& place, const Contact& contact) {
 
 Process& TapBelief::ready(Model& model) const {
   const PhaseClock::Scope infer(clock_, Phase::infer);
-  const bool joint = shared_ && &model != &object_;
+  const bool joint = fitted_together_ && &model != &object_;
   const std::vector<Model*> models = joint ? std::vector<Model*>{&height_, &weight_} : std::vector<Model*>{&model};
   for (Model* one : models) {
     if (!one->process) one->process = std::make_unique<Process>(one->kernel, one->settings, candidates_.points);

@@ -98,7 +98,8 @@ class TapBelief final : public Belief {
   double desk_;
   bool clip_;
   bool two_part_;
-  bool shared_;  ///< heights and labels are fitted together
+  bool shared_;                   ///< heights and labels have one kernel
+  bool fitted_together_ = false;  ///< and are fitted together, which makes each read the other's taps
   int taps_ = 0;
   int initial_taps_;
   // Lazily filled by const readers: a belief is used by one thread.

@@ -67,6 +67,8 @@ struct RunResult {
   double robot_seconds = 0.0;
   double jitter_max = 0.0;
   std::map<std::string, int> interventions;  ///< by kind, zeros included
+  /// The final models, as far as they were built; that of the surface only for `surface: two_part`.
+  std::optional<ProcessState> height_process, weight_process, surface_process;
 };
 
 /// Learns of every tap, in time.

@@ -63,7 +63,7 @@ void Factor::clear() {
   log_determinant_ = 0.0;
 }
 
-std::vector<int> independent_rows(Eigen::MatrixXd& covariance) {
+std::vector<int> independent_rows(const Eigen::MatrixXd& covariance) {
   const int n = static_cast<int>(covariance.rows());
   Eigen::VectorXd left = covariance.diagonal();  // variance that the chosen rows do not explain
   const Eigen::VectorXd own = left;

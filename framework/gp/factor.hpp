@@ -49,9 +49,9 @@ class Factor {
   Extreme smallest_;
 };
 
-/// The rows of `covariance` (symmetric, n x n, overwritten) that are independent in double precision, in the order of
+/// The rows of `covariance` (symmetric, n x n) that are independent in double precision, in the order of
 /// a Cholesky factorisation with diagonal pivoting: each the one that is least explained by those before. Rows whose
 /// pivot is not above kPivotGuard, or not a number, are left out.
-std::vector<int> independent_rows(Eigen::MatrixXd& covariance);
+std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 
 }  // namespace palpate

@@ -92,9 +92,7 @@ void Process::rebuild() {
       covariance.diagonal().array() += ratio * ratio + jitter_;
       ++pivoted_;
       taps = independent_rows(covariance);
-      if (refactor(taps)) return;
-      // The guards of both factorisations differ by rounding: what the second refused ends the list.
-      taps.resize(static_cast<std::size_t>(factor_.size()));
+      // The guards of both factorisations differ by rounding: what the second refuses ends the list.
       refactor(taps);
       return;
     }
@@ -127,7 +125,7 @@ FitSummary Process::fit(const std::vector<Process*>& processes, const Fitting& f
     first.kernel_->set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
     summary.changed = false;
     summary.failed = true;
-    summary.reason = "a number that is not finite was refused; " + summary.reason;
+    summary.reason = "a number that is not finite and positive was refused; " + summary.reason;
     return summary;
   }
   for (std::size_t i = 0; i < processes.size(); ++i) {

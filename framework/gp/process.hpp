@@ -67,8 +67,7 @@ class Process {
   int pivoted() const { return pivoted_; }
   /// How many taps do not enter the posterior.
   int set_aside() const { return size_ - factor_.size(); }
-  /// How many candidates' variances rounding had taken out of [0, prior] when a map was last read; they read as its
-  /// ends.
+  /// How many candidates' variances rounding has taken out of [0, prior] by now; they read as its ends.
   int variances_clamped() const;
   /// Estimate of the condition number of the covariance of the taps, noise and jitter included.
   double condition() const { return factor_.condition(); }
@@ -78,7 +77,7 @@ class Process {
 
   /// Lets `fitting` choose the hyperparameters of `processes` from their taps, and rebuilds if it changed them,
   /// O(n^2 M). Several processes fitted together share kernel and places, and afterwards their ratio of noise to
-  /// signal. Numbers that are not finite are refused: then the old ones stay.
+  /// signal. Numbers that are not finite and positive are refused: then the old ones stay.
   static FitSummary fit(const std::vector<Process*>& processes, const Fitting& fitting, Random& random);
 
  private:

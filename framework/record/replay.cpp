@@ -45,6 +45,11 @@ std::string shown(const Scalar* value) {
 }
 
 void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& report) {
+  for (const auto& [field, value] : recorded.fields) {
+    if (depends_on_machine(field) || replayed.find(field) != nullptr) continue;
+    ++report.numbers;
+    report.differences.push_back({tap, field, shown(&value), "nothing"});
+  }
   for (const auto& [field, value] : replayed.fields) {
     if (depends_on_machine(field)) continue;
     ++report.numbers;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
+#include "record/tap_row.hpp"
+
 #include <charconv>
 #include <ctime>
 #include <utility>
@@ -82,6 +84,9 @@ Row summary_row(const ResolvedConfig& config, const RunResult& result, const std
   for (std::size_t i = 0; i < kPhases; ++i) row.add(std::string("compute.") + kPhaseNames[i], phases[i]);
   row.add("jitter_max", result.jitter_max);
   for (const auto& [kind, count] : result.interventions) row.add("interventions." + kind, count);
+  add_process(row, "height_process", result.height_process);
+  add_process(row, "weight_process", result.weight_process);
+  if (result.surface_process) add_process(row, "surface_process", result.surface_process);
   row.add("peak_rss_bytes", peak_rss_bytes());
   return row;
 }

@@ -12,27 +12,6 @@ namespace {
 constexpr std::array<const char*, 3> kSources{"initial", "acquisition", "fallback"};
 constexpr std::array<const char*, 6> kOutcomes{"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
 
-void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state) {
-  if (state) {
-    for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
-  }
-  const auto add = [&](const char* field, auto get) {
-    row.add(name + "." + field, state ? std::optional<double>(get(*state)) : std::nullopt);
-  };
-  add("signal", [](const ProcessState& s) { return s.settings.signal; });
-  add("noise", [](const ProcessState& s) { return s.settings.noise; });
-  add("mean", [](const ProcessState& s) { return s.settings.mean; });
-  add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
-  add("jitter", [](const ProcessState& s) { return s.jitter; });
-  add("condition", [](const ProcessState& s) { return s.condition; });
-  if (state && state->fit) {
-    row.add(name + ".fit.changed", state->fit->changed);
-    row.add(name + ".fit.objective", state->fit->objective);
-    row.add(name + ".fit.evaluations", state->fit->evaluations);
-    row.add(name + ".fit.reason", state->fit->reason);
-  }
-}
-
 void add_head(Row& row, const TapRecord& tap) {
   row.add("tap", tap.number);
   row.add("source", kSources[static_cast<std::size_t>(tap.source)]);
@@ -97,6 +76,27 @@ std::size_t name_at(const Row& row, const char* field, const std::array<const ch
 }
 
 }  // namespace
+
+void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state) {
+  if (state) {
+    for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
+  }
+  const auto add = [&](const char* field, auto get) {
+    row.add(name + "." + field, state ? std::optional<double>(get(*state)) : std::nullopt);
+  };
+  add("signal", [](const ProcessState& s) { return s.settings.signal; });
+  add("noise", [](const ProcessState& s) { return s.settings.noise; });
+  add("mean", [](const ProcessState& s) { return s.settings.mean; });
+  add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
+  add("jitter", [](const ProcessState& s) { return s.jitter; });
+  add("condition", [](const ProcessState& s) { return s.condition; });
+  if (state && state->fit) {
+    row.add(name + ".fit.changed", state->fit->changed);
+    row.add(name + ".fit.objective", state->fit->objective);
+    row.add(name + ".fit.evaluations", state->fit->evaluations);
+    row.add(name + ".fit.reason", state->fit->reason);
+  }
+}
 
 const char* outcome_name(Outcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }
 

@@ -5,6 +5,7 @@
 #include "experiment/tap_record.hpp"
 #include "record/row.hpp"
 
+#include <optional>
 #include <string>
 
 namespace palpate {
@@ -23,6 +24,9 @@ Row unknown_result_of(const Row& intent);
 
 /// What a resumed run must know of a recorded tap. Throws Error, naming `where`, for a row that is not a tap.
 PastTap past_tap(const Row& row, const std::string& where);
+
+/// Adds the fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
+void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state);
 
 const char* outcome_name(Outcome outcome);
 

@@ -15,7 +15,7 @@ struct Matern52Shape : PlainShape {
     r2 = (1.0 + r2 + r2.square() / 3.0) * (-r2).exp();
   }
   void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    const Chunk s = (5.0 * r2).sqrt().min(1e150);
+    const Chunk s = (5.0 * r2).sqrt();
     g = (-s).exp();
     k = (1.0 + s + s.square() / 3.0) * g;
     g *= (5.0 / 3.0) * (1.0 + s);

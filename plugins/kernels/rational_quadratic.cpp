@@ -11,7 +11,7 @@ struct RationalQuadraticOptions : StationaryOptions {
   void list(Fields& fields) override {
     StationaryOptions::list(fields);
     fields.real(alpha,
-                Field("alpha", "small mixes many length scales, large comes near to rbf").at_least(0.01).at_most(1e3));
+                Field("alpha", "small mixes many length scales, large comes near to rbf").at_least(1e-4).at_most(1e4));
   }
 };
 

@@ -10,7 +10,7 @@ struct ScaleOptions : Options {
   PluginChoice kernel{"kernel", {}, nullptr};
 
   void list(Fields& fields) override {
-    fields.real(factor, Field("factor", "by which covariances are multiplied").above(0).at_most(1e12));
+    fields.real(factor, Field("factor", "by which covariances are multiplied").at_least(1e-12).at_most(1e12));
     fields.plugin(kernel, Field("kernel", "what is multiplied, {type: ..., ...}").needed());
   }
 };

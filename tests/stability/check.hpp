@@ -41,7 +41,7 @@ struct Row {
 /// Up to here the bound is that of a matrix that double precision can hold.
 constexpr double kBeyond = 1e12;
 constexpr double kMeanCap = 0.1;
-constexpr double kVarianceCap = 1e-3;
+constexpr double kVarianceCap = 1e-4;
 
 /// Multiples of n eps. The jitter is the promise to users; a residual of one n eps is ten times what was ever measured.
 constexpr double kJitterLimit = 100.0;

@@ -114,11 +114,13 @@ class FitObjective : public testing::TestWithParam<Setting> {
   std::shared_ptr<Kernel> kernel_;
   Model model_{Points(kPoints, 2),
                Eigen::MatrixXd(kPoints, GetParam().outputs),
+               Eigen::VectorXd::Zero(GetParam().outputs),
                Eigen::VectorXd::Ones(GetParam().outputs),
                *kernel_,
                GetParam().mean_ratio,
                Eigen::VectorXd::Constant(GetParam().outputs, 0.25),
-               GetParam().fit_means};
+               GetParam().fit_means,
+               {}};
   std::vector<double> x_;
   std::vector<Expectation> expectations_;
 };

@@ -309,31 +309,6 @@ TEST(Status, TellsWhereARunStandsAndWhyItStopped) {
   EXPECT_EQ(ended.out, "object_i: done after 17 of 17 taps: tap budget\n");
 }
 
-TEST(Replay, FindsEveryNumberEqual) {
-  const TemporaryFolder folder;
-  for (const char* acquisition : {"weighted", "uncertainty", "random"}) {
-    test::palpate({"run", paper(), "--quiet", "--runs", acquisition, std::string("acquisition=") + acquisition},
-                  folder.path());
-    const Ended ended = test::palpate({"replay", only_run(folder.path() / acquisition).string()}, folder.path());
-    EXPECT_EQ(ended.status, 0) << ended.out;
-    EXPECT_THAT(ended.out, ::testing::MatchesRegex("17 taps, [0-9]+ numbers, all equal\n"));
-  }
-}
-
-TEST(Replay, NoticesANumberThatWasTamperedWith) {
-  const TemporaryFolder folder;
-  test::palpate({"run", config("paper/object_i_right.yaml"), "seed=3", "--quiet"}, folder.path());
-  const fs::path directory = only_run(folder.path() / "runs");
-  std::string taps = text_of(directory / "taps.jsonl");
-  // The last digit of one score.
-  const auto at = taps.rfind("\"score\": 0.", taps.rfind("\"u\": ")) + 13;
-  taps[at] = taps[at] == '5' ? '6' : '5';
-  std::ofstream(directory / "taps.jsonl") << taps;
-  const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
-  EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.out, HasSubstr("tap 17: score: recorded 0."));
-}
-
 TEST(Validate, ChecksEveryShippedConfigAndNamesEveryBadOne) {
   const TemporaryFolder folder;
   std::vector<std::string> words{"validate"};

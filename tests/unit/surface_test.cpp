@@ -161,7 +161,7 @@ TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyReadsIt) {
   experiment.run(reader);
   const TapRecord& tap = reader.last;
   ASSERT_TRUE(tap.surface_process && tap.errors.rmse && tap.errors.rmse_height);
-  EXPECT_EQ(tap.surface_process->settings.mean_ratio, 10.0);
+  EXPECT_EQ(tap.surface_process->settings.mean_ratio, 1000.0);
   EXPECT_EQ(maps_csv(experiment.candidates(), experiment.belief()).substr(0, 31), "x,y,height_mean,height_variance");
 }
 

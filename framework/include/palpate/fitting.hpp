@@ -32,7 +32,7 @@ struct FitProblem {
 /// What a fit did, in numbers and words.
 struct FitSummary {
   bool changed = false;    ///< the problem's hyperparameters are new; false leaves them exactly as they were
-  bool failed = false;     ///< no better values were found although they were looked for; never with `changed`
+  bool failed = false;     ///< it was tried, but came to no finite values; never with `changed`
   double objective = 0.0;  ///< value reached, by the fit's own measure; larger is better
   int evaluations = 0;     ///< of the objective
   std::string reason;      ///< why it ended, one line

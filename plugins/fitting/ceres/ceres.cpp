@@ -28,14 +28,15 @@ struct CeresOptions : Options {
     fields.choice(objective, Field("objective", "what is maximised"),
                   {{"lml", "log marginal likelihood of the targets", {}},
                    {"loo", "log predictive density of each target, given the others", {}}});
-    fields.choice(priors, Field("priors", "what is expected of the hyperparameters before any tap"),
-                  {{"touch",
-                    "log-normal densities: length scales 1/12 of the area's longer side, within a factor of 1.5; "
-                    "signal the largest deviation of a target from the mean, 1.35; noise 0.3 of the signal, 1.5; other "
-                    "kernel parameters 1, 2.7; a fitted mean within 3 deviations (a factor is one standard deviation "
-                    "of the logarithm)",
-                    {}},
-                   {"none", "nothing; needs more taps than hyperparameters", {}}});
+    fields.choice(
+        priors, Field("priors", "what is expected of the hyperparameters before any tap"),
+        {{"touch",
+          "log-normal densities: length scales 1/12 of the area's longer side, within a factor of 1.5; "
+          "signal the largest deviation of a target from the mean, 1.35; noise 0.3 of the signal, or 0.05 where the "
+          "level of the surface is open, 1.5; other kernel parameters 1, 2.7; a fitted mean within the largest "
+          "deviation of the targets' own (a factor is one standard deviation of the logarithm)",
+          {}},
+         {"none", "nothing; needs more taps than hyperparameters", {}}});
     fields.choice(mean, Field("mean", "of the prior"),
                   {{"keep", "stays as the config says", {}}, {"fit", "one constant, fitted with the others", {}}});
     fields.integer(every, Field("every", "fit after each so many taps").at_least(1).at_most(100000));
@@ -67,22 +68,9 @@ bool better(const Spot& a, const Spot& b) { return a.valid && (!b.valid || a.val
 std::string told(const std::vector<Spot>& spots, const Model& model) {
   std::string values;
   for (const Spot& spot : spots) {
-    values += (values.empty() ? "" : ", ") + (spot.valid ? number(model.total(spot.value)) : "nothing");
+    values += (values.empty() ? "" : " / ") + (spot.valid ? number(model.total(spot.value)) : "nothing");
   }
   return std::to_string(spots.size()) + (spots.size() == 1 ? " start: " : " starts: ") + values;
-}
-
-/// Half of the points, evenly over their order.
-Model part_of(const Model& all) {
-  Model part = all;
-  const Eigen::Index count = std::max(kPart / 2, all.size() / 2);
-  part.points.resize(count, 2);
-  part.targets.resize(count, all.outputs());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    part.points.row(i) = all.points.row(i * all.size() / count);
-    part.targets.row(i) = all.targets.row(i * all.size() / count);
-  }
-  return part;
 }
 
 }  // namespace
@@ -113,55 +101,6 @@ class Ceres final : public Fitting {
   double side_;  ///< of the area, the longer one, metres
 };
 
-namespace {
-
-Model model_of(const FitProblem& problem, bool fit_means) {
-  const auto outputs = static_cast<Eigen::Index>(problem.outputs.size());
-  Model model{problem.points,
-              Eigen::MatrixXd(problem.points.rows(), outputs),
-              Eigen::VectorXd(outputs),
-              problem.kernel,
-              problem.mean_ratio,
-              Eigen::VectorXd(outputs),
-              fit_means};
-  for (Eigen::Index i = 0; i < outputs; ++i) {
-    const FitOutput& output = problem.outputs[static_cast<std::size_t>(i)];
-    // Where a constant is added that nobody knows, the targets' own mean stands for it.
-    const double centre = problem.mean_ratio > 0.0 ? output.targets.mean() : output.mean;
-    model.scales(i) = (output.targets.array() - centre).abs().maxCoeff();
-    model.targets.col(i) = output.targets / model.scales(i);
-    model.means(i) = output.mean / model.scales(i);
-  }
-  return model;
-}
-
-/// The present values, on the scale of the search.
-Eigen::VectorXd present(const FitProblem& problem, const Model& model, const std::vector<Expectation>& expected) {
-  std::vector<double> x;
-  for (const KernelParameter& one : problem.kernel.parameters()) x.push_back(std::log(one.value));
-  x.push_back(2.0 * std::log(problem.noise_ratio));
-  for (std::size_t i = 0; i < problem.outputs.size(); ++i) {
-    x.push_back(2.0 * std::log(problem.outputs[i].signal / model.scales(static_cast<Eigen::Index>(i))));
-  }
-  if (model.fit_means) x.insert(x.end(), model.means.data(), model.means.data() + model.means.size());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i], expected[i].least, expected[i].most);
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-}
-
-void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
-  const auto count = static_cast<Eigen::Index>(problem.kernel.parameters().size());
-  problem.kernel.set_parameters(x.head(count).array().exp().matrix());
-  problem.noise_ratio = std::exp(0.5 * x(count));
-  const Eigen::Index outputs = model.outputs();
-  for (Eigen::Index i = 0; i < outputs; ++i) {
-    FitOutput& output = problem.outputs[static_cast<std::size_t>(i)];
-    output.signal = model.scales(i) * std::exp(0.5 * x(count + 1 + i));
-    if (model.fit_means) output.mean = model.scales(i) * x(count + 1 + outputs + i);
-  }
-}
-
-}  // namespace
-
 std::vector<Expectation> Ceres::expectations(const Model& model) const {
   // A scene is part desk and part object, with a step between them that no stationary kernel follows. Its taps look
   // calmer and smoother than what is still to be found: from few taps the likelihood alone takes too long a length
@@ -171,12 +110,13 @@ std::vector<Expectation> Ceres::expectations(const Model& model) const {
   };
   std::vector<Expectation> out;
   for (const KernelParameter& one : model.kernel.parameters()) {
-    out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e4));
+    out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e3));
   }
   // Squares of noise and signal: spreads twice those of the standard deviations.
-  out.push_back(log_normal(0.09, 0.8, 1e8));
+  const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;  // an open level has no desk, and so no step
+  out.push_back(log_normal(noise * noise, 0.8, 1e8));
   for (Eigen::Index i = 0; i < model.outputs(); ++i) out.push_back(log_normal(1.0, 0.6, 1e8));
-  for (Eigen::Index i = 0; model.fit_means && i < model.outputs(); ++i) out.push_back({0.0, 3.0, -1e3, 1e3});
+  for (Eigen::Index i = 0; model.fit_means && i < model.outputs(); ++i) out.push_back({0.0, 1.0, -1e3, 1e3});
   return out;
 }
 
@@ -192,7 +132,7 @@ std::vector<Spot> Ceres::search(const Model& model, const std::vector<Expectatio
     }
   } else {
     // A part of the points finds the region and its curvature; all of them decide between the optima of the part.
-    const Model part = part_of(model);
+    const Model part = part_of(model, kPart / 2);
     spots = search(part, expected, now, random, evaluations);
     for (Spot& spot : spots) spot.valid = spot.valid && objective.evaluate(spot.x.data(), &spot.value, nullptr);
     std::sort(spots.begin(), spots.end(), better);
@@ -207,10 +147,9 @@ std::vector<Spot> Ceres::search(const Model& model, const std::vector<Expectatio
 
 FitSummary Ceres::fit(FitProblem& problem, Random& random) const {
   FitSummary summary;
-  const bool fit_means = options_.mean == Options::Mean::fit;
-  const Model model = model_of(problem, fit_means);
-  if (!(model.scales.array() > 0.0).all() || !model.scales.allFinite() || !model.targets.allFinite()) {
-    summary.reason = "every target equals the prior mean: they tell nothing";
+  const Model model = model_of(problem, options_.mean == Options::Mean::fit);
+  if (model.outputs() == 0) {
+    summary.reason = "the targets do not differ from the mean: they tell nothing";
     return summary;
   }
   const std::vector<Expectation> expected = expectations(model);
@@ -218,26 +157,25 @@ FitSummary Ceres::fit(FitProblem& problem, Random& random) const {
     summary.reason = "without priors there must be more taps than hyperparameters";
     return summary;
   }
-  Eigen::VectorXd old(static_cast<Eigen::Index>(problem.kernel.parameters().size()));
-  for (Eigen::Index i = 0; i < old.size(); ++i) {
-    old(i) = problem.kernel.parameters()[static_cast<std::size_t>(i)].value;
-  }
-  const Eigen::VectorXd now = present(problem, model, expected);
-  Objective full(model, options_.objective, expected, with_priors());
+  std::vector<double> old;
+  for (const KernelParameter& one : problem.kernel.parameters()) old.push_back(one.value);
+  const Eigen::VectorXd now = present(problem, model);
+  Objective objective(model, options_.objective, expected, with_priors());
   double value_now = 0.0;
-  const bool known = full.evaluate(now.data(), &value_now, nullptr);
+  const bool known = objective.evaluate(now.data(), &value_now, nullptr);
   ++summary.evaluations;
 
   const std::vector<Spot> spots = search(model, expected, now, random, summary.evaluations);
   const Spot& best = spots.front();
   summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent came to a finite value";
+  if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs that tell nothing were left out";
   if (best.valid && (!known || best.value > value_now)) {
     summary.changed = true;
     summary.objective = model.total(best.value);
     take(best.x, model, problem);
     return summary;
   }
-  problem.kernel.set_parameters(old);
+  problem.kernel.set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
   summary.failed = !best.valid;
   summary.objective = known ? model.total(value_now) : 0.0;
   if (best.valid) summary.reason = "nothing is better than the present values; " + summary.reason;

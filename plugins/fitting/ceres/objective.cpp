@@ -16,11 +16,6 @@ constexpr double kWall = 1.0;
 
 }  // namespace
 
-double Model::total(double value) const {
-  const auto n = static_cast<double>(size());
-  return value * n * static_cast<double>(outputs()) - n * scales.array().log().sum();
-}
-
 Objective::Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors)
     : model_(model),
       measure_(measure),
@@ -37,7 +32,7 @@ bool Objective::evaluate(const double* x, double* value, double* gradient) {
   const Eigen::Index m = model_.outputs();
   const double* log_signals = x + parameters_ + 1;
   set_kernel(x);
-  fill(gradient != nullptr || measure_ == Measure::leave_one_out);
+  fill(gradient != nullptr);
   if (!decompose(std::exp(x[parameters_]))) return false;
   for (Eigen::Index i = 0; i < m; ++i) {
     const double mean = model_.fit_means ? log_signals[m + i] : model_.means(i);
@@ -49,8 +44,7 @@ bool Objective::evaluate(const double* x, double* value, double* gradient) {
     *value = likelihood(log_signals);
     if (gradient != nullptr) likelihood_gradient(gradient);
   } else {
-    std::vector<double> unused(static_cast<std::size_t>(size()), 0.0);
-    *value = leave_one_out(gradient != nullptr ? gradient : unused.data());
+    *value = leave_one_out(gradient);
     for (Eigen::Index i = 0; i < m; ++i) *value -= 0.5 * static_cast<double>(model_.size()) * log_signals[i];
   }
   if (gradient != nullptr && model_.fit_means) {
@@ -103,7 +97,8 @@ void Objective::fill(bool slopes) {
 
 bool Objective::decompose(double noise) {
   noise_ = noise;
-  // The smooth lower limit of the noise: what keeps the matrix positive definite in double precision.
+  // The smooth lower limit of the noise: what keeps the matrix positive definite in double precision, as jitter does in
+  // a process. Too small to enter the gradient.
   const double floor = 10.0 * static_cast<double>(model_.size()) * kEpsilon * covariance_(0, 0);
   covariance_.diagonal().array() += noise + floor;
   if (!factorise(covariance_)) return false;
@@ -170,17 +165,19 @@ double Objective::leave_one_out(double* gradient) {
   const Eigen::ArrayXd own = covariance_.diagonal();  // 1 / variance of each prediction
   double sum = 0.5 * static_cast<double>(m) * (own.log() - kLogTwoPi).sum();
   Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(n);
-  adjoint_.setZero();
+  if (gradient != nullptr) adjoint_.setZero();
   for (Eigen::Index i = 0; i < m; ++i) {
     const Eigen::ArrayXd ratio = solved_.col(i).array() / own;  // target - prediction
     const double squares = (solved_.col(i).array() * ratio).sum();
     sum -= 0.5 * squares;
+    if (gradient == nullptr) continue;
     weight += 0.5 * (1.0 / own + ratio.square());
     const Eigen::VectorXd turned = covariance_ * ratio.matrix();
     adjoint_.selfadjointView<Eigen::Lower>().rankUpdate(turned, solved_.col(i), 0.5);
     gradient[parameters_ + 1 + i] += 0.5 * (squares - static_cast<double>(n));
     if (model_.fit_means) gradient[parameters_ + 1 + m + i] += turned.sum();
   }
+  if (gradient == nullptr) return sum;
   const Eigen::MatrixXd scaled = covariance_ * weight.sqrt().matrix().asDiagonal();
   adjoint_.selfadjointView<Eigen::Lower>().rankUpdate(scaled, -1.0);
   contract(gradient);

@@ -2,10 +2,8 @@
 // What a fit maximises, as a function of the logarithms of the hyperparameters, with its gradient.
 #pragma once
 
-#include <palpate/fitting.hpp>
-#include <palpate/types.hpp>
+#include "model.hpp"
 
-#include <memory>
 #include <vector>
 
 namespace palpate::fitting {
@@ -13,33 +11,12 @@ namespace palpate::fitting {
 enum class Measure { log_marginal_likelihood, leave_one_out };
 
 /// Where one hyperparameter is expected, on the scale of the search: a normal density, and limits beyond which a
-/// smooth wall rises, so far out that no likelihood of sane data reaches them.
+/// smooth wall rises, so that a likelihood which grows for ever still has a maximum.
 struct Expectation {
   double centre = 0.0;
   double spread = 1.0;
   double least = 0.0;
   double most = 0.0;
-};
-
-/// The data and the model of a fit, or those of a part of its points.
-///
-/// Hyperparameters in the order of the search: log of each kernel parameter (P), log of the squared noise ratio, then
-/// for each output log of the squared signal, then for each output its mean if that is fitted too. Signals and means
-/// are in units of `scales`, so that all are of order 1.
-struct Model {
-  Points points;            ///< n x 2, metres
-  Eigen::MatrixXd targets;  ///< n x m, each column divided by its scale
-  Eigen::VectorXd scales;   ///< m: unit of the targets
-  Kernel& kernel;           ///< changed by every evaluation
-  double mean_ratio = 0.0;
-  Eigen::VectorXd means;  ///< m, for when they are not fitted
-  bool fit_means = false;
-
-  Eigen::Index size() const { return points.rows(); }
-  Eigen::Index outputs() const { return targets.cols(); }
-
-  /// A value of the objective for all points together, targets in their own unit: what is reported.
-  double total(double value) const;
 };
 
 /// The measure per point and output, plus the log density of the expectations if they are given.

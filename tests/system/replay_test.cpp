@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// `palpate replay`: recorded taps through the same models, every number compared.
+#include "support/support.hpp"
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+namespace palpate {
+namespace {
+
+using test::config;
+using test::Ended;
+using test::only_run;
+using test::paper;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+TEST(Replay, FindsEveryNumberEqual) {
+  const TemporaryFolder folder;
+  for (const char* acquisition : {"weighted", "uncertainty", "random"}) {
+    test::palpate({"run", paper(), "--quiet", "--runs", acquisition, std::string("acquisition=") + acquisition},
+                  folder.path());
+    const Ended ended = test::palpate({"replay", only_run(folder.path() / acquisition).string()}, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.out;
+    EXPECT_THAT(ended.out, ::testing::MatchesRegex("17 taps, [0-9]+ numbers, all equal\n"));
+  }
+}
+
+TEST(Replay, NoticesANumberThatWasTamperedWith) {
+  const TemporaryFolder folder;
+  test::palpate({"run", config("paper/object_i_right.yaml"), "seed=3", "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  std::string taps = text_of(directory / "taps.jsonl");
+  // The last digit of one score.
+  const auto at = taps.rfind("\"score\": 0.", taps.rfind("\"u\": ")) + 13;
+  taps[at] = taps[at] == '5' ? '6' : '5';
+  std::ofstream(directory / "taps.jsonl") << taps;
+  const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("tap 17: score: recorded 0."));
+}
+
+TEST(Replay, NoticesAFieldThatNoReplayHas) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  std::string taps = text_of(directory / "taps.jsonl");
+  taps.insert(taps.rfind("\"score\": "), "\"invented\": 1, ");
+  std::ofstream(directory / "taps.jsonl") << taps;
+  const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("tap 17: invented: recorded 1, "));
+}
+
+TEST(Replay, FollowsEveryFit) {
+  const TemporaryFolder folder;
+  for (const char* extra : {"surface=two_part", "weight.hyperparameters=shared", "fitting.every=5"}) {
+    test::palpate({"run", paper(), "--quiet", "--runs", extra, "fitting=ceres", "height.signal=5cm", extra},
+                  folder.path());
+    const Ended ended = test::palpate({"replay", only_run(folder.path() / extra).string()}, folder.path());
+    EXPECT_EQ(ended.status, 0) << extra << ended.out;
+    EXPECT_THAT(ended.out, ::testing::MatchesRegex("17 taps, [0-9]+ numbers, all equal\n"));
+  }
+}
+
+}  // namespace
+}  // namespace palpate
