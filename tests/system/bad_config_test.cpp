@@ -216,9 +216,11 @@ std::vector<Case> cases() {
            "object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "weight: {hyperparameters: shared, kernel: {type: rbf}}",
-           "bad.yaml:10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared"),
+           "bad.yaml:10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared; "
+           "take it away, or choose own"),
       line("LabelsOfTheirOwnFittingThatShare", "weight: {hyperparameters: shared, fitting: {type: fixed}}",
-           "bad.yaml:10:44: weight.fitting: the labels are fitted with the heights when hyperparameters are shared"),
+           "bad.yaml:10:44: weight.fitting: the labels are fitted with the heights when hyperparameters are shared; "
+           "take it away, or choose own"),
 
       // Plugins inside plugins, and how the surface is made
       line("UnknownSurface", "surface: two_parts",
@@ -242,11 +244,11 @@ std::vector<Case> cases() {
            "kernel: {type: product, kernels: [{type: scale, kernel: {type: rbf, lenght_scale: 2 cm}}]}",
            "bad.yaml:10:69: unknown option 'lenght_scale', did you mean 'length_scale'?"),
       line("FactorOfZero", "kernel: {type: scale, factor: 0, kernel: {type: rbf}}",
-           "bad.yaml:10:31: kernel.factor: 0 is out of range, it must be above 0"),
+           "bad.yaml:10:31: kernel.factor: 0 is out of range, it must be at least 1e-12"),
       line("ScaleOfNothing", "kernel: {type: scale}",
            "bad.yaml:10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
-      line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-3}",
-           "bad.yaml:10:43: kernel.alpha: 1e-3 is out of range, it must be at least 0.01"),
+      line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
+           "bad.yaml:10:43: kernel.alpha: 1e-5 is out of range, it must be at least 1e-4"),
 
       // The command line
       typed("OverrideOfAKernelThatIsNotThere",

@@ -52,7 +52,7 @@ TEST(Replay, NoticesAFieldThatNoReplayHas) {
   test::palpate({"run", paper(), "--quiet"}, folder.path());
   const fs::path directory = only_run(folder.path() / "runs");
   std::string taps = text_of(directory / "taps.jsonl");
-  taps.insert(taps.rfind("\"score\": "), "\"invented\": 1, ");
+  taps.insert(taps.rfind("\"robot_seconds\": "), "\"invented\": 1, ");
   std::ofstream(directory / "taps.jsonl") << taps;
   const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
   EXPECT_EQ(ended.status, 1);

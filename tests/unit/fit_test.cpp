@@ -107,7 +107,7 @@ TEST(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
     EXPECT_EQ(call.targets.size(), 1U);
     if (call.mean_ratio == 0.0) continue;
     ++of_surface;
-    EXPECT_EQ(call.mean_ratio, 10.0) << "the level of the object is free";
+    EXPECT_EQ(call.mean_ratio, 1000.0) << "the level of the object is free";
     EXPECT_GT(call.targets[0].minCoeff(), 0.0) << "no tap on the desk";
   }
   EXPECT_EQ(of_surface, result.on_surface_taps / 5);

@@ -46,8 +46,8 @@ TEST(TwoPart, IsTheObjectFromAWeightOfOneHalfOnAndTheDeskBelow) {
   Alone object(at_half);
   Alone desk(below);
   for (Alone* one : {&object, &desk}) one->touch(40, -0.21);
-  // The level is learnt from a tap of variance 1 + 1e-8 against its own prior of 100.
-  const double level = -0.30 + 0.09 * 100.0 / (101.0 + 1e-8);
+  // The level is learnt from a tap of variance 1 + 1e-8 against its own prior of a million.
+  const double level = -0.30 + 0.09 * 1e6 / (1e6 + 1.0 + 1e-8);
   EXPECT_NEAR(reconstruction(object.belief)(0), level, 1e-12);
   EXPECT_EQ(reconstruction(desk.belief)(0), -0.30);
   EXPECT_NEAR(desk.belief.height_mean()(0), level, 1e-12) << "the height itself is not gated";
@@ -76,20 +76,22 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
     on.row(next) = one.candidates.points.row(candidate);
     heights(next++) = height;
   }
+  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const auto prior = [](const Points& a, const Points& b) {
-    Eigen::MatrixXd k(a.rows(), b.rows());
+    Wide k(a.rows(), b.rows());
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
       for (Eigen::Index j = 0; j < b.rows(); ++j) {
-        k(i, j) = 100.0 + std::exp(-0.5 * (a.row(i) - b.row(j)).squaredNorm() / (0.03 * 0.03));
+        k(i, j) = 1e6L + std::exp(-0.5L * (a.row(i) - b.row(j)).squaredNorm() / (0.03 * 0.03));
       }
     }
     return k;
   };
-  const Eigen::MatrixXd inverse = (prior(on, on) + 1e-8 * Eigen::MatrixXd::Identity(3, 3)).inverse();
-  const Eigen::MatrixXd cross = prior(on, one.candidates.points);
-  const Eigen::VectorXd mean = cross.transpose() * inverse * heights;
-  const Eigen::VectorXd variance = 101.0 - (cross.transpose() * inverse * cross).diagonal().array();
-  // The oracle solves with entries of 101 and eigenvalues down to about 0.1.
+  const Wide inverse = (prior(on, on) + 1e-8L * Wide::Identity(3, 3)).inverse();
+  const Wide cross = prior(on, one.candidates.points);
+  const Eigen::VectorXd mean = (cross.transpose() * inverse * heights.cast<long double>()).cast<double>();
+  const Wide explained = (cross.transpose() * inverse * cross).diagonal();
+  const Eigen::VectorXd variance = (1e6L + 1.0L - explained.array()).cast<double>();
+  // The oracle solves with entries of a million and eigenvalues down to about 0.1, in 19 digits.
   EXPECT_LT((one.belief.height_mean() - mean).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT((one.belief.height_variance() - variance).cwiseAbs().maxCoeff(), 1e-10);
   one.belief.uncertainty();
