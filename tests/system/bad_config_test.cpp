@@ -248,7 +248,7 @@ std::vector<Case> cases() {
       line("ScaleOfNothing", "kernel: {type: scale}",
            "bad.yaml:10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
-           "bad.yaml:10:43: kernel.alpha: 1e-5 is out of range, it must be at least 1e-4"),
+           "bad.yaml:10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
       // The command line
       typed("OverrideOfAKernelThatIsNotThere",

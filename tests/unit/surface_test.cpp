@@ -91,9 +91,9 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
   const Eigen::VectorXd mean = (cross.transpose() * inverse * heights.cast<long double>()).cast<double>();
   const Wide explained = (cross.transpose() * inverse * cross).diagonal();
   const Eigen::VectorXd variance = (1e6L + 1.0L - explained.array()).cast<double>();
-  // The oracle solves with entries of a million and eigenvalues down to about 0.1, in 19 digits.
+  // The oracle takes differences of a million in 19 digits, with a matrix of condition 1e7.
   EXPECT_LT((one.belief.height_mean() - mean).cwiseAbs().maxCoeff(), 1e-10);
-  EXPECT_LT((one.belief.height_variance() - variance).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LT((one.belief.height_variance() - variance).cwiseAbs().maxCoeff(), 1e-5);
   one.belief.uncertainty();
   EXPECT_EQ(one.belief.height_process()->size(), 6) << "u comes from all taps";
 }
