@@ -12,13 +12,13 @@
 namespace palpate::kernels {
 
 /// A piece of a column, small enough for the stack.
-constexpr Eigen::Index kChunk = 128;
-using Chunk = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kChunk, 1>;
+constexpr Eigen::Index kPiece = 128;
+using Piece = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kPiece, 1>;
 
 /// Calls visit(from, count) for the pieces of `size` rows.
 template <class Visit>
-void for_chunks(Eigen::Index size, Visit visit) {
-  for (Eigen::Index from = 0; from < size; from += kChunk) visit(from, std::min(kChunk, size - from));
+void for_pieces(Eigen::Index size, Visit visit) {
+  for (Eigen::Index from = 0; from < size; from += kPiece) visit(from, std::min(kPiece, size - from));
 }
 
 struct PartsOptions : Options {
@@ -71,6 +71,50 @@ class Parts {
  private:
   std::vector<std::shared_ptr<Kernel>> kernels_;
   std::vector<Eigen::Index> counts_;
+};
+
+/// A kernel of parts. Join::apply(whole, part) takes the covariances of one more part into those of the parts before.
+/// What is left to the derived kernel is derivatives().
+template <class Join>
+class Composed : public Kernel {
+ public:
+  using Options = PartsOptions;
+
+  Composed(const Options& options, const Context& context) : parts_(options, context) {}
+
+  void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
+    parts_[0].covariance(a, b, out);
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+      for (Eigen::Index j = 0; j < b.rows(); ++j) {
+        for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
+          Piece part(count);
+          parts_[i].covariance(a.middleRows(from, count), b.row(j), part.matrix());
+          Join::apply(out.col(j).segment(from, count).array(), part);
+        });
+      }
+    }
+  }
+
+  void variance(const PointsView& a, VectorOut out) const override {
+    parts_[0].variance(a, out);
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+      for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
+        Piece part(count);
+        parts_[i].variance(a.middleRows(from, count), part.matrix());
+        Join::apply(out.segment(from, count).array(), part);
+      });
+    }
+  }
+
+  std::vector<KernelParameter> parameters() const override { return parts_.parameters(); }
+  bool differentiable() const override { return parts_.differentiable(); }
+  void set_parameters(const VectorView& values) override { parts_.set_parameters(values); }
+
+ protected:
+  const Parts& parts() const { return parts_; }
+
+ private:
+  Parts parts_;
 };
 
 }  // namespace palpate::kernels
