@@ -73,7 +73,7 @@ void expect_rows(const std::string& readme, const std::string& printed) {
 /// Commands whose work is the same in every build, and minutes long under the sanitizers.
 bool only_in_release(const std::string& command) {
 #ifdef __SANITIZE_ADDRESS__
-  return command.rfind("sh tests/benchmark/", 0) == 0;
+  return command.rfind("sh tests/benchmark/", 0) == 0 || command.rfind("./palpate sweep ", 0) == 0;
 #else
   static_cast<void>(command);
   return false;
@@ -99,7 +99,7 @@ TEST(Readme, EveryCommandThatItShowsRunsAndTheTablesAreWhatTheyPrint) {
       expect_rows(readme, ended.out);
     }
   }
-  EXPECT_EQ(tables, only_in_release("sh tests/benchmark/fitting.sh") ? 1 : 2);
+  EXPECT_EQ(tables, only_in_release("sh tests/benchmark/fitting.sh") ? 0 : 2);
 }
 
 TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {

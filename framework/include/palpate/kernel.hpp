@@ -53,6 +53,7 @@ class Kernel {
 };
 
 inline void Kernel::set_parameters(const VectorView&) {}
+// Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
 inline void Kernel::derivatives(const PointsView&, const PointsView&, VectorOut, MatrixOut) const {}
 
 }  // namespace palpate

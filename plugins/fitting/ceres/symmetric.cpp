@@ -63,6 +63,7 @@ bool factorise(MatrixOut matrix) {
   return llt.info() == Eigen::Success && matrix.diagonal().allFinite();
 }
 
+// A view goes by value although it is written through. NOLINTNEXTLINE(performance-unnecessary-value-param)
 void invert_factored(MatrixOut matrix) {
   invert_triangle(matrix);
   square_triangle(matrix);
