@@ -2,8 +2,8 @@
 #include "stability/reference.hpp"
 
 #include "stability/oracle.hpp"
+#include "support/eigenvalues.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <cmath>
@@ -79,8 +79,8 @@ double Spectrum::condition() const {
 Spectrum spectrum(const Problem& problem) {
   const Eigen::MatrixXd matrix = covariance_of_taps(problem).cast<double>();
   if (matrix.rows() <= kOraclePoints) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
-    return {solver.eigenvalues()(matrix.rows() - 1), solver.eigenvalues()(0)};
+    const Eigen::VectorXd values = test::eigenvalues(matrix);
+    return {values(matrix.rows() - 1), values(0)};
   }
   const Lu lu(matrix);
   const double largest = dominant(matrix.rows(), [&](const Eigen::VectorXd& x) { return matrix * x; });

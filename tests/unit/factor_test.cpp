@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gp/factor.hpp"
+#include "support/eigenvalues.hpp"
 
 #include <palpate/random.hpp>
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ Factor factor_of(const Eigen::MatrixXd& matrix) {
 }
 
 double condition_of(const Eigen::MatrixXd& matrix) {
-  const Eigen::VectorXd eigenvalues = matrix.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Eigen::VectorXd eigenvalues = test::eigenvalues(matrix);
   return eigenvalues.maxCoeff() / eigenvalues.minCoeff();
 }
 
