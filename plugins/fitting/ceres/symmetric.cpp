@@ -3,11 +3,25 @@
 
 #include <Eigen/Cholesky>
 
+#include <cmath>
+
 namespace palpate::fitting {
 namespace {
 
-/// Blocks up to this size are done column by column.
-constexpr Eigen::Index kBlock = 32;
+/// Blocks up to this size are done column by column: packing for matrix products would cost more than it saves.
+constexpr Eigen::Index kBlock = 64;
+
+/// Cholesky factorisation of a block, each column from all those before it.
+bool factorise_block(MatrixOut l) {
+  const Eigen::Index n = l.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    auto column = l.col(j).tail(n - j);
+    if (j > 0) column.noalias() -= l.block(j, 0, n - j, j) * l.row(j).head(j).transpose();
+    if (!(column(0) > 0.0)) return false;
+    column /= std::sqrt(column(0));
+  }
+  return l.diagonal().allFinite();
+}
 
 /// L -> L^-1, lower triangular. With L = [A 0; B C]: L^-1 = [A^-1 0; -C^-1 B A^-1, C^-1].
 void invert_triangle(MatrixOut l) {
@@ -59,6 +73,7 @@ void square_triangle(MatrixOut l) {
 }  // namespace
 
 bool factorise(MatrixOut matrix) {
+  if (matrix.rows() <= kBlock) return factorise_block(matrix);
   const Eigen::LLT<MatrixOut> llt(matrix);
   return llt.info() == Eigen::Success && matrix.diagonal().allFinite();
 }
