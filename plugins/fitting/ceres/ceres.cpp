@@ -92,10 +92,13 @@ class Ceres final : public Fitting {
 
  private:
   std::vector<Expectation> expectations(const Model& model) const;
-  /// The optima that the ascents found, the best first.
-  std::vector<Spot> search(const Model& model, const std::vector<Expectation>& expected, const Eigen::VectorXd& now,
-                           Random& random, int& evaluations) const;
-  bool with_priors() const { return options_.priors == Options::Priors::touch; }
+  Objective objective_of(const Model& model, const std::vector<Expectation>& expected) const {
+    return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
+  }
+  /// The optima that the ascents found, the best first. `objective` is that of `model`; `evaluations` counts those of
+  /// its parts.
+  std::vector<Spot> search(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
+                           const Eigen::VectorXd& now, Random& random, int& evaluations) const;
 
   Options options_;
   double side_;  ///< of the area, the longer one, metres
@@ -120,9 +123,8 @@ std::vector<Expectation> Ceres::expectations(const Model& model) const {
   return out;
 }
 
-std::vector<Spot> Ceres::search(const Model& model, const std::vector<Expectation>& expected,
+std::vector<Spot> Ceres::search(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
                                 const Eigen::VectorXd& now, Random& random, int& evaluations) const {
-  Objective objective(model, options_.objective, expected, with_priors());
   std::vector<Spot> spots;
   if (model.size() <= kPart) {
     for (std::int64_t i = 0; i < options_.starts; ++i) {
@@ -133,14 +135,13 @@ std::vector<Spot> Ceres::search(const Model& model, const std::vector<Expectatio
   } else {
     // A part of the points finds the region and its curvature; all of them decide between the optima of the part.
     const Model part = part_of(model, kPart / 2);
-    spots = search(part, expected, now, random, evaluations);
+    Objective rough = objective_of(part, expected);
+    spots = search(part, rough, expected, now, random, evaluations);
     for (Spot& spot : spots) spot.valid = spot.valid && objective.evaluate(spot.x.data(), &spot.value, nullptr);
     std::sort(spots.begin(), spots.end(), better);
-    Objective rough(part, options_.objective, expected, with_priors());
     spots.front() = ascend(objective, spots.front().x, metric_at(rough, spots.front().x), kFine);
     evaluations += rough.evaluations();
   }
-  evaluations += objective.evaluations();
   std::sort(spots.begin(), spots.end(), better);
   return spots;
 }
@@ -153,19 +154,20 @@ FitSummary Ceres::fit(FitProblem& problem, Random& random) const {
     return summary;
   }
   const std::vector<Expectation> expected = expectations(model);
-  if (!with_priors() && model.size() * model.outputs() <= static_cast<Eigen::Index>(expected.size())) {
+  if (options_.priors == Options::Priors::none &&
+      model.size() * model.outputs() <= static_cast<Eigen::Index>(expected.size())) {
     summary.reason = "without priors there must be more taps than hyperparameters";
     return summary;
   }
   std::vector<double> old;
   for (const KernelParameter& one : problem.kernel.parameters()) old.push_back(one.value);
   const Eigen::VectorXd now = present(problem, model);
-  Objective objective(model, options_.objective, expected, with_priors());
+  Objective objective = objective_of(model, expected);
   double value_now = 0.0;
   const bool known = objective.evaluate(now.data(), &value_now, nullptr);
-  ++summary.evaluations;
 
-  const std::vector<Spot> spots = search(model, expected, now, random, summary.evaluations);
+  const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
+  summary.evaluations += objective.evaluations();
   const Spot& best = spots.front();
   summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent came to a finite value";
   if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs that tell nothing were left out";
