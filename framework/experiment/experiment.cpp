@@ -42,18 +42,12 @@ std::optional<TapRecord> Experiment::choose_next() {
 
 void Experiment::choose_by_score(TapRecord& tap) {
   const PhaseClock::Scope acquire(clock_, Phase::acquire);
-  Eigen::VectorXd scores(candidates_.size());
-  acquisition_->score(belief_, scores);
-  if (!scores.allFinite()) {
-    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
-                Error::Kind::run);
-  }
-  Pick picked = pick(scores, allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
+  Pick picked = pick_best();
   tap.source = Source::acquisition;
   if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
     tap.source = Source::fallback;
     tap.why = *picked.flat;
-    picked = pick(belief_.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
+    picked = chooser_.pick(VectorScores(belief_.uncertainty()), allowed_, 1.0, options_.tie_tolerance);
   }
   tap.candidate = picked.candidate;
   if (picked.candidate < 0) return;
@@ -63,6 +57,18 @@ void Experiment::choose_by_score(TapRecord& tap) {
     tap.runner_up = candidates_.target(picked.runner_up);
     tap.runner_up_score = picked.runner_up_score;
   }
+}
+
+Pick Experiment::pick_best() {
+  const double scale = acquisition_->prior_scale();
+  if (const Scores* formed = belief_.formed()) return chooser_.pick(*formed, allowed_, scale, options_.tie_tolerance);
+  scores_.resize(candidates_.size());
+  acquisition_->score(belief_, scores_);
+  if (!scores_.allFinite()) {
+    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+                Error::Kind::run);
+  }
+  return chooser_.pick(VectorScores(scores_), allowed_, scale, options_.tie_tolerance);
 }
 
 void Experiment::perform(TapRecord& tap) {

@@ -53,6 +53,7 @@ class Experiment {
   std::optional<std::string> stop_reason() const;
   std::optional<TapRecord> choose_next();
   void choose_by_score(TapRecord& tap);
+  Pick pick_best();
   void describe_state(TapRecord& tap);
   void perform(TapRecord& tap);
   Contact touch(int number, const Target& target);
@@ -69,6 +70,8 @@ class Experiment {
   std::shared_ptr<Acquisition> acquisition_;
   std::shared_ptr<Backend> backend_;
 
+  Chooser chooser_;
+  Eigen::VectorXd scores_;
   std::vector<bool> allowed_;  ///< candidates that may be tapped
   std::vector<bool> tapped_;   ///< candidates where there was a contact
   std::optional<Target> previous_;

@@ -54,7 +54,10 @@ void WeightOptions::list(Fields& fields) {
   fields.flag(clip, Field("clip", "let the acquisitions see the weight clipped to [0, 1]"));
   fields.choice(hyperparameters, Field("hyperparameters", "what a fit chooses for the labels"),
                 {{"own", "the labels' own kernel and noise", {}},
-                 {"shared", "those of the heights, fitted to heights and labels together; signals stay apart", {}}});
+                 {"shared",
+                  "those of the heights, noise in signals included, fitted to heights and labels together; signals stay "
+                  "apart",
+                  {}}});
   fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
   const bool shared = hyperparameters == Hyperparameters::shared;
@@ -62,6 +65,17 @@ void WeightOptions::list(Fields& fields) {
                  "the labels have the heights' kernel when hyperparameters are shared; take it away, or choose own");
   fields.require(!shared || !fitting, "fitting",
                  "the labels are fitted with the heights when hyperparameters are shared; take it away, or choose own");
+}
+
+void LowrankOptions::list(Fields& fields) {
+  fields.real(tolerance,
+              Field("tolerance", "directions of a one-axis covariance below this share of its variance are left out")
+                  .above(0)
+                  .at_most(1)
+                  .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
+  fields.choice(precision, Field("precision", "of the maps over the candidates"),
+                {{"double", "as everywhere", {}},
+                 {"single", "half the memory and time, for errors near 1e-6: runs/README.md tells them", {}}});
 }
 
 void StopOptions::list(Fields& fields) {
@@ -98,7 +112,11 @@ void ExperimentOptions::list(Fields& fields) {
       {{"single", "one process for the heights of object and desk, as the paper has it", {}},
        {"two_part", "heights from the taps on an object alone, where the weight is at least 1/2; else desk", {}}});
   fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),
-                {{"auto", "the fastest that is exact enough", {}}, {"dense", "any kernel, any candidates", {}}});
+                {{"auto", "the fastest that is exact enough: see accuracy", {}},
+                 {"dense", "any kernel; time and memory grow with taps times candidates", {}},
+                 {"grid", "as exact, memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
+                 {"lowrank", "time grows with candidates alone, not with taps; needs a separable kernel", {}}});
+  fields.section(lowrank, Field("lowrank", "the posterior engine of that name"));
   fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate"));
   fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both processes"));
   fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive"),
@@ -111,6 +129,16 @@ void ExperimentOptions::list(Fields& fields) {
                   .at_least(0)
                   .at_most(1)
                   .from("rounding reaches 1e-12; below 1e-9 it decides taps at 1.7 cm"));
+  fields.real(accuracy, Field("accuracy",
+                              "`posterior: auto` takes no engine whose error beyond dense's may exceed this, or a tenth "
+                              "of tie_tolerance; in prior standard deviations, or prior variances")
+                            .at_least(0)
+                            .at_most(1));
+  fields.integer(threads,
+                 Field("threads", "that update the maps together; the results are the same").at_least(1).at_most(64));
+  fields.choice(instruction_set, Field("instruction_set", "of the loops that update the maps"),
+                {{"auto", "the fastest that this processor has", {}},
+                 {"baseline", "what every x86-64 has, for runs that are compared between machines", {}}});
   fields.section(stop, Field("stop", "reasons to stop before the budget is spent"));
   fields.section(scene, Field("scene", "what the world holds; a robot backend reads only area and desk"));
   fields.plugin(backend, Field("backend", "what is tapped"));
@@ -131,6 +159,6 @@ void ExperimentOptions::list(Fields& fields) {
                              initial.count, columns * rows));
 }
 
-bool enters_id(const std::string& key) { return key != "name" && key != "log"; }
+bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads"; }
 
 }  // namespace palpate

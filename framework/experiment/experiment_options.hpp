@@ -47,6 +47,14 @@ struct WeightOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// Of the posterior engine `lowrank`.
+struct LowrankOptions : Options {
+  enum class Precision { full, single };
+  double tolerance = 1e-14;
+  Precision precision = Precision::full;
+  void list(Fields& fields) override;
+};
+
 struct StopOptions : Options {
   std::optional<double> max_standard_deviation;
   std::optional<double> robot_time;
@@ -63,9 +71,10 @@ struct LogOptions : Options {
 
 struct ExperimentOptions : Options {
   enum class Surface { single, two_part };
-  enum class Posterior { automatic, dense };
+  enum class Posterior { automatic, dense, grid, lowrank };
   enum class Fallback { uncertainty, none };
   enum class Repeat { forbid, allow };
+  enum class InstructionSet { automatic, baseline };
 
   std::string name = "experiment";
   std::int64_t seed = 1;
@@ -77,11 +86,15 @@ struct ExperimentOptions : Options {
   WeightOptions weight;
   Surface surface = Surface::single;
   Posterior posterior = Posterior::automatic;
+  LowrankOptions lowrank;
   PluginChoice acquisition{"acquisition", {}, nullptr};
   PluginChoice fitting{"fitting", "fixed", nullptr};
   Fallback fallback = Fallback::uncertainty;
   Repeat repeat = Repeat::forbid;
   double tie_tolerance = 1e-8;
+  double accuracy = 1e-9;
+  std::int64_t threads = 1;
+  InstructionSet instruction_set = InstructionSet::automatic;
   StopOptions stop;
   SceneOptions scene;
   PluginChoice backend{"backend", {}, nullptr};

@@ -49,8 +49,8 @@ Eigen::VectorXd reconstruction(const TapBelief& belief) {
 
 Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
   Errors out;
-  const bool knows_weight = belief.weight_process() != nullptr;
-  if (belief.surface_process() != nullptr) {
+  const bool knows_weight = static_cast<bool>(belief.weight_process());
+  if (belief.surface_process()) {
     if (knows_weight || !belief.two_part()) {
       const Eigen::VectorXd surface = reconstruction(belief);
       out.rmse = rmse(surface, truth, false);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace palpate {
@@ -89,41 +90,76 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   return design;
 }
 
-Pick pick(const VectorView& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
+Pick Chooser::pick(const Scores& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
+  scores_ = &scores;
+  allowed_ = &allowed;
+  bounds_.resize(static_cast<std::size_t>(scores.pieces()));
+  for (int piece = 0; piece < scores.pieces(); ++piece) bound_of(piece) = scores.bound(piece);
+
   Pick out;
-  const auto is_allowed = [&](Eigen::Index i) { return allowed[static_cast<std::size_t>(i)]; };
-  double best = 0.0;
-  double least = 0.0;
-  int seen = 0;
-  for (Eigen::Index i = 0; i < scores.size(); ++i) {
-    if (!is_allowed(i)) continue;
-    best = seen == 0 ? scores(i) : std::max(best, scores(i));
-    least = seen == 0 ? scores(i) : std::min(least, scores(i));
-    ++seen;
-  }
-  if (seen == 0) return out;
-  const double bound = tolerance * (std::abs(best) + scale);
-  for (Eigen::Index i = 0; i < scores.size(); ++i) {
-    if (!is_allowed(i)) continue;
-    if (scores(i) >= best - bound) {
+  const Cell best = find_best(-1);
+  if (best.candidate < 0) return out;
+  const double bound = tolerance * (std::abs(best.score) + scale);
+  const double threshold = best.score - bound;
+  for (int piece = 0; piece < scores.pieces(); ++piece) {
+    if (bound_of(piece) < threshold) continue;
+    for_allowed(piece, [&](const Cell& cell) {
+      if (cell.score < threshold) return;
       ++out.ties;
-      if (out.candidate < 0) {
-        out.candidate = static_cast<int>(i);
-        out.score = scores(i);
-        continue;
-      }
-    }
-    if (out.runner_up < 0 || scores(i) > out.runner_up_score) {
-      out.runner_up = static_cast<int>(i);
-      out.runner_up_score = scores(i);
-    }
+      if (out.candidate >= 0 && cell.candidate > out.candidate) return;
+      out.candidate = cell.candidate;
+      out.score = cell.score;
+    });
   }
-  if (best <= 0.0) {
+  const Cell second = find_best(out.candidate);
+  out.runner_up = second.candidate;
+  out.runner_up_score = second.score;
+  if (best.score <= 0.0) {
     out.flat = "no score is positive";
-  } else if (seen > 1 && best - least <= bound) {
+  } else if (second.candidate >= 0 && !any_below(threshold)) {
     out.flat = "every score is equal";
   }
   return out;
+}
+
+template <class Visit>
+void Chooser::for_allowed(int piece, const Visit& visit) const {
+  std::array<Cell, kMostCells> cells;
+  const int count = scores_->read(piece, cells.data());
+  for (int i = 0; i < count; ++i) {
+    const Cell& cell = cells[static_cast<std::size_t>(i)];
+    if (!(*allowed_)[static_cast<std::size_t>(cell.candidate)]) continue;
+    if (!std::isfinite(cell.score)) throw Error("", "a score is not a finite number", {}, Error::Kind::run);
+    visit(cell);
+  }
+}
+
+ScoredCell Chooser::find_best(int except) {
+  Cell best{-1, -std::numeric_limits<double>::infinity()};
+  const auto look = [&](int piece) {
+    double& bound = bound_of(piece);
+    bound = -std::numeric_limits<double>::infinity();
+    for_allowed(piece, [&](const Cell& cell) {
+      bound = std::max(bound, cell.score);
+      if (cell.candidate == except) return;
+      if (cell.score > best.score || (cell.score == best.score && cell.candidate < best.candidate)) best = cell;
+    });
+  };
+  // Of two passes, the first finds where a good score is, so that the second reads few pieces.
+  const auto first = std::max_element(bounds_.begin(), bounds_.end());
+  look(static_cast<int>(first - bounds_.begin()));
+  for (int piece = 0; piece < scores_->pieces(); ++piece) {
+    if (bound_of(piece) >= best.score) look(piece);
+  }
+  return best;
+}
+
+bool Chooser::any_below(double threshold) const {
+  bool found = false;
+  for (int piece = 0; piece < scores_->pieces() && !found; ++piece) {
+    for_allowed(piece, [&](const Cell& cell) { found |= cell.score < threshold; });
+  }
+  return found;
 }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 
 #include "experiment/experiment_options.hpp"
 #include "gp/candidates.hpp"
+#include "gp/scores.hpp"
 
 #include <palpate/random.hpp>
 #include <palpate/types.hpp>
@@ -33,7 +34,24 @@ struct Pick {
 
 /// Takes the highest score among the candidates that are `allowed`. Scores within
 /// tolerance x (|best| + scale) of the best are tied; the lowest index wins. So rounding decides nothing, as long as
-/// it stays below that bound.
-Pick pick(const VectorView& scores, const std::vector<bool>& allowed, double scale, double tolerance);
+/// it stays below that bound. Reads only the pieces of the scores that may matter, and keeps its memory for the next
+/// choice. Throws Error when it meets a score that is not finite.
+class Chooser {
+ public:
+  Pick pick(const Scores& scores, const std::vector<bool>& allowed, double scale, double tolerance);
+
+ private:
+  using Cell = ScoredCell;
+  /// The best of the allowed candidates but `except`, the first of equals; leaves exact bounds where it looked.
+  Cell find_best(int except);
+  bool any_below(double threshold) const;
+  template <class Visit>
+  void for_allowed(int piece, const Visit& visit) const;
+  double& bound_of(int piece) { return bounds_[static_cast<std::size_t>(piece)]; }
+
+  const Scores* scores_ = nullptr;
+  const std::vector<bool>* allowed_ = nullptr;
+  std::vector<double> bounds_;
+};
 
 }  // namespace palpate

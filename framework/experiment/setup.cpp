@@ -15,14 +15,20 @@ Candidates make_candidates(const CandidateOptions& options, const Area& area) {
 
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 
-ProcessState state_of(const Process& process, const TapBelief& belief) {
-  const FitSummary* fit = belief.last_fit(process);
-  return {process.kernel().parameters(),
-          process.settings(),
-          process.log_marginal_likelihood(),
-          process.jitter(),
-          process.condition(),
-          fit ? std::optional<FitSummary>(*fit) : std::nullopt};
+ProcessState state_of(const TapBelief::Quantity& quantity) {
+  const Process& process = *quantity.process;
+  const int output = quantity.output;
+  ProcessState out;
+  out.kernel = process.kernel().parameters();
+  out.settings = process.settings(output);
+  out.log_marginal_likelihood = process.log_marginal_likelihood(output);
+  out.jitter = process.jitter(output);
+  out.condition = process.condition();
+  out.engine = process.engine();
+  out.engine_reason = process.engine_reason();
+  out.error_bound = process.error_bound();
+  if (quantity.last_fit != nullptr) out.fit = *quantity.last_fit;
+  return out;
 }
 
 }  // namespace
@@ -39,6 +45,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),
       allowed_(static_cast<std::size_t>(candidates_.size()), true),
       tapped_(allowed_.size(), false) {
+  belief_.form(acquisition_->product());
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
@@ -76,21 +83,21 @@ const Truth* Experiment::truth() {
 
 void Experiment::describe_state(TapRecord& tap) {
   const PhaseClock::Scope log(clock_, Phase::log);
-  if (const Process* height = belief_.height_process()) {
+  if (const TapBelief::Quantity height = belief_.height_process()) {
     tap.uncertainty = belief_.uncertainty()(tap.candidate);
-    const Eigen::ArrayXd deviation = belief_.all_taps_variance().array().sqrt();
-    tap.max_standard_deviation = deviation.maxCoeff();
-    tap.mean_standard_deviation = deviation.mean();
-    tap.height_process = state_of(*height, belief_);
+    const Eigen::VectorXd& variance = belief_.all_taps_variance();
+    tap.max_standard_deviation = std::sqrt(variance.maxCoeff());
+    tap.mean_standard_deviation = variance.cwiseSqrt().mean();
+    tap.height_process = state_of(height);
   }
   if (belief_.two_part()) {
-    if (const Process* surface = belief_.surface_process()) tap.surface_process = state_of(*surface, belief_);
+    if (const TapBelief::Quantity surface = belief_.surface_process()) tap.surface_process = state_of(surface);
   }
-  if (const Process* weight = belief_.weight_process()) {
+  if (const TapBelief::Quantity weight = belief_.weight_process()) {
     tap.weight = belief_.weight()(tap.candidate);
     tap.min_weight = belief_.weight_mean().minCoeff();
     tap.max_weight = belief_.weight_mean().maxCoeff();
-    tap.weight_process = state_of(*weight, belief_);
+    tap.weight_process = state_of(weight);
   }
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* known = truth()) {
@@ -106,14 +113,15 @@ RunResult Experiment::result() {
     out.errors = final_errors(belief_, *known);
     out.calibration = calibration(belief_, *known, tapped_);
   }
-  const auto take = [&](const Process* process, std::optional<ProcessState>& state) {
-    if (process == nullptr) return;
-    state = state_of(*process, belief_);
-    out.jitter_max = std::max(out.jitter_max, process->jitter());
-    out.interventions["jitter"] += process->jitter_raised();
-    out.interventions["pivoted"] += process->pivoted();
-    out.interventions["set_aside"] += process->set_aside();
-    out.interventions["variance_clamped"] += process->variances_clamped();
+  const auto take = [&](const TapBelief::Quantity& quantity, std::optional<ProcessState>& state) {
+    if (!quantity) return;
+    const Process& process = *quantity.process;
+    state = state_of(quantity);
+    out.jitter_max = std::max(out.jitter_max, state->jitter);
+    out.interventions["jitter"] += process.jitter_raised();
+    out.interventions["pivoted"] += process.pivoted();
+    out.interventions["set_aside"] += process.set_aside();
+    out.interventions["variance_clamped"] += process.variances_clamped();
   };
   take(belief_.height_process(), out.height_process);
   take(belief_.weight_process(), out.weight_process);

@@ -5,6 +5,10 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <string>
 
 namespace palpate {
@@ -13,141 +17,197 @@ namespace palpate {
 // surface varies by less than a thousandth of its height.
 constexpr double kFreeLevel = 1000.0;
 
+namespace {
+
+constexpr std::array<const char*, 4> kEngineNames{"auto", "dense", "grid", "lowrank"};
+
+PosteriorSettings posterior_settings(const ExperimentOptions& options) {
+  PosteriorSettings out;
+  out.engine = static_cast<PosteriorSettings::Kind>(options.posterior);
+  out.accuracy = std::min(options.accuracy, 0.1 * options.tie_tolerance);
+  out.tolerance = options.lowrank.tolerance;
+  out.single = options.lowrank.precision == LowrankOptions::Precision::single;
+  out.taps = static_cast<int>(options.taps);
+  if (options.instruction_set == ExperimentOptions::InstructionSet::baseline) out.machine.loops = &simd::baseline();
+  out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.threads));
+  return out;
+}
+
+bool same(const PluginChoice& a, const PluginChoice& b) {
+  return a.type == b.type && a.options->canonical() == b.options->canonical();
+}
+
+}  // namespace
+
+// The plugins are made at once, so that options which they refuse are refused before the first tap.
 TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
-                                       const ProcessSettings& settings, const Context& context) {
+                                       const ProcessSettings& settings) const {
   Model model;
   model.name = name;
-  model.kernel = context.create<Kernel>(kernel);
-  model.fitting = context.create<Fitting>(fitting);
-  model.settings = settings;
-  const std::string objection = model.fitting->objection(*model.kernel);
-  if (!objection.empty()) throw Error(fitting.options->place.text(), objection);
+  model.kernel = context_.create<Kernel>(kernel);
+  model.fitting = context_.create<Fitting>(fitting);
+  model.outputs = {settings};
+  const std::string refusal = model.fitting->objection(*model.kernel);
+  if (!refusal.empty()) throw Error(fitting.options->place.text(), refusal);
+  const std::string why = objection(posterior_, *model.kernel, candidates_);
+  if (!why.empty()) {
+    throw Error("posterior", fmt::format("{} cannot be used with the kernel {}: it {}",
+                                         kEngineNames[static_cast<std::size_t>(posterior_.engine)], kernel.type, why),
+                "posterior: dense serves every kernel");
+  }
   return model;
 }
 
-// The plugins are made at once, so that options which they refuse are refused before the first tap.
 TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candidates, const Context& context,
                      PhaseClock& clock)
     : candidates_(candidates),
       context_(context),
       clock_(clock),
+      posterior_(posterior_settings(options)),
       desk_(context.scene.desk()),
       clip_(options.weight.clip),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),
-      shared_(options.weight.hyperparameters == WeightOptions::Hyperparameters::shared),
       initial_taps_(static_cast<int>(options.initial.count)) {
   const HeightOptions& height = options.height;
   const WeightOptions& weight = options.weight;
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = height.fitting.value_or(options.fitting);
-  height_ = make_model("fitting/height", height_kernel, height_fitting, {height.signal, height.noise, 0.0}, context);
-  // Labels that share have the heights' kernel and are fitted by the heights' fitting, whatever the shared ones are.
-  weight_ = make_model("fitting/weight", shared_ ? height_kernel : weight.kernel.value_or(options.kernel),
-                       shared_ ? height_fitting : weight.fitting.value_or(options.fitting),
-                       {weight.signal, weight.noise, weight.prior_mean}, context);
-  if (shared_) {
-    weight_.kernel = height_.kernel;
-    for (int taps = 1; taps <= options.taps; ++taps) fitted_together_ |= height_.fitting->due(taps);
+  const PluginChoice weight_kernel = weight.kernel.value_or(options.kernel);
+  const bool shared = weight.hyperparameters == WeightOptions::Hyperparameters::shared;
+  heights_ = make_model("fitting/height", height_kernel, height_fitting, {height.signal, height.noise, 0.0});
+  ProcessSettings label{weight.signal, weight.noise, weight.prior_mean};
+  if (!shared) labels_ = make_model("fitting/weight", weight_kernel, weight.fitting.value_or(options.fitting), label);
+  labels_.of_labels = true;
+  joined_ = shared || (same(height_kernel, weight_kernel) && equal_for_good(options));
+  if (joined_) {
+    // By the ratio of noise to signal, the labels' noise is that of the heights.
+    label.noise = height.noise / height.signal * label.signal;
+    heights_.outputs.push_back(label);
   }
   if (two_part_) {
     object_ = make_model("fitting/surface", height_kernel, height_fitting,
-                         {height.signal, height.noise, 0.0, kFreeLevel}, context);
+                         {height.signal, height.noise, 0.0, kFreeLevel});
   }
+}
+
+bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
+  const HeightOptions& height = options.height;
+  const WeightOptions& weight = options.weight;
+  if (height.noise / height.signal != weight.noise / weight.signal) return false;
+  for (int taps = 1; taps <= options.taps; ++taps) {
+    if (heights_.fitting->due(taps) || labels_.fitting->due(taps)) return false;
+  }
+  return true;
 }
 
 void TapBelief::observe(const Target& place, const Contact& contact) {
   ++taps_;
   if (contact.outcome != Outcome::contact) return;
   const bool on = context_.scene.on_surface(contact.height);
-  height_.data.push_back({place, contact.height - desk_});
-  weight_.data.push_back({place, on ? 1.0 : 0.0});
-  if (on) object_.data.push_back(height_.data.back());
+  const Datum datum{place, contact.height - desk_, on ? 1.0 : 0.0};
+  heights_.data.push_back(datum);
+  if (!joined_) labels_.data.push_back(datum);
+  if (on) object_.data.push_back(datum);
 }
 
-Process& TapBelief::ready(Model& model) const {
+Process& TapBelief::ready(Model& model, int output) const {
   const PhaseClock::Scope infer(clock_, Phase::infer);
-  const bool joint = fitted_together_ && &model != &object_;
-  const std::vector<Model*> models = joint ? std::vector<Model*>{&height_, &weight_} : std::vector<Model*>{&model};
-  for (Model* one : models) {
-    if (!one->process) one->process = std::make_unique<Process>(one->kernel, one->settings, candidates_.points);
+  if (!model.process) {
+    PosteriorSettings posterior = posterior_;
+    if (&model != &heights_) posterior.score = simd::Score::none;
+    model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior);
   }
+  Process& process = *model.process;
+  process.show(output + 1);
   // One by one, fits included: a process that is read late, or after a resume, goes through the very states that one
   // read at every tap went through.
-  while (model.process->size() < static_cast<int>(model.data.size())) {
-    for (Model* one : models) {
-      const Datum& datum = one->data[static_cast<std::size_t>(one->process->size())];
-      one->process->add(datum.place, datum.value);
-    }
-    if (models.front()->fitting->due(model.process->size())) fit(models);
+  while (process.size() < static_cast<int>(model.data.size())) {
+    const Datum& datum = model.data[static_cast<std::size_t>(process.size())];
+    const std::array<double, 2> values{model.of_labels ? datum.label : datum.height, datum.label};
+    process.add(datum.place, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(model.outputs.size())));
+    if (model.fitting->due(process.size())) fit(model);
   }
-  return *model.process;
+  return process;
 }
 
-void TapBelief::fit(const std::vector<Model*>& models) const {
+void TapBelief::fit(Model& model) const {
   const PhaseClock::Scope fit(clock_, Phase::fit);
-  std::vector<Process*> processes;
-  for (Model* one : models) processes.push_back(one->process.get());
-  Model& first = *models.front();
-  const int taps = first.process->size();
-  Random random = context_.random(first.name, static_cast<std::uint64_t>(taps));
-  const FitSummary summary = Process::fit(processes, *first.fitting, random);
-  if (summary.failed) ++failed_fits_;
-  for (Model* one : models) {
-    one->fit = summary;
-    one->fit_at = taps;
+  const int taps = model.process->size();
+  Random random = context_.random(model.name, static_cast<std::uint64_t>(taps));
+  model.fit = model.process->fit(*model.fitting, random);
+  model.fit_at = taps;
+  if (model.fit.failed) ++failed_fits_;
+}
+
+TapBelief::Quantity TapBelief::quantity(Model& model, int output) const {
+  if (!model.process || model.process->shown() <= output) return {};
+  const Process& process = ready(model, output);
+  const bool fitted = model.fit_at > 0 && model.fit_at == process.size();
+  return {&process, output, fitted ? &model.fit : nullptr};
+}
+
+void TapBelief::form(Product product) {
+  if (product == Product::uncertainty) posterior_.score = simd::Score::variance;
+  if (product == Product::weighted && joined_) {
+    posterior_.score = clip_ ? simd::Score::weighted_clipped : simd::Score::weighted;
   }
 }
 
-const FitSummary* TapBelief::last_fit(const Process& process) const {
-  for (const Model* one : {&height_, &weight_, &object_}) {
-    if (one->process.get() == &process && one->fit_at > 0 && one->fit_at == process.size()) return &one->fit;
-  }
-  return nullptr;
+const Scores* TapBelief::formed() const {
+  if (posterior_.score == simd::Score::none) return nullptr;
+  return &ready(heights_, posterior_.score == simd::Score::variance ? 0 : 1);
 }
 
-template <class Compute>
-const Eigen::VectorXd& TapBelief::read(Map& map, Model& model, Compute compute) const {
+template <class Read>
+const Eigen::VectorXd& TapBelief::read(Map& map, Model& model, int output, Read read) const {
   const int known = static_cast<int>(model.data.size());
   if (map.taps != known) {
-    const Process& process = ready(model);
+    const Process& process = ready(model, output);
     const PhaseClock::Scope infer(clock_, Phase::infer);
-    map.values = compute(process);
+    map.values.resize(candidates_.size());
+    read(process, map.values);
     map.taps = known;
   }
   return map.values;
 }
 
 const Eigen::VectorXd& TapBelief::uncertainty() const {
-  return read(uncertainty_map_, height_, [](const Process& process) { return process.relative_variance(); });
+  return read(uncertainty_map_, heights_, 0,
+              [](const Process& process, VectorOut out) { process.read_relative_variance(out); });
 }
 
 const Eigen::VectorXd& TapBelief::weight_mean() const {
-  return read(weight_mean_map_, weight_, [](const Process& process) { return process.mean(); });
+  return read(weight_mean_map_, labels(), label_output(),
+              [this](const Process& process, VectorOut out) { process.read_mean(label_output(), out); });
 }
 
 const Eigen::VectorXd& TapBelief::weight() const {
   if (!clip_) return weight_mean();
-  return read(weight_map_, weight_,
-              [](const Process& process) -> Eigen::VectorXd { return process.mean().cwiseMax(0.0).cwiseMin(1.0); });
+  return read(weight_map_, labels(), label_output(), [this](const Process& process, VectorOut out) {
+    process.read_mean(label_output(), out);
+    out = out.cwiseMax(0.0).cwiseMin(1.0);
+  });
 }
 
 const Eigen::VectorXd& TapBelief::height_mean() const {
-  return read(mean_map_, surface(),
-              [this](const Process& process) -> Eigen::VectorXd { return process.mean().array() + desk_; });
+  return read(mean_map_, surface(), 0, [this](const Process& process, VectorOut out) {
+    process.read_mean(0, out);
+    out.array() += desk_;
+  });
 }
 
 const Eigen::VectorXd& TapBelief::all_taps_variance() const {
-  return read(all_taps_map_, height_, [](const Process& process) { return process.variance(); });
+  return read(all_taps_map_, heights_, 0, [](const Process& process, VectorOut out) { process.read_variance(0, out); });
 }
 
 const Eigen::VectorXd& TapBelief::height_variance() const {
   if (!two_part_) return all_taps_variance();
-  return read(variance_map_, surface(), [](const Process& process) { return process.variance(); });
+  return read(variance_map_, surface(), 0, [](const Process& process, VectorOut out) { process.read_variance(0, out); });
 }
 
 double TapBelief::height_noise() const {
   const Model& model = surface();
-  return model.process ? model.process->settings().noise : model.settings.noise;
+  return model.process ? model.process->settings().noise : model.outputs.front().noise;
 }
 
 }  // namespace palpate

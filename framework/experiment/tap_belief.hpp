@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the taps so far say: the height process and the weight process over the candidates, each built when it is first
-// read and never before.
+// read and never before. Where both have the same kernel and the same ratio of noise to signal they are two outputs of
+// one process, with one factorisation.
 #pragma once
 
 #include "experiment/experiment_options.hpp"
@@ -43,16 +44,27 @@ class TapBelief final : public Belief {
   /// The mean of the weight process as it comes, whatever `weight.clip` says.
   const Eigen::VectorXd& weight_mean() const;
 
+  /// Says, before the first tap, that scores are such a product: then formed() has them, with bounds that come out of
+  /// the update of the maps, valid until the next tap. It is null for other scores, and where heights and labels have
+  /// no common process.
+  void form(Product product);
+  const Scores* formed() const;
+
+  /// What the belief knows of one quantity.
+  struct Quantity {
+    const Process* process = nullptr;
+    int output = 0;
+    const FitSummary* last_fit = nullptr;  ///< the fit after the latest tap; null if none was due then
+    explicit operator bool() const { return process != nullptr; }
+  };
   /// The processes as far as they were built, up to date with all taps; null if nothing has read them. u comes from
   /// the height process, height_mean() and height_variance() from the surface process: the same one for
   /// `surface: single`, that of the taps on an object for `two_part`.
-  const Process* height_process() const { return built(height_); }
-  const Process* weight_process() const { return built(weight_); }
-  const Process* surface_process() const { return built(surface()); }
+  Quantity height_process() const { return quantity(heights_, 0); }
+  Quantity weight_process() const { return quantity(labels(), label_output()); }
+  Quantity surface_process() const { return quantity(surface(), 0); }
   bool two_part() const { return two_part_; }
 
-  /// The fit after the latest tap that `process` has absorbed; null if none was due then.
-  const FitSummary* last_fit(const Process& process) const;
   /// Fits that found nothing better and kept the old values.
   int failed_fits() const { return failed_fits_; }
 
@@ -65,46 +77,52 @@ class TapBelief final : public Belief {
  private:
   struct Datum {
     Target place;
-    double value;
+    double height;
+    double label;
   };
   /// A map that is computed when first read after a change.
   struct Map {
     Eigen::VectorXd values;
     int taps = -1;  ///< contacts that it knows of
   };
+  /// A process and all that it is made from; built when first read.
   struct Model {
-    std::vector<Datum> data;
-    std::unique_ptr<Process> process;
     const char* name = "";
     std::shared_ptr<Kernel> kernel;
     std::shared_ptr<Fitting> fitting;
-    ProcessSettings settings;
+    std::vector<ProcessSettings> outputs;
+    bool of_labels = false;  ///< the first output is the labels
+    std::vector<Datum> data;
+    std::unique_ptr<Process> process;
     FitSummary fit;
     int fit_at = 0;  ///< taps that the process had at its latest fit
   };
 
-  static Model make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
-                          const ProcessSettings& settings, const Context& context);
-  Model& surface() const { return two_part_ ? object_ : height_; }
-  const Process* built(Model& model) const { return model.process ? &ready(model) : nullptr; }
-  Process& ready(Model& model) const;
-  void fit(const std::vector<Model*>& models) const;
-  template <class Compute>
-  const Eigen::VectorXd& read(Map& map, Model& model, Compute compute) const;
+  Model make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
+                   const ProcessSettings& settings) const;
+  bool equal_for_good(const ExperimentOptions& options) const;
+  Model& labels() const { return joined_ ? heights_ : labels_; }
+  int label_output() const { return joined_ ? 1 : 0; }
+  Model& surface() const { return two_part_ ? object_ : heights_; }
+  Quantity quantity(Model& model, int output) const;
+  Process& ready(Model& model, int output) const;
+  void fit(Model& model) const;
+  template <class Read>
+  const Eigen::VectorXd& read(Map& map, Model& model, int output, Read read) const;
 
   const Candidates& candidates_;
   const Context& context_;
   PhaseClock& clock_;
+  PosteriorSettings posterior_;
   double desk_;
   bool clip_;
   bool two_part_;
-  bool shared_;                   ///< heights and labels have one kernel
-  bool fitted_together_ = false;  ///< and are fitted together, which makes each read the other's taps
+  bool joined_ = false;  ///< heights and labels are two outputs of one process
   int taps_ = 0;
   int initial_taps_;
   // Lazily filled by const readers: a belief is used by one thread.
-  mutable Model height_;
-  mutable Model weight_;
+  mutable Model heights_;
+  mutable Model labels_;  ///< unless joined
   mutable Model object_;  ///< heights of the taps on an object
   mutable int failed_fits_ = 0;
   mutable Map uncertainty_map_, weight_map_, weight_mean_map_, mean_map_, variance_map_, all_taps_map_;

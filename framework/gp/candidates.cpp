@@ -3,20 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
 
-Candidates grid(const Area& area, int columns, int rows) {
-  Candidates out{columns, rows, Points(columns * rows, 2)};
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const int index = row * columns + column;
-      out.points(index, 0) = (column + 0.5) * area.width / columns;
-      out.points(index, 1) = (row + 0.5) * area.depth / rows;
-    }
-  }
+Eigen::VectorXd centres(double side, int count) {
+  Eigen::VectorXd out(count);
+  for (int i = 0; i < count; ++i) out(i) = (i + 0.5) * side / count;
   return out;
+}
+
+Candidates grid(const Area& area, int columns, int rows) {
+  return product_grid(centres(area.width, columns), centres(area.depth, rows));
 }
 
 int cell(double place, double side, int count) {
@@ -27,6 +26,22 @@ int cell(double place, double side, int count) {
 
 int Candidates::nearest(double x, double y, const Area& area) const {
   return cell(y, area.depth, rows) * columns + cell(x, area.width, columns);
+}
+
+Candidates product_grid(Eigen::VectorXd xs, Eigen::VectorXd ys) {
+  const auto columns = static_cast<int>(xs.size());
+  const auto rows = static_cast<int>(ys.size());
+  Candidates out{columns, rows, Points(columns * rows, 2), std::move(xs), std::move(ys)};
+  for (int row = 0; row < rows; ++row) {
+    out.points.block(row * columns, 0, columns, 1) = out.xs;
+    out.points.block(row * columns, 1, columns, 1).setConstant(out.ys(row));
+  }
+  return out;
+}
+
+Candidates scattered(Points points) {
+  const auto count = static_cast<int>(points.rows());
+  return {count, 1, std::move(points), {}, {}};
 }
 
 Candidates grid_by_count(const Area& area, int count) { return grid(area, count, count); }

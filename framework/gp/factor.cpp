@@ -5,29 +5,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 
+void Factor::reserve(int rows) {
+  if (rows <= capacity_) return;
+  const int padded = simd::round_up(rows, simd::kLine<double>);
+  const simd::Lines<double> old = std::move(rows_);
+  rows_ = simd::Lines<double>(simd::packed_row(padded));
+  std::copy_n(old.data(), simd::packed_row(size_), rows_.data());
+  scratch_ = simd::Lines<double>(static_cast<std::size_t>(padded));
+  largest_.vector.conservativeResize(rows);
+  smallest_.vector.conservativeResize(rows);
+  capacity_ = rows;
+}
+
 bool Factor::append(const VectorView& covariance, double diagonal) {
   const int n = size_;
-  if (rows_.cols() <= n) {
-    const int capacity = std::max(16, 2 * n);
-    rows_.conservativeResize(capacity, capacity);
-    largest_.vector.conservativeResize(capacity);
-    smallest_.vector.conservativeResize(capacity);
-  }
-  auto row = rows_.col(n);
-  for (int i = 0; i < n; ++i) {
-    row(i) = (covariance(i) - rows_.col(i).head(i).dot(row.head(i))) / rows_(i, i);
-  }
-  const double square = diagonal - row.head(n).squaredNorm();
+  if (n == capacity_) reserve(std::max(16, 2 * n));
+  double* const row = rows_.data() + simd::packed_row(n);
+  Eigen::Map<Eigen::VectorXd> l(row, n);
+  l = covariance;
+  std::fill(row + n, rows_.data() + simd::packed_row(n + 1), 0.0);
+  loops_->solve_lower(rows_.data(), n, row);
+  const double square = diagonal - l.squaredNorm();
   if (!(square > kPivotGuard * (n + 1) * kEpsilon * diagonal)) return false;
-  row(n) = std::sqrt(square);
+  row[n] = std::sqrt(square);
   log_determinant_ += std::log(square);
   ++size_;
   follow(largest_, true);
   follow(smallest_, false);
   return true;
+}
+
+void Factor::inverse_row(int i, VectorOut out) const {
+  // c^T L = e_i^T, thus L^T c = e_i: the leading block of L^T, and the row's own entry 1 / L_ii.
+  const double last = 1.0 / pivot(i);
+  double* const c = scratch_.data();
+  Eigen::Map<Eigen::VectorXd>(c, i) = -last * row(i);
+  std::fill(c + i, c + simd::round_up(i, simd::kLine<double>), 0.0);
+  loops_->solve_lower_transposed(rows_.data(), i, c);
+  out.head(i) = Eigen::Map<const Eigen::VectorXd>(c, i);
+  out(i) = last;
 }
 
 void Factor::follow(Extreme& extreme, bool largest) const {

@@ -2,6 +2,8 @@
 // The Cholesky factor of a covariance matrix that grows by one row a tap.
 #pragma once
 
+#include "gp/simd/panels.hpp"
+
 #include <palpate/types.hpp>
 
 #include <Eigen/Core>
@@ -10,9 +12,14 @@
 
 namespace palpate {
 
-/// L with L L^T = K, rows appended at O(n^2) each; earlier rows never change.
+/// L with L L^T = K, rows appended at O(n^2) each; earlier rows never change. n (n + 9) / 2 numbers of memory.
 class Factor {
  public:
+  explicit Factor(const simd::Table& loops = simd::fastest()) : loops_(&loops) {}
+
+  /// Room for so many rows.
+  void reserve(int rows);
+
   /// Appends the point whose covariance with the n points before is `covariance` and with itself `diagonal` (noise and
   /// jitter included). Returns false, and leaves the factor as it was, when the pivot is not above what rounding
   /// alone can produce (kPivotGuard): the matrix is then not positive definite in double precision.
@@ -22,9 +29,14 @@ class Factor {
 
   int size() const { return size_; }
 
-  /// The last row without its pivot: l = L^-1 covariance; n - 1 values.
-  VectorView last_row() const { return rows_.col(size_ - 1).head(size_ - 1); }
-  double last_pivot() const { return rows_(size_ - 1, size_ - 1); }
+  /// Row i without its pivot: l = L^-1 covariance; i values.
+  VectorView row(int i) const { return Eigen::Map<const Eigen::VectorXd>(packed(i), i); }
+  double pivot(int i) const { return packed(i)[i]; }
+  VectorView last_row() const { return row(size_ - 1); }
+  double last_pivot() const { return pivot(size_ - 1); }
+
+  /// Row i of L^-1, i + 1 values, into `out` of as many. O(i^2).
+  void inverse_row(int i, VectorOut out) const;
 
   /// log det K = 2 sum log L_ii.
   double log_determinant() const { return log_determinant_; }
@@ -41,9 +53,13 @@ class Factor {
     double value = 0.0;
   };
   void follow(Extreme& extreme, bool largest) const;
+  const double* packed(int i) const { return rows_.data() + simd::packed_row(i); }
 
+  const simd::Table* loops_;
   int size_ = 0;
-  Eigen::MatrixXd rows_;  ///< row i of L in column i: what the forward substitution reads is contiguous
+  int capacity_ = 0;
+  simd::Lines<double> rows_;             ///< packed: see table.hpp
+  mutable simd::Lines<double> scratch_;  ///< a vector, aligned
   double log_determinant_ = 0.0;
   Extreme largest_;
   Extreme smallest_;

@@ -3,8 +3,12 @@
 
 #include "gp/tolerances.hpp"
 
+#include <palpate/error.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace palpate {
@@ -14,68 +18,148 @@ constexpr double kLogTwoPi = 1.83787706640934548356;
 
 }  // namespace
 
-Process::Process(std::shared_ptr<Kernel> kernel, const ProcessSettings& settings, const Points& candidates)
-    : kernel_(std::move(kernel)), settings_(settings), candidates_(candidates), prior_(candidates.rows()) {
-  kernel_->variance(candidates_, prior_);
-  mean_ = Eigen::VectorXd::Zero(candidates_.rows());
-  if (settings_.mean_ratio > 0.0) explained_ = mean_;
-  variance_ = prior_;
+Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
+                 PosteriorSettings posterior)
+    : kernel_(std::move(kernel)),
+      outputs_(std::move(outputs)),
+      candidates_(candidates),
+      posterior_(std::move(posterior)),
+      prior_(candidates.size()),
+      factor_(*posterior_.machine.loops) {
+  const std::string why = objection(posterior_, *kernel_, candidates_);
+  if (!why.empty()) throw Error("posterior", why);
+  take_prior();
+  choose();
+  restart();
+  reserve(1);
+}
+
+void Process::take_prior() {
+  kernel_->variance(candidates_.points, prior_);
+  same_prior_ = prior_.minCoeff() == prior_.maxCoeff();
 }
 
 void Process::reserve(int taps) {
-  if (targets_.size() >= taps) return;
-  const int capacity = std::max(32, 2 * taps);
+  if (targets_.rows() >= taps) return;
+  // What is expected, within reason, so that no tap has to make room; then twice as much every time.
+  constexpr int kMostExpected = 4096;
+  const int capacity = std::max(std::min(posterior_.taps, kMostExpected), targets_.rows() == 0 ? taps : 2 * taps);
+  const auto columns = static_cast<Eigen::Index>(outputs_.size()) + (with_constant() ? 1 : 0);
   points_.conservativeResize(capacity, 2);
-  targets_.conservativeResize(capacity);
+  targets_.conservativeResize(capacity, static_cast<Eigen::Index>(outputs_.size()));
   factored_.conservativeResize(capacity, 2);
-  reduced_.conservativeResize(capacity);
-  constant_.conservativeResize(capacity);
-  rows_.conservativeResize(candidates_.rows(), capacity);
-  covariance_.resize(capacity);
+  reduced_.conservativeResize(capacity, columns);
+  weights_.conservativeResize(capacity, columns);
+  scratch_.resize(capacity);
+  factor_.reserve(capacity);
+  choice_.engine->reserve(capacity);
 }
 
-void Process::add(const Target& place, double value) {
+void Process::choose(double error) {
+  choice_ = choose_engine(posterior_, *kernel_, candidates_, error);
+  choice_.engine->reserve(static_cast<int>(targets_.rows()));
+}
+
+void Process::add(const Target& place, double value) { add(place, Eigen::Map<const Eigen::VectorXd>(&value, 1)); }
+
+void Process::add(const Target& place, const VectorView& values) {
   reserve(size_ + 1);
   points_(size_, 0) = place.x;
   points_(size_, 1) = place.y;
-  targets_(size_) = value;
+  targets_.row(size_) = values.transpose();
   ++size_;
   if (!append(size_ - 1)) rebuild();
+  keep_accuracy();
 }
 
 bool Process::append(int tap) {
   const int row = factor_.size();
   factored_.row(row) = points_.row(tap);
   const auto place = factored_.row(row);
-  kernel_->covariance(factored_.topRows(row), place, covariance_.head(row));
+  kernel_->covariance(factored_.topRows(row), place, scratch_.head(row));
   double own = 0.0;
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));
-  const double ratio = settings_.noise / settings_.signal;
-  if (!factor_.append(covariance_.head(row), own + ratio * ratio + jitter_)) return false;
+  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() + jitter_)) return false;
 
-  const double pivot = factor_.last_pivot();
   const VectorView before = factor_.last_row();
-  const double target = (targets_(tap) - settings_.mean) / settings_.signal;
-  reduced_(row) = (target - before.dot(reduced_.head(row))) / pivot;
-
-  auto column = rows_.col(row);
-  kernel_->covariance(candidates_, place, column);
-  if (row > 0) column.noalias() -= rows_.leftCols(row) * before;
-  column /= pivot;
-  mean_ += reduced_(row) * column;
-  variance_ -= column.cwiseAbs2();
-  if (settings_.mean_ratio > 0.0) {
-    constant_(row) = (1.0 - before.dot(constant_.head(row))) / pivot;
-    explained_ += constant_(row) * column;
+  const auto reduce = [&](Eigen::Index column, double value) {
+    reduced_(row, column) = (value - before.dot(reduced_.col(column).head(row))) / factor_.last_pivot();
+  };
+  for (Eigen::Index k = 0; k < targets_.cols(); ++k) {
+    const ProcessSettings& output = outputs_at(static_cast<int>(k));
+    reduce(k, (targets_(tap, k) - output.mean) / output.signal);
   }
+  if (with_constant()) reduce(targets_.cols(), 1.0);
+  absorb(row);
   return true;
+}
+
+void Process::absorb(int row) {
+  Engine& engine = *choice_.engine;
+  VectorOut inverse = scratch_.head(engine.needs_inverse() ? row + 1 : 0);
+  if (engine.needs_inverse()) {
+    factor_.inverse_row(row, inverse);
+    const double norm = inverse.lpNorm<1>();
+    inverse_norms_ += norm * norm;
+    weights_.row(row).setZero();
+    for (Eigen::Index k = 0; k < reduced_.cols(); ++k) weights_.col(k).head(row + 1) += reduced_(row, k) * inverse;
+  }
+  std::array<double, simd::kMeans> coefficients{};
+  for (int k = 0; k < shown_; ++k) coefficients[static_cast<std::size_t>(k)] = reduced_(row, k);
+  if (with_constant()) coefficients[static_cast<std::size_t>(shown_)] = reduced_(row, targets_.cols());
+  ScoreRule rule;
+  if (scores_weight() || posterior_.score == simd::Score::variance) rule.score = posterior_.score;
+  if (scores_weight()) {
+    rule.scale = outputs_at(1).signal;
+    rule.shift = outputs_at(1).mean;
+  }
+  engine.absorb({factored_.topRows(row + 1), factor_.row(row), factor_.pivot(row), inverse, coefficients.data()}, rule);
+}
+
+void Process::restart() {
+  inverse_norms_ = 0.0;
+  choice_.engine->restart(shown_ + (with_constant() ? 1 : 0), prior_);
+}
+
+void Process::replay() {
+  restart();
+  for (int row = 0; row < factor_.size(); ++row) absorb(row);
+}
+
+void Process::show(int outputs) {
+  if (outputs <= shown_) return;
+  shown_ = outputs;
+  replay();
+}
+
+void Process::keep_accuracy() {
+  if (posterior_.engine != PosteriorSettings::Kind::automatic) return;
+  const double error = error_bound();
+  if (error <= posterior_.accuracy) return;
+  choose(error);
+  replay();
+}
+
+double Process::error_bound() const {
+  const double error = choice_.engine->covariance_error();
+  if (!(error > 0.0)) return 0.0;
+  const double row = error * std::sqrt(inverse_norms_);
+  double variance = 2.0 * row + row * row;
+  double mean = 0.0;
+  const int n = factor_.size();
+  const auto size_of = [&](Eigen::Index column) { return weights_.col(column).head(n).lpNorm<1>(); };
+  for (Eigen::Index k = 0; k < targets_.cols(); ++k) mean = std::max(mean, error * size_of(k));
+  if (with_constant()) {
+    const double explained = size_of(targets_.cols());
+    mean += std::abs(constant_mean()) * error * explained;
+    variance += 2.0 * (1.0 + explained * prior_.maxCoeff()) * error * explained / constant_precision();
+  }
+  return std::max(mean, variance);
 }
 
 bool Process::refactor(const std::vector<int>& taps) {
   factor_.clear();
-  mean_.setZero();
-  explained_.setZero();
-  variance_ = prior_;
+  restart();
   return std::all_of(taps.begin(), taps.end(), [this](int tap) { return append(tap); });
 }
 
@@ -88,8 +172,7 @@ void Process::rebuild() {
       // What is left of a matrix that no jitter makes positive definite: the taps that are independent of each other.
       Eigen::MatrixXd covariance(size_, size_);
       kernel_->covariance(points_.topRows(size_), points_.topRows(size_), covariance);
-      const double ratio = settings_.noise / settings_.signal;
-      covariance.diagonal().array() += ratio * ratio + jitter_;
+      covariance.diagonal().array() += noise_ratio() * noise_ratio() + jitter_;
       ++pivoted_;
       taps = independent_rows(covariance);
       // The guards of both factorisations differ by rounding: what the second refuses ends the list.
@@ -101,91 +184,140 @@ void Process::rebuild() {
   }
 }
 
-FitSummary Process::fit(const std::vector<Process*>& processes, const Fitting& fitting, Random& random) {
-  Process& first = *processes.front();
+FitSummary Process::fit(const Fitting& fitting, Random& random) {
   std::vector<double> old;
-  for (const KernelParameter& one : first.kernel_->parameters()) old.push_back(one.value);
-  std::vector<ProcessSettings> fitted;
-  fitted.reserve(processes.size());
-  double noise_ratio = first.settings_.noise / first.settings_.signal;
-  FitProblem problem{first.points_.topRows(first.size_), *first.kernel_, noise_ratio, first.settings_.mean_ratio, {}};
-  for (const Process* process : processes) {
-    fitted.push_back(process->settings_);
-    problem.outputs.push_back({process->targets_.head(process->size_), fitted.back().signal, fitted.back().mean});
+  for (const KernelParameter& one : kernel_->parameters()) old.push_back(one.value);
+  std::vector<ProcessSettings> fitted = outputs_;
+  double ratio = noise_ratio();
+  FitProblem problem{points_.topRows(size_), *kernel_, ratio, outputs_.front().mean_ratio, {}};
+  for (std::size_t k = 0; k < fitted.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    problem.outputs.push_back({targets_.col(column).head(size_), fitted[k].signal, fitted[k].mean});
   }
   FitSummary summary = fitting.fit(problem, random);
   if (!summary.changed) return summary;
 
-  bool sound = std::isfinite(noise_ratio) && noise_ratio >= 0.0;
-  for (const KernelParameter& one : first.kernel_->parameters()) sound &= std::isfinite(one.value) && one.value > 0.0;
+  bool sound = std::isfinite(ratio) && ratio >= 0.0;
+  for (const KernelParameter& one : kernel_->parameters()) sound &= std::isfinite(one.value) && one.value > 0.0;
   for (const ProcessSettings& one : fitted) {
     sound &= std::isfinite(one.signal) && one.signal > 0.0 && std::isfinite(one.mean);
   }
   if (!sound) {
-    first.kernel_->set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
+    kernel_->set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
     summary.changed = false;
     summary.failed = true;
     summary.reason = "a number that is not finite and positive was refused; " + summary.reason;
     return summary;
   }
-  for (std::size_t i = 0; i < processes.size(); ++i) {
-    Process& process = *processes[i];
-    process.settings_ = fitted[i];
-    process.settings_.noise = noise_ratio * fitted[i].signal;
-    process.kernel_->variance(process.candidates_, process.prior_);
-    process.jitter_ = 0.0;
-    process.rebuild();
-  }
+  outputs_ = fitted;
+  for (ProcessSettings& one : outputs_) one.noise = ratio * one.signal;
+  take_prior();
+  jitter_ = 0.0;
+  choose();
+  rebuild();
+  keep_accuracy();
   return summary;
 }
 
 double Process::constant_precision() const {
-  return 1.0 / prior_of_constant() + constant_.head(factor_.size()).squaredNorm();
+  return 1.0 / prior_of_constant() + reduced_.col(targets_.cols()).head(factor_.size()).squaredNorm();
 }
 
-Eigen::VectorXd Process::mean() const {
-  Eigen::VectorXd standard = mean_;
-  if (settings_.mean_ratio > 0.0) {
-    const int n = factor_.size();
-    const double constant = constant_.head(n).dot(reduced_.head(n)) / constant_precision();
-    standard.array() += constant * (1.0 - explained_.array());
+double Process::constant_mean() const {
+  const int n = factor_.size();
+  return reduced_.col(targets_.cols()).head(n).dot(reduced_.col(0).head(n)) / constant_precision();
+}
+
+double Process::bound(int piece) const {
+  if (!same_prior_) return std::numeric_limits<double>::infinity();
+  return maps().bound(piece) / prior_(0);
+}
+
+int Process::read(int piece, ScoredCell* out) const {
+  std::array<TileCell, kMostCells> cells;
+  const int count = maps().read_tile(piece, scores_weight() ? 1 : 0, cells.data());
+  for (int i = 0; i < count; ++i) {
+    const TileCell& cell = cells[static_cast<std::size_t>(i)];
+    const double prior = prior_(cell.candidate);
+    double score = std::min(std::max(cell.variance, 0.0), prior) / prior;
+    if (scores_weight()) {
+      const double weight = outputs_at(1).signal * cell.mean + outputs_at(1).mean;
+      score *= posterior_.score == simd::Score::weighted_clipped ? std::min(std::max(weight, 0.0), 1.0) : weight;
+    }
+    out[i] = {cell.candidate, score};
   }
-  return (settings_.signal * standard.array() + settings_.mean).matrix();
+  return count;
 }
 
-Eigen::VectorXd Process::standard_variance() const {
-  if (!(settings_.mean_ratio > 0.0)) return variance_;
-  return variance_.array() + (1.0 - explained_.array()).square() / constant_precision();
+void Process::read_mean(int output, VectorOut out) const {
+  maps().read_mean(output, out);
+  if (with_constant()) {
+    Eigen::VectorXd explained(out.size());
+    maps().read_mean(shown_, explained);
+    out.array() += constant_mean() * (1.0 - explained.array());
+  }
+  out.array() = outputs_at(output).signal * out.array() + outputs_at(output).mean;
 }
 
-Eigen::VectorXd Process::variance() const {
-  const Eigen::VectorXd prior = prior_.array() + prior_of_constant();
-  return standard_variance().cwiseMax(0.0).cwiseMin(prior) * (settings_.signal * settings_.signal);
+void Process::read_standard_variance(VectorOut out) const {
+  maps().read_variance(out);
+  if (with_constant()) {
+    Eigen::VectorXd explained(out.size());
+    maps().read_mean(shown_, explained);
+    out.array() += (1.0 - explained.array()).square() / constant_precision();
+  }
+}
+
+void Process::read_variance(int output, VectorOut out) const {
+  const double signal = outputs_at(output).signal;
+  read_standard_variance(out);
+  out.array() = out.array().max(0.0).min(prior_.array() + prior_of_constant()) * (signal * signal);
+}
+
+void Process::read_relative_variance(VectorOut out) const {
+  read_standard_variance(out);
+  const auto prior = prior_.array() + prior_of_constant();
+  out.array() = out.array().max(0.0).min(prior) / prior;
+}
+
+Eigen::VectorXd Process::mean(int output) const {
+  Eigen::VectorXd out(candidates_.size());
+  read_mean(output, out);
+  return out;
+}
+
+Eigen::VectorXd Process::variance(int output) const {
+  Eigen::VectorXd out(candidates_.size());
+  read_variance(output, out);
+  return out;
 }
 
 Eigen::VectorXd Process::relative_variance() const {
-  const Eigen::VectorXd prior = prior_.array() + prior_of_constant();
-  return standard_variance().cwiseMax(0.0).cwiseMin(prior).cwiseQuotient(prior);
+  Eigen::VectorXd out(candidates_.size());
+  read_relative_variance(out);
+  return out;
 }
 
 int Process::variances_clamped() const {
-  const Eigen::ArrayXd variance = standard_variance();
+  Eigen::VectorXd variance(candidates_.size());
+  read_standard_variance(variance);
   // A last digit above the prior is no news; below 0 every digit is.
-  const Eigen::ArrayXd most = (prior_.array() + prior_of_constant()) * (1.0 + 4.0 * kEpsilon);
-  return static_cast<int>((variance < 0.0 || variance > most).count());
+  const auto most = (prior_.array() + prior_of_constant()) * (1.0 + 4.0 * kEpsilon);
+  return static_cast<int>((variance.array() < 0.0 || variance.array() > most).count());
 }
 
-double Process::log_marginal_likelihood() const {
+double Process::log_marginal_likelihood(int output) const {
   const int n = factor_.size();
   if (n == 0) return 0.0;
-  double square = reduced_.head(n).squaredNorm();
+  const auto reduced = reduced_.col(output).head(n);
+  double square = reduced.squaredNorm();
   double log_determinant = factor_.log_determinant();
-  if (settings_.mean_ratio > 0.0) {
-    const double common = constant_.head(n).dot(reduced_.head(n));
+  if (with_constant()) {
+    const double common = reduced_.col(targets_.cols()).head(n).dot(reduced);
     square -= common * common / constant_precision();
     log_determinant += std::log(constant_precision() * prior_of_constant());
   }
-  return -0.5 * (square + log_determinant + n * kLogTwoPi) - n * std::log(settings_.signal);
+  return -0.5 * (square + log_determinant + n * kLogTwoPi) - n * std::log(outputs_at(output).signal);
 }
 
 }  // namespace palpate

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// One Gaussian process and its posterior over the candidates, updated tap by tap.
+// Gaussian processes that share their covariance, and their posterior over the candidates, updated tap by tap.
 #pragma once
 
 #include "gp/candidates.hpp"
 #include "gp/factor.hpp"
+#include "gp/posterior.hpp"
+#include "gp/scores.hpp"
 
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
@@ -22,16 +24,16 @@ struct ProcessSettings {
   double mean_ratio = 0.0;
 };
 
-/// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates.
+/// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates, of
+/// one quantity or of several that were measured at the same places and have the same kernel and ratio of noise to
+/// signal. These, the outputs, share all that does not depend on the targets: one factorisation, and one variance but
+/// for its unit.
 ///
 /// Inside, targets are standardised, (value - mean) / signal, and the covariance is that of the kernel plus
 /// (noise / signal)^2 on the diagonal; every number that leaves is in the unit of the targets again, but for
-/// relative_variance().
-///
-/// Engine `dense`: with L the factor of the covariance of n taps and V = L^-1 K_*, a new tap adds one row to V,
-///     v = (k_* - V^T l) / d,   mean += v b,   variance -= v^2,
-/// (l, d) its row of L and b its entry of L^-1 targets. That is O(nM) time and memory for M candidates; what earlier
-/// taps brought is never computed again, unless the jitter or the hyperparameters change.
+/// relative_variance(). The maps are kept by one of the engines of engine.hpp; what earlier taps brought is never
+/// computed again, unless the jitter, the hyperparameters or the engine change: then the state is rebuilt from the taps,
+/// n updates of the maps and O(n^3) for the factor.
 ///
 /// An unknown constant in the mean is integrated out (the same, section 2.7): its posterior needs L^-1 1, which grows
 /// like L^-1 targets, and the map V^T L^-1 1.
@@ -40,28 +42,44 @@ struct ProcessSettings {
 /// added to the whole diagonal and reported by jitter(); it is part of the model from then on. A matrix that is
 /// singular even so (a kernel that is not positive definite) is factorised with pivoting, and taps that the others
 /// already tell everything about are set aside: they stay recorded but do not enter the posterior.
-class Process {
+class Process final : public Scores {
  public:
-  /// `candidates` must outlive the process.
-  Process(std::shared_ptr<Kernel> kernel, const ProcessSettings& settings, const Points& candidates);
+  /// `candidates` must outlive the process. All `outputs` have the same noise / signal and mean_ratio, which may differ
+  /// from 0 only for a single output. Throws Error if there is an objection() to `posterior`.
+  Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
+          PosteriorSettings posterior = {});
 
-  /// Adds a tap and updates the maps. O(nM).
+  /// Adds a tap, a value for each output, and updates the maps.
+  void add(const Target& place, const VectorView& values);
   void add(const Target& place, double value);
 
   int size() const { return size_; }
 
-  /// Posterior mean over the candidates, unit of the targets.
-  Eigen::VectorXd mean() const;
+  /// Lets the outputs below `outputs` have a map of their mean, at the cost of rebuilding the maps if that is more than
+  /// before; at first only output 0 has one.
+  void show(int outputs);
+  int shown() const { return shown_; }
+
+  /// Scores of the kind that the settings name, of u, the relative variance, and w, the mean of output 1, which is shown.
+  int pieces() const override { return maps().tiling().tiles(); }
+  double bound(int piece) const override;
+  int read(int piece, ScoredCell* out) const override;
+
+  /// Posterior mean over the candidates, unit of the targets, of an output that is shown.
+  void read_mean(int output, VectorOut out) const;
   /// Posterior variance over the candidates, noise excluded, square of the unit of the targets; in [0, prior].
-  Eigen::VectorXd variance() const;
+  void read_variance(int output, VectorOut out) const;
   /// The same relative to the prior variance of each candidate; in [0, 1].
+  void read_relative_variance(VectorOut out) const;
+  Eigen::VectorXd mean(int output = 0) const;
+  Eigen::VectorXd variance(int output = 0) const;
   Eigen::VectorXd relative_variance() const;
 
   /// log p(targets), natural logarithm, targets in their unit. 0 without taps.
-  double log_marginal_likelihood() const;
+  double log_marginal_likelihood(int output = 0) const;
 
   /// The variance added to the diagonal by need, square of the unit of the targets.
-  double jitter() const { return jitter_ * settings_.signal * settings_.signal; }
+  double jitter(int output = 0) const { return jitter_ * outputs_at(output).signal * outputs_at(output).signal; }
   /// How often jitter was raised, and how often pivoting was the last resort.
   int jitter_raised() const { return jitter_raised_; }
   int pivoted() const { return pivoted_; }
@@ -72,43 +90,65 @@ class Process {
   /// Estimate of the condition number of the covariance of the taps, noise and jitter included.
   double condition() const { return factor_.condition(); }
 
-  const ProcessSettings& settings() const { return settings_; }
+  /// The engine in use, why, and a bound of what it adds to the rounding of `dense`, of means in signals and of
+  /// variances in signals squared: with e the error of a covariance, c_i the rows of L^-1 and alpha = L^-T L^-1 targets,
+  ///     2 E + E^2,  E = e sqrt(sum |c_i|_1^2),   and   e |alpha|_1.
+  const char* engine() const { return choice_.engine->name(); }
+  const std::string& engine_reason() const { return choice_.reason; }
+  double error_bound() const;
+
+  const ProcessSettings& settings(int output = 0) const { return outputs_at(output); }
   const Kernel& kernel() const { return *kernel_; }
 
-  /// Lets `fitting` choose the hyperparameters of `processes` from their taps, and rebuilds if it changed them,
-  /// O(n^2 M). Several processes fitted together share kernel and places, and afterwards their ratio of noise to
-  /// signal. Numbers that are not finite and positive are refused: then the old ones stay.
-  static FitSummary fit(const std::vector<Process*>& processes, const Fitting& fitting, Random& random);
+  /// Lets `fitting` choose the hyperparameters from the taps, and rebuilds if it changed them. Numbers that are not
+  /// finite and positive are refused: then the old ones stay.
+  FitSummary fit(const Fitting& fitting, Random& random);
 
  private:
+  const ProcessSettings& outputs_at(int output) const { return outputs_[static_cast<std::size_t>(output)]; }
+  bool with_constant() const { return outputs_.front().mean_ratio > 0.0; }
+  double noise_ratio() const { return outputs_.front().noise / outputs_.front().signal; }
+  double prior_of_constant() const { return outputs_.front().mean_ratio * outputs_.front().mean_ratio; }
+
+  const Maps& maps() const { return choice_.engine->maps(); }
+  bool scores_weight() const { return shown_ > 1 && posterior_.score > simd::Score::variance; }
+  void take_prior();
+  void reserve(int taps);
+  void choose(double error = 0.0);
   bool append(int tap);
+  void absorb(int row);
+  void restart();
+  void replay();
+  void keep_accuracy();
   void rebuild();
   bool refactor(const std::vector<int>& taps);
-  void reserve(int taps);
   /// Precision of the unknown constant after the taps: 1 / mean_ratio^2 + 1^T K^-1 1.
   double constant_precision() const;
-  Eigen::VectorXd standard_variance() const;
-  double prior_of_constant() const { return settings_.mean_ratio * settings_.mean_ratio; }
+  /// Posterior mean of the constant in signals.
+  double constant_mean() const;
+  void read_standard_variance(VectorOut out) const;
 
   std::shared_ptr<Kernel> kernel_;
-  ProcessSettings settings_;
-  const Points& candidates_;
-  Eigen::VectorXd prior_;  ///< kernel variance at each candidate
+  std::vector<ProcessSettings> outputs_;
+  const Candidates& candidates_;
+  PosteriorSettings posterior_;
+  EngineChoice choice_;
+  int shown_ = 1;
+  Eigen::VectorXd prior_;      ///< kernel variance at each candidate
+  bool same_prior_ = true;     ///< at all of them
 
   int size_ = 0;
   Points points_;            ///< first size_ rows, in the order of the taps
-  Eigen::VectorXd targets_;  ///< as given
+  Eigen::MatrixXd targets_;  ///< as given, an output a column
 
   Factor factor_;
-  Points factored_;            ///< the points of the rows of factor_: those of the taps unless some are set aside
-  Eigen::VectorXd reduced_;    ///< L^-1 standardised targets
-  Eigen::VectorXd constant_;   ///< L^-1 1; only with an unknown constant
-  Eigen::MatrixXd rows_;       ///< M x n: V^T, a row of the factor a column
-  Eigen::VectorXd mean_;       ///< standardised, without the unknown constant
-  Eigen::VectorXd explained_;  ///< V^T L^-1 1: how much of the constant the taps tell at each candidate
-  Eigen::VectorXd variance_;
-  Eigen::VectorXd covariance_;  ///< scratch: of the new tap with the earlier ones
-  double jitter_ = 0.0;         ///< relative to signal^2
+  Points factored_;          ///< the points of the rows of factor_: those of the taps unless some are set aside
+  /// L^-1 of the standardised targets, an output a column; with an unknown constant, L^-1 1 in the column after.
+  Eigen::MatrixXd reduced_;
+  Eigen::MatrixXd weights_;  ///< L^-T of the same, of the rows that the engine has taken; only where it needs L^-1
+  double inverse_norms_ = 0.0;  ///< sum of |c_i|_1^2 over those rows
+  Eigen::VectorXd scratch_;
+  double jitter_ = 0.0;  ///< relative to signal^2
   int jitter_raised_ = 0;
   int pivoted_ = 0;
 };

@@ -110,12 +110,12 @@ std::string surface_csv(Experiment& experiment) {
 
 std::string maps_csv(const Candidates& candidates, const TapBelief& belief) {
   std::vector<Column> columns;
-  if (belief.surface_process() != nullptr) {
+  if (belief.surface_process()) {
     columns.insert(columns.end(),
                    {{"height_mean", &belief.height_mean()}, {"height_variance", &belief.height_variance()}});
   }
-  if (belief.height_process() != nullptr) columns.emplace_back("u", &belief.uncertainty());
-  if (belief.weight_process() != nullptr) columns.emplace_back("w", &belief.weight());
+  if (belief.height_process()) columns.emplace_back("u", &belief.uncertainty());
+  if (belief.weight_process()) columns.emplace_back("w", &belief.weight());
   return columns.empty() ? std::string() : grid_csv(candidates, columns);
 }
 

@@ -90,6 +90,8 @@ void add_process(Row& row, const std::string& name, const std::optional<ProcessS
   add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
   add("jitter", [](const ProcessState& s) { return s.jitter; });
   add("condition", [](const ProcessState& s) { return s.condition; });
+  row.add(name + ".engine", state ? std::optional<std::string>(state->engine) : std::nullopt);
+  add("error_bound", [](const ProcessState& s) { return s.error_bound; });
   if (state && state->fit) {
     row.add(name + ".fit.changed", state->fit->changed);
     row.add(name + ".fit.objective", state->fit->objective);

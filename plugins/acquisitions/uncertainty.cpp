@@ -11,6 +11,7 @@ class Uncertainty final : public Acquisition {
   Uncertainty(const Options&, const Context&) {}
 
   void score(const Belief& belief, VectorOut out) const override { out = belief.uncertainty(); }
+  Product product() const override { return Product::uncertainty; }
   double prior_scale() const override { return 1.0; }
 };
 

@@ -15,6 +15,25 @@ class Product final : public Composed<Multiply> {
  public:
   using Composed::Composed;
 
+  bool separable() const override {
+    bool all = true;
+    for (std::size_t i = 0; i < parts().size(); ++i) all &= parts()[i].separable();
+    return all;
+  }
+
+  void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
+    parts()[0].axis_covariance(axis, a, b, out);
+    for (std::size_t i = 1; i < parts().size(); ++i) {
+      for (Eigen::Index j = 0; j < b.size(); ++j) {
+        for_pieces(a.size(), [&](Eigen::Index from, Eigen::Index count) {
+          Piece part(count);
+          parts()[i].axis_covariance(axis, a.segment(from, count), b.segment(j, 1), part.matrix());
+          out.col(j).segment(from, count).array() *= part;
+        });
+      }
+    }
+  }
+
   void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
     for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
       Eigen::Index first = 0;

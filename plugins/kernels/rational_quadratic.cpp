@@ -25,6 +25,7 @@ class RationalQuadraticShape {
  public:
   using Options = RationalQuadraticOptions;
   static constexpr double kFarthest = 1e300;
+  static constexpr bool kSeparable = false;
   explicit RationalQuadraticShape(const Options& options) : alpha_(options.alpha) {}
 
   template <class Array>

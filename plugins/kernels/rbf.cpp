@@ -6,6 +6,7 @@ namespace palpate::kernels {
 
 struct RbfShape : PlainShape {
   using PlainShape::PlainShape;
+  static constexpr bool kSeparable = true;
 
   template <class Array>
   void apply(Array r2) const {

@@ -32,6 +32,13 @@ class Scale final : public Kernel {
     out *= factor_;
   }
 
+  bool separable() const override { return inner_->separable(); }
+
+  void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
+    inner_->axis_covariance(axis, a, b, out);
+    if (axis == 0) out *= factor_;
+  }
+
   std::vector<KernelParameter> parameters() const override {
     std::vector<KernelParameter> out{{"factor", factor_}};
     for (KernelParameter one : inner_->parameters()) {

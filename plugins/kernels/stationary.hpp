@@ -43,6 +43,7 @@ using Chunk = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kChunk, 1
 ///     std::vector<KernelParameter> parameters() const;
 ///     void set_parameters(values);
 ///     void own_slopes(r2, k, out) const;         out(i, p) = dk/d log parameter p
+///     static constexpr bool kSeparable;          f(a + b) = f(a) f(b)
 template <class Shape>
 class Stationary final : public Kernel {
  public:
@@ -64,6 +65,17 @@ class Stationary final : public Kernel {
   }
 
   void variance(const PointsView& a, VectorOut out) const override { out.head(a.rows()).setOnes(); }
+
+  bool separable() const override { return Shape::kSeparable; }
+
+  void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
+    const double length_scale = axis == 0 ? along_x_ : along_y_;
+    for (Eigen::Index j = 0; j < b.size(); ++j) {
+      auto column = out.col(j).array();
+      column = ((a.array() - b(j)) / length_scale).square();
+      shape_.apply(column);
+    }
+  }
 
   std::vector<KernelParameter> parameters() const override {
     std::vector<KernelParameter> out{{"length_scale", along_x_, Unit::metre}};
@@ -116,6 +128,7 @@ struct PlainShape {
   using Options = StationaryOptions;
   /// Exponentials of it are 0, or the smallest normal number, where Eigen's packets stop: 0 also times this.
   static constexpr double kFarthest = 1e8;
+  static constexpr bool kSeparable = false;
   explicit PlainShape(const Options&) {}
   std::vector<KernelParameter> parameters() const { return {}; }
   void set_parameters(const VectorView&) {}

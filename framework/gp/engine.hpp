@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Engines: three ways to bring one more row of the factor to the maps over the candidates.
+//
+// With L the factor of the covariance of n taps, K_* their covariance with the candidates and V = L^-1 K_*, a tap adds
+// one row v to V, and
+//     mean += v b,   variance -= v^2,
+// b its entry of L^-1 targets. The engines differ in how they come to v, with l the new row of L, d its pivot and
+// c the new row of L^-1:
+//     dense    v = (k_* - l^T V) / d, of all earlier rows of V       O(n M) time and memory
+//     grid     v = sum_i c_i f_x(x_i, X) f_y(y_i, Y)                 O(n M) time, O(M + n G) memory
+//     lowrank  v = U_y (P_y^T diag(c) P_x) U_x^T                     O(r M + n (r^2 + n)) time, O(M + n r) memory
+// for M candidates, in a grid of G x G places for the latter two; f is the factor of the kernel along one axis, U an
+// orthonormal basis of the r directions that its covariances on the grid have within a tolerance, and P the coordinates
+// of the taps' covariances in it.
+#pragma once
+
+#include "gp/maps.hpp"
+#include "gp/workers.hpp"
+
+#include <palpate/kernel.hpp>
+
+#include <memory>
+#include <string>
+
+namespace palpate {
+
+/// What the loops run on.
+struct Machine {
+  const simd::Table* loops = &simd::fastest();
+  std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
+};
+
+/// One row of the factor, for the tap in the last row of `places`.
+struct FactorRow {
+  PointsView places;  ///< of all n rows so far, this one included
+  VectorView factor;  ///< l, n - 1 values
+  double pivot;
+  VectorView inverse;  ///< c, n values; empty for an engine that does without
+  const double* coefficients;  ///< b of every mean
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  virtual const char* name() const = 0;
+  /// Room for so many rows, as far as that is reasonable.
+  virtual void reserve(int rows) = 0;
+  /// Whether absorb() reads the row of L^-1.
+  virtual bool needs_inverse() const = 0;
+
+  /// Back to the prior, with `means` maps of means; the hyperparameters of the kernel may be new. `prior` is the
+  /// variance of the kernel at the candidates.
+  virtual void restart(int means, const VectorView& prior) = 0;
+
+  /// Takes one more row into the maps; `rule` says which score the bounds of the maps are for.
+  virtual void absorb(const FactorRow& row, const ScoreRule& rule) = 0;
+
+  /// The largest error of a covariance between a tap and a candidate beyond rounding, so far, relative to the prior
+  /// variance: what the engine leaves away.
+  virtual double covariance_error() const { return 0.0; }
+
+  virtual const Maps& maps() const = 0;
+};
+
+/// `kernel` and `candidates` must outlive the engines. The latter two need a separable kernel and a product grid.
+std::unique_ptr<Engine> make_dense(const Machine&, const Kernel& kernel, const Candidates& candidates);
+std::unique_ptr<Engine> make_grid(const Machine&, const Kernel& kernel, const Candidates& candidates);
+/// Directions whose share of a covariance is below `tolerance` are left out; `single` keeps the maps in single
+/// precision.
+std::unique_ptr<Engine> make_lowrank(const Machine&, const Kernel& kernel, const Candidates& candidates,
+                                     double tolerance, bool single);
+
+}  // namespace palpate

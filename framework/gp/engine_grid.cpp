@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "gp/engine.hpp"
+
+namespace palpate {
+namespace {
+
+/// Strips that share what they read of the columns' covariances, and the work of one piece for the workers.
+constexpr int kGroup = 4;
+
+class Grid final : public Engine {
+ public:
+  Grid(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
+      : machine_(machine),
+        kernel_(kernel),
+        candidates_(candidates),
+        maps_(Tiling::grid(candidates, kLine)),
+        along_x_(candidates.columns, simd::kPanelLines * kLine, kLine),
+        along_y_(candidates.rows, simd::kStripRows, simd::kStripRows),
+        column_(std::max(candidates.columns, candidates.rows)),
+        scaled_(static_cast<std::size_t>(machine.workers->threads())) {}
+
+  const char* name() const override { return "grid"; }
+  void reserve(int rows) override {
+    along_x_.reserve(rows);
+    along_y_.reserve(rows);
+    for (simd::Lines<double>& one : scaled_) one = simd::Lines<double>(scaled_size(rows));
+  }
+  bool needs_inverse() const override { return true; }
+
+  void restart(int means, const VectorView& prior) override {
+    along_x_.clear();
+    along_y_.clear();
+    maps_.restart(means, prior);
+  }
+
+  void absorb(const FactorRow& row, const ScoreRule& rule) override {
+    append(0, candidates_.xs, row, along_x_);
+    append(1, candidates_.ys, row, along_y_);
+    const int depth = along_x_.rows();
+    if (scaled_.front().size() < scaled_size(depth)) {
+      for (simd::Lines<double>& one : scaled_) one = simd::Lines<double>(scaled_size(2 * depth));
+    }
+    const int strips = maps_.tiling().strips();
+    machine_.workers->for_each((strips + kGroup - 1) / kGroup, [&](int group, int worker) {
+      const int first = group * kGroup;
+      const int count = std::min(kGroup, strips - first);
+      double* const a = scaled_[static_cast<std::size_t>(worker)].data();
+      const std::size_t a_stride = static_cast<std::size_t>(depth) * simd::kStripRows;
+      for (int i = 0; i < count; ++i) {
+        scale(along_y_.panel(first + i), row.inverse, a + static_cast<std::size_t>(i) * a_stride);
+      }
+      machine_.loops->f64.absorb_product(
+          {a, a_stride, count, along_x_.panel(0), along_x_.stride(), depth, along_x_.padded() / kLine},
+          maps_.update(first, row.coefficients, rule));
+    });
+  }
+
+  const Maps& maps() const override { return maps_; }
+
+ private:
+  static constexpr int kLine = simd::kLine<double>;
+
+  static std::size_t scaled_size(int rows) { return static_cast<std::size_t>(rows) * simd::kStripRows * kGroup; }
+
+  void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, simd::Panels<double>& to) {
+    auto column = column_.head(places.size());
+    kernel_.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), column);
+    to.append(column.data());
+  }
+
+  /// diag(c) times the covariances of a strip's rows.
+  static void scale(const double* rows, const VectorView& by, double* out) {
+    using Rows = Eigen::Array<double, simd::kStripRows, Eigen::Dynamic>;
+    const Eigen::Map<const Rows> from(rows, simd::kStripRows, by.size());
+    Eigen::Map<Rows>(out, simd::kStripRows, by.size()) = from.rowwise() * by.transpose().array();
+  }
+
+  Machine machine_;
+  const Kernel& kernel_;
+  const Candidates& candidates_;
+  TiledMaps<double> maps_;
+  simd::Panels<double> along_x_;  ///< f_x(x_i, X), a tap a row
+  simd::Panels<double> along_y_;  ///< f_y(y_i, Y), a strip a panel
+  Eigen::VectorXd column_;
+  std::vector<simd::Lines<double>> scaled_;  ///< one a worker
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_grid(const Machine& machine, const Kernel& kernel, const Candidates& candidates) {
+  return std::make_unique<Grid>(machine, kernel, candidates);
+}
+
+}  // namespace palpate

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "gp/axis_basis.hpp"
+#include "gp/engine.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int kLine = simd::kLine<double>;
+constexpr int kRows = simd::kStripRows;
+
+/// One axis of the grid: the basis of its covariances, and the taps in it.
+struct Axis {
+  const Eigen::VectorXd& places;
+  Eigen::MatrixXd basis;         ///< places x r
+  Eigen::VectorXd covariance;    ///< of the new tap with the places
+  Eigen::VectorXd coordinates;   ///< of that in the basis
+  double largest = 0.0;          ///< covariance of any tap so far
+  double left = 0.0;             ///< of any covariance of any tap so far, outside of the basis
+
+  void restart(const Kernel& kernel, int axis, double tolerance) {
+    basis = axis_basis(kernel, axis, places, tolerance);
+    covariance.resize(places.size());
+    coordinates.resize(basis.cols());
+    largest = left = 0.0;
+  }
+
+  void take(const Kernel& kernel, int axis, const FactorRow& row) {
+    kernel.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), covariance);
+    largest = std::max(largest, covariance.cwiseAbs().maxCoeff());
+    coordinates.noalias() = basis.transpose() * covariance;
+    covariance.noalias() -= basis * coordinates;
+    left = std::max(left, covariance.cwiseAbs().maxCoeff());
+  }
+};
+
+/// v = U_y S U_x^T with S = P_y^T diag(c) P_x: S and S^T U_y^T are formed in double precision, and the product with
+/// U_x^T, which is most of the work, in that of the maps.
+template <class Real>
+class Lowrank final : public Engine {
+ public:
+  Lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates, double tolerance)
+      : machine_(machine),
+        kernel_(kernel),
+        tolerance_(tolerance),
+        x_{candidates.xs, {}, {}, {}},
+        y_{candidates.ys, {}, {}, {}},
+        maps_(Tiling::grid(candidates, simd::kLine<Real>)) {}
+
+  const char* name() const override { return "lowrank"; }
+  void reserve(int rows) override {
+    reserved_ = rows;
+    in_x_.reserve(rows);
+    in_y_.reserve(rows);
+  }
+  bool needs_inverse() const override { return true; }
+
+  void restart(int means, const VectorView& prior) override {
+    x_.restart(kernel_, 0, tolerance_);
+    y_.restart(kernel_, 1, tolerance_);
+    const auto rank_x = static_cast<int>(x_.basis.cols());
+    const auto rank_y = static_cast<int>(y_.basis.cols());
+    in_x_ = simd::Panels<double>(rank_x, simd::kPanelLines * kLine, kLine);
+    in_y_ = simd::Panels<double>(rank_y, kRows, kRows);
+    basis_x_ = simd::Panels<Real>(static_cast<int>(x_.places.size()), simd::kPanelLines * simd::kLine<Real>,
+                                  simd::kLine<Real>);
+    basis_y_ = simd::Panels<double>(static_cast<int>(y_.places.size()), simd::kPanelLines * kLine, kLine);
+    basis_x_.reserve(rank_x);
+    basis_y_.reserve(rank_y);
+    for (int i = 0; i < rank_x; ++i) basis_x_.append(x_.basis.col(i).data());
+    for (int i = 0; i < rank_y; ++i) basis_y_.append(y_.basis.col(i).data());
+    in_x_.reserve(reserved_);
+    in_y_.reserve(reserved_);
+    shares_ = simd::Lines<double>(static_cast<std::size_t>(in_y_.panels()) * kRows * static_cast<std::size_t>(in_x_.padded()));
+    shares_by_x_ = simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded()));
+    rows_ = simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded()));
+    a_.resize(static_cast<std::size_t>(machine_.workers->threads()));
+    for (simd::Lines<Real>& one : a_) one = simd::Lines<Real>(static_cast<std::size_t>(rank_x) * kRows);
+    maps_.restart(means, prior);
+  }
+
+  void absorb(const FactorRow& row, const ScoreRule& rule) override {
+    x_.take(kernel_, 0, row);
+    y_.take(kernel_, 1, row);
+    in_x_.append(x_.coordinates.data());
+    in_y_.append(y_.coordinates.data());
+    form_shares(row.inverse);
+    form_rows();
+    const int lines = basis_x_.padded() / simd::kLine<Real>;
+    machine_.workers->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
+      Real* const a = a_[static_cast<std::size_t>(worker)].data();
+      gather(strip, a);
+      functions().absorb_product({a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines},
+                                 maps_.update(strip, row.coefficients, rule));
+    });
+  }
+
+  double covariance_error() const override {
+    return x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
+  }
+
+  const Maps& maps() const override { return maps_; }
+
+ private:
+  const simd::Functions<Real>& functions() const;
+
+  /// S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
+  void form_shares(const VectorView& inverse) {
+    const int depth = in_x_.rows();
+    const auto needed = static_cast<std::size_t>(depth) * kRows;
+    if (scaled_.size() < needed) scaled_ = simd::Lines<double>(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
+    using Rows = Eigen::Array<double, kRows, Eigen::Dynamic>;
+    const int lines = in_x_.padded() / kLine;
+    double* c = shares_.data();
+    for (int strip = 0; strip < in_y_.panels(); ++strip) {
+      const Eigen::Map<const Rows> from(in_y_.panel(strip), kRows, depth);
+      Eigen::Map<Rows>(scaled_.data(), kRows, depth) = from.rowwise() * inverse.transpose().array();
+      machine_.loops->f64.multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
+      // Turn the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
+      for (int line = 0; line < lines; ++line) {
+        const int panel = line / simd::kPanelLines;
+        const int width = in_x_.width(panel);
+        const double* tile = c + panel * kRows * simd::kPanelLines * kLine + line % simd::kPanelLines * kLine;
+        double* out = shares_by_x_.data() + (static_cast<std::ptrdiff_t>(line) * in_y_.padded() + strip * kRows) * kLine;
+        for (int m = 0; m < kRows; ++m) std::copy_n(tile + m * width, kLine, out + m * kLine);
+      }
+    }
+  }
+
+  /// S^T U_y^T: what every row of the grid has of every direction along x.
+  void form_rows() {
+    machine_.loops->f64.multiply({shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows,
+                                  in_x_.padded() / kRows, basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(),
+                                  basis_y_.padded() / kLine},
+                                 rows_.data());
+  }
+
+  /// The shares of a strip's rows, direction by direction.
+  void gather(int strip, Real* out) const {
+    const int panel = strip * kRows / (simd::kPanelLines * kLine);
+    const int width = basis_y_.width(panel);
+    const int within = strip * kRows - panel * simd::kPanelLines * kLine;
+    const double* tile = rows_.data() + static_cast<std::ptrdiff_t>(panel) * kRows * simd::kPanelLines * kLine + within;
+    const std::ptrdiff_t strip_size = static_cast<std::ptrdiff_t>(basis_y_.padded()) * kRows;
+    for (int k = 0; k < basis_x_.rows(); ++k) {
+      const double* from = tile + k / kRows * strip_size + k % kRows * width;
+      for (int i = 0; i < kRows; ++i) out[k * kRows + i] = static_cast<Real>(from[i]);
+    }
+  }
+
+  Machine machine_;
+  const Kernel& kernel_;
+  double tolerance_;
+  Axis x_;
+  Axis y_;
+  int reserved_ = 0;
+  simd::Panels<double> in_x_;     ///< P_x, a tap a row
+  simd::Panels<double> in_y_;     ///< P_y
+  simd::Panels<Real> basis_x_;    ///< U_x^T
+  simd::Panels<double> basis_y_;  ///< U_y^T
+  TiledMaps<Real> maps_;
+  simd::Lines<double> scaled_;       ///< scratch: eight columns of P_y times c
+  simd::Lines<double> shares_;       ///< S
+  simd::Lines<double> shares_by_x_;  ///< S^T
+  simd::Lines<double> rows_;         ///< S^T U_y^T
+  std::vector<simd::Lines<Real>> a_;  ///< scratch of a worker
+};
+
+template <>
+const simd::Functions<double>& Lowrank<double>::functions() const {
+  return machine_.loops->f64;
+}
+template <>
+const simd::Functions<float>& Lowrank<float>::functions() const {
+  return machine_.loops->f32;
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates,
+                                     double tolerance, bool single) {
+  if (single) return std::make_unique<Lowrank<float>>(machine, kernel, candidates, tolerance);
+  return std::make_unique<Lowrank<double>>(machine, kernel, candidates, tolerance);
+}
+
+}  // namespace palpate

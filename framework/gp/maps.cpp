@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "gp/maps.hpp"
+
+#include <limits>
+
+namespace palpate {
+
+Tiling Tiling::pieces(int candidates) {
+  Tiling out;
+  out.candidates_ = candidates;
+  out.columns_ = out.padded_ = out.width_ = simd::kPiece;
+  out.rows_ = out.strips_ = (candidates + simd::kPiece - 1) / simd::kPiece;
+  out.strip_size_ = simd::kPiece;
+  return out;
+}
+
+Tiling Tiling::grid(const Candidates& candidates, int line) {
+  Tiling out;
+  out.candidates_ = candidates.size();
+  out.columns_ = candidates.columns;
+  out.rows_ = candidates.rows;
+  out.padded_ = simd::round_up(out.columns_, line);
+  out.width_ = simd::kPanelLines * line;
+  out.rows_per_strip_ = simd::kStripRows;
+  out.strips_ = (out.rows_ + simd::kStripRows - 1) / simd::kStripRows;
+  out.tiles_per_strip_ = (out.padded_ + out.width_ - 1) / out.width_;
+  out.strip_size_ = static_cast<std::size_t>(out.padded_) * simd::kStripRows;
+  return out;
+}
+
+template <class Real>
+TiledMaps<Real>::TiledMaps(const Tiling& tiling)
+    : tiling_(tiling), variance_(tiling.size()), best_(static_cast<std::size_t>(tiling.tiles())) {}
+
+template <class Real>
+void TiledMaps<Real>::restart(int means, const VectorView& prior) {
+  means_ = means;
+  for (int k = 0; k < means; ++k) {
+    simd::Lines<Real>& map = mean_[static_cast<std::size_t>(k)];
+    if (map.size() == 0) map = simd::Lines<Real>(tiling_.size());
+    std::fill_n(map.data(), map.size(), Real{0});
+  }
+  // Padding has no variance and thus a score of 0.
+  std::fill_n(variance_.data(), variance_.size(), Real{0});
+  for (int tile = 0; tile < tiling_.tiles(); ++tile) {
+    tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
+      for (int i = 0; i < count; ++i) variance_.data()[cell + static_cast<std::size_t>(i)] = static_cast<Real>(prior(candidate + i));
+    });
+  }
+  std::fill(best_.begin(), best_.end(), std::numeric_limits<Real>::infinity());
+}
+
+template <class Real>
+simd::Update<Real> TiledMaps<Real>::update(int strip, const double* coefficients, const ScoreRule& rule) {
+  const std::size_t first = static_cast<std::size_t>(strip) * tiling_.strip_size();
+  simd::Update<Real> out{};
+  out.means = means_;
+  for (int k = 0; k < means_; ++k) {
+    out.coefficient[k] = static_cast<Real>(coefficients[k]);
+    out.mean[k] = mean_[static_cast<std::size_t>(k)].data() + first;
+  }
+  out.variance = variance_.data() + first;
+  out.score = rule.score;
+  out.scale = static_cast<Real>(rule.scale);
+  out.shift = static_cast<Real>(rule.shift);
+  out.best = best_.data() + strip * tiling_.tiles_per_strip();
+  return out;
+}
+
+template <class Real>
+void TiledMaps<Real>::read(const simd::Lines<Real>& map, VectorOut out) const {
+  for (int tile = 0; tile < tiling_.tiles(); ++tile) {
+    tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
+      for (int i = 0; i < count; ++i) out(candidate + i) = static_cast<double>(map.data()[cell + static_cast<std::size_t>(i)]);
+    });
+  }
+}
+
+template <class Real>
+void TiledMaps<Real>::read_mean(int k, VectorOut out) const {
+  read(mean_[static_cast<std::size_t>(k)], out);
+}
+
+template <class Real>
+void TiledMaps<Real>::read_variance(VectorOut out) const {
+  read(variance_, out);
+}
+
+template <class Real>
+int TiledMaps<Real>::read_tile(int tile, int k, TileCell* out) const {
+  const Real* const mean = mean_[static_cast<std::size_t>(k)].data();
+  int cells = 0;
+  tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
+    for (int i = 0; i < count; ++i, ++cell) {
+      out[cells++] = {candidate + i, static_cast<double>(variance_.data()[cell]), static_cast<double>(mean[cell])};
+    }
+  });
+  return cells;
+}
+
+template class TiledMaps<double>;
+template class TiledMaps<float>;
+
+}  // namespace palpate

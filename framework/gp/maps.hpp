@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// The maps of a posterior over the candidates, laid out for the loops that update them, and read in the order of the
+// candidates.
+#pragma once
+
+#include "gp/candidates.hpp"
+#include "gp/simd/panels.hpp"
+
+#include <palpate/types.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace palpate {
+
+/// Where the candidates lie in a map. A map is a sequence of strips, which are what one call updates; a strip is
+/// a sequence of tiles, of each of which the best score is known.
+class Tiling {
+ public:
+  /// Any places: strips of one tile of simd::kPiece candidates one after the other.
+  static Tiling pieces(int candidates);
+  /// A product grid: strips of simd::kStripRows rows, cut into tiles as simd::Product has them. `line` is the number of
+  /// cells in a cache line.
+  static Tiling grid(const Candidates& candidates, int line);
+
+  int strips() const { return strips_; }
+  int tiles_per_strip() const { return tiles_per_strip_; }
+  int tiles() const { return strips_ * tiles_per_strip_; }
+  /// Cells in a strip and in all, padding included.
+  std::size_t strip_size() const { return strip_size_; }
+  std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
+
+  /// Calls visit(candidate, cell, count) for each run of candidates of the tile that lie one after the other.
+  template <class Visit>
+  void for_runs(int tile, const Visit& visit) const {
+    const int strip = tile / tiles_per_strip_;
+    const int first = tile % tiles_per_strip_ * width_;
+    const int width = std::min(width_, padded_ - first);
+    const int columns = std::min(width, columns_ - first);
+    std::size_t cell = static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
+    const int end = std::min((strip + 1) * rows_per_strip_, rows_);
+    for (int row = strip * rows_per_strip_; row < end; ++row) {
+      const int candidate = row * columns_ + first;
+      visit(candidate, cell, std::min(columns, candidates_ - candidate));
+      cell += static_cast<std::size_t>(width);
+    }
+  }
+
+ private:
+  int candidates_ = 0;
+  int columns_ = 0;  ///< of the grid; of any places, those of a piece
+  int rows_ = 0;
+  int padded_ = 0;  ///< columns with padding
+  int width_ = 0;   ///< of a tile, in columns
+  int rows_per_strip_ = 1;
+  int strips_ = 0;
+  int tiles_per_strip_ = 1;
+  std::size_t strip_size_ = 0;
+};
+
+/// How the exploration function follows from the maps, where it is one of those that the loops can form.
+struct ScoreRule {
+  simd::Score score = simd::Score::none;
+  double scale = 1.0;  ///< the weight is scale * (second mean) + shift
+  double shift = 0.0;
+};
+
+struct TileCell {
+  int candidate;
+  double variance;
+  double mean;
+};
+constexpr int kMostCells = simd::kStripRows * simd::kPanelLines * simd::kLine<float>;
+
+/// Maps of means and of the variance as they stand, all in units of the prior.
+class Maps {
+ public:
+  virtual ~Maps() = default;
+  /// The mean number k, and the variance, at all candidates.
+  virtual void read_mean(int k, VectorOut out) const = 0;
+  virtual void read_variance(VectorOut out) const = 0;
+
+  /// The largest score of a tile, or more, as of the latest update: padding is not told from candidates.
+  virtual double bound(int tile) const = 0;
+  /// The candidates of a tile, at most kMostCells of them, with variance and mean number k; returns how many.
+  virtual int read_tile(int tile, int k, TileCell* out) const = 0;
+  virtual const Tiling& tiling() const = 0;
+};
+
+template <class Real>
+class TiledMaps final : public Maps {
+ public:
+  explicit TiledMaps(const Tiling& tiling);
+
+  /// Back to the prior: `means` maps of 0, and the variance.
+  void restart(int means, const VectorView& prior);
+
+  /// What the loops need to take a row with such coefficients into the cells of a strip.
+  simd::Update<Real> update(int strip, const double* coefficients, const ScoreRule& rule);
+
+  void read_mean(int k, VectorOut out) const override;
+  void read_variance(VectorOut out) const override;
+  double bound(int tile) const override { return static_cast<double>(best_[static_cast<std::size_t>(tile)]); }
+  int read_tile(int tile, int k, TileCell* out) const override;
+  const Tiling& tiling() const override { return tiling_; }
+
+ private:
+  void read(const simd::Lines<Real>& map, VectorOut out) const;
+
+  Tiling tiling_;
+  int means_ = 0;
+  std::array<simd::Lines<Real>, simd::kMeans> mean_;
+  simd::Lines<Real> variance_;
+  std::vector<Real> best_;
+};
+
+extern template class TiledMaps<double>;
+extern template class TiledMaps<float>;
+
+}  // namespace palpate

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// The hot loops of the posterior, once for each instruction set, and the choice among them.
+//
+// This header is read by translation units that are compiled for different instruction sets. Nothing in it has code:
+// an inline function would be emitted by each of them, and the linker would keep any one for all.
+#pragma once
+
+#include <cstddef>
+
+namespace palpate::simd {
+
+// Memory is laid out in cache lines, whatever the width of the registers, so that no layout depends on the instruction
+// set. All pointers below are aligned to a line; what they point to must not overlap.
+constexpr int kLineBytes = 64;
+template <class Real>
+constexpr int kLine = kLineBytes / static_cast<int>(sizeof(Real));  ///< numbers in a line
+constexpr int kPanelLines = 3;                                      ///< width of a panel of a matrix, in lines
+constexpr int kStripRows = 8;                                       ///< rows of a grid that are updated together
+constexpr int kPiece = kStripRows * kPanelLines * kLine<double>;    ///< cells of a dense map updated together
+
+/// How the score of a cell follows from its maps.
+enum class Score {
+  none,
+  variance,          ///< u = max(variance, 0)
+  weighted,          ///< u w, w = scale mean_1 + shift
+  weighted_clipped,  ///< u w, w clipped to [0, 1]
+};
+
+constexpr int kMeans = 3;  ///< maps that a row is added to, at most
+
+/// What a new row v of the posterior does to the cells of some strips, or of a piece:
+///     mean_k += coefficient_k v,   variance -= v^2,   best = the largest score of a tile of cells afterwards.
+template <class Real>
+struct Update {
+  int means;
+  Real coefficient[kMeans];
+  Real* mean[kMeans];
+  Real* variance;
+  Score score;
+  Real scale, shift;
+  Real* best;  ///< one a tile; untouched without a score
+};
+
+/// A product C = A B of a few strips: 8 x depth times depth x columns each. The A of a strip has its columns one after
+/// the other, 8 numbers each. B lies in panels of kPanelLines lines, each depth rows of consecutive numbers; the last
+/// may be narrower. The C of the strips follow each other, each a sequence of tiles, one a panel, row by row.
+template <class Real>
+struct Product {
+  const Real* a;
+  std::size_t a_stride;  ///< numbers from one strip's A to the next
+  int strips;
+  const Real* b;
+  std::size_t panel_stride;  ///< numbers from one panel of B to the next
+  int depth;
+  int lines;  ///< of all columns
+};
+
+template <class Real>
+struct Functions {
+  /// c = A B.
+  void (*multiply)(const Product<Real>&, Real* c);
+  /// v = A B, which is never stored, taken into the maps.
+  void (*absorb_product)(const Product<Real>&, const Update<Real>&);
+};
+
+/// v = (v - sum over i of row_i factor_i) / pivot for one piece of a dense map, taken into its maps. The rows of the
+/// piece follow each other: row_i at rows + i kPiece, and v is the row after the last.
+struct DenseRow {
+  double* rows;
+  const double* factor;
+  int depth;
+  double pivot;
+};
+
+struct Table {
+  const char* name;
+  Functions<double> f64;
+  Functions<float> f32;
+  void (*absorb_dense)(const DenseRow&, const Update<double>&);
+  // L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
+  // matrix goes. Both work in place on n numbers, with room up to a line.
+  void (*solve_lower)(const double* lower, int n, double* x);            ///< x = L^-1 x
+  void (*solve_lower_transposed)(const double* lower, int n, double* x);  ///< x = L^-T x
+};
+
+/// The fastest of SSE2, AVX2 + FMA and AVX-512 that this processor has.
+const Table& fastest();
+/// SSE2, which every x86-64 has.
+const Table& baseline();
+
+// Each defined in a translation unit of its own. The tests run those that the processor has.
+extern const Table kSse2;
+extern const Table kAvx2;
+extern const Table kAvx512;
+
+/// Whether this processor can run `table`.
+bool runs(const Table& table);
+
+/// Where row i of a packed lower triangle begins, in numbers. Rows are padded to lines.
+std::size_t packed_row(int i);
+
+}  // namespace palpate::simd
