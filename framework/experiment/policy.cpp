@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -94,72 +95,85 @@ Pick Chooser::pick(const Scores& scores, const std::vector<bool>& allowed, doubl
   scores_ = &scores;
   allowed_ = &allowed;
   bounds_.resize(static_cast<std::size_t>(scores.pieces()));
-  for (int piece = 0; piece < scores.pieces(); ++piece) bound_of(piece) = scores.bound(piece);
+  for (int piece = 0; piece < scores.pieces(); ++piece) bounds_[static_cast<std::size_t>(piece)] = scores.bound(piece);
 
   Pick out;
-  const Cell best = find_best(-1);
-  if (best.candidate < 0) return out;
-  const double bound = tolerance * (std::abs(best.score) + scale);
-  const double threshold = best.score - bound;
-  for (int piece = 0; piece < scores.pieces(); ++piece) {
-    if (bound_of(piece) < threshold) continue;
-    for_allowed(piece, [&](const Cell& cell) {
-      if (cell.score < threshold) return;
-      ++out.ties;
-      if (out.candidate >= 0 && cell.candidate > out.candidate) return;
-      out.candidate = cell.candidate;
-      out.score = cell.score;
-    });
-  }
-  const Cell second = find_best(out.candidate);
-  out.runner_up = second.candidate;
-  out.runner_up_score = second.score;
-  if (best.score <= 0.0) {
+  find_two();
+  if (best_.candidate < 0) return out;
+  out.candidate = best_.candidate;
+  out.score = best_.score;
+  out.ties = 1;
+  const double threshold = best_.score - tolerance * (std::abs(best_.score) + scale);
+  const bool tied = second_.candidate >= 0 && second_.score >= threshold;
+  if (tied) choose_first(threshold, out);
+  out.runner_up = second_.candidate;
+  out.runner_up_score = second_.score;
+  if (best_.score <= 0.0) {
     out.flat = "no score is positive";
-  } else if (second.candidate >= 0 && !any_below(threshold)) {
+  } else if (tied && !any_below(threshold)) {
     out.flat = "every score is equal";
   }
   return out;
 }
 
 template <class Visit>
-void Chooser::for_allowed(int piece, const Visit& visit) const {
-  std::array<Cell, kMostCells> cells;
-  const int count = scores_->read(piece, cells.data());
+void Chooser::for_allowed(int piece, double least, const Visit& visit) {
+  const int count = scores_->read(piece, cells_.data());
   for (int i = 0; i < count; ++i) {
-    const Cell& cell = cells[static_cast<std::size_t>(i)];
-    if (!(*allowed_)[static_cast<std::size_t>(cell.candidate)]) continue;
+    const Cell& cell = cells_[static_cast<std::size_t>(i)];
+    // Not a number is not less.
+    if (cell.score < least || !(*allowed_)[static_cast<std::size_t>(cell.candidate)]) continue;
     if (!std::isfinite(cell.score)) throw Error("", "a score is not a finite number", {}, Error::Kind::run);
     visit(cell);
   }
 }
 
-ScoredCell Chooser::find_best(int except) {
-  Cell best{-1, -std::numeric_limits<double>::infinity()};
+void Chooser::find_two() {
+  best_ = second_ = {-1, -std::numeric_limits<double>::infinity()};
   const auto look = [&](int piece) {
-    double& bound = bound_of(piece);
-    bound = -std::numeric_limits<double>::infinity();
-    for_allowed(piece, [&](const Cell& cell) {
-      bound = std::max(bound, cell.score);
-      if (cell.candidate == except) return;
-      if (cell.score > best.score || (cell.score == best.score && cell.candidate < best.candidate)) best = cell;
+    for_allowed(piece, second_.score, [&](const Cell& cell) {
+      if (before(cell, best_)) {
+        second_ = std::exchange(best_, cell);
+      } else if (before(cell, second_)) {
+        second_ = cell;
+      }
     });
   };
-  // Of two passes, the first finds where a good score is, so that the second reads few pieces.
-  const auto first = std::max_element(bounds_.begin(), bounds_.end());
-  look(static_cast<int>(first - bounds_.begin()));
+  // The first piece has two good scores most often, so that few of the others need be read.
+  const auto first = static_cast<int>(std::max_element(bounds_.begin(), bounds_.end()) - bounds_.begin());
+  look(first);
   for (int piece = 0; piece < scores_->pieces(); ++piece) {
-    if (bound_of(piece) >= best.score) look(piece);
+    if (piece != first && bounds_[static_cast<std::size_t>(piece)] >= second_.score) look(piece);
   }
-  return best;
 }
 
-bool Chooser::any_below(double threshold) const {
+void Chooser::choose_first(double threshold, Pick& out) {
+  // The second best stays the runner-up, unless it is the one that is chosen: then the best is.
+  out.ties = 0;
+  Cell chosen{-1, 0.0};
+  for (int piece = 0; piece < scores_->pieces(); ++piece) {
+    if (bounds_[static_cast<std::size_t>(piece)] < threshold) continue;
+    for_allowed(piece, threshold, [&](const Cell& cell) {
+      ++out.ties;
+      if (chosen.candidate < 0 || cell.candidate < chosen.candidate) chosen = cell;
+    });
+  }
+  out.candidate = chosen.candidate;
+  out.score = chosen.score;
+  if (chosen.candidate != best_.candidate) second_ = best_;
+}
+
+bool Chooser::any_below(double threshold) {
   bool found = false;
   for (int piece = 0; piece < scores_->pieces() && !found; ++piece) {
-    for_allowed(piece, [&](const Cell& cell) { found |= cell.score < threshold; });
+    for_allowed(piece, -std::numeric_limits<double>::infinity(),
+                [&](const Cell& cell) { found |= cell.score < threshold; });
   }
   return found;
+}
+
+bool Chooser::before(const Cell& a, const Cell& b) {
+  return a.score > b.score || (a.score == b.score && a.candidate < b.candidate) || b.candidate < 0;
 }
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 #include <palpate/random.hpp>
 #include <palpate/types.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,16 +43,22 @@ class Chooser {
 
  private:
   using Cell = ScoredCell;
-  /// The best of the allowed candidates but `except`, the first of equals; leaves exact bounds where it looked.
-  Cell find_best(int except);
-  bool any_below(double threshold) const;
+  /// The best two of the allowed candidates; of equals, the first.
+  void find_two();
+  /// The first of all that are not below `threshold`.
+  void choose_first(double threshold, Pick& out);
+  bool any_below(double threshold);
+  /// Visits the allowed candidates of a piece whose score is not below `least`.
   template <class Visit>
-  void for_allowed(int piece, const Visit& visit) const;
-  double& bound_of(int piece) { return bounds_[static_cast<std::size_t>(piece)]; }
+  void for_allowed(int piece, double least, const Visit& visit);
+  static bool before(const Cell& a, const Cell& b);
 
   const Scores* scores_ = nullptr;
   const std::vector<bool>* allowed_ = nullptr;
   std::vector<double> bounds_;
+  std::array<Cell, kMostCells> cells_;
+  Cell best_{};
+  Cell second_{};
 };
 
 }  // namespace palpate

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "benchmark/workload.hpp"
+
+#include "experiment/policy.hpp"
+#include "support/plugins.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace palpate::benchmark {
+namespace {
+
+constexpr double kSide = 23.0;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace
+
+Taps read_taps(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  if (!in) throw Error(file.string(), "cannot be read");
+  std::vector<double> numbers;
+  std::string line;
+  std::getline(in, line);
+  if (line != "x,y,height,on_surface") throw Error(file.string(), "does not begin with x,y,height,on_surface");
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    while (std::getline(cells, cell, ',')) numbers.push_back(std::stod(cell));
+  }
+  const auto rows = static_cast<Eigen::Index>(numbers.size() / 4);
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>> all(numbers.data(), rows, 4);
+  return {all.leftCols(2), all.rightCols(2)};
+}
+
+Candidates square(int count) {
+  Eigen::VectorXd places(count);
+  for (int i = 0; i < count; ++i) places(i) = kSide * i / std::max(1, count - 1);
+  return product_grid(places, places);
+}
+
+std::shared_ptr<Kernel> make_kernel() {
+  // The kernel cares for ratios of lengths only, so that a metre may stand for a centimetre.
+  return test::make<Kernel>(test::shared_host(), "rbf", "{length_scale: 3 m}");
+}
+
+Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
+              const PosteriorSettings& settings, std::unique_ptr<Process>* last) {
+  const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
+  PosteriorSettings posterior = settings;
+  posterior.score = simd::Score::weighted;
+  Chooser chooser;
+  Replay out;
+  const auto count = static_cast<std::size_t>(taps.places.rows());
+  out.choices.reserve(count);
+  out.seconds.reserve(count);
+  const auto start = Clock::now();
+  const std::vector<ProcessSettings> outputs(2, {1.0, 1e-2, 0.0, 0.0});
+  auto process = std::make_unique<Process>(kernel, outputs, candidates, posterior);
+  process->show(2);
+  auto before = Clock::now();
+  for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
+    process->add({taps.places(i, 0), taps.places(i, 1)}, taps.answers.row(i).transpose());
+    if (i + 1 < kInitialTaps) continue;
+    out.choices.push_back(chooser.pick(*process, allowed, 1.0, 0.0).candidate);
+    out.seconds.push_back(seconds_since(std::exchange(before, Clock::now())));
+  }
+  out.total = seconds_since(start);
+  if (last != nullptr) *last = std::move(process);
+  return out;
+}
+
+}  // namespace palpate::benchmark
