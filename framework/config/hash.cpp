@@ -5,36 +5,32 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <array>
+#include <fstream>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 namespace palpate {
+namespace {
 
-std::string hash_of(std::string_view bytes) {
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
+std::string digits(const XXH128_hash_t& hash) { return fmt::format("{:016x}{:016x}", hash.high64, hash.low64); }
+
+}  // namespace
+
+std::string hash_of(std::string_view bytes) { return digits(XXH3_128bits(bytes.data(), bytes.size())); }
 
 std::string hash_of_file(const std::filesystem::path& file) {
-  // Mapped, not read: the program hashes itself at every run, and copying its megabytes costs more than hashing them.
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat status {};
-  if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
-    if (descriptor >= 0) ::close(descriptor);
-    throw Error(file.string(), "cannot be read");
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 1 << 15> piece;
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  while (in) {
+    in.read(piece.data(), piece.size());
+    XXH3_128bits_update(&state, piece.data(), static_cast<std::size_t>(in.gcount()));
   }
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* bytes = size == 0 ? nullptr : ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
-  ::close(descriptor);
-  if (bytes == MAP_FAILED) throw Error(file.string(), "cannot be read");
-  std::string hash = hash_of({static_cast<const char*>(bytes), size});
-  if (bytes != nullptr) ::munmap(bytes, size);
-  return hash;
+  if (!in.eof()) throw Error(file.string(), "cannot be read");
+  return digits(XXH3_128bits_digest(&state));
 }
 
 }  // namespace palpate

@@ -51,12 +51,15 @@ Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
   Errors out;
   const bool knows_weight = static_cast<bool>(belief.weight_process());
   if (belief.surface_process()) {
-    if (knows_weight || !belief.two_part()) {
+    out.rmse_height = rmse(belief.height_mean(), truth, true);
+    if (!belief.two_part()) {  // the reconstruction is the height mean
+      out.rmse = rmse(belief.height_mean(), truth, false);
+      out.rmse_on_surface = out.rmse_height;
+    } else if (knows_weight) {
       const Eigen::VectorXd surface = reconstruction(belief);
       out.rmse = rmse(surface, truth, false);
       out.rmse_on_surface = rmse(surface, truth, true);
     }
-    out.rmse_height = rmse(belief.height_mean(), truth, true);
   }
   if (knows_weight) out.footprint_iou = footprint_iou(belief.weight_mean(), truth);
   return out;

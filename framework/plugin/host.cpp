@@ -93,9 +93,9 @@ void check_complete(const fs::path& file) {
   // Linkers write the section headers last: a file that holds them was not cut short.
   if (!read(0, &header, sizeof header)) incomplete();
   if (!holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize)) incomplete();
-  for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
-    ElfW(Phdr) segment{};
-    if (!read(header.e_phoff + i * sizeof segment, &segment, sizeof segment)) incomplete();
+  std::vector<ElfW(Phdr)> segments(header.e_phnum);
+  if (!read(header.e_phoff, segments.data(), segments.size() * sizeof(ElfW(Phdr)))) incomplete();
+  for (const ElfW(Phdr) & segment : segments) {
     if (!holds(segment.p_offset, segment.p_filesz)) incomplete();
   }
 }

@@ -27,8 +27,8 @@ extern const char* const kVersion;
 /// The plugins of one run, by kind and name.
 using PluginNames = std::set<std::pair<std::string, std::string>>;
 
-/// One hash over the program file and the plugins of a run. Equal for equal code: neither a commit alone nor another
-/// plugin changes it.
+/// One hash over the program (its build id) and the plugins of a run. Equal for equal code: neither a commit alone nor
+/// another plugin changes it.
 std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
 /// Version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins, host.

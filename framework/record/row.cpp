@@ -12,6 +12,12 @@ namespace {
 
 std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
+/// Whether JSON holds this character as it is, alone.
+bool is_plain(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
+}
+
 /// The length of the UTF-8 sequence that `text` begins with; 0 if it is not valid (RFC 3629).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -92,6 +98,7 @@ std::string csv_cell(const Scalar& value) {
 }
 
 std::string json_quoted(const std::string& text) {
+  if (std::all_of(text.begin(), text.end(), is_plain)) return '"' + text + '"';
   std::string out = "\"";
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
