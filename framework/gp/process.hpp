@@ -11,6 +11,8 @@
 #include <palpate/kernel.hpp>
 
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -48,6 +50,10 @@ class Process final : public Scores {
   /// from 0 only for a single output. Throws Error if there is an objection() to `posterior`.
   Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
           PosteriorSettings posterior = {});
+  /// A single output.
+  Process(std::shared_ptr<Kernel> kernel, const ProcessSettings& output, const Candidates& candidates,
+          PosteriorSettings posterior = {})
+      : Process(std::move(kernel), std::vector<ProcessSettings>{output}, candidates, std::move(posterior)) {}
 
   /// Adds a tap, a value for each output, and updates the maps.
   void add(const Target& place, const VectorView& values);

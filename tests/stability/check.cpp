@@ -51,7 +51,7 @@ Process processed(const Problem& problem, const Points& candidates, bool& sound)
     sound &= process.mean().allFinite() && process.variance().allFinite();
   }
   Random random(1, "stability");
-  if (one.refit) Process::fit({&process}, Bringing(one), random);
+  if (one.refit) process.fit(Bringing(one), random);
   return process;
 }
 

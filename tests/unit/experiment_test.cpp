@@ -29,8 +29,8 @@ class Watcher final : public Journal {
   int height_seen = 0;
   void announce(const TapRecord&) override {}
   void record(const TapRecord&, const std::array<double, kPhases>&) override {
-    weight_seen += experiment_.belief().weight_process() != nullptr ? 1 : 0;
-    height_seen += experiment_.belief().height_process() != nullptr ? 1 : 0;
+    weight_seen += experiment_.belief().weight_process() ? 1 : 0;
+    height_seen += experiment_.belief().height_process() ? 1 : 0;
   }
 
  private:
@@ -45,7 +45,7 @@ TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
   EXPECT_EQ(watcher.weight_seen, 0);
   EXPECT_EQ(watcher.height_seen, 14) << "of 17 taps, the 14 chosen by score need the height process";
   experiment.result();
-  EXPECT_NE(experiment.belief().weight_process(), nullptr)
+  EXPECT_NE(experiment.belief().weight_process().process, nullptr)
       << "the truth-based metrics want the outline, once, after the last tap";
 }
 
@@ -54,8 +54,8 @@ TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
   Experiment experiment(config.options, test::shared_host(), nullptr);
   Collector collector;
   experiment.run(collector);
-  EXPECT_EQ(experiment.belief().height_process(), nullptr);
-  EXPECT_EQ(experiment.belief().weight_process(), nullptr);
+  EXPECT_EQ(experiment.belief().height_process().process, nullptr);
+  EXPECT_EQ(experiment.belief().weight_process().process, nullptr);
   EXPECT_FALSE(collector.taps.back().max_standard_deviation.has_value());
   EXPECT_FALSE(collector.taps.back().errors.rmse.has_value());
 }
@@ -130,7 +130,7 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
   EXPECT_EQ(result.off_surface_taps, 1);
   EXPECT_EQ(result.failed_taps, 4);
   experiment.belief().height_mean();
-  EXPECT_EQ(experiment.belief().height_process()->size(), 2);
+  EXPECT_EQ(experiment.belief().height_process().process->size(), 2);
   std::set<int> places;
   for (const TapRecord& tap : collector.taps) places.insert(tap.candidate);
   EXPECT_EQ(places.size(), 6U) << "a place that failed is not tried again, even where repeats are allowed";

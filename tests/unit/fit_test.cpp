@@ -84,8 +84,8 @@ TEST(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
       EXPECT_EQ(call.targets[1](tap), *record.on_surface ? 1.0 : 0.0);
     }
   }
-  const Process& height = *experiment.belief().height_process();
-  const Process& weight = *experiment.belief().weight_process();
+  const Process& height = *experiment.belief().height_process().process;
+  const Process& weight = *experiment.belief().weight_process().process;
   EXPECT_EQ(&height.kernel(), &weight.kernel());
   EXPECT_EQ(height.settings().signal, 0.25);
   EXPECT_EQ(height.settings().mean, 0.125);
@@ -113,8 +113,8 @@ TEST(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
   EXPECT_EQ(of_surface, result.on_surface_taps / 5);
   EXPECT_GT(of_surface, 0);
   EXPECT_EQ(factory.fitting->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
-  EXPECT_NE(&experiment.belief().height_process()->kernel(), &experiment.belief().weight_process()->kernel());
-  EXPECT_NE(&experiment.belief().height_process()->kernel(), &experiment.belief().surface_process()->kernel());
+  EXPECT_NE(&experiment.belief().height_process().process->kernel(), &experiment.belief().weight_process().process->kernel());
+  EXPECT_NE(&experiment.belief().height_process().process->kernel(), &experiment.belief().surface_process().process->kernel());
 }
 
 TEST(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {

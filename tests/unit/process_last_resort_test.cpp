@@ -38,7 +38,7 @@ double hole(double r) { return r > 0.45 && r < 0.55 ? std::nan("") : bell(r); }
 const Candidates kCandidates = grid_by_count({1.0, 1.0}, 5);
 
 Process process_of(double (*shape)(double), double noise = 0.0, double mean_ratio = 0.0, double signal = 1.0) {
-  return Process(std::make_shared<Shaped>(shape), {signal, noise, 0.0, mean_ratio}, kCandidates.points);
+  return Process(std::make_shared<Shaped>(shape), {signal, noise, 0.0, mean_ratio}, kCandidates);
 }
 
 void expect_numbers(const Process& process, double kernel_variance = 1.0) {
@@ -71,7 +71,7 @@ TEST(LastResort, DuplicatesWithoutNoiseNeedJitterButNoTapIsSetAside) {
 TEST(LastResort, JitterIsInProportionToTheVarianceOfTheKernel) {
   for (const double variance : {1e-6, 1e6}) {
     Process process(std::make_shared<Shaped>([variance](double r) { return variance * bell(r); }), {2.0, 0.0, 0.0, 0.0},
-                    kCandidates.points);
+                    kCandidates);
     for (int i = 0; i < 6; ++i) {
       process.add({0.3, 0.3}, 1.0);
       expect_numbers(process, variance);
@@ -109,7 +109,7 @@ TEST(LastResort, PivotingWorksWithAnUnknownMeanToo) {
 
 TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
   // The candidates keep clear of the hole: theirs are numbers.
-  const Points candidates = (Points(2, 2) << 0.0, 0.0, 0.1, 0.0).finished();
+  const Candidates candidates = scattered((Points(2, 2) << 0.0, 0.0, 0.1, 0.0).finished());
   Process process(std::make_shared<Shaped>(hole), {1.0, 0.1, 0.0, 0.0}, candidates);
   process.add({0.0, 0.1}, 1.0);
   const Eigen::VectorXd before = process.mean();
@@ -124,7 +124,7 @@ TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
 }
 
 TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
-  const Points candidates = Points::Zero(1, 2);
+  const Candidates candidates = scattered(Points::Zero(1, 2));
   Process process(std::make_shared<Shaped>([](double r) { return r == 0.0 ? 1.0 : std::nan(""); }),
                   {1.0, 0.0, 0.0, 0.0}, candidates);
   process.add({0.0, 0.0}, 1.0);
@@ -150,7 +150,7 @@ TEST(LastResort, JitterThatOnceWasNeededGoesWithTheHyperparametersThatNeededIt) 
   for (int i = 0; i < 8; ++i) process.add({0.5, 0.5}, 1.0);
   EXPECT_GT(process.jitter(), 0.0);
   Random random(1, "test");
-  Process::fit({&process}, Noisy(), random);
+  process.fit(Noisy(), random);
   EXPECT_EQ(process.jitter(), 0.0);
   EXPECT_DOUBLE_EQ(process.settings().noise, 0.1);
   expect_numbers(process);

@@ -45,7 +45,7 @@ Data draw(int n, std::uint64_t seed) {
 }
 
 Process processed(const Data& data, const ProcessSettings& settings, const Candidates& candidates) {
-  Process process(std::make_shared<Bowl>(), settings, candidates.points);
+  Process process(std::make_shared<Bowl>(), settings, candidates);
   for (Eigen::Index i = 0; i < data.values.size(); ++i)
     process.add({data.points(i, 0), data.points(i, 1)}, data.values(i));
   return process;
@@ -80,7 +80,7 @@ TEST(Process, EqualsTheTextbookFormulasWithTheWholeMatrix) {
 
 TEST(Process, WithoutTapsIsThePrior) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 4);
-  const Process process(std::make_shared<Bowl>(), {3.0, 0.1, -2.0}, candidates.points);
+  const Process process(std::make_shared<Bowl>(), {3.0, 0.1, -2.0}, candidates);
   EXPECT_TRUE((process.mean().array() == -2.0).all());
   EXPECT_TRUE((process.relative_variance().array() == 1.0).all());
   EXPECT_EQ(process.log_marginal_likelihood(), 0.0);
@@ -88,7 +88,7 @@ TEST(Process, WithoutTapsIsThePrior) {
 
 TEST(Process, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 4);
-  Process process(std::make_shared<Bowl>(), {1.0, 0.0, 0.0}, candidates.points);
+  Process process(std::make_shared<Bowl>(), {1.0, 0.0, 0.0}, candidates);
   process.add(candidates.target(5), 0.25);
   EXPECT_NEAR(process.mean()(5), 0.25, 1e-15);
   EXPECT_NEAR(process.relative_variance()(5), 0.0, 1e-15);
@@ -97,7 +97,7 @@ TEST(Process, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
 TEST(Process, MoreTapsNeverRaiseTheVariance) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = draw(40, 5);
-  Process process(std::make_shared<Bowl>(), {1.0, 1e-3, 0.0}, candidates.points);
+  Process process(std::make_shared<Bowl>(), {1.0, 1e-3, 0.0}, candidates);
   Eigen::VectorXd before = process.variance();
   for (int i = 0; i < 40; ++i) {
     process.add({data.points(i, 0), data.points(i, 1)}, data.values(i));
@@ -131,7 +131,7 @@ TEST(Process, ScalingTheUnitOfTheTargetsScalesTheAnswer) {
 
 TEST(Process, RepeatedTapsWithNoiseAreAveraged) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 1);
-  Process process(std::make_shared<Bowl>(), {1.0, 0.5, 0.0}, candidates.points);
+  Process process(std::make_shared<Bowl>(), {1.0, 0.5, 0.0}, candidates);
   const Target centre = candidates.target(0);
   for (const double value : {1.0, 2.0, 3.0, 2.0}) process.add(centre, value);
   // n equal places: mean = average * k / (k + noise / n), variance = k noise / (n k + noise), k = 1.5^2.
@@ -142,7 +142,7 @@ TEST(Process, RepeatedTapsWithNoiseAreAveraged) {
 
 TEST(Process, ADuplicateWithoutNoiseRaisesJitterAndReportsIt) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 5);
-  Process process(std::make_shared<Bowl>(), {2.0, 0.0, 0.0}, candidates.points);
+  Process process(std::make_shared<Bowl>(), {2.0, 0.0, 0.0}, candidates);
   process.add({0.3, 0.3}, 1.0);
   process.add({0.7, 0.3}, 0.5);
   EXPECT_EQ(process.jitter(), 0.0);
@@ -171,7 +171,7 @@ TEST(Process, AFitThatChangesHyperparametersLeavesWhatAFreshProcessWouldHave) {
   const Data data = draw(12, 4);
   Process fitted = processed(data, {1.0, 0.1, 0.0}, candidates);
   Random random(1, "test");
-  Process::fit({&fitted}, Doubling{}, random);
+  fitted.fit(Doubling{}, random);
   const Process fresh = processed(data, {2.0, 0.1, 0.0}, candidates);
   EXPECT_EQ((fitted.mean() - fresh.mean()).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_EQ((fitted.variance() - fresh.variance()).cwiseAbs().maxCoeff(), 0.0);

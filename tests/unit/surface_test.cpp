@@ -59,8 +59,8 @@ TEST(TwoPart, IsADeskWhileNothingWasHit) {
   one.touch(3, 0.0);
   one.touch(50, 0.0);
   EXPECT_TRUE((reconstruction(one.belief).array() == 0.0).all());
-  EXPECT_EQ(one.belief.surface_process()->size(), 0);
-  EXPECT_EQ(one.belief.weight_process()->size(), 2);
+  EXPECT_EQ(one.belief.surface_process().process->size(), 0);
+  EXPECT_EQ(one.belief.weight_process().process->size(), 2);
 }
 
 TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
@@ -95,7 +95,7 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
   EXPECT_LT((one.belief.height_mean() - mean).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT((one.belief.height_variance() - variance).cwiseAbs().maxCoeff(), 1e-5);
   one.belief.uncertainty();
-  EXPECT_EQ(one.belief.height_process()->size(), 6) << "u comes from all taps";
+  EXPECT_EQ(one.belief.height_process().process->size(), 6) << "u comes from all taps";
 }
 
 TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
