@@ -52,12 +52,13 @@ void WeightOptions::list(Fields& fields) {
   fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));
   fields.real(prior_mean, Field("prior_mean", "of the label where nothing is known").from("Sun and Min 2021: 0"));
   fields.flag(clip, Field("clip", "let the acquisitions see the weight clipped to [0, 1]"));
-  fields.choice(hyperparameters, Field("hyperparameters", "what a fit chooses for the labels"),
-                {{"own", "the labels' own kernel and noise", {}},
-                 {"shared",
-                  "those of the heights, noise in signals included, fitted to heights and labels together; signals stay "
-                  "apart",
-                  {}}});
+  fields.choice(
+      hyperparameters, Field("hyperparameters", "what a fit chooses for the labels"),
+      {{"own", "the labels' own kernel and noise", {}},
+       {"shared",
+        "those of the heights, noise in signals included, fitted to heights and labels together; signals stay "
+        "apart",
+        {}}});
   fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
   const bool shared = hyperparameters == Hyperparameters::shared;
@@ -129,11 +130,12 @@ void ExperimentOptions::list(Fields& fields) {
                   .at_least(0)
                   .at_most(1)
                   .from("rounding reaches 1e-12; below 1e-9 it decides taps at 1.7 cm"));
-  fields.real(accuracy, Field("accuracy",
-                              "`posterior: auto` takes no engine whose error beyond dense's may exceed this, or a tenth "
-                              "of tie_tolerance; in prior standard deviations, or prior variances")
-                            .at_least(0)
-                            .at_most(1));
+  fields.real(accuracy,
+              Field("accuracy",
+                    "`posterior: auto` takes no engine whose error beyond dense's may exceed this, or a tenth "
+                    "of tie_tolerance; in prior standard deviations, or prior variances")
+                  .at_least(0)
+                  .at_most(1));
   fields.integer(threads,
                  Field("threads", "that update the maps together; the results are the same").at_least(1).at_most(64));
   fields.choice(instruction_set, Field("instruction_set", "of the loops that update the maps"),

@@ -51,8 +51,9 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
   if (!refusal.empty()) throw Error(fitting.options->place.text(), refusal);
   const std::string why = objection(posterior_, *model.kernel, candidates_);
   if (!why.empty()) {
-    throw Error("posterior", fmt::format("{} cannot be used with the kernel {}: it {}",
-                                         kEngineNames[static_cast<std::size_t>(posterior_.engine)], kernel.type, why),
+    throw Error("posterior",
+                fmt::format("{} cannot be used with the kernel {}: it {}",
+                            kEngineNames[static_cast<std::size_t>(posterior_.engine)], kernel.type, why),
                 "posterior: dense serves every kernel");
   }
   return model;
@@ -85,8 +86,8 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     heights_.outputs.push_back(label);
   }
   if (two_part_) {
-    object_ = make_model("fitting/surface", height_kernel, height_fitting,
-                         {height.signal, height.noise, 0.0, kFreeLevel});
+    object_ =
+        make_model("fitting/surface", height_kernel, height_fitting, {height.signal, height.noise, 0.0, kFreeLevel});
   }
 }
 
@@ -124,7 +125,8 @@ Process& TapBelief::ready(Model& model, int output) const {
   while (process.size() < static_cast<int>(model.data.size())) {
     const Datum& datum = model.data[static_cast<std::size_t>(process.size())];
     const std::array<double, 2> values{model.of_labels ? datum.label : datum.height, datum.label};
-    process.add(datum.place, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(model.outputs.size())));
+    process.add(datum.place,
+                Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(model.outputs.size())));
     if (model.fitting->due(process.size())) fit(model);
   }
   return process;
@@ -202,7 +204,8 @@ const Eigen::VectorXd& TapBelief::all_taps_variance() const {
 
 const Eigen::VectorXd& TapBelief::height_variance() const {
   if (!two_part_) return all_taps_variance();
-  return read(variance_map_, surface(), 0, [](const Process& process, VectorOut out) { process.read_variance(0, out); });
+  return read(variance_map_, surface(), 0,
+              [](const Process& process, VectorOut out) { process.read_variance(0, out); });
 }
 
 double TapBelief::height_noise() const {

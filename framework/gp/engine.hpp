@@ -35,7 +35,7 @@ struct FactorRow {
   PointsView places;  ///< of all n rows so far, this one included
   VectorView factor;  ///< l, n - 1 values
   double pivot;
-  VectorView inverse;  ///< c, n values; empty for an engine that does without
+  VectorView inverse;          ///< c, n values; empty for an engine that does without
   const double* coefficients;  ///< b of every mean
 };
 
@@ -59,6 +59,9 @@ class Engine {
   /// The largest error of a covariance between a tap and a candidate beyond rounding, so far, relative to the prior
   /// variance: what the engine leaves away.
   virtual double covariance_error() const { return 0.0; }
+
+  /// The unit roundoff of the maps where that is not of double precision, else 0.
+  virtual double rounding() const { return 0.0; }
 
   virtual const Maps& maps() const = 0;
 };

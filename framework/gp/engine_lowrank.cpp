@@ -2,6 +2,9 @@
 #include "gp/axis_basis.hpp"
 #include "gp/engine.hpp"
 
+#include <limits>
+#include <type_traits>
+
 namespace palpate {
 namespace {
 
@@ -11,11 +14,11 @@ constexpr int kRows = simd::kStripRows;
 /// One axis of the grid: the basis of its covariances, and the taps in it.
 struct Axis {
   const Eigen::VectorXd& places;
-  Eigen::MatrixXd basis;         ///< places x r
-  Eigen::VectorXd covariance;    ///< of the new tap with the places
-  Eigen::VectorXd coordinates;   ///< of that in the basis
-  double largest = 0.0;          ///< covariance of any tap so far
-  double left = 0.0;             ///< of any covariance of any tap so far, outside of the basis
+  Eigen::MatrixXd basis;        ///< places x r
+  Eigen::VectorXd covariance;   ///< of the new tap with the places
+  Eigen::VectorXd coordinates;  ///< of that in the basis
+  double largest = 0.0;         ///< covariance of any tap so far
+  double left = 0.0;            ///< of any covariance of any tap so far, outside of the basis
 
   void restart(const Kernel& kernel, int axis, double tolerance) {
     basis = axis_basis(kernel, axis, places, tolerance);
@@ -70,8 +73,10 @@ class Lowrank final : public Engine {
     for (int i = 0; i < rank_y; ++i) basis_y_.append(y_.basis.col(i).data());
     in_x_.reserve(reserved_);
     in_y_.reserve(reserved_);
-    shares_ = simd::Lines<double>(static_cast<std::size_t>(in_y_.panels()) * kRows * static_cast<std::size_t>(in_x_.padded()));
-    shares_by_x_ = simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded()));
+    shares_ = simd::Lines<double>(static_cast<std::size_t>(in_y_.panels()) * kRows *
+                                  static_cast<std::size_t>(in_x_.padded()));
+    shares_by_x_ =
+        simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded()));
     rows_ = simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded()));
     a_.resize(static_cast<std::size_t>(machine_.workers->threads()));
     for (simd::Lines<Real>& one : a_) one = simd::Lines<Real>(static_cast<std::size_t>(rank_x) * kRows);
@@ -94,8 +99,10 @@ class Lowrank final : public Engine {
     });
   }
 
-  double covariance_error() const override {
-    return x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
+  double covariance_error() const override { return x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left; }
+
+  double rounding() const override {
+    return std::is_same_v<Real, double> ? 0.0 : 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   }
 
   const Maps& maps() const override { return maps_; }
@@ -107,7 +114,8 @@ class Lowrank final : public Engine {
   void form_shares(const VectorView& inverse) {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
-    if (scaled_.size() < needed) scaled_ = simd::Lines<double>(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
+    if (scaled_.size() < needed)
+      scaled_ = simd::Lines<double>(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
     using Rows = Eigen::Array<double, kRows, Eigen::Dynamic>;
     const int lines = in_x_.padded() / kLine;
     double* c = shares_.data();
@@ -120,7 +128,8 @@ class Lowrank final : public Engine {
         const int panel = line / simd::kPanelLines;
         const int width = in_x_.width(panel);
         const double* tile = c + panel * kRows * simd::kPanelLines * kLine + line % simd::kPanelLines * kLine;
-        double* out = shares_by_x_.data() + (static_cast<std::ptrdiff_t>(line) * in_y_.padded() + strip * kRows) * kLine;
+        double* out =
+            shares_by_x_.data() + (static_cast<std::ptrdiff_t>(line) * in_y_.padded() + strip * kRows) * kLine;
         for (int m = 0; m < kRows; ++m) std::copy_n(tile + m * width, kLine, out + m * kLine);
       }
     }
@@ -128,10 +137,10 @@ class Lowrank final : public Engine {
 
   /// S^T U_y^T: what every row of the grid has of every direction along x.
   void form_rows() {
-    machine_.loops->f64.multiply({shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows,
-                                  in_x_.padded() / kRows, basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(),
-                                  basis_y_.padded() / kLine},
-                                 rows_.data());
+    machine_.loops->f64.multiply(
+        {shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
+         basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
+        rows_.data());
   }
 
   /// The shares of a strip's rows, direction by direction.
@@ -158,10 +167,10 @@ class Lowrank final : public Engine {
   simd::Panels<Real> basis_x_;    ///< U_x^T
   simd::Panels<double> basis_y_;  ///< U_y^T
   TiledMaps<Real> maps_;
-  simd::Lines<double> scaled_;       ///< scratch: eight columns of P_y times c
-  simd::Lines<double> shares_;       ///< S
-  simd::Lines<double> shares_by_x_;  ///< S^T
-  simd::Lines<double> rows_;         ///< S^T U_y^T
+  simd::Lines<double> scaled_;        ///< scratch: eight columns of P_y times c
+  simd::Lines<double> shares_;        ///< S
+  simd::Lines<double> shares_by_x_;   ///< S^T
+  simd::Lines<double> rows_;          ///< S^T U_y^T
   std::vector<simd::Lines<Real>> a_;  ///< scratch of a worker
 };
 

@@ -44,7 +44,8 @@ void TiledMaps<Real>::restart(int means, const VectorView& prior) {
   std::fill_n(variance_.data(), variance_.size(), Real{0});
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
-      for (int i = 0; i < count; ++i) variance_.data()[cell + static_cast<std::size_t>(i)] = static_cast<Real>(prior(candidate + i));
+      for (int i = 0; i < count; ++i)
+        variance_.data()[cell + static_cast<std::size_t>(i)] = static_cast<Real>(prior(candidate + i));
     });
   }
   std::fill(best_.begin(), best_.end(), std::numeric_limits<Real>::infinity());
@@ -71,7 +72,8 @@ template <class Real>
 void TiledMaps<Real>::read(const simd::Lines<Real>& map, VectorOut out) const {
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
-      for (int i = 0; i < count; ++i) out(candidate + i) = static_cast<double>(map.data()[cell + static_cast<std::size_t>(i)]);
+      for (int i = 0; i < count; ++i)
+        out(candidate + i) = static_cast<double>(map.data()[cell + static_cast<std::size_t>(i)]);
     });
   }
 }

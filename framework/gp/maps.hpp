@@ -39,7 +39,8 @@ class Tiling {
     const int first = tile % tiles_per_strip_ * width_;
     const int width = std::min(width_, padded_ - first);
     const int columns = std::min(width, columns_ - first);
-    std::size_t cell = static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
+    std::size_t cell =
+        static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
     const int end = std::min((strip + 1) * rows_per_strip_, rows_);
     for (int row = strip * rows_per_strip_; row < end; ++row) {
       const int candidate = row * columns_ + first;

@@ -142,17 +142,25 @@ void Process::keep_accuracy() {
 
 double Process::error_bound() const {
   const double error = choice_.engine->covariance_error();
-  if (!(error > 0.0)) return 0.0;
+  const double rounding = choice_.engine->rounding();
+  const int n = factor_.size();
+  if (!(error > 0.0 || rounding > 0.0)) return 0.0;
   const double row = error * std::sqrt(inverse_norms_);
   double variance = 2.0 * row + row * row;
   double mean = 0.0;
-  const int n = factor_.size();
   const auto size_of = [&](Eigen::Index column) { return weights_.col(column).head(n).lpNorm<1>(); };
   for (Eigen::Index k = 0; k < targets_.cols(); ++k) mean = std::max(mean, error * size_of(k));
   if (with_constant()) {
     const double explained = size_of(targets_.cols());
     mean += std::abs(constant_mean()) * error * explained;
     variance += 2.0 * (1.0 + explained * prior_.maxCoeff()) * error * explained / constant_precision();
+  }
+  // Rounding of v, a sum of some tens of terms, whose squares add up to 1 at most; and of the maps, n times.
+  const double of_row = 32.0 * rounding;
+  variance += of_row * 2.0 * std::sqrt(n) + rounding * n;
+  for (Eigen::Index k = 0; k < targets_.cols() && rounding > 0.0; ++k) {
+    const auto reduced = reduced_.col(k).head(n);
+    mean += of_row * reduced.lpNorm<1>() + rounding * n * reduced.norm();
   }
   return std::max(mean, variance);
 }

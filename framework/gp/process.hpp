@@ -34,8 +34,8 @@ struct ProcessSettings {
 /// Inside, targets are standardised, (value - mean) / signal, and the covariance is that of the kernel plus
 /// (noise / signal)^2 on the diagonal; every number that leaves is in the unit of the targets again, but for
 /// relative_variance(). The maps are kept by one of the engines of engine.hpp; what earlier taps brought is never
-/// computed again, unless the jitter, the hyperparameters or the engine change: then the state is rebuilt from the taps,
-/// n updates of the maps and O(n^3) for the factor.
+/// computed again, unless the jitter, the hyperparameters or the engine change: then the state is rebuilt from the
+/// taps, n updates of the maps and O(n^3) for the factor.
 ///
 /// An unknown constant in the mean is integrated out (the same, section 2.7): its posterior needs L^-1 1, which grows
 /// like L^-1 targets, and the map V^T L^-1 1.
@@ -66,7 +66,8 @@ class Process final : public Scores {
   void show(int outputs);
   int shown() const { return shown_; }
 
-  /// Scores of the kind that the settings name, of u, the relative variance, and w, the mean of output 1, which is shown.
+  /// Scores of the kind that the settings name, of u, the relative variance, and w, the mean of output 1, which is
+  /// shown.
   int pieces() const override { return maps().tiling().tiles(); }
   double bound(int piece) const override;
   int read(int piece, ScoredCell* out) const override;
@@ -97,8 +98,10 @@ class Process final : public Scores {
   double condition() const { return factor_.condition(); }
 
   /// The engine in use, why, and a bound of what it adds to the rounding of `dense`, of means in signals and of
-  /// variances in signals squared: with e the error of a covariance, c_i the rows of L^-1 and alpha = L^-T L^-1 targets,
-  ///     2 E + E^2,  E = e sqrt(sum |c_i|_1^2),   and   e |alpha|_1.
+  /// variances in signals squared: with e the error of a covariance, c_i the rows of L^-1 and alpha = L^-T L^-1
+  /// targets,
+  ///     2 E + E^2,  E = e sqrt(sum |c_i|_1^2),   and   e |alpha|_1,
+  /// and in single precision, to first order, the rounding of the rows and of the maps.
   const char* engine() const { return choice_.engine->name(); }
   const std::string& engine_reason() const { return choice_.reason; }
   double error_bound() const;
@@ -140,18 +143,18 @@ class Process final : public Scores {
   PosteriorSettings posterior_;
   EngineChoice choice_;
   int shown_ = 1;
-  Eigen::VectorXd prior_;      ///< kernel variance at each candidate
-  bool same_prior_ = true;     ///< at all of them
+  Eigen::VectorXd prior_;   ///< kernel variance at each candidate
+  bool same_prior_ = true;  ///< at all of them
 
   int size_ = 0;
   Points points_;            ///< first size_ rows, in the order of the taps
   Eigen::MatrixXd targets_;  ///< as given, an output a column
 
   Factor factor_;
-  Points factored_;          ///< the points of the rows of factor_: those of the taps unless some are set aside
+  Points factored_;  ///< the points of the rows of factor_: those of the taps unless some are set aside
   /// L^-1 of the standardised targets, an output a column; with an unknown constant, L^-1 1 in the column after.
   Eigen::MatrixXd reduced_;
-  Eigen::MatrixXd weights_;  ///< L^-T of the same, of the rows that the engine has taken; only where it needs L^-1
+  Eigen::MatrixXd weights_;     ///< L^-T of the same, of the rows that the engine has taken; only where it needs L^-1
   double inverse_norms_ = 0.0;  ///< sum of |c_i|_1^2 over those rows
   Eigen::VectorXd scratch_;
   double jitter_ = 0.0;  ///< relative to signal^2

@@ -30,7 +30,8 @@ class Workers {
       for (int piece = 0; piece < count; ++piece) job(piece, 0);
       return;
     }
-    run(count, [](const void* work, int piece, int worker) { (*static_cast<const Job*>(work))(piece, worker); }, &job);
+    run(
+        count, [](const void* work, int piece, int worker) { (*static_cast<const Job*>(work))(piece, worker); }, &job);
   }
 
  private:
@@ -43,7 +44,7 @@ class Workers {
   const void* job_ = nullptr;
   int count_ = 0;
   std::atomic<int> next_{0};
-  std::atomic<int> inside_{0};    ///< helpers that may be at work
+  std::atomic<int> inside_{0};     ///< helpers that may be at work
   std::atomic<bool> open_{false};  ///< there is a job
   std::atomic<unsigned> jobs_{0};  ///< so far
   std::atomic<int> asleep_{0};

@@ -5,9 +5,9 @@
 
 #include <palpate/error.hpp>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <sys/resource.h>
 
@@ -46,7 +46,8 @@ void write_maps(const std::string& file, const Candidates& candidates, const Pro
   if (out == nullptr) throw Error(file, "cannot be written");
   fmt::print(out, "x,y,mean,variance,weight\n");
   for (int i = 0; i < candidates.size(); ++i) {
-    fmt::print(out, "{},{},{},{},{}\n", candidates.points(i, 0), candidates.points(i, 1), mean(i), variance(i), weight(i));
+    fmt::print(out, "{},{},{},{},{}\n", candidates.points(i, 0), candidates.points(i, 1), mean(i), variance(i),
+               weight(i));
   }
   std::fclose(out);
 }
@@ -85,8 +86,8 @@ void run(const Arguments& arguments) {
              process->engine_reason(), settings.machine.loops->name);
   fmt::print("  \"candidates\": {},\n  \"taps\": {},\n  \"error_bound\": {:.3g},\n", candidates.size(), process->size(),
              process->error_bound());
-  fmt::print("  \"total_seconds\": {{\"least\": {:.6g}, \"median\": {:.6g}}},\n  \"peak_rss_bytes\": {},\n", totals.front(),
-             totals[totals.size() / 2], memory);
+  fmt::print("  \"total_seconds\": {{\"least\": {:.6g}, \"median\": {:.6g}}},\n  \"peak_rss_bytes\": {},\n",
+             totals.front(), totals[totals.size() / 2], memory);
   fmt::print("  \"choices_as_in_file\": \"{} of {}\",\n", agree, best.choices.size() - 1);
   fmt::print("  \"choices\": [{}],\n", fmt::join(best.choices, ", "));
   fmt::print("  \"seconds_per_tap\": [{:.3g}]\n}}\n", fmt::join(best.seconds, ", "));
@@ -105,7 +106,8 @@ int main(int argc, char** argv) {
   app.add_option("--grid", arguments.grid, "candidates a side of the 23 cm square")->check(CLI::Range(2, 2000));
   app.add_option("--engine", arguments.engine, "auto, dense, grid or lowrank")
       ->transform(CLI::CheckedTransformer(engines).description(""));
-  app.add_option("--repeat", arguments.repeat, "times to replay; the fastest is told tap by tap")->check(CLI::Range(1, 1000000));
+  app.add_option("--repeat", arguments.repeat, "times to replay; the fastest is told tap by tap")
+      ->check(CLI::Range(1, 1000000));
   app.add_option("--threads", arguments.threads, "")->check(CLI::Range(1, 64));
   app.add_option("--tolerance", arguments.tolerance, "of lowrank");
   app.add_flag("--single", arguments.single, "lowrank with maps in single precision");

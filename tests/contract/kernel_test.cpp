@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <thread>
@@ -117,6 +118,44 @@ TEST_P(KernelContract, TakesNoPointsAtAll) {
     EXPECT_EQ(covariance(*kernel, some, none).size(), 0);
     EXPECT_EQ(covariance(*kernel, none, none).size(), 0);
     EXPECT_EQ(variance(*kernel, none).size(), 0);
+  }
+}
+
+TEST_P(KernelContract, IfSeparableIsTheProductOfItsFactors) {
+  for (const double extent : {0.01, 0.23, 5.0}) {
+    const Points a = spread(19, extent, 13);
+    const Points b = spread(11, extent, 14);
+    for (const auto& kernel : kernels_) {
+      if (!kernel->separable()) continue;
+      const Eigen::MatrixXd whole = covariance(*kernel, a, b);
+      Eigen::MatrixXd along_x(19, 11);
+      Eigen::MatrixXd along_y(19, 11);
+      kernel->axis_covariance(0, a.col(0), b.col(0), along_x);
+      kernel->axis_covariance(1, a.col(1), b.col(1), along_y);
+      for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        for (Eigen::Index j = 0; j < b.rows(); ++j) {
+          const double k = whole(i, j);
+          // Below the smallest normal number there are no ulps to speak of.
+          const double ulps = 8.0 + std::abs(std::log(std::max(k, 1e-300)));
+          EXPECT_NEAR(along_x(i, j) * along_y(i, j), k, ulps * kEpsilon * k + 1e-300);
+          Eigen::MatrixXd alone(1, 1);
+          kernel->axis_covariance(0, a.col(0).segment(i, 1), b.col(0).segment(j, 1), alone);
+          expect_same_value(alone(0, 0), along_x(i, j));
+        }
+      }
+    }
+  }
+}
+
+TEST_P(KernelContract, IfSeparableHasFiniteFactorsAtExtremesOfScale) {
+  const Points a = points_of_every_scale();
+  for (const auto& kernel : kernels_) {
+    if (!kernel->separable()) continue;
+    for (const int axis : {0, 1}) {
+      Eigen::MatrixXd factor(a.rows(), a.rows());
+      kernel->axis_covariance(axis, a.col(0), -a.col(1), factor);
+      EXPECT_TRUE(factor.allFinite());
+    }
   }
 }
 

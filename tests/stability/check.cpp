@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -37,7 +38,8 @@ class Bringing final : public Fitting {
 };
 
 /// `sound` becomes false if there ever was a number that is none.
-Process processed(const Problem& problem, const Points& candidates, bool& sound) {
+Process processed(const Problem& problem, const Candidates& candidates, const PosteriorSettings& posterior,
+                  bool& sound) {
   const Case& one = problem.one;
   // Before a fit the matrix is as singular as can be.
   const double length_scale = one.refit ? 1e4 * kSide : one.length_scale();
@@ -45,10 +47,10 @@ Process processed(const Problem& problem, const Points& candidates, bool& sound)
   const double noise = one.refit ? 0.0 : one.noise();
   const auto kernel =
       test::make<Kernel>(test::shared_host(), one.kernel, fmt::format("{{length_scale: {} m}}", length_scale));
-  Process process(kernel, {signal, noise, one.mean, one.mean_ratio}, candidates);
+  Process process(kernel, {signal, noise, one.mean, one.mean_ratio}, candidates, posterior);
   for (Eigen::Index i = 0; i < problem.values.size(); ++i) {
     process.add({problem.places(i, 0), problem.places(i, 1)}, problem.values(i));
-    sound &= process.mean().allFinite() && process.variance().allFinite();
+    sound &= process.mean().allFinite() && process.variance().allFinite() && std::isfinite(process.error_bound());
   }
   Random random(1, "stability");
   if (one.refit) process.fit(Bringing(one), random);
@@ -74,18 +76,49 @@ std::string trouble_of(const Process& process, const Answer& answer, const Case&
   return within ? "" : "variance outside of [0; prior]";
 }
 
-Answer answered(const Problem& problem) {
+struct Engine {
+  const char* name;
+  PosteriorSettings::Kind kind;
+};
+constexpr std::array<Engine, 4> kEngines{{{"dense", PosteriorSettings::Kind::dense},
+                                          {"grid", PosteriorSettings::Kind::grid},
+                                          {"lowrank", PosteriorSettings::Kind::lowrank},
+                                          {"auto", PosteriorSettings::Kind::automatic}}};
+
+/// The places that are asked about: the probes, and then taps.
+Points asked(const Problem& problem, const Engine& engine) {
+  // A product grid has the square of them as candidates: there, the taps are left out where they are many.
+  constexpr Eigen::Index kFew = 40;
+  const bool all = engine.kind == PosteriorSettings::Kind::dense || problem.places.rows() <= kFew;
+  const Eigen::Index taps = all ? problem.places.rows() : 0;
+  Points out(problem.probes.rows() + taps, 2);
+  out << problem.probes, problem.places.topRows(taps);
+  return out;
+}
+
+Answer answered(const Problem& problem, const Engine& engine) {
   const Case& one = problem.one;
-  const Eigen::Index count = problem.probes.rows();
-  Points candidates(count + problem.places.rows(), 2);
-  candidates << problem.probes, problem.places;
+  const Points places = asked(problem, engine);
+  const bool dense = engine.kind == PosteriorSettings::Kind::dense;
+  const Candidates candidates = dense ? scattered(places) : product_grid(places.col(0), places.col(1));
+  // Of a product grid, the places lie on the diagonal.
+  const Eigen::Index step = dense ? 1 : places.rows() + 1;
+  const auto at_places = [&](const Eigen::VectorXd& map) {
+    return LongVector(Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>(map.data(), places.rows(),
+                                                                                 Eigen::InnerStride<>(step))
+                          .cast<long double>());
+  };
+  PosteriorSettings posterior;
+  posterior.engine = engine.kind;
+  posterior.taps = one.points;
   bool sound = true;
-  const Process process = processed(problem, candidates, sound);
-  const LongVector mean = (process.mean().cast<long double>().array() - one.mean) / one.signal;
-  const LongVector variance = process.variance().cast<long double>() / one.signal / one.signal;
-  Answer out{mean.head(count),
-             variance.head(count),
-             mean.tail(problem.places.rows()),
+  const Process process = processed(problem, candidates, posterior, sound);
+  const LongVector mean = (at_places(process.mean()).array() - one.mean) / one.signal;
+  const LongVector variance = at_places(process.variance()) / one.signal / one.signal;
+  const Eigen::Index probes = problem.probes.rows();
+  Answer out{mean.head(probes),
+             variance.head(probes),
+             mean.tail(places.rows() - probes),
              process.jitter() / one.signal / one.signal,
              {}};
   out.trouble = trouble_of(process, out, one, sound);
@@ -93,6 +126,15 @@ Answer answered(const Problem& problem) {
 }
 
 double greatest(const LongVector& vector) { return static_cast<double>(vector.cwiseAbs().maxCoeff()); }
+
+/// What of a row exceeds its bound.
+std::string exceeds(const Row& row) {
+  if (!(row.mean_error <= row.mean_bound)) return "mean";
+  if (!(row.variance_error <= row.variance_bound)) return "variance";
+  const double more = row.engine == "lowrank" ? PosteriorSettings{}.tolerance : 0.0;
+  if (!(row.residual <= kResidualLimit * row.n_eps() + more)) return "residual";
+  return {};
+}
 
 /// Compares with the truth of the same model; `exact` is that of the model without jitter.
 void compare(const Problem& problem, const Spectrum& spectrum, const Answer& answer, const Reference& truth,
@@ -117,54 +159,69 @@ void compare(const Problem& problem, const Spectrum& spectrum, const Answer& ans
     row.mean_bound = std::min({bound, backward * truth.alpha / scale, kMeanCap});
     row.variance_bound = std::min({bound, backward * truth.weights / one.prior(), kVarianceCap});
   }
+  if (row.engine == "lowrank") {
+    const double more = PosteriorSettings{}.tolerance * row.condition;
+    row.mean_bound += std::min(more, kMeanCap);
+    row.variance_bound += std::min(more, kVarianceCap);
+  }
+  if (answer.tap_mean.size() == 0) {
+    if (row.trouble.empty()) row.trouble = exceeds(row);
+    return;
+  }
   const double size = norm * truth.alpha + static_cast<double>(targets.norm());
   const double miss = static_cast<double>((truth.tap_mean - answer.tap_mean).norm());
   row.residual = miss == 0.0 ? 0.0 : miss / size;
 
-  if (!row.trouble.empty()) return;
-  if (!(row.mean_error <= row.mean_bound)) row.trouble = "mean";
-  if (!(row.variance_error <= row.variance_bound)) row.trouble = "variance";
-  if (!(row.residual <= kResidualLimit * row.n_eps())) row.trouble = "residual";
+  if (row.trouble.empty()) row.trouble = exceeds(row);
 }
 
 }  // namespace
 
 double Row::n_eps() const { return points * kEps; }
 
-Row check(const Case& one) {
+std::vector<Row> check(const Case& one) {
   const Problem problem(one);
   const Spectrum spectrum = stability::spectrum(problem);
-  const Answer answer = answered(problem);
-  Row row;
-  row.name = one.name;
-  row.points = one.points;
-  row.condition = spectrum.condition();
-  row.jitter = answer.jitter;
-  row.trouble = answer.trouble;
+  const bool separable = test::make<Kernel>(test::shared_host(), one.kernel)->separable();
+  std::optional<OracleRoute> route;
+  if (one.points <= kOraclePoints) route.emplace(problem);
+  std::optional<double> jitter;
   std::optional<Reference> truth;
   std::optional<Reference> exact;
-  if (one.points <= kOraclePoints) {
-    OracleRoute route(problem);
-    truth = route.solve(answer.jitter);
-    exact = answer.jitter > 0.0 ? route.solve(0.0) : truth;
-  } else {
-    truth = refined(problem, answer.jitter);
-    if (answer.jitter == 0.0) exact = truth;
+  std::vector<Row> rows;
+  for (const Engine& engine : kEngines) {
+    if (engine.kind != PosteriorSettings::Kind::dense && !separable) continue;
+    const Answer answer = answered(problem, engine);
+    // All engines meet the same matrix, and thus most often raise the same jitter.
+    if (!jitter || *jitter != answer.jitter) {
+      jitter = answer.jitter;
+      truth = route ? route->solve(*jitter) : refined(problem, *jitter);
+      exact = *jitter == 0.0 ? truth : (route ? route->solve(0.0) : std::nullopt);
+    }
+    Row row;
+    row.name = one.name;
+    row.engine = engine.name;
+    row.points = one.points;
+    row.condition = spectrum.condition();
+    row.jitter = answer.jitter;
+    row.trouble = answer.trouble;
+    if (truth) compare(problem, spectrum, answer, *truth, exact, row);
+    if (!truth && row.trouble.empty()) row.trouble = "a singular matrix went without jitter";
+    rows.push_back(row);
   }
-  if (truth) compare(problem, spectrum, answer, *truth, exact, row);
-  if (!truth && row.trouble.empty()) row.trouble = "a singular matrix went without jitter";
-  return row;
+  return rows;
 }
 
 std::string header() {
-  return "case,points,condition,jitter,jitter_effect,mean_error,mean_bound,variance_error,variance_bound,residual,"
+  return "case,engine,points,condition,jitter,jitter_effect,mean_error,mean_bound,variance_error,variance_bound,"
+         "residual,"
          "verdict";
 }
 
 std::string text(const Row& row) {
   const std::string effect = std::isnan(row.jitter_effect) ? "" : fmt::format("{:.2g}", row.jitter_effect);
-  return fmt::format("{},{},{:.2g},{:.2g},{},{:.2g},{:.2g},{:.2g},{:.2g},{:.2g},{}", row.name, row.points,
-                     row.condition, row.jitter, effect, row.mean_error, row.mean_bound, row.variance_error,
+  return fmt::format("{},{},{},{:.2g},{:.2g},{},{:.2g},{:.2g},{:.2g},{:.2g},{:.2g},{}", row.name, row.engine,
+                     row.points, row.condition, row.jitter, effect, row.mean_error, row.mean_bound, row.variance_error,
                      row.variance_bound, row.residual, row.trouble.empty() ? "holds" : "fails: " + row.trouble);
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// One row of the table: a case, run through the framework and held against what is true.
+// Rows of the table: a case, run through the framework on every posterior engine that serves its kernel, and held
+// against what is true.
 #pragma once
 
 #include "stability/cases.hpp"
 
 #include <string>
+#include <vector>
 
 namespace palpate::stability {
 
@@ -21,8 +23,12 @@ namespace palpate::stability {
 ///                           the matrix A with its jitter, and the truth is that of the model with the jitter.
 /// The sensitivity is what a backward error of n eps |A| can do to first order: n eps |A| |A^-1 k_*| |A^-1 y| to a mean
 /// and n eps |A| |A^-1 k_*|^2 to a variance. The cap keeps the bound below what would be no answer at all.
+///
+/// `lowrank` may add its tolerance times cond, up to the caps, and its tolerance to the residual; `auto`, which lets no engine add more than its accuracy,
+/// is held to the bound of `grid`.
 struct Row {
   std::string name;
+  std::string engine = "dense";  ///< as a config names it
   int points = 0;
   double condition = 1.0;      ///< cond; infinite from 1e14 on
   double jitter = 0.0;         ///< relative to the prior variance
@@ -47,7 +53,8 @@ constexpr double kVarianceCap = 1e-4;
 constexpr double kJitterLimit = 100.0;
 constexpr double kResidualLimit = 1.0;
 
-Row check(const Case& one);
+/// Of `dense`, and for a separable kernel of all engines.
+std::vector<Row> check(const Case& one);
 
 /// The names of the columns, and a row, separated by commas. An unknown effect is an empty cell.
 std::string header();

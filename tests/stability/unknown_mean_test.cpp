@@ -29,10 +29,10 @@ Case with(double mean_ratio, int points, double signal, double mean) {
   return one;
 }
 
-Process processed(const Problem& problem) {
+Process processed(const Problem& problem, const Candidates& candidates) {
   const Case& one = problem.one;
   const auto kernel = test::make<Kernel>(test::shared_host(), one.kernel, "{length_scale: 2.3 cm}");
-  Process process(kernel, {one.signal, one.noise(), one.mean, one.mean_ratio}, problem.probes);
+  Process process(kernel, {one.signal, one.noise(), one.mean, one.mean_ratio}, candidates);
   for (Eigen::Index i = 0; i < problem.values.size(); ++i) {
     process.add({problem.places(i, 0), problem.places(i, 1)}, problem.values(i));
   }
@@ -45,7 +45,8 @@ TEST(UnknownMean, MeanVarianceAndLikelihoodAgreeWithTheOracle) {
       for (const double signal : {1e-6, 1.0, 1e6}) {
         const Case one = with(ratio, points, signal, 0.25 * signal);
         const Problem problem(one);
-        const Process process = processed(problem);
+        const Candidates candidates = scattered(problem.probes);
+        const Process process = processed(problem, candidates);
         Oracle oracle(one, problem.places, problem.values);
         ASSERT_TRUE(oracle.factorise(0.0));
         // n eps cond of the covariance without the constant: what the constant adds is computed apart.
@@ -69,7 +70,8 @@ TEST(UnknownMean, OfNoKnowledgeAtAllFollowsTheLevelOfTheData) {
   const Case one = with(1e6, 30, 1.0, 0.0);
   Problem problem(one);
   problem.values.array() += 1000.0;
-  const Process process = processed(problem);
+  const Candidates candidates = scattered(problem.probes);
+  const Process process = processed(problem, candidates);
   const Eigen::Index far = problem.probes.rows() - 1;
   const Case plain = with(0.0, 30, 1.0, 0.0);
   EXPECT_NEAR(process.mean()(far), 1000.0, 1.0) << "far from all taps it stays at their level";

@@ -85,14 +85,15 @@ TEST(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
     }
   }
   const Process& height = *experiment.belief().height_process().process;
-  const Process& weight = *experiment.belief().weight_process().process;
-  EXPECT_EQ(&height.kernel(), &weight.kernel());
+  const TapBelief::Quantity label = experiment.belief().weight_process();
+  const ProcessSettings& weight = label.process->settings(label.output);
+  EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);
   EXPECT_EQ(height.settings().mean, 0.125);
   EXPECT_EQ(height.settings().noise, 0.25 * 2e-3);
-  EXPECT_EQ(weight.settings().signal, 0.5) << "signals stay apart";
-  EXPECT_EQ(weight.settings().mean, 0.25);
-  EXPECT_EQ(weight.settings().noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
+  EXPECT_EQ(weight.signal, 0.5) << "signals stay apart";
+  EXPECT_EQ(weight.mean, 0.25);
+  EXPECT_EQ(weight.noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
 }
 
 TEST(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
@@ -113,8 +114,10 @@ TEST(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
   EXPECT_EQ(of_surface, result.on_surface_taps / 5);
   EXPECT_GT(of_surface, 0);
   EXPECT_EQ(factory.fitting->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
-  EXPECT_NE(&experiment.belief().height_process().process->kernel(), &experiment.belief().weight_process().process->kernel());
-  EXPECT_NE(&experiment.belief().height_process().process->kernel(), &experiment.belief().surface_process().process->kernel());
+  EXPECT_NE(&experiment.belief().height_process().process->kernel(),
+            &experiment.belief().weight_process().process->kernel());
+  EXPECT_NE(&experiment.belief().height_process().process->kernel(),
+            &experiment.belief().surface_process().process->kernel());
 }
 
 TEST(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {

@@ -112,7 +112,8 @@ class Comparison final : public Journal {
     worst_mean = std::max(worst_mean, difference(oracle_.height, belief.height_mean()));
     worst_mean = std::max(worst_mean, difference(oracle_.weight, belief.weight_mean()));
     worst_variance = std::max(worst_variance, difference(oracle_.variance, belief.height_variance()));
-    worst_variance = std::max(worst_variance, difference(oracle_.variance, belief.weight_process().process->variance()));
+    worst_variance =
+        std::max(worst_variance, difference(oracle_.variance, belief.weight_process().process->variance()));
     condition = std::max(condition, oracle_.condition_bound());
   }
 

@@ -19,7 +19,7 @@ class Lines {
  public:
   Lines() = default;
   explicit Lines(std::size_t size)
-      : numbers_(static_cast<Real*>(::operator new(size * sizeof(Real), std::align_val_t{kLineBytes}))), size_(size) {}
+      : numbers_(static_cast<Real*>(::operator new (size * sizeof(Real), std::align_val_t{kLineBytes}))), size_(size) {}
 
   std::size_t size() const { return size_; }
   Real* data() { return numbers_.get(); }
@@ -27,7 +27,7 @@ class Lines {
 
  private:
   struct Release {
-    void operator()(Real* numbers) const { ::operator delete(numbers, std::align_val_t{kLineBytes}); }
+    void operator()(Real* numbers) const { ::operator delete (numbers, std::align_val_t{kLineBytes}); }
   };
   std::unique_ptr<Real, Release> numbers_;
   std::size_t size_ = 0;

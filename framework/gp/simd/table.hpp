@@ -79,7 +79,7 @@ struct Table {
   void (*absorb_dense)(const DenseRow&, const Update<double>&);
   // L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
   // matrix goes. Both work in place on n numbers, with room up to a line.
-  void (*solve_lower)(const double* lower, int n, double* x);            ///< x = L^-1 x
+  void (*solve_lower)(const double* lower, int n, double* x);             ///< x = L^-1 x
   void (*solve_lower_transposed)(const double* lower, int n, double* x);  ///< x = L^-T x
 };
 

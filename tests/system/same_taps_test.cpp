@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// The promise of the tie rule: engine, threads and instruction set decide no tap.
+#include "support/runs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kSeeds = 10;
+#else
+constexpr int kSeeds = 200;
+#endif
+
+std::vector<int> taps_of(const ExperimentOptions& options) {
+  Experiment experiment(options, test::shared_host(), nullptr);
+  test::Collector collector;
+  experiment.run(collector);
+  std::vector<int> out;
+  for (const TapRecord& tap : collector.taps) out.push_back(tap.candidate);
+  return out;
+}
+
+/// Ways to compute the same; the first is the plainest.
+std::vector<std::vector<std::string>> ways() {
+  std::vector<std::vector<std::string>> out{{"posterior=dense", "instruction_set=baseline"}};
+  for (const char* engine : {"posterior=dense", "posterior=grid", "posterior=lowrank"}) {
+    out.push_back({engine});
+    out.push_back({engine, "threads=2"});
+  }
+  out.push_back({"posterior=grid", "instruction_set=baseline"});
+  out.push_back({"posterior=lowrank", "instruction_set=baseline"});
+  return out;
+}
+
+class SameTaps : public testing::TestWithParam<std::tuple<const char*, const char*>> {
+ protected:
+  ExperimentOptions options(std::vector<std::string> overrides) const {
+    const auto& [config, acquisition] = GetParam();
+    overrides.push_back(fmt::format("acquisition={}", acquisition));
+    return test::shipped_config(fmt::format("paper/{}.yaml", config), overrides).options;
+  }
+};
+
+TEST_P(SameTaps, OnEveryEngineOneAndTwoThreadsAndEveryInstructionSet) {
+  std::vector<std::vector<int>> expected;
+  for (const std::vector<std::string>& way : ways()) {
+    ExperimentOptions one = options(way);
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      one.seed = seed;
+      const std::vector<int> taps = taps_of(one);
+      if (static_cast<int>(expected.size()) == seed) {
+        expected.push_back(taps);
+      } else {
+        ASSERT_EQ(taps, expected[static_cast<std::size_t>(seed)])
+            << fmt::format("{}, seed {}", fmt::join(way, " "), seed);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SameTaps,
+                         testing::Combine(testing::Values("object_i", "object_i_right", "object_ii"),
+                                          testing::Values("uncertainty", "weighted")),
+                         [](const auto& one) {
+                           return fmt::format("{}_{}", std::get<0>(one.param), std::get<1>(one.param));
+                         });
+
+TEST(TieRule, WithoutItRoundingDecidesTapsOfUncertainty) {
+  int different = 0;
+  for (int seed = 0; seed < 10; ++seed) {
+    const auto run = [&](const char* engine) {
+      return taps_of(test::shipped_config("paper/object_i.yaml", {"acquisition=uncertainty", "tie_tolerance=0", engine,
+                                                                  fmt::format("seed={}", seed)})
+                         .options);
+    };
+    different += run("posterior=dense") != run("posterior=lowrank") ? 1 : 0;
+  }
+  EXPECT_GT(different, 0) << "if rounding decided nothing, the tests above would show nothing";
+}
+
+}  // namespace
+}  // namespace palpate
