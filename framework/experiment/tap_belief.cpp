@@ -28,7 +28,7 @@ PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   out.tolerance = options.lowrank.tolerance;
   out.single = options.lowrank.precision == LowrankOptions::Precision::single;
   out.taps = static_cast<int>(options.taps);
-  if (options.instruction_set == ExperimentOptions::InstructionSet::baseline) out.machine.loops = &simd::baseline();
+  out.machine.loops = &loops_of(options);
   out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.threads));
   return out;
 }
@@ -38,6 +38,11 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
 }
 
 }  // namespace
+
+const simd::Table& loops_of(const ExperimentOptions& options) {
+  const bool baseline = options.instruction_set == ExperimentOptions::InstructionSet::baseline;
+  return baseline ? simd::baseline() : simd::fastest();
+}
 
 // The plugins are made at once, so that options which they refuse are refused before the first tap.
 TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,

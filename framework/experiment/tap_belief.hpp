@@ -18,6 +18,9 @@
 
 namespace palpate {
 
+/// The loops that a config's instruction_set means on this processor.
+const simd::Table& loops_of(const ExperimentOptions& options);
+
 /// The belief behind the acquisitions, and what the metrics and the record want beyond it.
 class TapBelief final : public Belief {
  public:

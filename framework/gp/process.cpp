@@ -75,7 +75,8 @@ void Process::add(const Target& place, const VectorView& values) {
 bool Process::append(int tap) {
   const int row = factor_.size();
   factored_.row(row) = points_.row(tap);
-  const auto place = factored_.row(row);
+  // Not row(row): a row at compile time would be copied to the heap where a view of points is asked for.
+  const auto place = factored_.middleRows(row, 1);
   kernel_->covariance(factored_.topRows(row), place, scratch_.head(row));
   double own = 0.0;
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));

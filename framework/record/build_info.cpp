@@ -30,16 +30,6 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-const char* instruction_path() {
-#if defined(__AVX512F__)
-  return "AVX-512";
-#elif defined(__AVX2__)
-  return "AVX2";
-#else
-  return "x86-64 baseline";
-#endif
-}
-
 Tree libraries() {
   Tree out = Tree::map();
   out.at("Eigen") = text(fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
@@ -100,7 +90,8 @@ std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
   return hash_of(all);
 }
 
-Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins) {
+Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
+                    const std::string& instruction_path) {
   Tree out = Tree::map();
   out.at("version") = text(kVersion);
   // Kept beside the program, not in it: a commit that changes no code leaves the program's bytes alone.
@@ -113,7 +104,7 @@ Tree describe_build(const Installation& installation, const PluginHost& host, co
   }
   out.at("build") = text(build_hash(host, plugins));
   out.at("compiler") = text(PALPATE_COMPILER);
-  out.at("instruction_path") = text(instruction_path());
+  out.at("instruction_path") = text(instruction_path);
   out.at("build_stamp") = text(PALPATE_BUILD_STAMP);
   out.at("libraries") = libraries();
   out.at("plugins") = describe_plugins(host, plugins);

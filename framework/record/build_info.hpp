@@ -32,6 +32,7 @@ using PluginNames = std::set<std::pair<std::string, std::string>>;
 std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
 /// Version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins, host.
-Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins);
+Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
+                    const std::string& instruction_path);
 
 }  // namespace palpate

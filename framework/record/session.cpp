@@ -20,7 +20,7 @@ namespace {
 Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
 
 std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config) {
-  Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins);
+  Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
   Tree& line = out.at("command_line");
   line = Tree::list();
   for (const std::string& word : workshop.command_line) line.items.push_back(quoted(word));
