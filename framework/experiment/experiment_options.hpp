@@ -50,7 +50,7 @@ struct WeightOptions : Options {
 /// Of the posterior engine `lowrank`.
 struct LowrankOptions : Options {
   enum class Precision { full, single };
-  double tolerance = 1e-14;
+  double tolerance = 1e-15;
   Precision precision = Precision::full;
   void list(Fields& fields) override;
 };

@@ -16,7 +16,7 @@ struct PosteriorSettings {
   /// What `automatic` may lose beyond the rounding of `dense`: of means in prior standard deviations, of variances in
   /// prior variances.
   double accuracy = 1e-9;
-  double tolerance = 1e-14;  ///< of `lowrank`: see make_lowrank()
+  double tolerance = 1e-15;  ///< of `lowrank`: see make_lowrank()
   bool single = false;       ///< of `lowrank`
   /// The scores whose bounds are to come out of the update of the maps. Not with an unknown constant in the mean.
   simd::Score score = simd::Score::none;

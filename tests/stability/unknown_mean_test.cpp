@@ -75,7 +75,7 @@ TEST(UnknownMean, OfNoKnowledgeAtAllFollowsTheLevelOfTheData) {
   const Eigen::Index far = problem.probes.rows() - 1;
   const Case plain = with(0.0, 30, 1.0, 0.0);
   EXPECT_NEAR(process.mean()(far), 1000.0, 1.0) << "far from all taps it stays at their level";
-  EXPECT_NEAR(processed(Problem(plain)).mean()(far), 0.0, 1e-12) << "a known mean does not";
+  EXPECT_NEAR(processed(Problem(plain), candidates).mean()(far), 0.0, 1e-12) << "a known mean does not";
 }
 
 }  // namespace
