@@ -5,11 +5,13 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
 
-void Experiment::run(Journal& journal) {
+void Experiment::run(Journal& journal, int most_taps) {
+  budget_ = std::min<std::int64_t>(options_.taps, most_taps);
   for (;;) {
     if (std::optional<std::string> reason = stop_reason()) {
       result_.stop_reason = *reason;
@@ -59,18 +61,6 @@ void Experiment::choose_by_score(TapRecord& tap) {
   }
 }
 
-Pick Experiment::pick_best() {
-  const double scale = acquisition_->prior_scale();
-  if (const Scores* formed = belief_.formed()) return chooser_.pick(*formed, allowed_, scale, options_.tie_tolerance);
-  scores_.resize(candidates_.size());
-  acquisition_->score(belief_, scores_);
-  if (!scores_.allFinite()) {
-    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
-                Error::Kind::run);
-  }
-  return chooser_.pick(VectorScores(scores_), allowed_, scale, options_.tie_tolerance);
-}
-
 void Experiment::perform(TapRecord& tap) {
   tap.contact = touch(tap.number, tap.target);
   if (tap.contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(tap.contact.height);
@@ -89,7 +79,7 @@ void Experiment::absorb(const Target& target, const Contact& contact, Source sou
 
 std::optional<std::string> Experiment::stop_reason() const {
   if (context_.interrupted != nullptr && context_.interrupted->load()) return "interrupted";
-  if (result_.taps >= options_.taps) return "tap budget";
+  if (result_.taps >= budget_) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";
   if (stop.max_standard_deviation && result_.taps >= options_.initial.count &&

@@ -11,6 +11,7 @@
 #include <palpate/plugin.hpp>
 
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,8 +33,8 @@ class Experiment {
   /// Takes over the taps of an earlier process, in their order. Call before run().
   void resume(const std::vector<PastTap>& past);
 
-  /// Taps until a stop rule holds, and tells `journal` of every tap.
-  void run(Journal& journal);
+  /// Taps until a stop rule holds, or `most_taps` are made, and tells `journal` of every tap.
+  void run(Journal& journal, int most_taps = std::numeric_limits<int>::max());
 
   /// What was counted so far, without errors: builds and computes nothing.
   const RunResult& counts() const { return result_; }
@@ -76,6 +77,7 @@ class Experiment {
   std::vector<bool> tapped_;   ///< candidates where there was a contact
   std::optional<Target> previous_;
   std::optional<Truth> truth_;
+  std::int64_t budget_ = 0;  ///< of taps
   RunResult result_;
 };
 

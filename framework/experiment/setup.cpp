@@ -2,6 +2,8 @@
 // What stands around the loop of experiment.cpp: building it, taking over a broken one, and telling its result.
 #include "experiment/experiment.hpp"
 
+#include <palpate/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -52,6 +54,18 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
 
 void Experiment::resume(const std::vector<PastTap>& past) {
   for (const PastTap& tap : past) absorb(tap.target, tap.contact, tap.source);
+}
+
+Pick Experiment::pick_best() {
+  const double scale = acquisition_->prior_scale();
+  if (const Scores* formed = belief_.formed()) return chooser_.pick(*formed, allowed_, scale, options_.tie_tolerance);
+  scores_.resize(candidates_.size());
+  acquisition_->score(belief_, scores_);
+  if (!scores_.allFinite()) {
+    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+                Error::Kind::run);
+  }
+  return chooser_.pick(VectorScores(scores_), allowed_, scale, options_.tie_tolerance);
 }
 
 Contact Experiment::touch(int number, const Target& target) {

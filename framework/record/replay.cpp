@@ -75,13 +75,12 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const Scalar* truth = recorded.front().find("true_on_surface");
   const bool truth_known = truth != nullptr && !std::holds_alternative<std::monostate>(*truth);
 
-  ExperimentOptions options = config.options;
-  const bool cut = static_cast<std::int64_t>(taps.size()) < options.taps;
-  options.taps = static_cast<std::int64_t>(taps.size());
-  Experiment experiment(options, workshop.host, workshop.interrupted,
+  const auto made = static_cast<int>(taps.size());
+  const bool cut = made < config.options.taps;
+  Experiment experiment(config.options, workshop.host, workshop.interrupted,
                         std::make_shared<Recorded>(std::move(taps), truth_known));
   Collector collector;
-  experiment.run(collector);
+  experiment.run(collector, made);
 
   ReplayReport report;
   report.taps = static_cast<int>(recorded.size());

@@ -105,9 +105,13 @@ Row summary_row(const ResolvedConfig& config, const RunResult& result, const std
   for (std::size_t i = 0; i < kPhases; ++i) row.add(std::string("compute.") + kPhaseNames[i], phases[i]);
   row.add("jitter_max", result.jitter_max);
   for (const auto& [kind, count] : result.interventions) row.add("interventions." + kind, count);
-  add_process(row, "height_process", result.height_process);
-  add_process(row, "weight_process", result.weight_process);
-  if (result.surface_process) add_process(row, "surface_process", result.surface_process);
+  const auto add = [&row](const char* name, const std::optional<ProcessState>& state) {
+    add_process(row, name, state);
+    row.add(std::string(name) + ".engine_reason", state ? std::optional(state->engine_reason) : std::nullopt);
+  };
+  add("height_process", result.height_process);
+  add("weight_process", result.weight_process);
+  if (result.surface_process) add("surface_process", result.surface_process);
   row.add("peak_rss_bytes", peak_rss_bytes());
   return row;
 }

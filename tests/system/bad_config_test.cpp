@@ -80,8 +80,9 @@ std::vector<Case> cases() {
            "bad.yaml:10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
            "bad.yaml:10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, "
-           "weight, surface, "
-           "posterior, acquisition, fitting, fallback, repeat, tie_tolerance, stop, scene, backend, log"),
+           "weight, surface, posterior, lowrank, acquisition, fitting, fallback, repeat, tie_tolerance, accuracy, "
+           "threads, "
+           "instruction_set, stop, scene, backend, log"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",
             "configs/kernel/rbf.yaml:3:3: unknown option 'length_scal', did you mean 'length_scale'?"),
       typed("TypoInAnOverride", {"kernel.length_scal=2cm"},
@@ -249,6 +250,20 @@ std::vector<Case> cases() {
            "bad.yaml:10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
            "bad.yaml:10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
+
+      line(
+          "GridPosteriorWithANonSeparableKernel", "posterior: grid\nkernel: {type: matern32}",
+          "bad.yaml:10:12: posterior: grid cannot be used with the kernel matern32, which is not separable: no product "
+          "of a factor along x and one along y, posterior: dense serves every kernel"),
+      line("LowrankPosteriorWithASum", "posterior: lowrank\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
+           "bad.yaml:10:12: posterior: lowrank cannot be used with the kernel sum, which is not separable: no product "
+           "of "
+           "a factor along x and one along y, posterior: dense serves every kernel"),
+      line("NoThreads", "threads: 0", "bad.yaml:10:10: threads: 0 is out of range, it must be at least 1"),
+      line("UnknownInstructionSet", "instruction_set: avx",
+           "bad.yaml:10:18: instruction_set: unknown value 'avx', known: auto, baseline"),
+      line("LowrankThatKeepsNothing", "lowrank: {tolerance: 0}",
+           "bad.yaml:10:22: lowrank.tolerance: 0 is out of range, it must be above 0"),
 
       // The command line
       typed("OverrideOfAKernelThatIsNotThere",
