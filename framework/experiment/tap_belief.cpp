@@ -57,7 +57,7 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
   const std::string why = objection(posterior_, *model.kernel, candidates_);
   if (!why.empty()) {
     throw Error("posterior",
-                fmt::format("{} cannot be used with the kernel {}: it {}",
+                fmt::format("{} cannot be used with the kernel {}, {}",
                             kEngineNames[static_cast<std::size_t>(posterior_.engine)], kernel.type, why),
                 "posterior: dense serves every kernel");
   }

@@ -42,8 +42,8 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
 std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates) {
   using Kind = PosteriorSettings::Kind;
   if (settings.engine == Kind::automatic || settings.engine == Kind::dense) return {};
-  if (!kernel.separable()) return "needs a separable kernel, one that is a product of a factor along x and one along y";
-  if (!candidates.is_grid()) return "needs candidates on a product grid";
+  if (!kernel.separable()) return "which is not separable: no product of a factor along x and one along y";
+  if (!candidates.is_grid()) return "as the candidates are no product grid";
   return {};
 }
 

@@ -29,8 +29,8 @@ struct EngineChoice {
   std::string reason;  ///< one line
 };
 
-/// Why these settings cannot work, one line; empty if they can: `grid` and `lowrank` need a kernel that is separable
-/// and candidates that are a product grid.
+/// Why these settings cannot be used with this kernel, the end of a sentence; empty if they can: `grid` and `lowrank`
+/// need a kernel that is separable and candidates that are a product grid.
 std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates);
 
 /// The engine that was asked for, or the fastest that is admissible; `lowrank` is not any more when its error has been

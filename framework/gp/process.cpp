@@ -27,7 +27,7 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
       prior_(candidates.size()),
       factor_(*posterior_.machine.loops) {
   const std::string why = objection(posterior_, *kernel_, candidates_);
-  if (!why.empty()) throw Error("posterior", why);
+  if (!why.empty()) throw Error("posterior", "cannot be used with this kernel, " + why);
   take_prior();
   choose();
   restart();

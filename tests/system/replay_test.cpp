@@ -59,6 +59,17 @@ TEST(Replay, NoticesAFieldThatNoReplayHas) {
   EXPECT_THAT(ended.out, HasSubstr("tap 17: invented: recorded 1, "));
 }
 
+TEST(Replay, OfARunThatEndedEarlyTakesTheEngineOfItsWholeBudget) {
+  const TemporaryFolder folder;
+  test::palpate({"run", paper(), "--quiet", "taps=300", "stop.robot_time=100 s", "kernel.length_scale=6 cm"},
+                folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  ASSERT_THAT(text_of(directory / "summary.json"), HasSubstr("\"height_process.engine\": \"lowrank\""));
+  ASSERT_THAT(text_of(directory / "summary.json"), HasSubstr("\"stop_reason\": \"robot_time\""));
+  const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.out;
+}
+
 TEST(Replay, FollowsEveryFit) {
   const TemporaryFolder folder;
   for (const char* extra : {"surface=two_part", "weight.hyperparameters=shared", "fitting.every=5"}) {
