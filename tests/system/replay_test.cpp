@@ -64,7 +64,7 @@ TEST(Replay, OfARunThatEndedEarlyTakesTheEngineOfItsWholeBudget) {
   test::palpate({"run", paper(), "--quiet", "taps=300", "stop.robot_time=100 s", "kernel.length_scale=6 cm"},
                 folder.path());
   const fs::path directory = only_run(folder.path() / "runs");
-  ASSERT_THAT(text_of(directory / "summary.json"), HasSubstr("\"height_process.engine\": \"lowrank\""));
+  ASSERT_THAT(text_of(directory / "summary.json"), HasSubstr("\"engine\": \"lowrank\""));
   ASSERT_THAT(text_of(directory / "summary.json"), HasSubstr("\"stop_reason\": \"robot_time\""));
   const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
   EXPECT_EQ(ended.status, 0) << ended.out;
