@@ -122,8 +122,8 @@ def main():
     print(f"palpate: {path} loops, 1 thread")
     print(f"scikit-learn {sklearn.__version__}, numpy {numpy.__version__}, {blas['internal_api']} {blas['version']} "
           f"({blas.get('architecture', '')}), {blas['num_threads']} thread")
-    print(f"{arguments.rounds} alternating rounds; medians of whole replays in ms; ratio: theirs / ours, paired by round, the")
-    print("median, least and largest; at best: the least of theirs / the least of ours, for machines that others use too")
+    print(f"{arguments.rounds} alternating rounds; medians of whole replays in ms; ratio: theirs / ours by round,")
+    print("its median, least and largest; at best: the least of theirs / the least of ours, on shared machines")
     print("differences: largest over all candidates after the last tap, heights in dm; choices: own argmax of each tap")
     print(f"{'':3} {'engine':15} {'taps':>5} {'candidates':>10} {'palpate ms':>11} {'scikit-learn ms':>15} "
           f"{'ratio':>7} {'least':>7} {'largest':>7} {'at best':>7} "
