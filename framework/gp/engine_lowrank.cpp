@@ -3,6 +3,7 @@
 #include "gp/engine.hpp"
 
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 namespace palpate {
@@ -14,7 +15,7 @@ constexpr int kRows = simd::kStripRows;
 /// One axis of the grid: the basis of its covariances, and the taps in it.
 struct Axis {
   const Eigen::VectorXd& places;
-  Eigen::MatrixXd basis;        ///< places x r
+  AxisBasis basis;
   Eigen::VectorXd covariance;   ///< of the new tap with the places
   Eigen::VectorXd coordinates;  ///< of that in the basis
   double largest = 0.0;         ///< covariance of any tap so far
@@ -23,15 +24,15 @@ struct Axis {
   void restart(const Kernel& kernel, int axis, double tolerance) {
     basis = axis_basis(kernel, axis, places, tolerance);
     covariance.resize(places.size());
-    coordinates.resize(basis.cols());
+    coordinates.resize(basis.rank());
     largest = left = 0.0;
   }
 
   void take(const Kernel& kernel, int axis, const FactorRow& row) {
     kernel.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), covariance);
     largest = std::max(largest, covariance.cwiseAbs().maxCoeff());
-    coordinates.noalias() = basis.transpose() * covariance;
-    covariance.noalias() -= basis * coordinates;
+    coordinates.noalias() = basis.directions.transpose() * covariance;
+    covariance.noalias() -= basis.directions * coordinates;
     left = std::max(left, covariance.cwiseAbs().maxCoeff());
   }
 };
@@ -45,9 +46,9 @@ class Lowrank final : public Engine {
       : machine_(machine),
         kernel_(kernel),
         tolerance_(tolerance),
+        candidates_(candidates),
         x_{candidates.xs, {}, {}, {}},
-        y_{candidates.ys, {}, {}, {}},
-        maps_(Tiling::grid(candidates, simd::kLine<Real>)) {}
+        y_{candidates.ys, {}, {}, {}} {}
 
   const char* name() const override { return "lowrank"; }
   void reserve(int rows) override {
@@ -60,17 +61,22 @@ class Lowrank final : public Engine {
   void restart(int means, const VectorView& prior) override {
     x_.restart(kernel_, 0, tolerance_);
     y_.restart(kernel_, 1, tolerance_);
-    const auto rank_x = static_cast<int>(x_.basis.cols());
-    const auto rank_y = static_cast<int>(y_.basis.cols());
+    if (!maps_ || (maps_->tiling().mirror() > 0) != x_.basis.mirrored) {
+      constexpr int kCells = simd::kLine<Real>;
+      maps_.emplace(x_.basis.mirrored ? Tiling::mirrored_grid(candidates_, kCells) : Tiling::grid(candidates_, kCells));
+    }
+    const int rank_x = x_.basis.rank();
+    const int rank_y = y_.basis.rank();
     in_x_ = simd::Panels<double>(rank_x, simd::kPanelLines * kLine, kLine);
     in_y_ = simd::Panels<double>(rank_y, kRows, kRows);
-    basis_x_ = simd::Panels<Real>(static_cast<int>(x_.places.size()), simd::kPanelLines * simd::kLine<Real>,
-                                  simd::kLine<Real>);
+    // Of a mirrored basis, the left half.
+    const auto columns = static_cast<int>(x_.basis.mirrored ? (x_.places.size() + 1) / 2 : x_.places.size());
+    basis_x_ = simd::Panels<Real>(columns, simd::kPanelLines * simd::kLine<Real>, simd::kLine<Real>);
     basis_y_ = simd::Panels<double>(static_cast<int>(y_.places.size()), simd::kPanelLines * kLine, kLine);
     basis_x_.reserve(rank_x);
     basis_y_.reserve(rank_y);
-    for (int i = 0; i < rank_x; ++i) basis_x_.append(x_.basis.col(i).data());
-    for (int i = 0; i < rank_y; ++i) basis_y_.append(y_.basis.col(i).data());
+    for (int i = 0; i < rank_x; ++i) basis_x_.append(x_.basis.directions.col(i).data());
+    for (int i = 0; i < rank_y; ++i) basis_y_.append(y_.basis.directions.col(i).data());
     in_x_.reserve(reserved_);
     in_y_.reserve(reserved_);
     shares_ = simd::Lines<double>(static_cast<std::size_t>(in_y_.panels()) * kRows *
@@ -80,7 +86,7 @@ class Lowrank final : public Engine {
     rows_ = simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded()));
     a_.resize(static_cast<std::size_t>(machine_.workers->threads()));
     for (simd::Lines<Real>& one : a_) one = simd::Lines<Real>(static_cast<std::size_t>(rank_x) * kRows);
-    maps_.restart(means, prior);
+    maps_->restart(means, prior);
   }
 
   void absorb(const FactorRow& row, const ScoreRule& rule) override {
@@ -91,21 +97,31 @@ class Lowrank final : public Engine {
     form_shares(row.inverse);
     form_rows();
     const int lines = basis_x_.padded() / simd::kLine<Real>;
-    machine_.workers->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
+    const std::ptrdiff_t mirror = maps_->tiling().mirror();
+    machine_.workers->for_each(maps_->tiling().strips(), [&](int strip, int worker) {
       Real* const a = a_[static_cast<std::size_t>(worker)].data();
       gather(strip, a);
-      functions().absorb_product({a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines},
-                                 maps_.update(strip, row.coefficients, rule));
+      const simd::Product<Real> product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
+      const simd::Update<Real> update = maps_->update(strip, row.coefficients, rule);
+      if (mirror > 0) {
+        functions().absorb_mirrored({product, x_.basis.even, mirror}, update);
+      } else {
+        functions().absorb_product(product, update);
+      }
     });
   }
 
-  double covariance_error() const override { return x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left; }
-
+  double covariance_error() const override {
+    // A kernel may be off by 8 ulp itself (kernel.hpp), for every engine.
+    constexpr double kOfKernel = 8.0 * std::numeric_limits<double>::epsilon();
+    const double left = x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
+    return std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
+  }
   double rounding() const override {
     return std::is_same_v<Real, double> ? 0.0 : 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   }
 
-  const Maps& maps() const override { return maps_; }
+  const Maps& maps() const override { return *maps_; }
 
  private:
   const simd::Functions<Real>& functions() const;
@@ -159,19 +175,20 @@ class Lowrank final : public Engine {
   Machine machine_;
   const Kernel& kernel_;
   double tolerance_;
+  const Candidates& candidates_;
   Axis x_;
   Axis y_;
   int reserved_ = 0;
-  simd::Panels<double> in_x_;     ///< P_x, a tap a row
-  simd::Panels<double> in_y_;     ///< P_y
-  simd::Panels<Real> basis_x_;    ///< U_x^T
-  simd::Panels<double> basis_y_;  ///< U_y^T
-  TiledMaps<Real> maps_;
-  simd::Lines<double> scaled_;        ///< scratch: eight columns of P_y times c
-  simd::Lines<double> shares_;        ///< S
-  simd::Lines<double> shares_by_x_;   ///< S^T
-  simd::Lines<double> rows_;          ///< S^T U_y^T
-  std::vector<simd::Lines<Real>> a_;  ///< scratch of a worker
+  simd::Panels<double> in_x_;            ///< P_x, a tap a row
+  simd::Panels<double> in_y_;            ///< P_y
+  simd::Panels<Real> basis_x_;           ///< U_x^T
+  simd::Panels<double> basis_y_;         ///< U_y^T
+  std::optional<TiledMaps<Real>> maps_;  ///< since the first restart
+  simd::Lines<double> scaled_;           ///< scratch: eight columns of P_y times c
+  simd::Lines<double> shares_;           ///< S
+  simd::Lines<double> shares_by_x_;      ///< S^T
+  simd::Lines<double> rows_;             ///< S^T U_y^T
+  std::vector<simd::Lines<Real>> a_;     ///< scratch of a worker
 };
 
 template <>

@@ -8,7 +8,7 @@ namespace palpate {
 Tiling Tiling::pieces(int candidates) {
   Tiling out;
   out.candidates_ = candidates;
-  out.columns_ = out.padded_ = out.width_ = simd::kPiece;
+  out.columns_ = out.tiled_columns_ = out.padded_ = out.width_ = simd::kPiece;
   out.rows_ = out.strips_ = (candidates + simd::kPiece - 1) / simd::kPiece;
   out.strip_size_ = simd::kPiece;
   return out;
@@ -19,13 +19,26 @@ Tiling Tiling::grid(const Candidates& candidates, int line) {
   out.candidates_ = candidates.size();
   out.columns_ = candidates.columns;
   out.rows_ = candidates.rows;
-  out.padded_ = simd::round_up(out.columns_, line);
-  out.width_ = simd::kPanelLines * line;
   out.rows_per_strip_ = simd::kStripRows;
   out.strips_ = (out.rows_ + simd::kStripRows - 1) / simd::kStripRows;
-  out.tiles_per_strip_ = (out.padded_ + out.width_ - 1) / out.width_;
-  out.strip_size_ = static_cast<std::size_t>(out.padded_) * simd::kStripRows;
+  out.tile(out.columns_, line);
   return out;
+}
+
+Tiling Tiling::mirrored_grid(const Candidates& candidates, int line) {
+  Tiling out = grid(candidates, line);
+  out.tile((out.columns_ + 1) / 2, line);
+  out.mirror_ = static_cast<std::ptrdiff_t>(out.strip_size_);
+  out.strip_size_ *= 2;
+  return out;
+}
+
+void Tiling::tile(int columns, int line) {
+  tiled_columns_ = columns;
+  padded_ = simd::round_up(columns, line);
+  width_ = simd::kPanelLines * line;
+  tiles_per_strip_ = (padded_ + width_ - 1) / width_;
+  strip_size_ = static_cast<std::size_t>(padded_) * simd::kStripRows;
 }
 
 template <class Real>
@@ -43,9 +56,9 @@ void TiledMaps<Real>::restart(int means, const VectorView& prior) {
   // Padding has no variance and thus a score of 0.
   std::fill_n(variance_.data(), variance_.size(), Real{0});
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
-    tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
+    tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
       for (int i = 0; i < count; ++i)
-        variance_.data()[cell + static_cast<std::size_t>(i)] = static_cast<Real>(prior(candidate + i));
+        variance_.data()[cell + static_cast<std::size_t>(i)] = static_cast<Real>(prior(candidate + step * i));
     });
   }
   std::fill(best_.begin(), best_.end(), std::numeric_limits<Real>::infinity());
@@ -71,9 +84,9 @@ simd::Update<Real> TiledMaps<Real>::update(int strip, const double* coefficients
 template <class Real>
 void TiledMaps<Real>::read(const simd::Lines<Real>& map, VectorOut out) const {
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
-    tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
+    tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
       for (int i = 0; i < count; ++i)
-        out(candidate + i) = static_cast<double>(map.data()[cell + static_cast<std::size_t>(i)]);
+        out(candidate + step * i) = static_cast<double>(map.data()[cell + static_cast<std::size_t>(i)]);
     });
   }
 }
@@ -92,9 +105,10 @@ template <class Real>
 int TiledMaps<Real>::read_tile(int tile, int k, TileCell* out) const {
   const Real* const mean = mean_[static_cast<std::size_t>(k)].data();
   int cells = 0;
-  tiling_.for_runs(tile, [&](int candidate, std::size_t cell, int count) {
+  tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
     for (int i = 0; i < count; ++i, ++cell) {
-      out[cells++] = {candidate + i, static_cast<double>(variance_.data()[cell]), static_cast<double>(mean[cell])};
+      out[cells++] = {candidate + step * i, static_cast<double>(variance_.data()[cell]),
+                      static_cast<double>(mean[cell])};
     }
   });
   return cells;

@@ -24,6 +24,9 @@ class Tiling {
   /// A product grid: strips of simd::kStripRows rows, cut into tiles as simd::Product has them. `line` is the number of
   /// cells in a cache line.
   static Tiling grid(const Candidates& candidates, int line);
+  /// The same as simd::MirroredProduct has them: a tile holds some columns of the left half of the grid and their
+  /// mirror images in the right half.
+  static Tiling mirrored_grid(const Candidates& candidates, int line);
 
   int strips() const { return strips_; }
   int tiles_per_strip() const { return tiles_per_strip_; }
@@ -32,33 +35,45 @@ class Tiling {
   std::size_t strip_size() const { return strip_size_; }
   std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
 
-  /// Calls visit(candidate, cell, count) for each run of candidates of the tile that lie one after the other.
+  /// From the cells of a tile to those of its mirror image; 0 if there is none.
+  std::ptrdiff_t mirror() const { return mirror_; }
+
+  /// Calls visit(candidate, step, cell, count) for each run of cells of the tile: the candidates candidate,
+  /// candidate + step, ... lie in the cells from `cell` on.
   template <class Visit>
   void for_runs(int tile, const Visit& visit) const {
     const int strip = tile / tiles_per_strip_;
     const int first = tile % tiles_per_strip_ * width_;
     const int width = std::min(width_, padded_ - first);
-    const int columns = std::min(width, columns_ - first);
+    const int columns = std::min(width, tiled_columns_ - first);
     std::size_t cell =
         static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
     const int end = std::min((strip + 1) * rows_per_strip_, rows_);
     for (int row = strip * rows_per_strip_; row < end; ++row) {
       const int candidate = row * columns_ + first;
-      visit(candidate, cell, std::min(columns, candidates_ - candidate));
+      visit(candidate, 1, cell, std::min(columns, candidates_ - candidate));
+      // A column in the middle is its own image and was visited.
+      const int images = std::min(columns, columns_ - tiled_columns_ - first);
+      if (mirror_ > 0) visit((row + 1) * columns_ - 1 - first, -1, cell + static_cast<std::size_t>(mirror_), images);
       cell += static_cast<std::size_t>(width);
     }
   }
 
  private:
+  /// Cuts that many columns into tiles.
+  void tile(int columns, int line);
+
   int candidates_ = 0;
-  int columns_ = 0;  ///< of the grid; of any places, those of a piece
+  int columns_ = 0;        ///< of the grid; of any places, those of a piece
+  int tiled_columns_ = 0;  ///< those that are no mirror images
   int rows_ = 0;
-  int padded_ = 0;  ///< columns with padding
+  int padded_ = 0;  ///< tiled columns with padding
   int width_ = 0;   ///< of a tile, in columns
   int rows_per_strip_ = 1;
   int strips_ = 0;
   int tiles_per_strip_ = 1;
   std::size_t strip_size_ = 0;
+  std::ptrdiff_t mirror_ = 0;
 };
 
 /// How the exploration function follows from the maps, where it is one of those that the loops can form.
@@ -73,7 +88,7 @@ struct TileCell {
   double variance;
   double mean;
 };
-constexpr int kMostCells = simd::kStripRows * simd::kPanelLines * simd::kLine<float>;
+constexpr int kMostCells = 2 * simd::kStripRows * simd::kPanelLines * simd::kLine<float>;
 
 /// Maps of means and of the variance as they stand, all in units of the prior.
 class Maps {

@@ -29,8 +29,8 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
   // The rank is at least 1, and finding it is work that a short run would not earn back.
   constexpr double kShort = 24;
   if (settings.taps < kShort) return grid(fmt::format("separable kernel on a grid, {} taps", settings.taps));
-  const auto rank_x = static_cast<double>(axis_basis(kernel, 0, candidates.xs, settings.tolerance).cols());
-  const auto rank_y = static_cast<double>(axis_basis(kernel, 1, candidates.ys, settings.tolerance).cols());
+  const int rank_x = axis_basis(kernel, 0, candidates.xs, settings.tolerance).rank();
+  const int rank_y = axis_basis(kernel, 1, candidates.ys, settings.tolerance).rank();
   const std::string found =
       fmt::format("separable kernel of rank {} x {} on the grid, {} taps", rank_x, rank_y, settings.taps);
   if (cost_of_lowrank(settings.taps, rank_x, rank_y, candidates) >= cost_of_grid(settings.taps)) return grid(found);

@@ -55,12 +55,23 @@ struct Product {
   int lines;  ///< of all columns
 };
 
+/// A product on a grid that is its own mirror image: the first `even` rows of B are the left halves of even functions
+/// of the columns, the others of odd ones. So v = E + O on the left and, mirrored, E - O on the right: half of the
+/// work. The cells of a tile's mirror image lie `mirror` cells beyond its own, in the same order; `best` is of both.
+template <class Real>
+struct MirroredProduct {
+  Product<Real> half;
+  int even;
+  std::ptrdiff_t mirror;
+};
+
 template <class Real>
 struct Functions {
   /// c = A B.
   void (*multiply)(const Product<Real>&, Real* c);
   /// v = A B, which is never stored, taken into the maps.
   void (*absorb_product)(const Product<Real>&, const Update<Real>&);
+  void (*absorb_mirrored)(const MirroredProduct<Real>&, const Update<Real>&);
 };
 
 /// v = (v - sum over i of row_i factor_i) / pivot for one piece of a dense map, taken into its maps. The rows of the
