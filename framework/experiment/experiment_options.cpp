@@ -74,9 +74,10 @@ void LowrankOptions::list(Fields& fields) {
                   .above(0)
                   .at_most(1)
                   .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
-  fields.choice(precision, Field("precision", "of the maps over the candidates"),
-                {{"double", "as everywhere", {}},
-                 {"single", "half the memory and time, for errors near 1e-6: runs/README.md tells them", {}}});
+  fields.choice(
+      precision, Field("precision", "of the maps over the candidates"),
+      {{"double", "as everywhere", {}},
+       {"single", "half the memory, errors near 1e-6; other taps, too, unless tie_tolerance is 1e-5 or more", {}}});
 }
 
 void StopOptions::list(Fields& fields) {

@@ -3,8 +3,10 @@
 
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -48,64 +50,95 @@ class Line {
   const Eigen::VectorXd& places_;
 };
 
-/// Orthonormal columns that span those of the pivoted Cholesky factor of k(h, h') + sign k(h, image of h'), h and h'
-/// the first `places`; continued to all places by the mirror. For sign 0 and all places, of k itself.
-Eigen::MatrixXd span(const Line& line, Eigen::Index places, double sign, double enough) {
-  const bool own_image = line.image(places - 1) == places - 1;
-  Eigen::VectorXd left(places);
-  for (Eigen::Index i = 0; i < places; ++i) {
-    left(i) = line.at(i, i) + (sign == 0.0 ? 0.0 : sign * line.at(i, line.image(i)));
+/// A part of the covariances K of a line: k(h, h') + sign k(h, image of h'), h and h' the first `places`. Of sign 1 it
+/// is the even part and of sign -1 the odd one; of sign 0, with all places, K itself.
+struct Part {
+  const Line& line;
+  Eigen::Index places;
+  double sign;
+
+  /// The last place is its own image.
+  bool own_image() const { return sign != 0.0 && line.image(places - 1) == places - 1; }
+
+  /// Columns of a Cholesky factor with diagonal pivoting, until no more than `enough` is left of the variance at any
+  /// place, or there are `most` columns.
+  Eigen::MatrixXd pivoted(double enough, Eigen::Index most) const {
+    Eigen::VectorXd left(places);
+    for (Eigen::Index i = 0; i < places; ++i) {
+      left(i) = line.at(i, i) + (sign == 0.0 ? 0.0 : sign * line.at(i, line.image(i)));
+    }
+    most = std::min(most, places);
+    Eigen::MatrixXd columns(places, std::min<Eigen::Index>(most, 32));
+    Eigen::Index rank = 0;
+    while (rank < most) {
+      Eigen::Index pivot = 0;
+      if (!(left.maxCoeff(&pivot) > enough)) break;
+      if (rank == columns.cols()) columns.conservativeResize(Eigen::NoChange, std::min(most, 2 * rank));
+      auto column = columns.col(rank);
+      column = line.column(pivot).head(places);
+      if (sign != 0.0) column += sign * line.column(line.image(pivot)).head(places);
+      // An odd function is 0 in the middle: rounding there would count as much as the least directions.
+      if (sign < 0.0 && own_image()) column(places - 1) = 0.0;
+      column.noalias() -= columns.leftCols(rank) * columns.row(pivot).head(rank).transpose();
+      column /= std::sqrt(left(pivot));
+      left -= column.cwiseAbs2();
+      left(pivot) = 0.0;
+      ++rank;
+    }
+    return columns.leftCols(rank);
   }
-  Eigen::MatrixXd columns(places, std::min<Eigen::Index>(places, 32));
-  Eigen::Index rank = 0;
-  while (rank < places) {
-    Eigen::Index pivot = 0;
-    if (!(left.maxCoeff(&pivot) > enough)) break;
-    if (rank == columns.cols()) columns.conservativeResize(Eigen::NoChange, std::min(places, 2 * rank));
-    auto column = columns.col(rank);
-    column = line.column(pivot).head(places);
-    if (sign != 0.0) column += sign * line.column(line.image(pivot)).head(places);
-    // An odd function is 0 in the middle: rounding there would count as much as the least directions.
-    if (sign < 0.0 && own_image) column(places - 1) = 0.0;
-    column.noalias() -= columns.leftCols(rank) * columns.row(pivot).head(rank).transpose();
-    column /= std::sqrt(left(pivot));
-    left -= column.cwiseAbs2();
-    left(pivot) = 0.0;
-    ++rank;
+
+  /// An orthonormal basis of the span of `columns`, continued to all places by the mirror.
+  Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) const {
+    // A place that is not its own image stands for two. Orthonormal by these weights, the halves are so as a whole.
+    Eigen::VectorXd weights = Eigen::VectorXd::Constant(places, sign == 0.0 ? 1.0 : std::sqrt(2.0));
+    if (own_image()) weights(places - 1) = 1.0;
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(weights.asDiagonal() * columns);
+    const Eigen::MatrixXd half =
+        weights.cwiseInverse().asDiagonal() * (qr.householderQ() * Eigen::MatrixXd::Identity(places, columns.cols()));
+    Eigen::MatrixXd whole(line.size(), columns.cols());
+    whole.bottomRows(places) = sign * half.colwise().reverse();
+    whole.topRows(places) = half;
+    return whole;
   }
-  // A place that is not its own image stands for two. Orthonormal by these weights, the halves are so as a whole.
-  Eigen::VectorXd weights = Eigen::VectorXd::Constant(places, sign == 0.0 ? 1.0 : std::sqrt(2.0));
-  if (own_image) weights(places - 1) = 1.0;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(weights.asDiagonal() * columns.leftCols(rank));
-  const Eigen::MatrixXd half =
-      weights.cwiseInverse().asDiagonal() * (qr.householderQ() * Eigen::MatrixXd::Identity(places, rank));
-  Eigen::MatrixXd whole(line.size(), rank);
-  whole.bottomRows(places) = sign * half.colwise().reverse();
-  whole.topRows(places) = half;
-  return whole;
+};
+
+/// Even and odd part where there is a mirror, else the whole.
+std::vector<Part> parts_of(const Line& line) {
+  if (!line.is_mirrored()) return {{line, line.size(), 0.0}};
+  const Eigen::Index half = (line.size() + 1) / 2;
+  return {{line, half, 1.0}, {line, half, -1.0}};
+}
+
+double largest_variance(const Line& line) {
+  double out = 0.0;
+  for (Eigen::Index i = 0; i < line.size(); ++i) out = std::max(out, line.at(i, i));
+  return out;
 }
 
 }  // namespace
 
 AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance) {
   const Line line(kernel, axis, places);
-  double largest = 0.0;
-  for (Eigen::Index i = 0; i < line.size(); ++i) largest = std::max(largest, line.at(i, i));
-  const double enough = tolerance * largest;
+  const double enough = tolerance * largest_variance(line);
+  const std::vector<Part> parts = parts_of(line);
   AxisBasis out;
-  out.mirrored = line.is_mirrored();
-  if (out.mirrored) {
-    const Eigen::Index half = (line.size() + 1) / 2;
-    const Eigen::MatrixXd even = span(line, half, 1.0, enough);
-    const Eigen::MatrixXd odd = span(line, half, -1.0, enough);
-    out.directions.resize(line.size(), even.cols() + odd.cols());
-    out.directions << even, odd;
-    out.even = static_cast<int>(even.cols());
-  } else {
-    out.directions = span(line, line.size(), 0.0, enough);
-    out.even = out.rank();
+  out.mirrored = parts.size() > 1;
+  for (const Part& part : parts) {
+    const Eigen::MatrixXd own = part.orthonormal(part.pivoted(enough, part.places));
+    out.directions.conservativeResize(line.size(), out.directions.cols() + own.cols());
+    out.directions.rightCols(own.cols()) = own;
+    if (part.sign >= 0.0) out.even = out.rank();
   }
   return out;
+}
+
+int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance, int most) {
+  const Line line(kernel, axis, places);
+  const double enough = tolerance * largest_variance(line);
+  int rank = 0;
+  for (const Part& part : parts_of(line)) rank += static_cast<int>(part.pivoted(enough, most - rank).cols());
+  return rank;
 }
 
 }  // namespace palpate

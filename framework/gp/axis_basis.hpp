@@ -24,4 +24,7 @@ struct AxisBasis {
 /// QR factorisation; where there is a mirror, of the even and the odd part each. O(G r^2).
 AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance);
 
+/// The rank of that basis, or `most` if it is not less.
+int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance, int most);
+
 }  // namespace palpate

@@ -8,15 +8,6 @@
 namespace palpate {
 namespace {
 
-/// Multiplications a candidate and tap. Those of `grid` grow with the taps; those of `lowrank` do not, but for what it
-/// does in its own coordinates, once a tap.
-double cost_of_grid(double taps) { return 0.5 * taps; }
-
-double cost_of_lowrank(double taps, double rank_x, double rank_y, const Candidates& candidates) {
-  const double own = rank_x * rank_y * (0.5 * taps + candidates.rows);
-  return rank_x + own / candidates.size();
-}
-
 EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
                               double error) {
   const auto grid = [&](std::string reason) -> EngineChoice {
@@ -26,14 +17,16 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
     return grid(
         fmt::format("the error bound of lowrank, {:.1e}, is above the accuracy {:.1e}", error, settings.accuracy));
   }
-  // The rank is at least 1, and finding it is work that a short run would not earn back.
-  constexpr double kShort = 24;
-  if (settings.taps < kShort) return grid(fmt::format("separable kernel on a grid, {} taps", settings.taps));
-  const int rank_x = axis_basis(kernel, 0, candidates.xs, settings.tolerance).rank();
-  const int rank_y = axis_basis(kernel, 1, candidates.ys, settings.tolerance).rank();
-  const std::string found =
-      fmt::format("separable kernel of rank {} x {} on the grid, {} taps", rank_x, rank_y, settings.taps);
-  if (cost_of_lowrank(settings.taps, rank_x, rank_y, candidates) >= cost_of_grid(settings.taps)) return grid(found);
+  // Multiplications a candidate and tap: those of `grid` grow with the taps; `lowrank` has half its rank, as grids are
+  // their own mirror image, and what it does in its own coordinates once a tap. A short run earns back no basis.
+  const double of_grid = 0.5 * settings.taps;
+  constexpr double kShort = 12;
+  if (of_grid < kShort) return grid(fmt::format("separable kernel on a grid, {} taps", settings.taps));
+  const int x = axis_rank(kernel, 0, candidates.xs, settings.tolerance, settings.taps);
+  const int y = axis_rank(kernel, 1, candidates.ys, settings.tolerance, settings.taps);
+  const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
+  const std::string found = fmt::format("separable kernel of rank {} x {} on the grid, {} taps", x, y, settings.taps);
+  if (of_lowrank >= of_grid) return grid(found);
   return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance, false), found};
 }
 

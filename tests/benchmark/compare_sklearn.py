@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Replays the taps of tests/data on palpate's posterior engines and on scikit-learn's GaussianProcessRegressor, in
 alternating rounds on one thread each, and prints times, their ratios and how far the results are apart.
@@ -7,7 +8,7 @@ no optimiser. After each tap from the third to the last of the file both bring m
 take the argmax of variance x weight. Variances exclude the noise on both sides: scikit-learn's alpha never enters its
 prediction. Neither time has the start of a process in it.
 
-    /usr/bin/python3 tests/benchmark/compare_sklearn.py w1 w2 --engines auto grid
+    tests/benchmark/compare_sklearn.py w1 w2 --engines auto grid
 """
 import argparse
 import json

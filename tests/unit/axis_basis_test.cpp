@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 namespace palpate {
@@ -62,6 +63,15 @@ TEST(AxisBasis, OfALineThatIsNotItsMirrorImageIsNotSplit) {
   const AxisBasis basis = axis_basis(*kernel, 0, line, 1e-15);
   EXPECT_FALSE(basis.mirrored);
   EXPECT_EQ(basis.even, basis.rank());
+}
+
+TEST(AxisBasis, ItsRankCanBeHadAloneAndNotBeyondWhatIsOfUse) {
+  const auto kernel = test::make<Kernel>(test::shared_host(), "rbf", "{length_scale: 1 cm}");
+  for (const int count : {1, 46, 47, 231}) {
+    const int rank = axis_basis(*kernel, 0, places(count), 1e-13).rank();
+    EXPECT_EQ(axis_rank(*kernel, 0, places(count), 1e-13, 1000), rank);
+    EXPECT_EQ(axis_rank(*kernel, 0, places(count), 1e-13, 5), std::min(rank, 5));
+  }
 }
 
 TEST(AxisBasis, GrowsWithTheToleranceAndWithShorterLengthScales) {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The recorded table of what engines, spacing and refits cost and are worth.
+#include "support/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+#include <string>
+
+namespace palpate {
+namespace {
+
+TEST(PosteriorTrade, NoEngineInDoublePrecisionChangesATapOrLosesMoreThanTheAccuracy) {
+  std::set<std::string> engines;
+  for (const test::Cells& row :
+       test::csv_rows(test::text_of(test::source_folder() / "runs/reference/posterior_trade.csv"))) {
+    const auto number = [&](const char* column) { return std::strtod(row.at(column).c_str(), nullptr); };
+    const std::string name = row.at("engine") + " " + row.at("precision");
+    engines.insert(name);
+    if (row.at("precision") == "single") continue;
+    const std::string same = row.at("taps_as_dense");
+    EXPECT_EQ(same.substr(0, same.find(' ')), same.substr(same.rfind(' ') + 1)) << name << ' ' << row.at("spacing_mm");
+    EXPECT_LE(number("mean_error_m"), 1e-9) << name;
+    EXPECT_LE(number("variance_error"), 1e-12) << name;
+  }
+  EXPECT_EQ(engines, (std::set<std::string>{"dense double", "grid double", "lowrank double", "lowrank single"}));
+}
+
+}  // namespace
+}  // namespace palpate
