@@ -50,7 +50,7 @@ class Engine {
   virtual bool needs_inverse() const = 0;
 
   /// Back to the prior, with `means` maps of means; the hyperparameters of the kernel may be new. `prior` is the
-  /// variance of the kernel at the candidates.
+  /// variance of the kernel at the candidates, one number if it is the same at all.
   virtual void restart(int means, const VectorView& prior) = 0;
 
   /// Takes one more row into the maps; `rule` says which score the bounds of the maps are for.

@@ -53,12 +53,14 @@ void TiledMaps<Real>::restart(int means, const VectorView& prior) {
     if (map.size() == 0) map = simd::Lines<Real>(tiling_.size());
     std::fill_n(map.data(), map.size(), Real{0});
   }
+  const bool same = prior.size() == 1;
   // Padding has no variance and thus a score of 0.
   std::fill_n(variance_.data(), variance_.size(), Real{0});
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
       for (int i = 0; i < count; ++i)
-        variance_.data()[cell + static_cast<std::size_t>(i)] = static_cast<Real>(prior(candidate + step * i));
+        variance_.data()[cell + static_cast<std::size_t>(i)] =
+            static_cast<Real>(prior(same ? 0 : candidate + step * i));
     });
   }
   std::fill(best_.begin(), best_.end(), std::numeric_limits<Real>::infinity());

@@ -110,7 +110,7 @@ class TiledMaps final : public Maps {
  public:
   explicit TiledMaps(const Tiling& tiling);
 
-  /// Back to the prior: `means` maps of 0, and the variance.
+  /// Back to the prior: `means` maps of 0, and the variance, one number if it is the same at all candidates.
   void restart(int means, const VectorView& prior);
 
   /// What the loops need to take a row with such coefficients into the cells of a strip.

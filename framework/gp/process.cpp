@@ -24,7 +24,6 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
       outputs_(std::move(outputs)),
       candidates_(candidates),
       posterior_(std::move(posterior)),
-      prior_(candidates.size()),
       factor_(*posterior_.machine.loops) {
   const std::string why = objection(posterior_, *kernel_, candidates_);
   if (!why.empty()) throw Error("posterior", "cannot be used with this kernel, " + why);
@@ -35,8 +34,10 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
 }
 
 void Process::take_prior() {
+  prior_.resize(candidates_.size());
   kernel_->variance(candidates_.points, prior_);
   same_prior_ = prior_.minCoeff() == prior_.maxCoeff();
+  if (same_prior_) prior_.conservativeResize(1);
 }
 
 void Process::reserve(int taps) {
@@ -247,7 +248,7 @@ int Process::read(int piece, ScoredCell* out) const {
   const int count = maps().read_tile(piece, scores_weight() ? 1 : 0, cells.data());
   for (int i = 0; i < count; ++i) {
     const TileCell& cell = cells[static_cast<std::size_t>(i)];
-    const double prior = prior_(cell.candidate);
+    const double prior = prior_(same_prior_ ? 0 : cell.candidate);
     double score = std::min(std::max(cell.variance, 0.0), prior) / prior;
     if (scores_weight()) {
       const double weight = outputs_at(1).signal * cell.mean + outputs_at(1).mean;
@@ -256,6 +257,15 @@ int Process::read(int piece, ScoredCell* out) const {
     out[i] = {cell.candidate, score};
   }
   return count;
+}
+
+template <class Use>
+void Process::with_prior(const Use& use) const {
+  if (same_prior_) {
+    use(Eigen::ArrayXd::Constant(candidates_.size(), prior_(0) + prior_of_constant()));
+  } else {
+    use(prior_.array() + prior_of_constant());
+  }
 }
 
 void Process::read_mean(int output, VectorOut out) const {
@@ -280,13 +290,12 @@ void Process::read_standard_variance(VectorOut out) const {
 void Process::read_variance(int output, VectorOut out) const {
   const double signal = outputs_at(output).signal;
   read_standard_variance(out);
-  out.array() = out.array().max(0.0).min(prior_.array() + prior_of_constant()) * (signal * signal);
+  with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) * (signal * signal); });
 }
 
 void Process::read_relative_variance(VectorOut out) const {
   read_standard_variance(out);
-  const auto prior = prior_.array() + prior_of_constant();
-  out.array() = out.array().max(0.0).min(prior) / prior;
+  with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) / prior; });
 }
 
 Eigen::VectorXd Process::mean(int output) const {
@@ -311,8 +320,11 @@ int Process::variances_clamped() const {
   Eigen::VectorXd variance(candidates_.size());
   read_standard_variance(variance);
   // A last digit above the prior is no news; below 0 every digit is.
-  const auto most = (prior_.array() + prior_of_constant()) * (1.0 + 4.0 * kEpsilon);
-  return static_cast<int>((variance.array() < 0.0 || variance.array() > most).count());
+  Eigen::Index clamped = 0;
+  with_prior([&](const auto& prior) {
+    clamped = (variance.array() < 0.0 || variance.array() > prior * (1.0 + 4.0 * kEpsilon)).count();
+  });
+  return static_cast<int>(clamped);
 }
 
 double Process::log_marginal_likelihood(int output) const {

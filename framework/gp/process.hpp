@@ -136,6 +136,9 @@ class Process final : public Scores {
   /// Posterior mean of the constant in signals.
   double constant_mean() const;
   void read_standard_variance(VectorOut out) const;
+  /// Calls use(prior variance with that of the constant, at each candidate).
+  template <class Use>
+  void with_prior(const Use& use) const;
 
   std::shared_ptr<Kernel> kernel_;
   std::vector<ProcessSettings> outputs_;
@@ -143,8 +146,8 @@ class Process final : public Scores {
   PosteriorSettings posterior_;
   EngineChoice choice_;
   int shown_ = 1;
-  Eigen::VectorXd prior_;   ///< kernel variance at each candidate
-  bool same_prior_ = true;  ///< at all of them
+  Eigen::VectorXd prior_;  ///< kernel variance at each candidate; one number if it is the same at all
+  bool same_prior_ = true;
 
   int size_ = 0;
   Points points_;            ///< first size_ rows, in the order of the taps
