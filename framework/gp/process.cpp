@@ -240,7 +240,11 @@ double Process::constant_mean() const {
 
 double Process::bound(int piece) const {
   if (!same_prior_) return std::numeric_limits<double>::infinity();
-  return maps().bound(piece) / prior_(0);
+  const double best = maps().bound(piece) / prior_(0);
+  // read() forms the same products, but rounds them otherwise than the loops do, which may have single precision.
+  const double rounding = 8.0 * std::max(0.5 * kEpsilon, choice_.engine->rounding());
+  const double shift = scores_weight() ? std::abs(outputs_at(1).mean) : 0.0;
+  return best + rounding * (std::abs(best) + shift);
 }
 
 int Process::read(int piece, ScoredCell* out) const {
