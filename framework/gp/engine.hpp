@@ -56,8 +56,8 @@ class Engine {
   /// Takes one more row into the maps; `rule` says which score the bounds of the maps are for.
   virtual void absorb(const FactorRow& row, const ScoreRule& rule) = 0;
 
-  /// The largest error of a covariance between a tap and a candidate so far, relative to the prior variance: what the
-  /// engine leaves away, beyond what the kernel itself may be off by rounding.
+  /// The largest error of a covariance between a tap and a candidate so far, in the unit of the kernel: what the engine
+  /// leaves away, beyond what the kernel itself may be off by rounding.
   virtual double covariance_error() const { return 0.0; }
 
   /// The unit roundoff of the maps where that is not of double precision, else 0.

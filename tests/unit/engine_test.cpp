@@ -325,6 +325,32 @@ TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   }
 }
 
+TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
+  const Data data = draw(20);
+  const Candidates candidates = grid(40, 40);
+  PosteriorSettings settings = settings_of(Kind::lowrank);
+  settings.tolerance = 1e-7;
+  std::vector<double> bounds;
+  for (const double factor : {1e-4, 1.0, 1e4}) {
+    const std::string options = fmt::format("{{factor: {}, kernel: {{type: rbf, length_scale: 3 cm}}}}", factor);
+    const auto kernel = test::make<Kernel>(test::shared_host(), "scale", options);
+    const double deviation = std::sqrt(factor);
+    const ProcessSettings output{1.0, 0.05 * deviation, 0.0, 0.0};
+    Process exact(kernel, output, candidates, settings_of(Kind::dense));
+    Process process(kernel, output, candidates, settings);
+    for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+      for (Process* one : {&exact, &process}) {
+        one->add({data.places(i, 0), data.places(i, 1)}, deviation * data.values(i, 0));
+      }
+    }
+    EXPECT_LE(apart(process.mean(), exact.mean()) / deviation, process.error_bound()) << factor;
+    EXPECT_LE(apart(process.variance(), exact.variance()) / factor, process.error_bound()) << factor;
+    bounds.push_back(process.error_bound());
+  }
+  EXPECT_NEAR(bounds[0], bounds[1], 1e-3 * bounds[1]);
+  EXPECT_NEAR(bounds[2], bounds[1], 1e-3 * bounds[1]);
+}
+
 TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
   Data data = draw(60);
   const Candidates candidates = grid(40, 40);
