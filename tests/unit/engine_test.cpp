@@ -398,6 +398,9 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
   EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are no product grid");
   EXPECT_EQ(engine(rbf(), square, 300, 0.0), "dense: no error is allowed");
   EXPECT_EQ(engine(rbf(), square, 17, 1e-9), "grid: separable kernel on a grid, 17 taps");
+  // Along y, there is a direction for every row.
+  const auto rough = rbf("{length_scale: 1 m, length_scale_y: 0.1 mm}");
+  EXPECT_EQ(engine(rough, grid(30, 400), 100, 1e-9), "grid: separable kernel of a rank that 100 taps do not reach");
   EXPECT_THAT(engine(rbf(), square, 300, 1e-9),
               testing::MatchesRegex("lowrank: separable kernel of rank .* x .* on the grid, 300 taps"));
 }
