@@ -49,14 +49,14 @@ class Engine {
   /// Whether absorb() reads the row of L^-1.
   virtual bool needs_inverse() const = 0;
 
-  /// Back to the prior, with `means` maps of means; the hyperparameters of the kernel may be new. `prior` is the
-  /// variance of the kernel at the candidates, one number if it is the same at all.
+  /// Back to the prior, with `means` maps of means. `prior` is the variance of the kernel at the candidates, one number
+  /// if it is the same at all.
   virtual void restart(int means, const VectorView& prior) = 0;
 
   /// Takes one more row into the maps; `rule` says which score the bounds of the maps are for.
   virtual void absorb(const FactorRow& row, const ScoreRule& rule) = 0;
 
-  /// The largest error of a covariance between a tap and a candidate so far, in the kernel's unit: what the engine
+  /// The largest error of a covariance between a tap and a candidate so far, in the unit of the kernel: what the engine
   /// leaves away, beyond what the kernel itself may be off by rounding.
   virtual double covariance_error() const { return 0.0; }
 
@@ -66,7 +66,8 @@ class Engine {
   virtual const Maps& maps() const = 0;
 };
 
-/// `kernel` and `candidates` must outlive the engines. The latter two need a separable kernel and a product grid.
+/// `kernel` and `candidates` must outlive the engines, and the hyperparameters of the kernel stay as they are. The
+/// latter two need a separable kernel and a product grid.
 std::unique_ptr<Engine> make_dense(const Machine&, const Kernel& kernel, const Candidates& candidates);
 std::unique_ptr<Engine> make_grid(const Machine&, const Kernel& kernel, const Candidates& candidates);
 /// Directions whose share of a covariance is below `tolerance` are left out; `single` keeps the maps in single

@@ -3,7 +3,6 @@
 #include "gp/engine.hpp"
 
 #include <limits>
-#include <optional>
 #include <type_traits>
 
 namespace palpate {
@@ -21,12 +20,11 @@ struct Axis {
   double largest = 0.0;         ///< covariance of any tap so far
   double left = 0.0;            ///< of any covariance of any tap so far, outside of the basis
 
-  void restart(const Kernel& kernel, int axis, double tolerance) {
-    basis = axis_basis(kernel, axis, places, tolerance);
-    covariance.resize(places.size());
-    coordinates.resize(basis.rank());
-    largest = left = 0.0;
-  }
+  Axis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
+      : places(along),
+        basis(axis_basis(kernel, axis, along, tolerance)),
+        covariance(along.size()),
+        coordinates(basis.rank()) {}
 
   void take(const Kernel& kernel, int axis, const FactorRow& row) {
     kernel.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), covariance);
@@ -45,10 +43,27 @@ class Lowrank final : public Engine {
   Lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates, double tolerance)
       : machine_(machine),
         kernel_(kernel),
-        tolerance_(tolerance),
-        candidates_(candidates),
-        x_{candidates.xs, {}, {}, {}},
-        y_{candidates.ys, {}, {}, {}} {}
+        x_(kernel, 0, candidates.xs, tolerance),
+        y_(kernel, 1, candidates.ys, tolerance),
+        in_x_(x_.basis.rank(), simd::kPanelLines * kLine, kLine),
+        in_y_(y_.basis.rank(), kRows, kRows),
+        // Of a mirrored basis, the left half.
+        basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns,
+                 simd::kPanelLines * simd::kLine<Real>, simd::kLine<Real>),
+        basis_y_(candidates.rows, simd::kPanelLines * kLine, kLine),
+        maps_(x_.basis.mirrored ? Tiling::mirrored_grid(candidates, simd::kLine<Real>)
+                                : Tiling::grid(candidates, simd::kLine<Real>)),
+        shares_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded())),
+        shares_by_x_(shares_.size()),
+        rows_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded())) {
+    basis_x_.reserve(x_.basis.rank());
+    basis_y_.reserve(y_.basis.rank());
+    for (int i = 0; i < x_.basis.rank(); ++i) basis_x_.append(x_.basis.directions.col(i).data());
+    for (int i = 0; i < y_.basis.rank(); ++i) basis_y_.append(y_.basis.directions.col(i).data());
+    for (int i = 0; i < machine.workers->threads(); ++i) {
+      a_.emplace_back(static_cast<std::size_t>(x_.basis.rank()) * kRows);
+    }
+  }
 
   const char* name() const override { return "lowrank"; }
   void reserve(int rows) override {
@@ -59,34 +74,10 @@ class Lowrank final : public Engine {
   bool needs_inverse() const override { return true; }
 
   void restart(int means, const VectorView& prior) override {
-    x_.restart(kernel_, 0, tolerance_);
-    y_.restart(kernel_, 1, tolerance_);
-    if (!maps_ || (maps_->tiling().mirror() > 0) != x_.basis.mirrored) {
-      constexpr int kCells = simd::kLine<Real>;
-      maps_.emplace(x_.basis.mirrored ? Tiling::mirrored_grid(candidates_, kCells) : Tiling::grid(candidates_, kCells));
-    }
-    const int rank_x = x_.basis.rank();
-    const int rank_y = y_.basis.rank();
-    in_x_ = simd::Panels<double>(rank_x, simd::kPanelLines * kLine, kLine);
-    in_y_ = simd::Panels<double>(rank_y, kRows, kRows);
-    // Of a mirrored basis, the left half.
-    const auto columns = static_cast<int>(x_.basis.mirrored ? (x_.places.size() + 1) / 2 : x_.places.size());
-    basis_x_ = simd::Panels<Real>(columns, simd::kPanelLines * simd::kLine<Real>, simd::kLine<Real>);
-    basis_y_ = simd::Panels<double>(static_cast<int>(y_.places.size()), simd::kPanelLines * kLine, kLine);
-    basis_x_.reserve(rank_x);
-    basis_y_.reserve(rank_y);
-    for (int i = 0; i < rank_x; ++i) basis_x_.append(x_.basis.directions.col(i).data());
-    for (int i = 0; i < rank_y; ++i) basis_y_.append(y_.basis.directions.col(i).data());
-    in_x_.reserve(reserved_);
-    in_y_.reserve(reserved_);
-    shares_ = simd::Lines<double>(static_cast<std::size_t>(in_y_.panels()) * kRows *
-                                  static_cast<std::size_t>(in_x_.padded()));
-    shares_by_x_ =
-        simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded()));
-    rows_ = simd::Lines<double>(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded()));
-    a_.resize(static_cast<std::size_t>(machine_.workers->threads()));
-    for (simd::Lines<Real>& one : a_) one = simd::Lines<Real>(static_cast<std::size_t>(rank_x) * kRows);
-    maps_->restart(means, prior);
+    for (Axis* axis : {&x_, &y_}) axis->largest = axis->left = 0.0;
+    in_x_.clear();
+    in_y_.clear();
+    maps_.restart(means, prior);
   }
 
   void absorb(const FactorRow& row, const ScoreRule& rule) override {
@@ -97,12 +88,12 @@ class Lowrank final : public Engine {
     form_shares(row.inverse);
     form_rows();
     const int lines = basis_x_.padded() / simd::kLine<Real>;
-    const std::ptrdiff_t mirror = maps_->tiling().mirror();
-    machine_.workers->for_each(maps_->tiling().strips(), [&](int strip, int worker) {
+    const std::ptrdiff_t mirror = maps_.tiling().mirror();
+    machine_.workers->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
       Real* const a = a_[static_cast<std::size_t>(worker)].data();
       gather(strip, a);
       const simd::Product<Real> product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
-      const simd::Update<Real> update = maps_->update(strip, row.coefficients, rule);
+      const simd::Update<Real> update = maps_.update(strip, row.coefficients, rule);
       if (mirror > 0) {
         functions().absorb_mirrored({product, x_.basis.even, mirror}, update);
       } else {
@@ -121,7 +112,7 @@ class Lowrank final : public Engine {
     return std::is_same_v<Real, double> ? 0.0 : 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   }
 
-  const Maps& maps() const override { return *maps_; }
+  const Maps& maps() const override { return maps_; }
 
  private:
   const simd::Functions<Real>& functions() const;
@@ -174,21 +165,19 @@ class Lowrank final : public Engine {
 
   Machine machine_;
   const Kernel& kernel_;
-  double tolerance_;
-  const Candidates& candidates_;
   Axis x_;
   Axis y_;
   int reserved_ = 0;
-  simd::Panels<double> in_x_;            ///< P_x, a tap a row
-  simd::Panels<double> in_y_;            ///< P_y
-  simd::Panels<Real> basis_x_;           ///< U_x^T
-  simd::Panels<double> basis_y_;         ///< U_y^T
-  std::optional<TiledMaps<Real>> maps_;  ///< since the first restart
-  simd::Lines<double> scaled_;           ///< scratch: eight columns of P_y times c
-  simd::Lines<double> shares_;           ///< S
-  simd::Lines<double> shares_by_x_;      ///< S^T
-  simd::Lines<double> rows_;             ///< S^T U_y^T
-  std::vector<simd::Lines<Real>> a_;     ///< scratch of a worker
+  simd::Panels<double> in_x_;     ///< P_x, a tap a row
+  simd::Panels<double> in_y_;     ///< P_y
+  simd::Panels<Real> basis_x_;    ///< U_x^T
+  simd::Panels<double> basis_y_;  ///< U_y^T
+  TiledMaps<Real> maps_;
+  simd::Lines<double> scaled_;        ///< scratch: eight columns of P_y times c
+  simd::Lines<double> shares_;        ///< S
+  simd::Lines<double> shares_by_x_;   ///< S^T
+  simd::Lines<double> rows_;          ///< S^T U_y^T
+  std::vector<simd::Lines<Real>> a_;  ///< scratch of a worker
 };
 
 template <>

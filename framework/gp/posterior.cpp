@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace palpate {
 namespace {
 
@@ -24,6 +26,10 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
   if (of_grid < kShort) return grid(fmt::format("separable kernel on a grid, {} taps", settings.taps));
   const int x = axis_rank(kernel, 0, candidates.xs, settings.tolerance, settings.taps);
   const int y = axis_rank(kernel, 1, candidates.ys, settings.tolerance, settings.taps);
+  // Each tap would bring a direction of its own, and the basis alone could cost more than all of them.
+  if (std::max(x, y) >= settings.taps) {
+    return grid(fmt::format("separable kernel of a rank that {} taps do not reach", settings.taps));
+  }
   const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
   const std::string found = fmt::format("separable kernel of rank {} x {} on the grid, {} taps", x, y, settings.taps);
   if (of_lowrank >= of_grid) return grid(found);

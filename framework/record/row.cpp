@@ -10,7 +10,11 @@
 namespace palpate {
 namespace {
 
-std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+std::string number_text(double value) {
+  if (!std::isfinite(value)) return {};
+  // Readers of JSON take -0 for the integer 0.
+  return value == 0.0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+}
 
 /// Whether JSON holds this character as it is, alone.
 bool is_plain(char c) {

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -219,6 +220,40 @@ TEST_P(EveryEngine, TellsScoresAndBoundsThatHold) {
   }
 }
 
+/// How far the scores of any piece are above its bound.
+double above_bounds(const Process& process) {
+  double worst = -std::numeric_limits<double>::infinity();
+  std::array<ScoredCell, kMostCells> cells;
+  for (int piece = 0; piece < process.pieces(); ++piece) {
+    const int count = process.read(piece, cells.data());
+    for (int i = 0; i < count; ++i) {
+      worst = std::max(worst, cells[static_cast<std::size_t>(i)].score - process.bound(piece));
+    }
+  }
+  return worst;
+}
+
+TEST_P(EveryEngine, HasBoundsThatNoScoreExceedsByALastDigit) {
+  const Candidates candidates = regular(60, 40);
+  const Data data = draw(30);
+  for (const char* kernel : {"{factor: 1, kernel: {type: rbf}}", "{factor: 7, kernel: {type: rbf}}"}) {
+    for (const bool single : {false, true}) {
+      if (single && GetParam() != Kind::lowrank) continue;
+      for (const double shift : {0.0, 0.3, -0.5}) {
+        PosteriorSettings settings = settings_of(GetParam());
+        settings.single = single;
+        Process process(test::make<Kernel>(test::shared_host(), "scale", kernel),
+                        {{1.0, 1e-2, 0.0, 0.0}, {1.0, 1e-2, shift, 0.0}}, candidates, settings);
+        process.show(2);
+        for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+          process.add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
+          EXPECT_LE(above_bounds(process), 0.0) << kernel << ", single " << single << ", " << i + 1 << " taps";
+        }
+      }
+    }
+  }
+}
+
 TEST_P(EveryEngine, ShowsAnOutputThatIsReadLateAsItWouldHaveBeen) {
   const Data data = draw(20);
   const Candidates candidates = grid(20, 20);
@@ -291,6 +326,32 @@ TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   }
 }
 
+TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
+  const Data data = draw(20);
+  const Candidates candidates = grid(40, 40);
+  PosteriorSettings settings = settings_of(Kind::lowrank);
+  settings.tolerance = 1e-7;
+  std::vector<double> bounds;
+  for (const double factor : {1e-4, 1.0, 1e4}) {
+    const std::string options = fmt::format("{{factor: {}, kernel: {{type: rbf, length_scale: 3 cm}}}}", factor);
+    const auto kernel = test::make<Kernel>(test::shared_host(), "scale", options);
+    const double deviation = std::sqrt(factor);
+    const ProcessSettings output{1.0, 0.05 * deviation, 0.0, 0.0};
+    Process exact(kernel, output, candidates, settings_of(Kind::dense));
+    Process process(kernel, output, candidates, settings);
+    for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+      for (Process* one : {&exact, &process}) {
+        one->add({data.places(i, 0), data.places(i, 1)}, deviation * data.values(i, 0));
+      }
+    }
+    EXPECT_LE(apart(process.mean(), exact.mean()) / deviation, process.error_bound()) << factor;
+    EXPECT_LE(apart(process.variance(), exact.variance()) / factor, process.error_bound()) << factor;
+    bounds.push_back(process.error_bound());
+  }
+  EXPECT_NEAR(bounds[0], bounds[1], 1e-3 * bounds[1]);
+  EXPECT_NEAR(bounds[2], bounds[1], 1e-3 * bounds[1]);
+}
+
 TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
   Data data = draw(60);
   const Candidates candidates = grid(40, 40);
@@ -337,6 +398,9 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
   EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are no product grid");
   EXPECT_EQ(engine(rbf(), square, 300, 0.0), "dense: no error is allowed");
   EXPECT_EQ(engine(rbf(), square, 17, 1e-9), "grid: separable kernel on a grid, 17 taps");
+  // Along y, there is a direction for every row.
+  const auto rough = rbf("{length_scale: 1 m, length_scale_y: 0.1 mm}");
+  EXPECT_EQ(engine(rough, grid(30, 400), 100, 1e-9), "grid: separable kernel of a rank that 100 taps do not reach");
   EXPECT_THAT(engine(rbf(), square, 300, 1e-9),
               testing::MatchesRegex("lowrank: separable kernel of rank .* x .* on the grid, 300 taps"));
 }

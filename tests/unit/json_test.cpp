@@ -40,6 +40,7 @@ TEST(JsonRow, IsNoneForWhatIsNotOneFlatObject) {
 TEST(JsonRow, ReadsBackWhatARowWrites) {
   Row row;
   row.add("a.b", 0.1);
+  row.add("a.b2", -0.0);
   row.add("a.c", std::int64_t{9223372036854775807});
   row.add("name", "tab\t\"quote\" \\ \x01 \xc3\xa4");
   row.add("none", std::optional<int>());
@@ -48,6 +49,7 @@ TEST(JsonRow, ReadsBackWhatARowWrites) {
     const auto again = parse_json_row(text);
     ASSERT_TRUE(again) << text;
     EXPECT_EQ(again->fields, row.fields);
+    EXPECT_EQ(csv_cell(*again->find("a.b2")), csv_cell(-0.0)) << "a replay compares texts";
   }
 }
 

@@ -3,9 +3,17 @@
 
 namespace palpate::simd {
 
+// What a compiler may take for x86-64-v3 and -v4 (CMakeLists.txt). Some processors have AVX-512F and not the rest of
+// v4.
 bool runs(const Table& table) {
-  if (&table == &kAvx512) return __builtin_cpu_supports("avx512f") != 0;
-  if (&table == &kAvx2) return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+  const bool v3 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
+                  __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
+  if (&table == &kAvx2) return v3;
+  if (&table == &kAvx512) {
+    return v3 && __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+           __builtin_cpu_supports("avx512cd") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+           __builtin_cpu_supports("avx512vl") != 0;
+  }
   return true;
 }
 
