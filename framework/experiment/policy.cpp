@@ -107,7 +107,7 @@ Pick Chooser::pick(const Scores& scores, const std::vector<bool>& allowed, doubl
   const bool tied = second_.candidate >= 0 && second_.score >= threshold;
   if (tied) choose_first(threshold, out);
   out.runner_up = second_.candidate;
-  out.runner_up_score = second_.score;
+  if (second_.candidate >= 0) out.runner_up_score = second_.score;
   if (best_.score <= 0.0) {
     out.flat = "no score is positive";
   } else if (tied && !any_below(threshold)) {

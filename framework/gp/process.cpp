@@ -137,7 +137,7 @@ void Process::show(int outputs) {
 void Process::keep_accuracy() {
   if (posterior_.engine != PosteriorSettings::Kind::automatic) return;
   const double error = error_bound();
-  if (error <= posterior_.accuracy) return;
+  if (!(error > posterior_.accuracy)) return;
   choose(error);
   replay();
 }
