@@ -2,12 +2,10 @@
 #include "support/support.hpp"
 
 #include <gtest/gtest.h>
-#include <sstream>
 
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -84,22 +82,30 @@ Ended palpate(const std::vector<std::string>& words, const fs::path& folder,
 }
 
 std::vector<Cells> csv_rows(const std::string& text) {
-  const auto split = [](const std::string& line) {
-    std::vector<std::string> out;
-    std::istringstream cells(line + ",");
-    for (std::string cell; std::getline(cells, cell, ',');) out.push_back(cell);
-    return out;
-  };
-  std::istringstream lines(text);
-  std::string line;
-  std::getline(lines, line);
-  const std::vector<std::string> header = split(line);
+  std::vector<std::vector<std::string>> lines;
+  bool quoted = false;
+  bool begins = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (begins) lines.emplace_back(1);
+    begins = !quoted && c == '\n';
+    if (c == '"' && quoted && i + 1 < text.size() && text[i + 1] == '"') {
+      lines.back().back() += text[++i];
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      lines.back().emplace_back();
+    } else if (!begins) {
+      lines.back().back() += c;
+    }
+  }
   std::vector<Cells> rows;
-  while (std::getline(lines, line)) {
-    const std::vector<std::string> cells = split(line);
-    if (cells.size() != header.size()) throw std::runtime_error("a row of another length: " + line);
+  for (std::size_t line = 1; line < lines.size(); ++line) {
+    if (lines[line].size() != lines[0].size()) {
+      throw std::runtime_error("a row of another length: " + std::to_string(line) + ", which begins " + lines[line][0]);
+    }
     rows.emplace_back();
-    for (std::size_t i = 0; i < header.size(); ++i) rows.back()[header[i]] = cells[i];
+    for (std::size_t i = 0; i < lines[0].size(); ++i) rows.back()[lines[0][i]] = lines[line][i];
   }
   return rows;
 }

@@ -61,7 +61,7 @@ Ended run_program(const std::vector<std::string>& words, const std::filesystem::
 Ended palpate(const std::vector<std::string>& words, const std::filesystem::path& folder,
               const std::vector<std::string>& environment = {});
 
-/// The rows of a CSV text without quotes: cells by the names of the header. Throws std::runtime_error for a row of
+/// The rows of a CSV text, quotes taken away: cells by the names of the header. Throws std::runtime_error for a row of
 /// another length.
 using Cells = std::map<std::string, std::string>;
 std::vector<Cells> csv_rows(const std::string& text);

@@ -2,6 +2,7 @@
 #include "record/row.hpp"
 
 #include "record/json.hpp"
+#include "support/support.hpp"
 
 #include <gtest/gtest.h>
 
@@ -188,6 +189,19 @@ TEST(Row, NestsPartsOfAListByTheirNumbers) {
   row.add("kernel.kernels.1.alpha", 3);
   EXPECT_EQ(to_json_line(row),
             R"({"kernel": {"kernels": {"0": {"factor": 1, "kernel": {"length_scale": 2}}, "1": {"alpha": 3}}}})");
+}
+
+TEST(Csv, ReadsBackWhateverItsCellsHold) {
+  const std::vector<std::string> texts = {"x,y", "say \"x\", twice", "two\nlines", "\"", "plain", ""};
+  std::vector<Row> rows;
+  for (const std::string& text : texts) {
+    rows.emplace_back();
+    rows.back().add("text", text);
+    rows.back().add("n", std::int64_t{7});
+  }
+  const std::vector<test::Cells> read = test::csv_rows(to_csv(rows));
+  ASSERT_EQ(read.size(), texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) EXPECT_EQ(read[i], (test::Cells{{"text", texts[i]}, {"n", "7"}}));
 }
 
 TEST(Csv, OfNoRowsIsEmpty) { EXPECT_EQ(to_csv({}), ""); }
