@@ -17,13 +17,13 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
   };
   if (error > settings.accuracy) {
     return grid(
-        fmt::format("the error bound of lowrank, {:.1e}, is above the accuracy {:.1e}", error, settings.accuracy));
+        fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy));
   }
   // Multiplications a candidate and tap: those of `grid` grow with the taps; `lowrank` has half its rank, as grids are
   // their own mirror image, and what it does in its own coordinates once a tap. A short run earns back no basis.
   const double of_grid = 0.5 * settings.taps;
   constexpr double kShort = 12;
-  if (of_grid < kShort) return grid(fmt::format("separable kernel on a grid, {} taps", settings.taps));
+  if (of_grid < kShort) return grid(fmt::format("separable kernel on a grid and {} taps", settings.taps));
   const int x = axis_rank(kernel, 0, candidates.xs, settings.tolerance, settings.taps);
   const int y = axis_rank(kernel, 1, candidates.ys, settings.tolerance, settings.taps);
   // Each tap would bring a direction of its own, and the basis alone could cost more than all of them.
@@ -31,7 +31,7 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
     return grid(fmt::format("separable kernel of a rank that {} taps do not reach", settings.taps));
   }
   const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
-  const std::string found = fmt::format("separable kernel of rank {} x {} on the grid, {} taps", x, y, settings.taps);
+  const std::string found = fmt::format("separable kernel of rank {} x {} on a grid and {} taps", x, y, settings.taps);
   if (of_lowrank >= of_grid) return grid(found);
   return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance, false), found};
 }

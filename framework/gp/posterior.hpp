@@ -26,7 +26,7 @@ struct PosteriorSettings {
 
 struct EngineChoice {
   std::unique_ptr<Engine> engine;
-  std::string reason;  ///< one line
+  std::string reason;  ///< one line, without a comma: it becomes a cell of tables
 };
 
 /// Why these settings cannot be used with this kernel, the end of a sentence; empty if they can: `grid` and `lowrank`

@@ -84,6 +84,9 @@ struct Workload {
   int grid;
 };
 
+/// Lists of tests show a workload by its name.
+void PrintTo(const Workload& one, std::ostream* out) { *out << one.name; }
+
 struct Limit {
   PosteriorSettings::Kind engine;
   double mean, variance;

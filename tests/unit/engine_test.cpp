@@ -397,12 +397,12 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
   EXPECT_EQ(engine(matern, square, 300, 1e-9), "dense: the kernel is not separable");
   EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are no product grid");
   EXPECT_EQ(engine(rbf(), square, 300, 0.0), "dense: no error is allowed");
-  EXPECT_EQ(engine(rbf(), square, 17, 1e-9), "grid: separable kernel on a grid, 17 taps");
+  EXPECT_EQ(engine(rbf(), square, 17, 1e-9), "grid: separable kernel on a grid and 17 taps");
   // Along y, there is a direction for every row.
   const auto rough = rbf("{length_scale: 1 m, length_scale_y: 0.1 mm}");
   EXPECT_EQ(engine(rough, grid(30, 400), 100, 1e-9), "grid: separable kernel of a rank that 100 taps do not reach");
   EXPECT_THAT(engine(rbf(), square, 300, 1e-9),
-              testing::MatchesRegex("lowrank: separable kernel of rank .* x .* on the grid, 300 taps"));
+              testing::MatchesRegex("lowrank: separable kernel of rank .* x .* on a grid and 300 taps"));
 }
 
 TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
@@ -420,7 +420,7 @@ TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
   }
   EXPECT_STREQ(process.engine(), "grid");
   EXPECT_THAT(process.engine_reason(),
-              testing::MatchesRegex("the error bound of lowrank, .*, is above the accuracy 1.0e-13"));
+              testing::MatchesRegex("the error bound of lowrank .* is above the accuracy 1.0e-13"));
   const Process grid_from_the_start = processed(data, candidates, settings_of(Kind::grid));
   EXPECT_TRUE(same_bytes(process.mean(0), grid_from_the_start.mean(0)));
   EXPECT_TRUE(same_bytes(process.variance(), grid_from_the_start.variance()));
