@@ -2,6 +2,7 @@
 // The recorded table of what engines, spacing and refits cost and are worth.
 #include "support/support.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -10,6 +11,22 @@
 
 namespace palpate {
 namespace {
+
+TEST(PosteriorTrade, StandsInTheReadmeAsItWasRecorded) {
+  const std::string readme = test::text_of(test::source_folder() / "README.md");
+  int shown = 0;
+  for (const test::Cells& row :
+       test::csv_rows(test::text_of(test::source_folder() / "runs/reference/posterior_trade.csv"))) {
+    if (row.at("spacing_mm") == "2") continue;  // left out there
+    ++shown;
+    const std::string line =
+        fmt::format("| {} | {} | {} | {} | {} | {}, {} | {} | {} | {} |\n", row.at("engine"), row.at("precision"),
+                    row.at("spacing_mm"), row.at("refit_every"), row.at("seconds"), row.at("mean_error_m"),
+                    row.at("variance_error"), row.at("rmse_m"), row.at("rmse_change_m"), row.at("taps_as_dense"));
+    EXPECT_NE(readme.find(line), std::string::npos) << line;
+  }
+  EXPECT_EQ(shown, 16);
+}
 
 TEST(PosteriorTrade, NoEngineInDoublePrecisionChangesATapOrLosesMoreThanTheAccuracy) {
   std::set<std::string> engines;
