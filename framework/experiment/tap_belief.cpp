@@ -180,37 +180,38 @@ const Eigen::VectorXd& TapBelief::read(Map& map, Model& model, int output, Read 
 
 const Eigen::VectorXd& TapBelief::uncertainty() const {
   return read(uncertainty_map_, heights_, 0,
-              [](const Process& process, VectorOut out) { process.read_relative_variance(out); });
+              [](const Process& process, Eigen::VectorXd& out) { process.read_relative_variance(out); });
 }
 
 const Eigen::VectorXd& TapBelief::weight_mean() const {
   return read(weight_mean_map_, labels(), label_output(),
-              [this](const Process& process, VectorOut out) { process.read_mean(label_output(), out); });
+              [this](const Process& process, Eigen::VectorXd& out) { process.read_mean(label_output(), out); });
 }
 
 const Eigen::VectorXd& TapBelief::weight() const {
   if (!clip_) return weight_mean();
-  return read(weight_map_, labels(), label_output(), [this](const Process& process, VectorOut out) {
+  return read(weight_map_, labels(), label_output(), [this](const Process& process, Eigen::VectorXd& out) {
     process.read_mean(label_output(), out);
     out = out.cwiseMax(0.0).cwiseMin(1.0);
   });
 }
 
 const Eigen::VectorXd& TapBelief::height_mean() const {
-  return read(mean_map_, surface(), 0, [this](const Process& process, VectorOut out) {
+  return read(mean_map_, surface(), 0, [this](const Process& process, Eigen::VectorXd& out) {
     process.read_mean(0, out);
     out.array() += desk_;
   });
 }
 
 const Eigen::VectorXd& TapBelief::all_taps_variance() const {
-  return read(all_taps_map_, heights_, 0, [](const Process& process, VectorOut out) { process.read_variance(0, out); });
+  return read(all_taps_map_, heights_, 0,
+              [](const Process& process, Eigen::VectorXd& out) { process.read_variance(0, out); });
 }
 
 const Eigen::VectorXd& TapBelief::height_variance() const {
   if (!two_part_) return all_taps_variance();
   return read(variance_map_, surface(), 0,
-              [](const Process& process, VectorOut out) { process.read_variance(0, out); });
+              [](const Process& process, Eigen::VectorXd& out) { process.read_variance(0, out); });
 }
 
 double TapBelief::height_noise() const {

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kLine = simd::kLine<double>;
 constexpr int kRows = simd::kStripRows;
+constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * simd::kPanelLines * kLine;  ///< numbers in a whole tile
 
 /// One axis of the grid: the basis of its covariances, and the taps in it.
 struct Axis {
@@ -133,11 +134,11 @@ class Lowrank final : public Engine {
       // Turn the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
       for (int line = 0; line < lines; ++line) {
         const int panel = line / simd::kPanelLines;
-        const int width = in_x_.width(panel);
-        const double* tile = c + panel * kRows * simd::kPanelLines * kLine + line % simd::kPanelLines * kLine;
-        double* out =
-            shares_by_x_.data() + (static_cast<std::ptrdiff_t>(line) * in_y_.padded() + strip * kRows) * kLine;
-        for (int m = 0; m < kRows; ++m) std::copy_n(tile + m * width, kLine, out + m * kLine);
+        const std::ptrdiff_t width = in_x_.width(panel);
+        const double* tile = c + panel * kTile + static_cast<std::ptrdiff_t>(line % simd::kPanelLines) * kLine;
+        const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(line) * in_y_.padded();
+        double* out = shares_by_x_.data() + (column + static_cast<std::ptrdiff_t>(strip) * kRows) * kLine;
+        for (std::ptrdiff_t m = 0; m < kRows; ++m) std::copy_n(tile + m * width, kLine, out + m * kLine);
       }
     }
   }
@@ -152,14 +153,15 @@ class Lowrank final : public Engine {
 
   /// The shares of a strip's rows, direction by direction.
   void gather(int strip, Real* out) const {
-    const int panel = strip * kRows / (simd::kPanelLines * kLine);
-    const int width = basis_y_.width(panel);
-    const int within = strip * kRows - panel * simd::kPanelLines * kLine;
-    const double* tile = rows_.data() + static_cast<std::ptrdiff_t>(panel) * kRows * simd::kPanelLines * kLine + within;
+    const int row = strip * kRows;
+    const int panel = row / (simd::kPanelLines * kLine);
+    const std::ptrdiff_t width = basis_y_.width(panel);
+    const std::ptrdiff_t within = row % (simd::kPanelLines * kLine);
+    const double* tile = rows_.data() + panel * kTile + within;
     const std::ptrdiff_t strip_size = static_cast<std::ptrdiff_t>(basis_y_.padded()) * kRows;
-    for (int k = 0; k < basis_x_.rows(); ++k) {
+    for (std::ptrdiff_t k = 0; k < basis_x_.rows(); ++k) {
       const double* from = tile + k / kRows * strip_size + k % kRows * width;
-      for (int i = 0; i < kRows; ++i) out[k * kRows + i] = static_cast<Real>(from[i]);
+      for (std::ptrdiff_t i = 0; i < kRows; ++i) out[k * kRows + i] = static_cast<Real>(from[i]);
     }
   }
 
