@@ -3,6 +3,7 @@
 #include "stability/check.hpp"
 #include "stability/oracle.hpp"
 #include "stability/reference.hpp"
+#include "support/sanitizers.hpp"
 #include "support/support.hpp"
 
 #include <fmt/format.h>
@@ -25,16 +26,11 @@ void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSlow = true;
-#else
-constexpr bool kSlow = false;
-#endif
-
 class Extremes : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Extremes, HoldTheBound) {
-  if (kSlow && GetParam().points > kOraclePoints) GTEST_SKIP() << "takes minutes under a sanitizer; release runs it";
+  if (test::kSanitized && GetParam().points > kOraclePoints)
+    GTEST_SKIP() << "takes minutes under a sanitizer; release runs it";
   for (const Row& row : check(GetParam())) {
     EXPECT_EQ(row.trouble, "") << header() << '\n' << text(row);
     RecordProperty("row_" + row.engine, text(row));

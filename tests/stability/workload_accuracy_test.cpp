@@ -2,6 +2,7 @@
 // Error of every engine against long double, after all taps of the workloads W1, W2 and W3: a dense factorisation with
 // 19 digits that shares nothing with the framework.
 #include "benchmark/workload.hpp"
+#include "support/sanitizers.hpp"
 #include "support/support.hpp"
 
 #include <fmt/format.h>
@@ -13,12 +14,6 @@
 
 namespace palpate {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSlow = true;
-#else
-constexpr bool kSlow = false;
-#endif
 
 using LongVector = std::vector<long double>;
 
@@ -96,7 +91,7 @@ class WorkloadAccuracy : public testing::TestWithParam<Workload> {};
 
 TEST_P(WorkloadAccuracy, IsThatPromisedForEveryEngine) {
   const Workload workload = GetParam();
-  if (kSlow && workload.grid > 100) GTEST_SKIP() << "takes minutes under a sanitizer; release runs it";
+  if (test::kSanitized && workload.grid > 100) GTEST_SKIP() << "takes minutes under a sanitizer; release runs it";
   const benchmark::Taps taps =
       benchmark::read_taps(test::source_folder() / "tests/data" / fmt::format("taps_{}.csv", workload.name));
   const Candidates candidates = benchmark::square(workload.grid);

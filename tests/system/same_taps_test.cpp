@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The promise of the tie rule: engine, threads and instruction set decide no tap.
 #include "support/runs.hpp"
+#include "support/sanitizers.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,11 +14,7 @@
 namespace palpate {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kSeeds = 10;
-#else
-constexpr int kSeeds = 200;
-#endif
+constexpr int kSeeds = test::kSanitized ? 10 : 200;
 
 std::vector<int> taps_of(const ExperimentOptions& options) {
   Experiment experiment(options, test::shared_host(), nullptr);

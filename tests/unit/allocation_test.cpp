@@ -3,6 +3,7 @@
 #include "experiment/experiment.hpp"
 #include "support/plugins.hpp"
 #include "support/runs.hpp"
+#include "support/sanitizers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +12,6 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCounts = false;  // the sanitizers have an allocator of their own
-#else
-constexpr bool kCounts = true;
-#endif
 
 namespace {
 std::atomic<long> allocations{0};
@@ -59,7 +54,7 @@ namespace palpate {
 namespace {
 
 TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
-  if (!kCounts) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
+  if (test::kSanitized) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
   const Candidates candidates = grid_by_count({0.23, 0.23}, 60);
   const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
   for (const auto kind :
@@ -102,7 +97,7 @@ class Watcher final : public Journal {
 };
 
 TEST(Allocation, NoTapOfTheLoopAllocatesAMap) {
-  if (!kCounts) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
+  if (test::kSanitized) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
   for (const char* acquisition : {"acquisition=weighted", "acquisition=uncertainty", "acquisition=random"}) {
     const ResolvedConfig config = test::shipped_config("paper/object_i.yaml", {acquisition});
     Experiment experiment(config.options, test::shared_host(), nullptr);

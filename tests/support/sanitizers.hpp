@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// What a test leaves out where a sanitizer makes it ten times slower, or replaces what it looks at.
+#pragma once
+
+namespace palpate::test {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+}  // namespace palpate::test
