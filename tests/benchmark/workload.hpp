@@ -26,15 +26,16 @@ std::shared_ptr<Kernel> make_kernel();
 
 /// What was chosen after every tap but the initial ones, and how long that took.
 struct Replay {
-  std::vector<int> choices;      ///< candidates
-  std::vector<double> seconds;   ///< of bringing the maps up to date and choosing, a choice; the first also pays for
-                                 ///< the initial taps
-  double total = 0.0;            ///< seconds, the making of the process included
+  std::vector<int> choices;     ///< candidates
+  std::vector<double> seconds;  ///< of bringing the maps up to date and choosing, a choice; the first also pays for
+                                ///< the initial taps
+  double total = 0.0;           ///< seconds, the making of the process included
 };
 
 constexpr int kInitialTaps = 3;
 
-/// Brings the taps one by one to a height and a weight process of unit variance and noise variance 1e-4, and chooses the best of u w after each, the initial ones apart.
+/// Brings the taps one by one to a height and a weight process of unit variance and noise variance 1e-4, and chooses
+/// the best of u w after each, the initial ones apart.
 Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
               const PosteriorSettings& settings, std::unique_ptr<Process>* last = nullptr);
 

@@ -24,8 +24,8 @@ namespace palpate::stability {
 /// The sensitivity is what a backward error of n eps |A| can do to first order: n eps |A| |A^-1 k_*| |A^-1 y| to a mean
 /// and n eps |A| |A^-1 k_*|^2 to a variance. The cap keeps the bound below what would be no answer at all.
 ///
-/// `lowrank` may add its tolerance times cond, up to the caps, and its tolerance to the residual; `auto`, which lets no engine add more than its accuracy,
-/// is held to the bound of `grid`.
+/// `lowrank` may add its tolerance times cond, up to the caps, and its tolerance to the residual; `auto`, which lets no
+/// engine add more than its accuracy, is held to the bound of `grid`.
 struct Row {
   std::string name;
   std::string engine = "dense";  ///< as a config names it

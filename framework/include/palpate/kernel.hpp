@@ -36,8 +36,8 @@ class Kernel {
   /// k(a_i, a_i): `a` n x 2, `out` n. Cheaper than the diagonal of covariance(a, a).
   virtual void variance(const PointsView& a, VectorOut out) const = 0;
 
-  /// Whether k(a, b) = f_0(a_x, b_x) f_1(a_y, b_y); then the method below is implemented too. A posterior over a grid of
-  /// G x G candidates needs 2 G values of such a kernel a tap, instead of G^2.
+  /// Whether k(a, b) = f_0(a_x, b_x) f_1(a_y, b_y); then the method below is implemented too. A posterior over a grid
+  /// of G x G candidates needs 2 G values of such a kernel a tap, instead of G^2.
   virtual bool separable() const { return false; }
 
   /// One of the factors: f_axis(a_i, b_j) for coordinates along x (axis 0) or y (axis 1), `a` n, `b` m, `out` n x m.

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// What the engine `lowrank` may lose, and which engine `auto` takes.
+#include "unit/engine_data.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+using namespace test;
+
+TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
+  const Data data = draw(60);
+  const Candidates candidates = grid(40, 40);
+  const Process exact = processed(data, candidates, settings_of(Kind::dense));
+  for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-13}) {
+    PosteriorSettings settings = settings_of(Kind::lowrank);
+    settings.tolerance = tolerance;
+    const Process process = processed(data, candidates, settings);
+    const double rounding = 1e-12;
+    const double error =
+        std::max({apart(process.mean(0), exact.mean(0)) / 2.0, apart(process.mean(1), exact.mean(1)) / 0.5,
+                  apart(process.relative_variance(), exact.relative_variance())});
+    EXPECT_LE(error, process.error_bound() + rounding) << tolerance;
+    EXPECT_GT(process.error_bound(), 0.0);
+    if (tolerance > 1e-8) {
+      EXPECT_GT(error, 1e-3 * process.error_bound()) << "a bound that tells something";
+    }
+  }
+}
+
+TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
+  const Data data = draw(20);
+  const Candidates candidates = grid(40, 40);
+  PosteriorSettings settings = settings_of(Kind::lowrank);
+  settings.tolerance = 1e-7;
+  std::vector<double> bounds;
+  for (const double factor : {1e-4, 1.0, 1e4}) {
+    const std::string options = fmt::format("{{factor: {}, kernel: {{type: rbf, length_scale: 3 cm}}}}", factor);
+    const auto kernel = test::make<Kernel>(test::shared_host(), "scale", options);
+    const double deviation = std::sqrt(factor);
+    const ProcessSettings output{1.0, 0.05 * deviation, 0.0, 0.0};
+    Process exact(kernel, output, candidates, settings_of(Kind::dense));
+    Process process(kernel, output, candidates, settings);
+    for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+      for (Process* one : {&exact, &process}) {
+        one->add({data.places(i, 0), data.places(i, 1)}, deviation * data.values(i, 0));
+      }
+    }
+    EXPECT_LE(apart(process.mean(), exact.mean()) / deviation, process.error_bound()) << factor;
+    EXPECT_LE(apart(process.variance(), exact.variance()) / factor, process.error_bound()) << factor;
+    bounds.push_back(process.error_bound());
+  }
+  EXPECT_NEAR(bounds[0], bounds[1], 1e-3 * bounds[1]);
+  EXPECT_NEAR(bounds[2], bounds[1], 1e-3 * bounds[1]);
+}
+
+TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
+  Data data = draw(60);
+  const Candidates candidates = grid(40, 40);
+  Random random(3, "engine_test/places");
+  for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+    const Target place =
+        candidates.target(static_cast<int>(random.index(static_cast<std::uint64_t>(candidates.size()))));
+    data.places.row(i) << place.x, place.y;
+  }
+  const Process exact = processed(data, candidates, settings_of(Kind::dense));
+  const Process process = processed(data, candidates, settings_of(Kind::lowrank));
+  EXPECT_LT(apart(process.relative_variance(), exact.relative_variance()), 1e-12);
+  EXPECT_LT(apart(process.mean(0), exact.mean(0)), 1e-10);
+  EXPECT_LT(process.error_bound(), 1e-9);
+}
+
+TEST(Lowrank, InSinglePrecisionIsExactToFiveDigits) {
+  const Data data = draw(60);
+  const Candidates candidates = grid(60, 40);
+  const Process exact = processed(data, candidates, settings_of(Kind::dense));
+  PosteriorSettings settings = settings_of(Kind::lowrank);
+  settings.single = true;
+  const Process process = processed(data, candidates, settings);
+  EXPECT_LT(apart(process.mean(0), exact.mean(0)), 1e-4);
+  EXPECT_LT(apart(process.relative_variance(), exact.relative_variance()), 1e-5);
+  EXPECT_GT(apart(process.relative_variance(), exact.relative_variance()), 1e-9) << "single precision it is";
+  EXPECT_GE(process.error_bound(), apart(process.relative_variance(), exact.relative_variance()));
+  EXPECT_GE(process.error_bound(), apart(process.mean(0), exact.mean(0)) / 2.0);
+}
+
+TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
+  const Candidates square = grid(30, 30);
+  const Candidates any = scattered(Points::Random(20, 2));
+  const auto matern = test::make<Kernel>(test::shared_host(), "matern32");
+  const auto engine = [](const std::shared_ptr<Kernel>& kernel, const Candidates& candidates, int taps,
+                         double accuracy) {
+    PosteriorSettings settings;
+    settings.taps = taps;
+    settings.accuracy = accuracy;
+    const Process process(kernel, kOutputs, candidates, settings);
+    return std::string(process.engine()) + ": " + process.engine_reason();
+  };
+  EXPECT_EQ(engine(matern, square, 300, 1e-9), "dense: the kernel is not separable");
+  EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are no product grid");
+  EXPECT_EQ(engine(rbf(), square, 300, 0.0), "dense: no error is allowed");
+  EXPECT_EQ(engine(rbf(), square, 17, 1e-9), "grid: separable kernel on a grid and 17 taps");
+  // Along y, there is a direction for every row.
+  const auto rough = rbf("{length_scale: 1 m, length_scale_y: 0.1 mm}");
+  EXPECT_EQ(engine(rough, grid(30, 400), 100, 1e-9), "grid: separable kernel of a rank that 100 taps do not reach");
+  EXPECT_THAT(engine(rbf(), square, 300, 1e-9),
+              testing::MatchesRegex("lowrank: separable kernel of rank .* x .* on a grid and 300 taps"));
+}
+
+TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
+  const Data data = draw(30);
+  const Candidates candidates = grid(30, 30);
+  PosteriorSettings settings = settings_of(Kind::automatic);
+  settings.taps = 300;
+  settings.accuracy = 1e-13;  // some taps keep to it
+  Process process(rbf(), kOutputs, candidates, settings);
+  process.show(2);
+  ASSERT_STREQ(process.engine(), "lowrank");
+  for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+    process.add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
+    EXPECT_LE(process.error_bound(), settings.accuracy);
+  }
+  EXPECT_STREQ(process.engine(), "grid");
+  EXPECT_THAT(process.engine_reason(),
+              testing::MatchesRegex("the error bound of lowrank .* is above the accuracy 1.0e-13"));
+  const Process grid_from_the_start = processed(data, candidates, settings_of(Kind::grid));
+  EXPECT_TRUE(same_bytes(process.mean(0), grid_from_the_start.mean(0)));
+  EXPECT_TRUE(same_bytes(process.variance(), grid_from_the_start.variance()));
+}
+
+TEST(Engine, ThatCannotServeIsRefusedWithTheReason) {
+  const auto matern = test::make<Kernel>(test::shared_host(), "matern32");
+  const Candidates square = grid(3, 3);
+  const Candidates any = scattered(Points::Random(20, 2));
+  for (const Kind kind : {Kind::grid, Kind::lowrank}) {
+    EXPECT_THROW(Process(matern, kOutputs, square, settings_of(kind)), Error);
+    EXPECT_THROW(Process(rbf(), kOutputs, any, settings_of(kind)), Error);
+    EXPECT_THAT(objection(settings_of(kind), *matern, square), testing::HasSubstr("not separable"));
+    EXPECT_THAT(objection(settings_of(kind), *rbf(), any), testing::HasSubstr("product grid"));
+    EXPECT_EQ(objection(settings_of(kind), *rbf(), square), "");
+  }
+}
+
+}  // namespace
+}  // namespace palpate
