@@ -45,11 +45,17 @@ fs::path shown(const fs::path& path) {
   return near.empty() || *near.begin() == ".." ? path : near;
 }
 
+/// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
+constexpr Layer kLayersOfGroup = 16;
+
+/// A group that is chosen brings its types, those of the groups within it (a backend's motion) included.
 void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
-  Tree* type = content.find("type");
-  if (type == nullptr) return;
-  type->layer = layer;
-  if (layer >= kFileLayer) type->place = place;
+  for (Tree::Entry& entry : content.entries) {
+    if (entry.value.is_map()) set_layer_of_type(entry.value, layer, place);
+    if (entry.key != "type") continue;
+    entry.value.layer = layer;
+    if (layer >= kFileLayer) entry.value.place = place;
+  }
 }
 
 }  // namespace
@@ -140,12 +146,17 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
   Tree own = load(file);
   Tree content = Tree::map();
   content.place = own.place;
-  for (const Choice& base : take_defaults(own)) {
+  own.set_layer(0);
+  const std::vector<Choice> bases = take_defaults(own);
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    const Choice& base = bases[i];
     if (base.path != group) {
       throw Error(base.place.text(), fmt::format("a {} may build only on another {}", group, group),
                   fmt::format("write '- {}: name'", group));
     }
-    content.merge(group_content(group, base.name, base.place, file.parent_path(), chain));
+    Tree below = group_content(group, base.name, base.place, file.parent_path(), chain);
+    below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
+    content.merge(below);
   }
   for (const Tree::Entry& entry : own.entries) {
     if (entry.key != group) {
@@ -224,9 +235,9 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   for (const Choice& choice : choices) {
     std::vector<std::string> chain;
     Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
-    content.set_layer(layer);
+    content.shift_layer(layer);
     set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
-    ++layer;
+    layer += kLayersOfGroup;
     Tree& slot = tree.at_path(choice.path, choice.place);
     if (slot.kind == Tree::Kind::null) slot = Tree::map();
     if (slot.place.line == 0) slot.place = content.place;
@@ -253,7 +264,7 @@ void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& be
   Tree& slot = tree.at_path(choice.path, choice.place);
   std::vector<std::string> chain;
   Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
-  content.set_layer(kFileLayer - 1);
+  content.shift_layer(kFileLayer - 1);
   set_layer_of_type(content, choice.layer, choice.place);
   const Tree* type = content.find("type");
   const Tree chosen = type != nullptr ? *type : Tree{};

@@ -57,6 +57,7 @@ class Composer {
                                    const std::filesystem::path& beside) const;
   std::vector<std::string> group_names(const std::string& group, const std::filesystem::path& beside) const;
   std::vector<std::filesystem::path> roots(const std::filesystem::path& beside) const;
+  /// What a group's file says, on layer 0, laid over what it builds on, on the layers below.
   Tree group_content(const std::string& group, const std::string& name, const Place& place,
                      const std::filesystem::path& beside, std::vector<std::string>& chain);
 

@@ -65,6 +65,10 @@ class Describer final : public Fields {
   void section(Options& options, const Field& field) override {
     add(Type::section, field).fields = describe_fields([&](Fields& fields) { options.list(fields); });
   }
+  void section(bool& present, Options& options, const Field& field) override {
+    section(options, field);
+    rows.back().optional = !present;
+  }
   void sections(const ListAccess& access, const Field& field) override {
     access.resize(1);
     add(Type::sections, field).fields = describe_fields([&](Fields& fields) { access.item(0).list(fields); });
@@ -108,7 +112,7 @@ void append_text(std::vector<std::array<std::string, 4>>& lines, const std::vect
     const bool group = field.type == Type::section || field.type == Type::sections;
     lines.push_back({prefix + field.name, type,
                      field.required ? "required"
-                     : group        ? ""
+                     : group        ? (field.optional ? "absent" : "")
                                     : field.default_value,
                      meaning});
     for (const auto& one : field.cases) {
@@ -170,7 +174,15 @@ Tree field_schema(const FieldDescription& field) {
       break;
     }
     case Type::section: {
-      const Tree inner = schema_of(field.fields);
+      Tree inner = schema_of(field.fields);
+      if (field.optional) {
+        Tree none = Tree::map();
+        none.at("const") = quoted("none");
+        Tree either = Tree::list();
+        either.items = {std::move(none), std::move(inner)};
+        out.at("anyOf") = std::move(either);
+        break;
+      }
       for (const Tree::Entry& entry : inner.entries) out.entries.push_back(entry);
       break;
     }

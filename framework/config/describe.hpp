@@ -25,6 +25,7 @@ struct FieldDescription {
   std::string meaning;
   std::string source;
   bool required = false;
+  bool optional = false;                 ///< a `section` that is absent unless it is written
   std::size_t count = 0;                 ///< of `reals`
   std::string kind;                      ///< of `plugin`
   std::vector<CaseDescription> cases;    ///< of `choice`

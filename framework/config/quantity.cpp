@@ -42,6 +42,9 @@ constexpr std::array kUnits{
     UnitName{"m/s", Unit::metre_per_second, 0},
     UnitName{"cm/s", Unit::metre_per_second, -2},
     UnitName{"mm/s", Unit::metre_per_second, -3},
+    UnitName{"N/m", Unit::newton_per_metre, 0},
+    UnitName{"N/cm", Unit::newton_per_metre, 2},
+    UnitName{"N/mm", Unit::newton_per_metre, 3},
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -85,6 +88,8 @@ std::string example(Unit unit) {
       return "an angle like '30 deg'";
     case Unit::metre_per_second:
       return "a speed like '10 cm/s'";
+    case Unit::newton_per_metre:
+      return "a stiffness like '1500 N/m'";
   }
   return {};
 }
@@ -160,6 +165,8 @@ std::string dimension_name(Unit unit) {
       return "angle";
     case Unit::metre_per_second:
       return "speed";
+    case Unit::newton_per_metre:
+      return "stiffness";
   }
   return {};
 }

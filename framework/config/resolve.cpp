@@ -125,7 +125,8 @@ class Resolver final : public Fields {
                     suggestion("", names));
       }
       index = static_cast<std::size_t>(found - cases.begin());
-      if (found->list) type_layer_ = std::max(type_layer_, tree->layer);
+      const bool is_type = std::any_of(cases.begin(), cases.end(), [](const Case& one) { return bool(one.list); });
+      if (is_type) type_layer_ = std::max(type_layer_, tree->layer);
     }
     write(field, Tree::scalar(cases[index].name));
     if (cases[index].list) cases[index].list(*this);
@@ -133,6 +134,19 @@ class Resolver final : public Fields {
 
   void section(Options& options, const Field& field) override {
     const Tree* tree = claim(field);
+    Resolver inner(tree, path_ + field.name + ".", plugins_, notes_, output_.place);
+    options.list(inner);
+    output_.at(field.name) = inner.finish();
+  }
+
+  void section(bool& present, Options& options, const Field& field) override {
+    const Tree* tree = claim(field);
+    if (tree != nullptr && tree->kind == Tree::Kind::null) {
+      throw Error(tree->place.text(), fmt::format("{} has no value", name(field)),
+                  "write {} for its defaults, or none");
+    }
+    if (tree != nullptr) present = !is_none(*tree);
+    if (!present) return;
     Resolver inner(tree, path_ + field.name + ".", plugins_, notes_, output_.place);
     options.list(inner);
     output_.at(field.name) = inner.finish();

@@ -38,6 +38,7 @@ std::optional<TapRecord> Experiment::choose_next() {
     if (tap.candidate < 0) return std::nullopt;
   }
   tap.target = candidates_.target(tap.candidate);
+  tap.predicted = predict(tap.candidate);
   describe_state(tap);
   return tap;
 }
@@ -62,7 +63,7 @@ void Experiment::choose_by_score(TapRecord& tap) {
 }
 
 void Experiment::perform(TapRecord& tap) {
-  tap.contact = touch(tap.number, tap.target);
+  tap.contact = touch(tap);
   if (tap.contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(tap.contact.height);
   absorb(tap.target, tap.contact, tap.source);
 }

@@ -23,9 +23,10 @@ namespace palpate {
 class Experiment {
  public:
   /// Builds scene, candidates, strategy and, unless one is given, backend. `factory` and `interrupted` (may be null)
-  /// must outlive it. Throws Error for what only building can find out.
+  /// must outlive it; `directory` is that of the record, "" if none is kept. Throws Error for what only building can
+  /// find out.
   Experiment(const ExperimentOptions& options, const PluginFactory& factory, const std::atomic<bool>* interrupted,
-             std::shared_ptr<Backend> backend = nullptr);
+             std::shared_ptr<Backend> backend = nullptr, const std::string& directory = {});
 
   Experiment(const Experiment&) = delete;
   Experiment& operator=(const Experiment&) = delete;
@@ -57,7 +58,8 @@ class Experiment {
   Pick pick_best();
   void describe_state(TapRecord& tap);
   void perform(TapRecord& tap);
-  Contact touch(int number, const Target& target);
+  std::optional<Prediction> predict(int candidate) const;
+  Contact touch(const TapRecord& tap);
   void absorb(const Target& target, const Contact& contact, Source source);
   void count(const Contact& contact, Source source);
 

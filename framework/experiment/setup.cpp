@@ -36,10 +36,11 @@ ProcessState state_of(const TapBelief::Quantity& quantity) {
 }  // namespace
 
 Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,
-                       const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend)
+                       const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend,
+                       const std::string& directory)
     : options_(options),
       scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed))),
-      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted},
+      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
       candidates_(make_candidates(options.candidates, scene_->area())),
       initial_(initial_design(options.initial, candidates_, scene_->area(), context_.seed)),
       belief_(options_, candidates_, context_, clock_),
@@ -68,9 +69,14 @@ Pick Experiment::pick_best() {
   return chooser_.pick(VectorScores(scores_), allowed_, scale, options_.tie_tolerance);
 }
 
-Contact Experiment::touch(int number, const Target& target) {
+std::optional<Prediction> Experiment::predict(int candidate) const {
+  if (!backend_->wants_prediction()) return std::nullopt;
+  return Prediction{belief_.height_mean()(candidate), std::sqrt(belief_.height_variance()(candidate))};
+}
+
+Contact Experiment::touch(const TapRecord& tap) {
   const PhaseClock::Scope in_tap(clock_, Phase::robot);
-  Contact contact = backend_->tap({number, target, previous_});
+  Contact contact = backend_->tap({tap.number, tap.target, previous_, tap.predicted});
   if (contact.outcome != Outcome::contact || std::isfinite(contact.height)) return contact;
   return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused};
 }

@@ -5,6 +5,7 @@
 #include "experiment/metrics.hpp"
 #include "experiment/phases.hpp"
 
+#include <palpate/backend.hpp>
 #include <palpate/types.hpp>
 
 #include <array>
@@ -49,6 +50,8 @@ struct TapRecord {
   std::optional<ProcessState> height_process, weight_process;
   std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
   Errors errors;
+
+  std::optional<Prediction> predicted;  ///< of the height at the target; only for a backend that wants it
 
   // After the tap.
   Contact contact;

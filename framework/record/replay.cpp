@@ -20,16 +20,19 @@ namespace {
 /// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
 class Recorded final : public Backend {
  public:
-  Recorded(std::vector<PastTap> taps, bool truth_known) : taps_(std::move(taps)), truth_known_(truth_known) {}
+  Recorded(std::vector<PastTap> taps, bool truth_known, bool predicted)
+      : taps_(std::move(taps)), truth_known_(truth_known), predicted_(predicted) {}
   Contact tap(const TapRequest& request) override {
     return taps_.at(static_cast<std::size_t>(request.number - 1)).contact;
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_known_; }
+  bool wants_prediction() const override { return predicted_; }
 
  private:
   std::vector<PastTap> taps_;
   bool truth_known_;
+  bool predicted_;
 };
 
 class Collector final : public Journal {
@@ -72,13 +75,16 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     taps.push_back(past_tap(recorded[i], fmt::format("{}: tap {}", (directory / "taps.jsonl").string(), i + 1)));
   }
-  const Scalar* truth = recorded.front().find("true_on_surface");
-  const bool truth_known = truth != nullptr && !std::holds_alternative<std::monostate>(*truth);
+  const auto known = [&](const char* field) {
+    const Scalar* value = recorded.front().find(field);
+    return value != nullptr && !std::holds_alternative<std::monostate>(*value);
+  };
 
   const auto made = static_cast<int>(taps.size());
   const bool cut = made < config.options.taps;
-  Experiment experiment(config.options, workshop.host, workshop.interrupted,
-                        std::make_shared<Recorded>(std::move(taps), truth_known));
+  Experiment experiment(
+      config.options, workshop.host, workshop.interrupted,
+      std::make_shared<Recorded>(std::move(taps), known("true_on_surface"), known("predicted.height")));
   Collector collector;
   experiment.run(collector, made);
 

@@ -104,9 +104,9 @@ class Relay final : public Journal {
 };
 
 /// Builds the experiment. What only building finds out names an option; the config knows where that was written.
-Experiment build_experiment(const Workshop& workshop, const ResolvedConfig& config) {
+Experiment build_experiment(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
   try {
-    return Experiment(config.options, workshop.host, workshop.interrupted);
+    return Experiment(config.options, workshop.host, workshop.interrupted, nullptr, directory.string());
   } catch (const Error& trouble) {
     const std::string place = config.tree.place_of(trouble.where()).text();
     if (place.empty()) throw;
@@ -179,7 +179,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
     }
   }
   // Built before the directory is touched: what only building finds out leaves no trace.
-  Experiment experiment = build_experiment(workshop, config);
+  Experiment experiment = build_experiment(workshop, config, directory);
   if (status.state != RunStatus::State::absent) move_away(directory);
   RunDirectory held(directory);
   held.write("config.yaml", to_yaml(config.tree));
@@ -224,7 +224,7 @@ RunReport resume_run(const Workshop& workshop, const fs::path& directory, const 
                 "--force carries on all the same, and the manifest will say so");
   }
   const std::vector<PastTap> past = held.recover();
-  Experiment experiment = build_experiment(workshop, config);
+  Experiment experiment = build_experiment(workshop, config, directory);
   experiment.resume(past);
   if (build.empty()) {
     held.write("manifest.json", manifest_text(workshop, config));

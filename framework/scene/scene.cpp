@@ -77,7 +77,10 @@ void place_at_random(Body& body, const Area& area, Random& random, std::size_t n
 class Desk final : public Scene {
  public:
   Desk(const SceneOptions& options, std::uint64_t seed)
-      : area_{options.area.width, options.area.depth}, desk_(options.desk), margin_(options.on_surface_above) {
+      : area_{options.area.width, options.area.depth},
+        desk_(options.desk),
+        margin_(options.on_surface_above),
+        effects_(options.effects.values()) {
     for (std::size_t i = 0; i < options.objects.size(); ++i) {
       const ObjectOptions& object = options.objects[i];
       Shape shape = shape_of(object);
@@ -109,12 +112,15 @@ class Desk final : public Scene {
     return desk_ + above;
   }
 
+  const Effects& effects() const override { return effects_; }
+
   bool on_surface(double height) const override { return height > desk_ + margin_; }
 
  private:
   Area area_;
   double desk_;
   double margin_;
+  Effects effects_;
   std::vector<Body> bodies_;
 };
 

@@ -46,6 +46,7 @@ void SceneOptions::list(Fields& fields) {
                 {{"fixed", "at `at`, turned by `rotation`", {}},
                  {"random", "position and rotation of each object from the seed, wholly inside the area", {}}});
   fields.sections(objects, Field("objects", "what stands on the desk"));
+  fields.section(effects, Field("effects", "how taps differ from perfect ones; each is absent by default"));
 }
 
 }  // namespace palpate

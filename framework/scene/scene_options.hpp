@@ -2,6 +2,8 @@
 // The part `scene:` of a config: the area, the desk and the objects on it.
 #pragma once
 
+#include "scene/effect_options.hpp"
+
 #include <palpate/options.hpp>
 #include <palpate/scene.hpp>
 
@@ -54,6 +56,7 @@ struct SceneOptions : Options {
   double on_surface_above = 0.01;
   Placement placement = Placement::fixed;
   std::vector<ObjectOptions> objects;
+  EffectOptions effects;
   void list(Fields& fields) override;
 };
 

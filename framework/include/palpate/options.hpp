@@ -30,7 +30,7 @@ struct Tree;
 
 /// The dimension that a quantity has. In a config a quantity of any dimension but `none` carries its unit (`1.7 cm`);
 /// in the struct it is SI.
-enum class Unit { none, metre, second, newton, radian, metre_per_second };
+enum class Unit { none, metre, second, newton, radian, metre_per_second, newton_per_metre };
 
 /// A group of options with one field list.
 struct Options {
@@ -117,6 +117,8 @@ class Fields {
   virtual void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) = 0;
   /// A nested group of options.
   virtual void section(Options& options, const Field& field) = 0;
+  /// A nested group that may be absent. In a config `{}` stands for the group with its defaults, `none` for no group.
+  virtual void section(bool& present, Options& options, const Field& field) = 0;
   /// A list of groups of options.
   virtual void sections(const ListAccess& access, const Field& field) = 0;
   /// Another plugin, of the kind `choice.kind`.
@@ -134,6 +136,15 @@ class Fields {
     auto index = static_cast<std::size_t>(value);
     choice(index, field, cases);
     value = static_cast<Enum>(index);
+  }
+
+  /// A group that may be absent.
+  template <class Group>
+  void section(std::optional<Group>& group, const Field& field) {
+    bool present = group.has_value();
+    Group options = group.value_or(Group{});
+    section(present, options, field);
+    group = present ? std::optional<Group>(std::move(options)) : std::nullopt;
   }
 
   /// A list of groups stored in a vector.

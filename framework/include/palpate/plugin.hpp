@@ -23,7 +23,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 3;
+constexpr std::uint32_t kPluginAbi = 4;
 
 struct Context;
 
@@ -41,6 +41,9 @@ struct Context {
   const Scene& scene;                    ///< area, desk, and for simulators the objects
   std::uint64_t seed;                    ///< of the run; draw from it only through random()
   const std::atomic<bool>* interrupted;  ///< set when the user wants to stop: long motions watch it; may be null
+  /// The folder of the run's record, for files that a plugin leaves beside it; empty where none is kept. It exists from
+  /// the first tap on, not before.
+  std::string directory = {};
 
   /// The stream of this run for one purpose, for example "acquisition/random" at tap `number`.
   Random random(const std::string& purpose, std::uint64_t number = 0) const { return {seed, purpose, number}; }

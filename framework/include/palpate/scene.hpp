@@ -3,6 +3,7 @@
 // its area and its desk.
 #pragma once
 
+#include <palpate/effects.hpp>
 #include <palpate/types.hpp>
 
 namespace palpate {
@@ -28,6 +29,9 @@ class Scene {
 
   /// Upper bound of `height` over the plane, metres.
   virtual double highest() const = 0;
+
+  /// How taps of this scene differ from perfect ones.
+  virtual const Effects& effects() const = 0;
 
   /// The rule that separates object from desk, the same for robot, simulator and truth: strictly higher than the desk
   /// plus a margin that the config names (`scene.on_surface_above`).

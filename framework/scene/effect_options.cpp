@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "scene/effect_options.hpp"
+
+namespace palpate {
+
+template <>
+void EffectGroup<ForceNoise>::list(Fields& fields) {
+  fields.real(value.deviation,
+              Field("deviation", "standard deviation of a sample; 100 samples a second")
+                  .in(Unit::newton)
+                  .at_least(0)
+                  .from("1.5 N: assumed for Baxter's estimate from its joint springs; none published"));
+}
+
+template <>
+void EffectGroup<ForceDrift>::list(Fields& fields) {
+  fields.real(
+      value.per_metre,
+      Field("per_metre", "standard deviation of the slope at which the zero wanders, drawn anew for each tap")
+          .in(Unit::newton_per_metre)
+          .at_least(0)
+          .from("10 N/m: 1.5 N over a descent, an estimate; the zero of Baxter's wrench changes with its pose"));
+}
+
+template <>
+void EffectGroup<Stiffness>::list(Fields& fields) {
+  fields.real(value.object, Field("object", "force over the depth to which the tip sinks in: 10 N at 1500 N/m, 7 mm")
+                                .in(Unit::newton_per_metre)
+                                .above(0)
+                                .from("1500 N/m: a contact of the order that reproduces Baxter's tapping errors"));
+  fields.real(value.arm, Field("arm", "force over the way that the joints give; the measured pose does not suffer")
+                             .in(Unit::newton_per_metre)
+                             .above(0));
+}
+
+template <>
+void EffectGroup<JointLag>::list(Fields& fields) {
+  fields.real(value.delay, Field("delay", "the arm trails its set-point by this times its speed")
+                               .in(Unit::second)
+                               .at_least(0)
+                               .at_most(10)
+                               .from("0.3-0.4 s: measured on a Baxter at 0.12 to 0.5 rad/s"));
+  fields.real(value.overshoot, Field("overshoot", "how far a step is overshot, as a share of it; 0 does not overshoot")
+                                   .at_least(0)
+                                   .at_most(0.9)
+                                   .from("0: Baxter's arm creeps up to its set-point"));
+}
+
+template <>
+void EffectGroup<TipRadius>::list(Fields& fields) {
+  fields.real(value.radius, Field("radius", "of the sphere at the end of the tool")
+                                .in(Unit::metre)
+                                .above(0)
+                                .at_most(0.1)
+                                .from("5 mm: a fingertip-like probe, an estimate"));
+}
+
+template <>
+void EffectGroup<PoseNoise>::list(Fields& fields) {
+  fields.real(value.lateral, Field("lateral", "standard deviation of the place, along x and along y")
+                                 .in(Unit::metre)
+                                 .at_least(0)
+                                 .from("2 mm: relative; objects are localised to 2 mm with Baxter, absolute 2-10 mm"));
+  fields.real(value.vertical, Field("vertical", "standard deviation of the height")
+                                  .in(Unit::metre)
+                                  .at_least(0)
+                                  .from("1 mm: settled joint errors of 0.004 rad, most of them alike from tap to tap"));
+}
+
+template <>
+void EffectGroup<MissedContacts>::list(Fields& fields) {
+  fields.real(value.probability, Field("probability", "per tap, that no force is felt all the way down")
+                                     .at_least(0)
+                                     .at_most(1)
+                                     .from("2 %: an estimate"));
+}
+
+template <>
+void EffectGroup<FalseContacts>::list(Fields& fields) {
+  fields.real(value.probability, Field("probability", "per tap, of a jerk on the way down that feels like a contact")
+                                     .at_least(0)
+                                     .at_most(1)
+                                     .from("2 %: an estimate"));
+}
+
+template <>
+void EffectGroup<Reach>::list(Fields& fields) {
+  fields.reals(value.base, 2,
+               Field("base", "place of the shoulder: x, y in the frame of the area")
+                   .in(Unit::metre)
+                   .from("an area whose near edge is 55 cm in front of the arm"));
+  fields.real(value.radius, Field("radius", "of the reach; places farther from the base fail as unreachable")
+                                .in(Unit::metre)
+                                .above(0)
+                                .from("Baxter with its tool straight down: gaps from 0.70 m, half of all at 0.80 m"));
+}
+
+template <>
+void EffectGroup<Shaft>::list(Fields& fields) {
+  fields.real(value.radius, Field("radius", "of the tool's shaft")
+                                .in(Unit::metre)
+                                .above(0)
+                                .at_most(0.2)
+                                .from("1.5 cm: a gripper's finger, an estimate"));
+  fields.real(value.length, Field("length", "from the tip to where the shaft begins")
+                                .in(Unit::metre)
+                                .above(0)
+                                .from("8 cm: less than the paper's objects are high, an estimate"));
+}
+
+void EffectOptions::list(Fields& fields) {
+  fields.section(force_noise, Field("force_noise", "white noise of the force sensor"));
+  fields.section(force_drift, Field("force_drift", "the force sensor's zero wanders during the descent"));
+  fields.section(stiffness, Field("stiffness", "the object, and the arm, give way"));
+  fields.section(joint_lag, Field("joint_lag", "the arm trails what it is told"));
+  fields.section(tip_radius, Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
+  fields.section(pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
+  fields.section(missed_contacts, Field("missed_contacts", "contacts that are not felt"));
+  fields.section(false_contacts, Field("false_contacts", "contacts in the air"));
+  fields.section(reach, Field("reach", "places that the arm cannot reach"));
+  fields.section(shaft, Field("shaft", "the tool's shaft touches tall objects beside the tip"));
+}
+
+Effects EffectOptions::values() const {
+  Effects out;
+  const auto take = [](auto& effect, const auto& group) {
+    if (group) effect = group->value;
+  };
+  take(out.force_noise, force_noise);
+  take(out.force_drift, force_drift);
+  take(out.stiffness, stiffness);
+  take(out.joint_lag, joint_lag);
+  take(out.tip_radius, tip_radius);
+  take(out.pose_noise, pose_noise);
+  take(out.missed_contacts, missed_contacts);
+  take(out.false_contacts, false_contacts);
+  take(out.reach, reach);
+  take(out.shaft, shaft);
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "simulator/simulator.hpp"
+
+#include "simulator/arm.hpp"
+#include "simulator/normal.hpp"
+#include "simulator/tool.hpp"
+#include "tapping/guarded_tap.hpp"
+
+#include <palpate/error.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace palpate::backends {
+namespace {
+
+bool any(const Effects& effects) {
+  return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.tip_radius ||
+         effects.pose_noise || effects.missed_contacts || effects.false_contacts || effects.reach || effects.shaft;
+}
+
+bool change_motion(const Effects& effects) {
+  return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
+         effects.missed_contacts || effects.false_contacts;
+}
+
+}  // namespace
+
+void SimulatorOptions::list(Fields& fields) {
+  fields.section(motion, Field("motion", "the tapping motion"));
+  fields.real(
+      pace, Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
+}
+
+Simulator::Simulator(const Options& options, const Context& context)
+    : options_(options),
+      context_(context),
+      scene_(context.scene),
+      perfect_(!any(scene_.effects())),
+      moves_(change_motion(scene_.effects())) {
+  if (scene_.highest() >= scene_.desk() + options.motion.hover) {
+    throw Error("motion.hover", "an object is as high as the arm travels, or higher", "raise it or lower the object");
+  }
+}
+
+Contact Simulator::tap(const TapRequest& request) {
+  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), request.predicted);
+#ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
+  if (!perfect_) return imperfect_tap(request, descent);
+#endif
+  const double surface = scene_.height(request.target.x, request.target.y);
+  const double seconds = tapping::travel_seconds(options_.motion, request) +
+                         tapping::ideal_seconds(options_.motion, descent, surface) +
+                         tapping::retreat_seconds(options_.motion, descent, surface);
+  return paced({Outcome::contact, surface, options_.motion.threshold, seconds, {}});
+}
+
+#ifndef PALPATE_WITHOUT_EFFECTS
+Contact Simulator::imperfect_tap(const TapRequest& request, const tapping::Descent& descent) const {
+  const Effects& effects = scene_.effects();
+  const Target& target = request.target;
+  if (effects.reach &&
+      std::hypot(target.x - effects.reach->base[0], target.y - effects.reach->base[1]) > effects.reach->radius) {
+    return {Outcome::unreachable, 0.0, 0.0, 0.0, "beyond the reach of the arm"};
+  }
+  double dx = 0.0;
+  double dy = 0.0;
+  double dz = 0.0;
+  if (effects.pose_noise) {
+    Normal normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
+    dx = effects.pose_noise->lateral * normal();
+    dy = effects.pose_noise->lateral * normal();
+    dz = effects.pose_noise->vertical * normal();
+  }
+  const double surface = contact_height(scene_, effects, target.x + dx, target.y + dy);
+  Contact contact;
+  if (moves_) {
+    contact = simulated_descent(request.number, descent, surface);
+  } else {
+    contact = {Outcome::contact,
+               surface,
+               options_.motion.threshold,
+               tapping::ideal_seconds(options_.motion, descent, surface),
+               {}};
+  }
+  contact.seconds +=
+      tapping::travel_seconds(options_.motion, request) + tapping::retreat_seconds(options_.motion, descent, surface);
+  if (contact.outcome == Outcome::contact) contact.height += dz;
+  return paced(std::move(contact));
+}
+
+Contact Simulator::simulated_descent(int number, const tapping::Descent& descent, double surface) const {
+  using tapping::GuardedTap;
+  const Effects& effects = scene_.effects();
+  Touch touch(effects, surface, descent.hover, options_.motion.threshold,
+              context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
+  Arm arm(effects.joint_lag, GuardedTap::kPeriod, descent.hover);
+  GuardedTap tap(options_.motion, descent);
+  while (!tap.done()) {
+    const Touch::Felt felt = touch.feel(arm.position());
+    arm.follow(tap.next(felt.height, felt.force));
+  }
+  switch (tap.outcome()) {
+    case Outcome::contact:
+      return {Outcome::contact, tap.height(), tap.peak_force(), tap.seconds(), {}};
+    case Outcome::timeout:
+      return {Outcome::timeout, 0.0, 0.0, tap.seconds(), "the tap took longer than motion.timeout"};
+    default:
+      return {tap.outcome(), 0.0, 0.0, tap.seconds(), "the descent reached its floor without a contact"};
+  }
+}
+#endif
+
+/// Lets real time pass in small portions; an aborted tap when the user wants to stop meanwhile.
+Contact Simulator::paced(Contact contact) const {
+  using Clock = std::chrono::steady_clock;
+  const double seconds = contact.seconds * options_.pace;
+  if (!(seconds > 0.0)) return contact;
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  while (Clock::now() < end) {
+    if (context_.interrupted != nullptr && context_.interrupted->load()) {
+      return {Outcome::aborted, 0.0, 0.0, contact.seconds, "interrupted"};
+    }
+    std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), std::chrono::milliseconds(10)));
+  }
+  return contact;
+}
+
+}  // namespace palpate::backends

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// A simulated arm over the scene of the config. It models what the scene asks for and nothing else: without effects the
+// contact stops the motion exactly at the surface, in closed form; effects that only change what the tool meets, or
+// where, change that; only those that change how the arm moves or feels have a tap simulated period by period.
+#pragma once
+
+#include "tapping/motion.hpp"
+
+#include <palpate/effects.hpp>
+#include <palpate/plugin.hpp>
+
+namespace palpate::backends {
+
+struct SimulatorOptions : Options {
+  tapping::MotionOptions motion;
+  double pace = 0.0;
+  void list(Fields& fields) override;
+};
+
+class Simulator final : public Backend {
+ public:
+  using Options = SimulatorOptions;
+
+  /// Throws Error when an object is as high as the arm travels.
+  Simulator(const Options& options, const Context& context);
+
+  Contact tap(const TapRequest& request) override;
+  bool repeatable() const override { return true; }
+  bool scene_is_truth() const override { return true; }
+  bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
+
+ private:
+  Contact imperfect_tap(const TapRequest& request, const tapping::Descent& descent) const;
+  Contact simulated_descent(int number, const tapping::Descent& descent, double surface) const;
+  Contact paced(Contact contact) const;
+
+  SimulatorOptions options_;
+  const Context& context_;
+  const Scene& scene_;
+  bool perfect_;  ///< the scene has no effects
+  bool moves_;    ///< some effect changes how the arm moves or feels
+};
+
+}  // namespace palpate::backends

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "tapping/guarded_tap.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::tapping {
+namespace {
+
+/// Periods above the threshold until it counts as a contact: one alone may be noise.
+constexpr int kConsecutive = 3;
+/// How long the arm is watched after it was stopped: what it presses on meanwhile tells of the onset, too.
+constexpr double kStop = 0.1;
+/// How far above the contact the samples begin that tell of its onset: enough of free air to know the zero by.
+constexpr double kTraceAbove = 0.02;
+/// How long the arm may need to come to the floor, and how near it must come.
+constexpr double kBottom = 2.0;
+constexpr double kNear = 0.001;
+
+}  // namespace
+
+GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent)
+    : motion_(motion), descent_(descent), set_point_(descent.hover) {}
+
+double GuardedTap::next(double height, double force) {
+  ++periods_;
+  const double felt = force - zero_;
+  const bool taring = stage_ == Stage::tare || stage_ == Stage::settle;
+  if (!taring) peak_ = std::max(peak_, felt);
+  above_ = !taring && felt > threshold() ? above_ + 1 : 0;
+  const bool coming_down = stage_ == Stage::descend || stage_ == Stage::bottom;
+  if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
+  if (seconds() > motion_.timeout) {
+    finish(Outcome::timeout, height);
+    return set_point_;
+  }
+  switch (stage_) {
+    case Stage::tare:
+    case Stage::settle:
+      sum_ += force;
+      if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause)) {
+        zero_ = sum_ / static_cast<double>(periods_ - entered_);
+        enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
+      }
+      break;
+    case Stage::approach:
+      if (above_ >= kConsecutive) {
+        set_point_ = height;
+        enter(Stage::clear);
+      } else if (descent_.start >= descent_.hover || ramp(descent_.start, motion_.adaptive_hover->speed)) {
+        enter(Stage::descend);
+      }
+      break;
+    case Stage::clear:
+      if (ramp(goal_, motion_.adaptive_hover->speed)) enter(Stage::descend);
+      break;
+    case Stage::descend:
+      descend(height);
+      break;
+    case Stage::pause:
+      if (above_ >= kConsecutive) {
+        touched(height);
+      } else if (waited(motion_.pause)) {
+        enter(set_point_ <= descent_.floor ? Stage::bottom : Stage::descend);
+      }
+      break;
+    case Stage::rest:
+      if (waited(motion_.pause)) finish(Outcome::contact, height);
+      break;
+    case Stage::back_off:
+      if (ramp(goal_, motion_.speed)) enter(Stage::settle);
+      break;
+    case Stage::fine:
+      if (above_ >= kConsecutive) {
+        finish(Outcome::contact, height);
+      } else if (ramp(goal_, motion_.fine_speed)) {
+        enter(Stage::descend);
+      }
+      break;
+    case Stage::stop:
+      if (waited(kStop)) {
+        const double contact = trace_.back().height;
+        const auto near = std::find_if(trace_.begin(), trace_.end(),
+                                       [&](const Sample& one) { return one.height < contact + kTraceAbove; });
+        trace_.erase(trace_.begin(), near);
+        finish(Outcome::contact, onset(trace_).value_or(first_));
+      }
+      break;
+    case Stage::bottom:
+      if (above_ >= kConsecutive) {
+        touched(height);
+      } else if (std::abs(height - set_point_) < kNear || waited(kBottom)) {
+        finish(Outcome::no_contact, height);
+      }
+      break;
+    case Stage::done:
+      break;
+  }
+  return set_point_;
+}
+
+void GuardedTap::descend(double height) {
+  if (above_ >= kConsecutive) {
+    touched(height);
+  } else if (ramp(goal_, motion_.speed)) {
+    enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
+  }
+}
+
+void GuardedTap::enter(Stage stage) {
+  stage_ = stage;
+  entered_ = periods_;
+  above_ = 0;
+  sum_ = 0.0;
+  switch (stage) {
+    case Stage::clear:
+      goal_ = std::min(descent_.hover, set_point_ + motion_.adaptive_hover->clearance);
+      break;
+    case Stage::descend:
+      trace_.clear();
+      goal_ = motion_.type == MotionOptions::Type::paper ? std::max(descent_.floor, set_point_ - motion_.step)
+                                                         : descent_.floor;
+      break;
+    case Stage::back_off:
+      goal_ = set_point_ + motion_.back_off;
+      break;
+    case Stage::fine:
+      goal_ = std::max(descent_.floor, first_ - motion_.back_off);
+      break;
+    default:
+      break;
+  }
+}
+
+void GuardedTap::touched(double height) {
+  first_ = height;
+  // Wherever the arm trails its set-point, holding that would press on.
+  if (motion_.type != MotionOptions::Type::paper) set_point_ = height;
+  switch (motion_.type) {
+    case MotionOptions::Type::paper:
+      return enter(Stage::rest);
+    case MotionOptions::Type::two_stage:
+      return enter(Stage::back_off);
+    case MotionOptions::Type::continuous:
+      return enter(Stage::stop);
+  }
+}
+
+/// Moves the set-point towards `goal` by what one period allows; whether it is there.
+bool GuardedTap::ramp(double goal, double speed) {
+  const double most = speed * kPeriod;
+  const double left = goal - set_point_;
+  if (std::abs(left) <= most) {
+    set_point_ = goal;
+    return true;
+  }
+  set_point_ += std::copysign(most, left);
+  return false;
+}
+
+/// Half a period of grace: 0.5 s are 50 periods, whatever their sum rounds to.
+bool GuardedTap::waited(double seconds) const {
+  return (static_cast<double>(periods_ - entered_) + 0.5) * kPeriod >= seconds;
+}
+
+void GuardedTap::finish(Outcome outcome, double height) {
+  outcome_ = outcome;
+  height_ = height;
+  stage_ = Stage::done;
+}
+
+}  // namespace palpate::tapping

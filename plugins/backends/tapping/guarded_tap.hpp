@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The guarded tap: from what the arm feels to where it goes next, a period at a time. It owns no arm: a simulator and a
+// robot run the same one.
+#pragma once
+
+#include "tapping/motion.hpp"
+#include "tapping/onset.hpp"
+
+#include <vector>
+
+namespace palpate::tapping {
+
+/// One descent, from arrival at the height of travel to the end of contact; travel and retreat are the caller's.
+///
+/// Every period the caller tells the measured height and force and commands the set-point that it gets. A contact is
+/// declared when the force has been above its threshold for three periods. What then follows is the motion's:
+/// - paper: the set-point stays, the pause passes, and the height is read while the arm still presses: too low by what
+///   the contact gives way under the set-point's lead.
+/// - two_stage: the set-point is put where the arm is, backs off, rests and tares, and comes down slowly to a gentler
+///   threshold; the height is that of the second contact. No second contact within twice the way back means that the
+///   first was none, and the descent goes on.
+/// - continuous: the set-point is put where the arm is, and the height is that of the onset (onset.hpp).
+class GuardedTap {
+ public:
+  /// Of the control loop: Baxter's joint states come at 100 Hz.
+  static constexpr double kPeriod = 0.01;
+
+  GuardedTap(const MotionOptions& motion, const Descent& descent);
+
+  /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m).
+  double next(double height, double force);
+
+  bool done() const { return stage_ == Stage::done; }
+  /// When done: `contact`, `no_contact` (the floor was reached) or `timeout`.
+  Outcome outcome() const { return outcome_; }
+  /// Of the contact, metres.
+  double height() const { return height_; }
+  /// Largest force above the tare so far, newtons.
+  double peak_force() const { return peak_; }
+  /// Since arrival.
+  double seconds() const { return static_cast<double>(periods_) * kPeriod; }
+
+ private:
+  enum class Stage { tare, approach, clear, descend, pause, rest, back_off, settle, fine, stop, bottom, done };
+
+  void enter(Stage stage);
+  void touched(double height);
+  void descend(double height);
+  bool ramp(double goal, double speed);
+  bool waited(double seconds) const;
+  void finish(Outcome outcome, double height);
+  double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
+
+  MotionOptions motion_;
+  Descent descent_;
+  Stage stage_ = Stage::tare;
+  long periods_ = 0;
+  long entered_ = 0;  ///< the period in which the stage began
+  double set_point_;
+  double goal_ = 0.0;  ///< of the ramp of this stage
+  double zero_ = 0.0;  ///< force of the tare
+  double sum_ = 0.0;   ///< of forces while taring
+  double peak_ = 0.0;
+  double first_ = 0.0;         ///< height of the first contact of two_stage
+  int above_ = 0;              ///< periods above the threshold, without a break
+  std::vector<Sample> trace_;  ///< of the descent, for the onset
+  Outcome outcome_ = Outcome::unknown;
+  double height_ = 0.0;
+};
+
+}  // namespace palpate::tapping

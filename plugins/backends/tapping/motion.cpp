@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "tapping/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::tapping {
+
+void AdaptiveHover::list(Fields& fields) {
+  fields.real(deviations,
+              Field("deviations", "standard deviations of the predicted height that the descent begins above it")
+                  .at_least(0)
+                  .from("2: the surface is higher in about 2 % of the taps"));
+  fields.real(clearance, Field("clearance", "and this much higher still; a contact on the way there backs off by it")
+                             .in(Unit::metre)
+                             .above(0)
+                             .from("an estimate: several times the error of a good tap"));
+  fields.real(speed, Field("speed", "from the height of travel down to there")
+                         .in(Unit::metre_per_second)
+                         .above(0)
+                         .from("a third of travel_speed, since a wrong prediction is hit at this speed"));
+}
+
+void MotionOptions::list(Fields& fields) {
+  const auto pause_after = [this](Fields& inner, const char* meaning) {
+    inner.real(pause, Field("pause", meaning).in(Unit::second).at_least(0).from("Sun and Min 2021: 0.5 s"));
+  };
+  fields.choice(
+      type, Field("type", "how the arm comes down"),
+      {{"paper", "in steps with a pause after each, until the force rises; the height is read after that pause",
+        [&, this](Fields& inner) {
+          inner.real(step, Field("step", "height of one step").in(Unit::metre).above(0).from("Sun and Min 2021: 3 cm"));
+          pause_after(inner, "rest after each step");
+        }},
+       {"two_stage", "at once until the force rises, a little back, and again more slowly and gently",
+        [&, this](Fields& inner) {
+          inner.real(back_off, Field("back_off", "way up between the stages")
+                                   .in(Unit::metre)
+                                   .above(0)
+                                   .from("2 cm: the springs unwind, and a false contact shows"));
+          pause_after(inner, "rest before the second stage, with a new tare");
+          inner.real(fine_speed, Field("fine_speed", "of the second stage")
+                                     .in(Unit::metre_per_second)
+                                     .above(0)
+                                     .from("2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
+          inner.real(fine_threshold, Field("fine_threshold", "force at which the second stage ends")
+                                         .in(Unit::newton)
+                                         .above(0)
+                                         .from("6 N: four deviations of 1.5 N of noise"));
+        }},
+       {"continuous", "at constant speed until the force rises; the height is that where it began to rise", {}}});
+  fields.real(
+      speed,
+      Field("speed", "of the descent: of its steps, or of its first stage")
+          .in(Unit::metre_per_second)
+          .above(0)
+          .from("2.5 cm/s: at a lag of 0.35 s the set-point is 9 mm ahead of the arm, which Baxter's joints bear"));
+  fields.real(threshold, Field("threshold", "force above the tare at which contact is declared")
+                             .in(Unit::newton)
+                             .above(0)
+                             .from("10 N: used with Baxter, whose firmware stops the arm at 16 N"));
+  fields.real(hover, Field("hover", "height above the desk at which the arm travels and the descent begins")
+                         .in(Unit::metre)
+                         .above(0)
+                         .from("14 cm: 3 cm above the highest of the paper's objects"));
+  fields.section(adaptive_hover,
+                 Field("adaptive_hover", "begin the slow descent just above the predicted surface instead"));
+  fields.real(travel_speed, Field("travel_speed", "of the tool at the height of travel")
+                                .in(Unit::metre_per_second)
+                                .above(0)
+                                .from("30 cm/s: Baxter's default speed ratio is 0.3 of about 1 m/s"));
+  fields.real(
+      retreat_speed,
+      Field("retreat_speed", "of the tool on its way up").in(Unit::metre_per_second).above(0).from("as travel_speed"));
+  fields.real(tare, Field("tare", "rest before the descent, in which the force is averaged: its zero")
+                        .in(Unit::second)
+                        .at_least(0)
+                        .from("20 samples at Baxter's 100 Hz: 1.5 N of noise become 0.3 N"));
+  fields.real(overrun, Field("overrun", "how far below the desk the descent goes before it ends without a contact")
+                           .in(Unit::metre)
+                           .at_least(0)
+                           .from("3 cm: 1500 N/m reach 10 N after 0.7 cm, and a lag adds 1 cm"));
+  fields.real(timeout, Field("timeout", "a tap that takes longer fails")
+                           .in(Unit::second)
+                           .above(0)
+                           .at_most(3600)
+                           .from("ten times what the paper's motion takes"));
+}
+
+Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted) {
+  Descent out{desk + motion.hover, desk + motion.hover, desk - motion.overrun};
+  if (motion.adaptive_hover && predicted) {
+    const AdaptiveHover& adaptive = *motion.adaptive_hover;
+    // The desk is there whatever the models say.
+    const double surface = std::max(desk, predicted->height + adaptive.deviations * predicted->standard_deviation);
+    out.start = std::min(out.hover, surface + adaptive.clearance);
+  }
+  return out;
+}
+
+double travel_seconds(const MotionOptions& motion, const TapRequest& request) {
+  if (!request.previous) return 0.0;
+  return std::hypot(request.target.x - request.previous->x, request.target.y - request.previous->y) /
+         motion.travel_speed;
+}
+
+double retreat_seconds(const MotionOptions& motion, const Descent& descent, double height) {
+  return std::max(0.0, descent.hover - height) / motion.retreat_speed;
+}
+
+double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface) {
+  double seconds = motion.tare;
+  double from = descent.hover;
+  if (descent.start < descent.hover) {
+    const AdaptiveHover& adaptive = *motion.adaptive_hover;
+    const double end = std::max(descent.start, surface);
+    seconds += (descent.hover - end) / adaptive.speed;
+    from = end;
+    if (surface > descent.start) {  // hit on the way: back off, then as always
+      seconds += adaptive.clearance / adaptive.speed;
+      from += adaptive.clearance;
+    }
+  }
+  const double down = from - surface;
+  seconds += down / motion.speed;
+  switch (motion.type) {
+    case MotionOptions::Type::paper:
+      // Whole steps are counted, though contact cuts the last one short: the pause follows all the same.
+      return seconds + std::max(1.0, std::ceil(down / motion.step)) * motion.pause;
+    case MotionOptions::Type::two_stage:
+      return seconds + motion.back_off / motion.speed + motion.pause + motion.back_off / motion.fine_speed;
+    case MotionOptions::Type::continuous:
+      return seconds;
+  }
+  return seconds;
+}
+
+}  // namespace palpate::tapping

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// How an arm taps: the options that a simulated and a real arm share, and what follows from them before anything moves.
+#pragma once
+
+#include <palpate/backend.hpp>
+#include <palpate/options.hpp>
+
+#include <optional>
+
+namespace palpate::tapping {
+
+/// Begin the slow descent just above the surface that the models expect, instead of at the height of travel.
+struct AdaptiveHover : Options {
+  double deviations = 2.0;  ///< standard deviations of the expected height that are kept clear
+  double clearance = 0.01;  ///< metres, beside them
+  double speed = 0.1;       ///< m/s, from the height of travel down to there
+  void list(Fields& fields) override;
+};
+
+/// One tap: travel at `hover` above the desk, tare, come down in a way of its own until the force rises, retreat.
+struct MotionOptions : Options {
+  enum class Type { paper, two_stage, continuous };
+  Type type = Type::paper;
+  double speed = 0.025;         ///< m/s, of the descent
+  double step = 0.03;           ///< m, paper
+  double pause = 0.5;           ///< s, paper and two_stage
+  double back_off = 0.02;       ///< m, two_stage
+  double fine_speed = 0.02;     ///< m/s, two_stage
+  double fine_threshold = 6.0;  ///< N, two_stage
+  double threshold = 10.0;      ///< N
+  double hover = 0.14;          ///< m above the desk
+  std::optional<AdaptiveHover> adaptive_hover;
+  double travel_speed = 0.3;   ///< m/s
+  double retreat_speed = 0.3;  ///< m/s
+  double tare = 0.2;           ///< s
+  double overrun = 0.03;       ///< m below the desk
+  double timeout = 60.0;       ///< s
+  void list(Fields& fields) override;
+};
+
+/// The heights of one descent, metres, in the frame of the scene: floor <= start <= hover.
+struct Descent {
+  double hover;  ///< where the arm arrives, and to where it retreats
+  double start;  ///< where the slow descent begins: `hover`, unless that is adaptive and something is predicted
+  double floor;  ///< where it ends without a contact
+};
+Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted);
+
+/// Seconds from one place to the next, at the height of travel, and seconds up again from `height`, both at constant
+/// speed.
+double travel_seconds(const MotionOptions& motion, const TapRequest& request);
+double retreat_seconds(const MotionOptions& motion, const Descent& descent, double height);
+
+/// Seconds from arrival to contact with a rigid surface at `surface`, for an arm that follows its set-point at once and
+/// feels without noise: what GuardedTap needs then, but for its period.
+double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface);
+
+}  // namespace palpate::tapping
