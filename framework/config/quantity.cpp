@@ -44,6 +44,7 @@ constexpr std::array kUnits{
     UnitName{"mm/s", Unit::metre_per_second, -3},
     UnitName{"N/m", Unit::newton_per_metre, 0},
     UnitName{"N/cm", Unit::newton_per_metre, 2},
+    UnitName{"kN/m", Unit::newton_per_metre, 3},
     UnitName{"N/mm", Unit::newton_per_metre, 3},
 };
 

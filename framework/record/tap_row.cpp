@@ -43,9 +43,10 @@ void add_state(Row& row, const TapRecord& tap) {
   row.add("mean_standard_deviation", tap.mean_standard_deviation);
   row.add("min_weight", tap.min_weight);
   row.add("max_weight", tap.max_weight);
-  row.add("predicted.height", tap.predicted ? std::optional<double>(tap.predicted->height) : std::nullopt);
-  row.add("predicted.standard_deviation",
-          tap.predicted ? std::optional<double>(tap.predicted->standard_deviation) : std::nullopt);
+  if (tap.predicted) {
+    row.add("predicted.height", tap.predicted->height);
+    row.add("predicted.standard_deviation", tap.predicted->standard_deviation);
+  }
   add_process(row, "height_process", tap.height_process);
   add_process(row, "weight_process", tap.weight_process);
   if (tap.surface_process) add_process(row, "surface_process", tap.surface_process);

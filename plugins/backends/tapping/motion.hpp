@@ -21,14 +21,14 @@ struct AdaptiveHover : Options {
 struct MotionOptions : Options {
   enum class Type { paper, two_stage, continuous };
   Type type = Type::paper;
-  double speed = 0.025;         ///< m/s, of the descent
+  double speed = 0.024;         ///< m/s, of the descent
   double step = 0.03;           ///< m, paper
   double pause = 0.5;           ///< s, paper and two_stage
   double back_off = 0.02;       ///< m, two_stage
   double fine_speed = 0.02;     ///< m/s, two_stage
   double fine_threshold = 6.0;  ///< N, two_stage
   double threshold = 10.0;      ///< N
-  double hover = 0.14;          ///< m above the desk
+  double hover = 0.135;         ///< m above the desk
   std::optional<AdaptiveHover> adaptive_hover;
   double travel_speed = 0.3;   ///< m/s
   double retreat_speed = 0.3;  ///< m/s

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The motions of configs/backend on an arm like Baxter's: whole runs of the paper's experiment, tap by tap.
+#include "config/compose.hpp"
+#include "experiment/experiment.hpp"
+#include "experiment/resolved.hpp"
+#include "support/runs.hpp"
+#include "support/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate::test {
+namespace {
+
+struct Motion {
+  double error = 0.0;    ///< rms of the heights of contacts, m
+  double seconds = 0.0;  ///< a tap
+  int taps = 0;
+};
+
+Motion measured(const std::string& backend, int seeds) {
+  Motion out;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const ResolvedConfig config =
+        shipped_config("paper/object_i.yaml", {"scene=object_i_arm", "surface=two_part", "height.signal=5cm",
+                                               "backend=" + backend, "seed=" + std::to_string(seed)});
+    Experiment experiment(config.options, shared_host(), nullptr);
+    Collector collector;
+    experiment.run(collector);
+    for (const TapRecord& tap : collector.taps) {
+      EXPECT_EQ(tap.contact.outcome, Outcome::contact);
+      out.error += std::pow(tap.contact.height - experiment.scene().height(tap.target.x, tap.target.y), 2);
+      out.seconds += tap.contact.seconds;
+      ++out.taps;
+    }
+  }
+  out.error = std::sqrt(out.error / out.taps);
+  out.seconds /= out.taps;
+  return out;
+}
+
+TEST(Motions, OfThePaperHasTheErrorAndTheTimeThatAreKnownOfIt) {
+  const Motion paper = measured("simulator", 40);
+  EXPECT_NEAR(paper.error, 0.013, 0.0012);
+  EXPECT_NEAR(paper.seconds, 6.4, 0.4);
+}
+
+TEST(Motions, OfOurOwnAreExactToTwoMillimetresAtLessThanFiveSeconds) {
+  for (const char* backend : {"continuous", "adaptive"}) {
+    const Motion ours = measured(backend, 40);
+    EXPECT_LT(ours.error, 0.002) << backend;
+    EXPECT_LT(ours.seconds, 5.0) << backend;
+  }
+}
+
+TEST(Motions, AdaptiveHoverSavesTimeWhereTheModelIsSure) {
+  // A long length scale: after a few taps the height of a block is known everywhere.
+  const auto seconds = [](const std::string& backend) {
+    const ResolvedConfig config =
+        shipped_config("paper/object_ii.yaml", {"kernel.length_scale=10cm", "surface=two_part", "height.signal=5cm",
+                                                "taps=30", "seed=3", "backend=" + backend});
+    Experiment experiment(config.options, shared_host(), nullptr);
+    Collector collector;
+    experiment.run(collector);
+    return experiment.result().robot_seconds;
+  };
+  EXPECT_LT(seconds("adaptive"), 0.9 * seconds("continuous"));
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Groups of options that may be absent, by the example that they exist for: the effects of a scene.
+#include "scene/effect_options.hpp"
+#include "config/describe.hpp"
+#include "tapping_bench.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+EffectOptions effects(const std::string& yaml) { return test::filled<EffectOptions>(yaml); }
+
+std::string refusal(const std::string& yaml) {
+  try {
+    effects(yaml);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+std::string resolved(const std::string& yaml) {
+  EffectOptions options;
+  ResolveNotes notes;
+  return to_yaml(resolve(options, parse_yaml(yaml, "options.yaml"), test::shared_host(), notes));
+}
+
+TEST(OptionalGroups, AreAbsentUntilTheyAreWritten) {
+  const Effects none = effects("{}").values();
+  EXPECT_FALSE(none.joint_lag);
+  EXPECT_FALSE(none.reach);
+  const Effects some = effects("{joint_lag: {}, stiffness: {arm: 2 kN/m, object: 3 N/mm}}").values();
+  ASSERT_TRUE(some.joint_lag);
+  EXPECT_DOUBLE_EQ(some.joint_lag->delay, 0.35);
+  ASSERT_TRUE(some.stiffness);
+  EXPECT_DOUBLE_EQ(some.stiffness->object, 3000.0);
+  EXPECT_DOUBLE_EQ(some.stiffness->arm.value(), 2000.0);
+  EXPECT_FALSE(some.force_noise);
+}
+
+TEST(OptionalGroups, AreTakenAwayByNone) { EXPECT_FALSE(effects("{joint_lag: none}").joint_lag); }
+
+TEST(OptionalGroups, WriteNothingWhereTheyAreAbsentAndReadBackWhereNot) {
+  EXPECT_EQ(resolved("{}"), "{}\n");
+  const std::string text = resolved("{tip_radius: {}}");
+  EXPECT_EQ(text, "tip_radius:\n  radius: 0.005 m\n");
+  EXPECT_EQ(resolved(text), text);
+}
+
+TEST(OptionalGroups, RefuseWhatIsNoGroupInOneLine) {
+  EXPECT_EQ(refusal("{joint_lag: }"), "options.yaml:1:2: joint_lag has no value, write {} for its defaults, or none");
+  EXPECT_THAT(refusal("{joint_lag: 350 ms}"), testing::HasSubstr("joint_lag is not a group of options"));
+  EXPECT_THAT(refusal("{joint_lag: {delay: 350}}"), testing::HasSubstr("joint_lag.delay: '350' lacks its unit"));
+  EXPECT_THAT(refusal("{joint_lag: {dely: 350 ms}}"), testing::HasSubstr("did you mean 'delay'?"));
+  EXPECT_THAT(refusal("{joint_lagg: {}}"), testing::HasSubstr("did you mean 'joint_lag'?"));
+}
+
+TEST(OptionalGroups, AreDescribedAsAbsentAndEveryEffectSaysWhereItsSizeComesFrom) {
+  EffectOptions options;
+  const auto fields = describe_fields([&](Fields& list) { options.list(list); });
+  ASSERT_EQ(fields.size(), 10u);
+  for (const FieldDescription& effect : fields) {
+    EXPECT_TRUE(effect.optional) << effect.name;
+    for (const FieldDescription& field : effect.fields) {
+      if (field.default_value == "none") continue;
+      EXPECT_NE(field.source, "") << effect.name << "." << field.name;
+    }
+  }
+  EXPECT_THAT(describe_text(fields), testing::ContainsRegex("joint_lag +group +absent"));
+}
+
+}  // namespace
+}  // namespace palpate

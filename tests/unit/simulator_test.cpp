@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// What each effect of a scene does to taps, against closed forms.
+#include "simulator/arm.hpp"
+#include "simulator/tool.hpp"
+#include "tapping_bench.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace palpate::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr const char* kLikeBaxter =
+    "{stiffness: {object: 1500 N/m}, joint_lag: {delay: 350 ms}, force_noise: {deviation: 1.5 N}}";
+
+TEST(Simulator, IsExactInASceneWithoutEffects) {
+  for (const char* motion : {"{type: paper}", "{type: two_stage}", "{type: continuous}"}) {
+    const TapStatistics taps = statistics_of(TappingBench(kObjectI, "{}", motion).taps(200));
+    EXPECT_EQ(taps.rms, 0.0) << motion;
+    EXPECT_EQ(taps.failed, 0) << motion;
+  }
+}
+
+TEST(Simulator, FindsTheOnsetWhereThePapersMotionSinksIn) {
+  const TapStatistics paper = statistics_of(TappingBench(kObjectI, kLikeBaxter, "{type: paper}").taps(400));
+  EXPECT_NEAR(paper.rms, 0.013, 0.0015);
+  EXPECT_LT(paper.bias, -0.010) << "overtravel: too low";
+  const TapStatistics fast =
+      statistics_of(TappingBench(kObjectI, kLikeBaxter, "{type: continuous, speed: 6 cm/s}").taps(400));
+  EXPECT_LT(fast.rms, 0.001);
+  EXPECT_LT(std::abs(fast.bias), 0.0002);
+  EXPECT_LT(fast.seconds, 0.5 * paper.seconds);
+}
+
+TEST(Simulator, SinksInByTheFineThresholdOverTheStiffness) {
+  const TappingBench bench(kBare, "{stiffness: {object: 1000 N/m}}",
+                           "{type: two_stage, fine_speed: 1 mm/s, fine_threshold: 5 N}");
+  // Three periods at 1 mm/s are 0.03 mm.
+  EXPECT_NEAR(bench.tap(0.1, 0.1).height, -0.005, 0.00005);
+}
+
+TEST(Simulator, SeesTheArmsOwnStiffnessInTheForceAndNotInTheHeight) {
+  const TappingBench bench(kBare, "{stiffness: {object: 1e7 N/m, arm: 1000 N/m}}", "{type: paper, step: 1 cm}");
+  const Contact contact = bench.tap(0.1, 0.1);
+  EXPECT_NEAR(contact.height, 0.0, 1e-5);
+  EXPECT_GT(contact.force, 10.0);
+}
+
+TEST(Simulator, LosesNothingToALagAloneWhereTheSurfaceIsRigid) {
+  for (const char* motion : {"{type: paper}", "{type: two_stage}", "{type: continuous}"}) {
+    const TapStatistics taps = statistics_of(TappingBench(kObjectI, "{joint_lag: {delay: 350 ms}}", motion).taps(100));
+    EXPECT_LT(taps.rms, 0.0005) << motion;
+    EXPECT_EQ(taps.failed, 0) << motion;
+  }
+}
+
+TEST(Simulator, AnswersAlikeWhateverWasTappedBefore) {
+  const std::string all =
+      "{stiffness: {}, joint_lag: {}, force_noise: {}, force_drift: {}, tip_radius: {}, pose_noise: {}, "
+      "missed_contacts: {probability: 0.2}, false_contacts: {probability: 0.2}, reach: {}, shaft: {}}";
+  const TappingBench bench(kObjectI, all, "{type: continuous}");
+  const TappingBench other(kObjectI, all, "{type: continuous}");
+  const auto first = bench.taps(50);
+  for (int i = 50; i-- > 0;) {
+    const auto& known = first[static_cast<std::size_t>(i)];
+    TapRequest request;
+    request.number = i + 1;
+    request.target = known.place;
+    if (i > 0) request.previous = first[static_cast<std::size_t>(i - 1)].place;
+    const Contact again = other.backend().tap(request);
+    EXPECT_EQ(again.outcome, known.contact.outcome);
+    EXPECT_EQ(again.height, known.contact.height);
+    EXPECT_EQ(again.force, known.contact.force);
+    EXPECT_EQ(again.seconds, known.contact.seconds);
+    EXPECT_EQ(again.reason, known.contact.reason);
+  }
+}
+
+TEST(Simulator, DrawsOtherNoiseFromAnotherSeed) {
+  const char* noisy = "{pose_noise: {}}";
+  EXPECT_NE(TappingBench(kBare, noisy, "{type: paper}", 1).tap(0.1, 0.1).height,
+            TappingBench(kBare, noisy, "{type: paper}", 2).tap(0.1, 0.1).height);
+}
+
+TEST(Simulator, NoiseOfThePoseHasTheDeviationsOfTheConfig) {
+  // On a slope of 6 cm over 17 cm a lateral error shows as a height, too.
+  const TappingBench bench("[{type: slope, length: 20 cm, width: 20 cm, low: 2 cm, high: 8 cm}]",
+                           "{pose_noise: {lateral: 3 mm, vertical: 1 mm}}", "{type: paper}");
+  double squares = 0.0;
+  constexpr int kTaps = 4000;
+  for (int i = 0; i < kTaps; ++i) {
+    const double error = bench.tap(0.115, 0.115, i + 1).height - 0.05;
+    squares += error * error / kTaps;
+  }
+  const double expected = std::hypot(0.001, 0.003 * 0.06 / 0.20);
+  EXPECT_NEAR(std::sqrt(squares), expected, 5.0 * expected / std::sqrt(2.0 * kTaps));
+}
+
+TEST(Simulator, MissesContactsAsOftenAsTheConfigSaysAndSaysSo) {
+  const auto taps = TappingBench(kObjectI, "{missed_contacts: {probability: 0.3}}", "{type: continuous}").taps(500);
+  int missed = 0;
+  for (const auto& one : taps) {
+    if (one.contact.outcome == Outcome::contact) continue;
+    EXPECT_EQ(one.contact.outcome, Outcome::no_contact);
+    EXPECT_NE(one.contact.reason.find("floor"), std::string::npos);
+    ++missed;
+  }
+  EXPECT_NEAR(missed, 150, 5 * std::sqrt(500 * 0.3 * 0.7));
+}
+
+TEST(Simulator, FeelsFalseContactsAboveTheSurfaceUnlessTheMotionMakesSure) {
+  const char* jerks = "{false_contacts: {probability: 0.3}}";
+  const auto high = [](const std::vector<TappingBench::Tapped>& taps) {
+    return std::count_if(taps.begin(), taps.end(), [](const auto& one) {
+      return one.contact.outcome == Outcome::contact && one.contact.height > one.truth + 0.002;
+    });
+  };
+  const auto fooled = high(TappingBench(kObjectI, jerks, "{type: paper}").taps(500));
+  EXPECT_NEAR(static_cast<double>(fooled), 150, 5 * std::sqrt(500 * 0.3 * 0.7));
+  EXPECT_EQ(high(TappingBench(kObjectI, jerks, "{type: two_stage}").taps(500)), 0);
+}
+
+TEST(Simulator, RefusesWhatIsOutOfReachWithoutMoving) {
+  const TappingBench bench(kObjectI, "{reach: {base: [-50 cm, 11.5 cm], radius: 70 cm}}", "{type: paper}");
+  const Contact far = bench.tap(0.21, 0.115);
+  EXPECT_EQ(far.outcome, Outcome::unreachable);
+  EXPECT_EQ(far.seconds, 0.0);
+  EXPECT_EQ(bench.tap(0.19, 0.115).outcome, Outcome::contact);
+}
+
+TEST(Simulator, ForceThatDriftsShiftsATapByDriftOverStiffness) {
+  // The slope of a tap is normal: with 20 N/m over 14 cm, 2.8 N of drift against 1500 N/m.
+  const auto taps = TappingBench(kBare, "{stiffness: {object: 1500 N/m}, force_drift: {per_metre: 20 N/m}}",
+                                 "{type: two_stage, fine_speed: 5 mm/s}")
+                        .taps(300);
+  double mean = 0.0;
+  double squares = 0.0;
+  for (const auto& one : taps) mean += one.contact.height / 300;
+  for (const auto& one : taps) squares += std::pow(one.contact.height - mean, 2) / 300;
+  // It tares again 2 cm above the first contact: what is left drifts over about 2 cm, 0.4 N, 0.27 mm.
+  EXPECT_GT(std::sqrt(squares), 0.0001);
+  EXPECT_LT(std::sqrt(squares), 0.0006);
+}
+
+TEST(Simulator, RefusesAnObjectAsHighAsItTravels) {
+  try {
+    TappingBench(kObjectI, "{}", "{type: paper, hover: 11 cm}");
+    FAIL() << "was not refused";
+  } catch (const Error& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("motion.hover"), std::string::npos) << refusal.what();
+  }
+}
+
+TEST(Arm, TrailsARampByItsDelayTimesTheSpeed) {
+  for (const double overshoot : {0.0, 0.05, 0.3}) {
+    backends::Arm arm(JointLag{0.35, overshoot}, 0.01, 0.1);
+    double set_point = 0.1;
+    for (int i = 0; i < 1000; ++i) arm.follow(set_point -= 0.0003);
+    // The set-point stands still during a period, on average half a period behind its ramp.
+    EXPECT_NEAR(arm.position() - set_point, (0.35 - 0.005) * 0.03, 0.00016) << overshoot;
+  }
+}
+
+TEST(Arm, OvershootsAStepByItsShareAndNotAtAllByDefault) {
+  for (const double overshoot : {0.0, 0.05, 0.3}) {
+    backends::Arm arm(JointLag{0.35, overshoot}, 0.001, 0.0);
+    double highest = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+      arm.follow(1.0);
+      highest = std::max(highest, arm.position());
+    }
+    EXPECT_NEAR(highest, 1.0 + overshoot, 1e-4);
+    EXPECT_NEAR(arm.position(), 1.0, 1e-6);
+  }
+}
+
+TEST(Arm, FollowsTheSamePathAtAnyPeriod) {
+  // Exact for a constant set-point: ten short periods are one long one. An integrator of small steps agrees.
+  backends::Arm coarse(JointLag{0.35, 0.2}, 0.1, 0.0);
+  backends::Arm fine(JointLag{0.35, 0.2}, 0.01, 0.0);
+  const double log_share = std::log(0.2);
+  const double zeta = -log_share / std::sqrt(kPi * kPi + log_share * log_share);
+  const double omega = 2.0 * zeta / 0.35;
+  double position = 0.0;
+  double velocity = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    coarse.follow(1.0);
+    for (int j = 0; j < 10; ++j) fine.follow(1.0);
+    for (int j = 0; j < 100000; ++j) {
+      velocity += 1e-6 * (omega * omega * (1.0 - position) - 2.0 * zeta * omega * velocity);
+      position += 1e-6 * velocity;
+    }
+    EXPECT_NEAR(coarse.position(), fine.position(), 1e-12);
+    EXPECT_NEAR(coarse.position(), position, 1e-5);
+  }
+}
+
+TEST(Tool, RoundTipMeetsTheSideOfAStepByTheClosedForm) {
+  // A wall of 5 cm whose edge is at x = 10 cm; the tip stands at x = 10 cm - d.
+  const TappingBench bench("[{type: slope, length: 10 cm, width: 20 cm, low: 5 cm, high: 5 cm, at: [15 cm, 11.5 cm]}]",
+                           "{}", "{type: paper}");
+  Effects effects;
+  effects.tip_radius = TipRadius{0.008};
+  for (const double d : {0.0005, 0.002, 0.005, 0.0079, 0.0085, 0.02}) {
+    const double expected = d < 0.008 ? 0.05 - (0.008 - std::sqrt(0.008 * 0.008 - d * d)) : 0.0;
+    EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.1 - d, 0.12), expected, 2e-7) << d;
+  }
+  EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.12, 0.12), 0.05, 1e-12) << "on the top";
+}
+
+TEST(Tool, RoundTipOnASlopeTouchesUphill) {
+  // On a plane of angle a the sphere's lowest point is radius * (1 / cos a - 1) above the plane below it.
+  const TappingBench bench("[{type: slope, length: 20 cm, width: 20 cm, low: 2 cm, high: 10 cm}]", "{}",
+                           "{type: paper}");
+  Effects effects;
+  effects.tip_radius = TipRadius{0.01};
+  const double rise = 0.08 / 0.20;
+  const double expected = 0.06 + 0.01 * (std::sqrt(1.0 + rise * rise) - 1.0);
+  EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.115, 0.115), expected, 1e-8);
+}
+
+TEST(Tool, ShaftStopsBesideATallObject) {
+  const TappingBench bench(
+      "[{type: slope, length: 10 cm, width: 20 cm, low: 10 cm, high: 10 cm, at: [15 cm, 11.5 cm]}]", "{}",
+      "{type: paper}");
+  Effects effects;
+  effects.shaft = Shaft{0.015, 0.08};
+  EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.09, 0.12), 0.02, 1e-12) << "10 cm less 8 cm of tool";
+  EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.08, 0.12), 0.0, 1e-12) << "2 cm away";
+  effects.shaft = Shaft{0.015, 0.12};
+  EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.09, 0.12), 0.0, 1e-12) << "a long tool";
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// A simulator over a scene given in YAML, for tests of taps.
+#pragma once
+
+#include "config/resolve.hpp"
+#include "config/yaml.hpp"
+#include "scene/scene_options.hpp"
+#include "support/plugins.hpp"
+#include "support/support.hpp"
+
+#include <palpate/backend.hpp>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+
+/// An options struct filled from a YAML map, checked as a run would.
+template <class Filled>
+Filled filled(const std::string& yaml) {
+  Filled options;
+  ResolveNotes notes;
+  resolve(options, parse_yaml(yaml, "options.yaml"), shared_host(), notes);
+  return options;
+}
+
+class TappingBench {
+ public:
+  /// `objects` is a YAML list, `effects` and `motion` are YAML maps.
+  TappingBench(const std::string& objects, const std::string& effects, const std::string& motion,
+               std::uint64_t seed = 1)
+      : scene_(build_scene(filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}, objects: " + objects +
+                                                ", effects: " + effects + "}"),
+                           seed)),
+        context_{shared_host(), *scene_, seed, nullptr},
+        backend_(context_.create<Backend>(choose(shared_host(), "backend", "simulator", "{motion: " + motion + "}"))) {}
+
+  const Scene& scene() const { return *scene_; }
+  Backend& backend() const { return *backend_; }
+
+  Contact tap(double x, double y, int number = 1) const {
+    TapRequest request;
+    request.number = number;
+    request.target = {x, y};
+    return backend_->tap(request);
+  }
+
+  /// Taps at `count` random places of the area.
+  struct Tapped {
+    Target place;
+    Contact contact;
+    double truth;
+  };
+  std::vector<Tapped> taps(int count) const {
+    Random random(7, "places");
+    std::vector<Tapped> out;
+    TapRequest request;
+    for (int i = 1; i <= count; ++i) {
+      request.number = i;
+      request.target = {0.23 * random.uniform(), 0.23 * random.uniform()};
+      out.push_back({request.target, backend_->tap(request), scene_->height(request.target.x, request.target.y)});
+      request.previous = request.target;
+    }
+    return out;
+  }
+
+ private:
+  std::unique_ptr<const Scene> scene_;
+  Context context_;
+  std::shared_ptr<Backend> backend_;
+};
+
+/// What many taps amount to; contacts alone, but for the count of failures.
+struct TapStatistics {
+  double bias = 0.0;     ///< m
+  double rms = 0.0;      ///< m
+  double seconds = 0.0;  ///< a tap
+  int failed = 0;
+};
+
+inline TapStatistics statistics_of(const std::vector<TappingBench::Tapped>& taps) {
+  TapStatistics out;
+  double squares = 0.0;
+  for (const TappingBench::Tapped& one : taps) {
+    if (one.contact.outcome != Outcome::contact) {
+      ++out.failed;
+      continue;
+    }
+    const double error = one.contact.height - one.truth;
+    out.bias += error;
+    squares += error * error;
+    out.seconds += one.contact.seconds;
+  }
+  const double contacts = static_cast<double>(taps.size()) - out.failed;
+  out.bias /= contacts;
+  out.seconds /= contacts;
+  out.rms = std::sqrt(squares / contacts);
+  return out;
+}
+
+/// The paper's object I in the middle of the area, and a bare desk.
+constexpr const char* kObjectI = "[{type: wave, rotation: 90 deg}]";
+constexpr const char* kBare = "[]";
+
+}  // namespace palpate::test
