@@ -36,6 +36,18 @@ TEST(Simulator, FindsTheOnsetWhereThePapersMotionSinksIn) {
   EXPECT_LT(fast.seconds, 0.5 * paper.seconds);
 }
 
+TEST(Simulator, IsAsExactWhereAWrongPredictionLetsATrailingArmHitTheSurface) {
+  // The arm still presses when its set-point is clear again: it has to be waited for.
+  const TappingBench bench(kObjectI, kLikeBaxter, "{type: continuous, speed: 6 cm/s, adaptive_hover: {}}");
+  for (int i = 1; i <= 50; ++i) {
+    TapRequest request;
+    request.number = i;
+    request.target = {0.115, 0.05 + 0.0025 * i};
+    request.predicted = Prediction{0.0, 0.0};
+    EXPECT_NEAR(bench.backend().tap(request).height, bench.scene().height(0.115, 0.05 + 0.0025 * i), 0.0035) << i;
+  }
+}
+
 TEST(Simulator, SinksInByTheFineThresholdOverTheStiffness) {
   const TappingBench bench(kBare, "{stiffness: {object: 1000 N/m}}",
                            "{type: two_stage, fine_speed: 1 mm/s, fine_threshold: 5 N}");

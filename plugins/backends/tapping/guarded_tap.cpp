@@ -13,9 +13,9 @@ constexpr int kConsecutive = 3;
 constexpr double kStop = 0.1;
 /// How far above the contact the samples begin that tell of its onset: enough of free air to know the zero by.
 constexpr double kTraceAbove = 0.02;
-/// How long the arm may need to come to the floor, and how near it must come.
-constexpr double kBottom = 2.0;
+/// How near to its goal the arm must come before the next stage, and how long that may take at most.
 constexpr double kNear = 0.001;
+constexpr double kArrival = 2.0;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ double GuardedTap::next(double height, double force) {
       }
       break;
     case Stage::clear:
-      if (ramp(goal_, motion_.adaptive_hover->speed)) enter(Stage::descend);
+      if (ramp(goal_, motion_.adaptive_hover->speed) && arrived(height)) enter(Stage::descend);
       break;
     case Stage::descend:
       descend(height);
@@ -68,7 +68,7 @@ double GuardedTap::next(double height, double force) {
       if (waited(motion_.pause)) finish(Outcome::contact, height);
       break;
     case Stage::back_off:
-      if (ramp(goal_, motion_.speed)) enter(Stage::settle);
+      if (ramp(goal_, motion_.speed) && arrived(height)) enter(Stage::settle);
       break;
     case Stage::fine:
       if (above_ >= kConsecutive) {
@@ -89,7 +89,7 @@ double GuardedTap::next(double height, double force) {
     case Stage::bottom:
       if (above_ >= kConsecutive) {
         touched(height);
-      } else if (std::abs(height - set_point_) < kNear || waited(kBottom)) {
+      } else if (arrived(height)) {
         finish(Outcome::no_contact, height);
       }
       break;
@@ -157,6 +157,9 @@ bool GuardedTap::ramp(double goal, double speed) {
   set_point_ += std::copysign(most, left);
   return false;
 }
+
+/// An arm that trails its set-point may still press on what it should be clear of.
+bool GuardedTap::arrived(double height) const { return std::abs(height - set_point_) < kNear || waited(kArrival); }
 
 /// Half a period of grace: 0.5 s are 50 periods, whatever their sum rounds to.
 bool GuardedTap::waited(double seconds) const {

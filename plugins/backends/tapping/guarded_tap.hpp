@@ -47,6 +47,7 @@ class GuardedTap {
   void touched(double height);
   void descend(double height);
   bool ramp(double goal, double speed);
+  bool arrived(double height) const;
   bool waited(double seconds) const;
   void finish(Outcome outcome, double height);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
