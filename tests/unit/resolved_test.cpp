@@ -29,7 +29,7 @@ TEST(ResolvedConfig, HasAnIdOfTwelveHexadecimalDigits) {
 
 TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
   EXPECT_EQ(
-      test::shipped_config("paper/object_i.yaml", {"repeat=forbid", "weight.prior_mean=0", "backend.hover=15cm"}).id,
+      test::shipped_config("paper/object_i.yaml", {"repeat=forbid", "weight.prior_mean=0", "backend.motion.hover=13.5cm"}).id,
       test::shipped_config("paper/object_i.yaml").id);
 }
 
