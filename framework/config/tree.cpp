@@ -83,6 +83,7 @@ const Tree* find_child(const Tree& tree, std::string_view name) {
 }  // namespace
 
 const Tree* Tree::find_path(std::string_view path) const {
+  if (const Tree* whole = find(path)) return whole;
   const auto [head, rest] = split_path(path);
   const Tree* child = find_child(*this, head);
   return child == nullptr || rest.empty() ? child : child->find_path(rest);
@@ -91,6 +92,7 @@ const Tree* Tree::find_path(std::string_view path) const {
 Tree& Tree::at_path(std::string_view path, const Place& asker) {
   Tree* tree = this;
   for (std::string_view rest = path; !rest.empty();) {
+    if (Tree* whole = tree->find(rest)) return *whole;
     const auto [head, tail] = split_path(rest);
     if (tree->kind == Kind::list && find_item(*tree, head) == nullptr) {
       throw Error(asker.text(), fmt::format("'{}': the list has no item '{}'", path, head),
