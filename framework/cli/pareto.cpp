@@ -52,9 +52,10 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
 void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chosen, double bound) {
   Tree config = read_run_config(job_directory(sweep, sweep.jobs[chosen.first_job]));
   config.erase("expect");
-  const char* const end = pareto.error.more_is_better ? "lower" : "upper";
-  fmt::print("# {}\n# The cheapest setting of {} whose {} 95 % bound of {} is within {}:\n", chosen.name,
-             sweep.directory.string(), end, pareto.error.name, bound_words(pareto, bound));
+  const char* const kept =
+      pareto.error.more_is_better ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
+  fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
+             fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
   fmt::print("# {}; {}; {} seeds, of which this is the first.\n{}", error_words(pareto, chosen),
              cost_words(pareto, chosen), chosen.jobs, to_yaml(config));
 }

@@ -208,8 +208,24 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
   return best;
 }
 
+namespace {
+
+/// The shortest of the known names that `name` is a part of, as rmse is of rmse_m; "" if there is none.
+std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kLeast = 3;
+  std::string best;
+  for (const std::string& candidate : known) {
+    const bool longer = name.size() >= kLeast && candidate.find(name) != std::string::npos;
+    if (longer && (best.empty() || candidate.size() < best.size())) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  const std::string near = nearest(name, known);
+  std::string near = nearest(name, known);
+  if (near.empty()) near = longer_form(name, known);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
   if (known.empty()) return {};
   return fmt::format("known: {}",

@@ -85,7 +85,8 @@ struct Tree::Entry {
 /// The name among `known` that `name` was probably meant to be, or "" when none is near.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
-/// "did you mean 'x'?" or "known: a, b, c"; "" when there is nothing to offer.
+/// "did you mean 'x'?", where x is the nearest name or else the shortest one that has `name` in it, or "known: a, b,
+/// c"; "" when there is nothing to offer.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace palpate

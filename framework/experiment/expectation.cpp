@@ -153,6 +153,7 @@ Expectation read_comparison(const SummaryField& field, Expectation out, const Tr
   };
   if (value.kind == Tree::Kind::null) refuse("has no value");
   if (!value.is_scalar()) refuse("is not a comparison");
+  if (value.text.empty()) refuse("has no value (one that begins with > needs quotes)");
   const std::string& written = value.text;
   const auto sign = std::find_if(kComparisons.begin(), kComparisons.end(), [&](const ComparisonName& one) {
     return written.compare(0, std::string_view(one.name).size(), one.name) == 0;

@@ -223,26 +223,35 @@ std::string shortened(const std::string& name) {
   return name.size() <= kLongest ? name : name.substr(0, kLongest - 3) + "...";
 }
 
-/// The names of the numbered settings, from the top of the right side down.
+constexpr const char* kFrontColour = "#0b5394";
+constexpr const char* kChosenColour = "#c1440e";
+
+/// A line of the list: the mark that the setting has in the picture, and its name.
+std::string list_line(const Setting& one, int line, const char* colour) {
+  const double y = 0.9 - 0.036 * line;
+  std::string out = fmt::format("set label '' at screen {}, screen {} point pt 7 ps 2.4 lc rgb '{}' front\n",
+                                kListLeft + 0.012, y, colour);
+  if (one.front > 0) {
+    out += fmt::format("set label '{}' at screen {}, screen {} center tc rgb 'white' font ',10' front\n", one.front,
+                       kListLeft + 0.012, y);
+  }
+  return out + fmt::format("set label {} at screen {}, screen {} left font ',11'\n", gnuplot_text(shortened(one.name)),
+                           kListLeft + 0.03, y);
+}
+
+/// The names of the numbered settings, and of the chosen one, from the top of the right side down.
 std::string front_list(const Pareto& pareto, const Setting* chosen) {
   constexpr int kMostLines = 18;
   std::string out;
   int line = 0;
   int left_out = 0;
   for (const Setting& one : pareto.settings) {
-    if (one.front == 0) continue;
-    if (line == kMostLines) {
+    if (one.front == 0 && &one != chosen) continue;
+    if (line < kMostLines || &one == chosen) {
+      out += list_line(one, line++, &one == chosen ? kChosenColour : kFrontColour);
+    } else {
       ++left_out;
-      continue;
     }
-    const double y = 0.9 - 0.036 * line++;
-    const char* const colour = &one == chosen ? "#c1440e" : "#0b5394";
-    out += fmt::format("set label '' at screen {}, screen {} point pt 7 ps 2.4 lc rgb '{}' front\n", kListLeft + 0.012,
-                       y, colour);
-    out += fmt::format("set label '{}' at screen {}, screen {} center tc rgb 'white' font ',10' front\n", one.front,
-                       kListLeft + 0.012, y);
-    out += fmt::format("set label {} at screen {}, screen {} left font ',11'\n", gnuplot_text(shortened(one.name)),
-                       kListLeft + 0.03, y);
   }
   if (left_out > 0) {
     out += fmt::format("set label 'and {} more, see the table' at screen {}, screen {} left font ',11'\n", left_out,
@@ -296,9 +305,7 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   }
   if (!others.empty()) {
     block("others", others);
-    plot(
-        "$others using 1:2:3:4:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'beaten in both, or equalled in "
-        "one'");
+    plot("$others using 1:2:3:4:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'");
   }
   if (bound) {
     plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '#c1440e' title {}", *bound / error.factor,
@@ -307,13 +314,13 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   }
   if (!front.empty()) {
     block("front", front);
-    plot("$front using 1:2 with steps lw 2 lc rgb '#0b5394' title 'front'");
+    plot("$front using 1:2 with steps lw 2 lc rgb '#0b5394' title 'front: dominated by none'");
     plot("$front using 1:2:3:4:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '#0b5394' notitle");
     plot("$front using 1:2 with points pt 7 ps 2.4 lc rgb '#0b5394' notitle");
   }
   if (!choice.empty()) {
     block("choice", choice);
-    plot("$choice using 1:2 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest with its whole interval within'");
+    plot("$choice using 1:2 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'");
   }
   if (!front.empty()) plot("$front using 1:2:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle");
   return out + plots + "\n";
