@@ -218,44 +218,60 @@ class PointWriter {
 
 constexpr double kListLeft = 0.635;  // of the picture's width: where the list of names begins
 
-std::string shortened(const std::string& name) {
+/// The name in lines that fit beside the plot, broken behind commas where it can be.
+std::vector<std::string> wrapped(const std::string& name) {
   constexpr std::size_t kLongest = 54;
-  return name.size() <= kLongest ? name : name.substr(0, kLongest - 3) + "...";
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < name.size();) {
+    std::size_t end = name.size();
+    if (end - begin > kLongest) {
+      const auto comma = name.rfind(", ", begin + kLongest - 1);
+      end = comma != std::string::npos && comma > begin ? comma + 2 : begin + kLongest;
+    }
+    lines.push_back(name.substr(begin, end - begin));
+    begin = end;
+  }
+  return lines;
 }
 
 constexpr const char* kFrontColour = "#0b5394";
 constexpr const char* kChosenColour = "#c1440e";
 
-/// A line of the list: the mark that the setting has in the picture, and its name.
-std::string list_line(const Setting& one, int line, const char* colour) {
-  const double y = 0.9 - 0.036 * line;
+/// An entry of the list at height `y`, which it lowers: the mark that the setting has in the picture, and its name.
+std::string list_entry(const Setting& one, const char* colour, double& y) {
   std::string out = fmt::format("set label '' at screen {}, screen {} point pt 7 ps 2.4 lc rgb '{}' front\n",
                                 kListLeft + 0.012, y, colour);
   if (one.front > 0) {
     out += fmt::format("set label '{}' at screen {}, screen {} center tc rgb 'white' font ',10' front\n", one.front,
                        kListLeft + 0.012, y);
   }
-  return out + fmt::format("set label {} at screen {}, screen {} left font ',11'\n", gnuplot_text(shortened(one.name)),
-                           kListLeft + 0.03, y);
+  for (const std::string& line : wrapped(one.name)) {
+    out +=
+        fmt::format("set label {} at screen {}, screen {} left font ',11'\n", gnuplot_text(line), kListLeft + 0.03, y);
+    y -= 0.026;
+  }
+  y -= 0.01;
+  return out;
 }
 
 /// The names of the numbered settings, and of the chosen one, from the top of the right side down.
 std::string front_list(const Pareto& pareto, const Setting* chosen) {
-  constexpr int kMostLines = 18;
+  constexpr double kTop = 0.9;
+  constexpr double kBottom = 0.27;  // the key is below
   std::string out;
-  int line = 0;
+  double y = kTop;
   int left_out = 0;
   for (const Setting& one : pareto.settings) {
     if (one.front == 0 && &one != chosen) continue;
-    if (line < kMostLines || &one == chosen) {
-      out += list_line(one, line++, &one == chosen ? kChosenColour : kFrontColour);
+    if (y > kBottom || &one == chosen) {
+      out += list_entry(one, &one == chosen ? kChosenColour : kFrontColour, y);
     } else {
       ++left_out;
     }
   }
   if (left_out > 0) {
     out += fmt::format("set label 'and {} more, see the table' at screen {}, screen {} left font ',11'\n", left_out,
-                       kListLeft + 0.03, 0.9 - 0.036 * line);
+                       kListLeft + 0.03, y);
   }
   return out;
 }
