@@ -7,6 +7,7 @@
 #include "record/session.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,18 @@ struct RunArguments {
   bool force = false;
   bool print_config = false;
   bool origins = false;
+  std::string junit;
 };
 int run(Program& program, const RunArguments& arguments);
+
+/// What is shown of a run and of what was expected of it.
+struct RunOutput {
+  bool table = false;  ///< the result in a few lines on stdout
+  bool json = false;   ///< summary.json on stdout
+  std::string junit;   ///< a file, "" for none
+};
+/// Runs `action`, shows its report and judges it by the config. Returns the exit status.
+int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action);
 
 struct SweepArguments {
   std::string config;
@@ -46,6 +57,7 @@ struct SweepArguments {
   int workers = 1;
   bool list = false;
   bool quiet = false;
+  std::string junit;
 };
 int sweep(Program& program, const SweepArguments& arguments);
 
@@ -55,6 +67,7 @@ struct ResumeArguments {
   bool force = false;
   bool quiet = false;
   int workers = 1;
+  std::string junit;
 };
 int resume(Program& program, const ResumeArguments& arguments);
 
@@ -63,5 +76,13 @@ int replay(Program& program, const std::string& directory);
 int validate(Program& program, const std::vector<std::string>& configs);
 int plugins(Program& program, const std::string& what, bool json);
 int schema(Program& program);
+
+struct ParetoArguments {
+  std::string directory;
+  std::string cost;
+  std::string error;
+  std::string within;  ///< "" where nothing is asked for
+};
+int pareto(Program& program, const ParetoArguments& arguments);
 
 }  // namespace palpate::cli

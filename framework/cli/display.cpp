@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/display.hpp"
 
-#include "cli/commands.hpp"
 #include "record/tap_row.hpp"
 
 #include <fmt/format.h>
@@ -114,14 +113,12 @@ void print_summary(const RunReport& report) {
   fmt::print("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
 }
 
-int print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps) {
+void print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps) {
   fmt::print("{}", sweep_table(sweep, sweep_results(sweep), initial_taps));
   for (const auto& [job, reason] : report.failures) {
     fmt::print("failed: job {} ({}): {}\n", job.index, job.id, reason);
   }
   fmt::print("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", sweep.directory.string());
-  if (report.interrupted) return kInterrupted;
-  return report.failures.empty() ? kDone : kFailed;
 }
 
 }  // namespace palpate::cli

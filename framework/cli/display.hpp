@@ -39,7 +39,7 @@ class SweepLine {
 /// The result of a run in a few lines.
 void print_summary(const RunReport& report);
 
-/// The table, the failures and the place of a sweep. Returns the exit status.
-int print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps);
+/// The table, the failures and the place of a sweep.
+void print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps);
 
 }  // namespace palpate::cli

@@ -25,6 +25,7 @@ struct Arguments {
   RunArguments run;
   SweepArguments sweep;
   ResumeArguments resume;
+  ParetoArguments pareto;
   std::string directory;
   std::vector<std::string> configs;
   std::string plugin;
@@ -46,6 +47,7 @@ void add_run(CLI::App& app, Arguments& a, Action& action) {
   sub->add_flag("--force", a.run.force, "move an earlier run of this id aside and run again");
   CLI::Option* print = sub->add_flag("--print-config", a.run.print_config, "print the resolved config and stop");
   sub->add_flag("--origins", a.run.origins, "with it, where each value came from")->needs(print);
+  sub->add_option("--junit", a.run.junit, "write what held and what failed as JUnit XML to this file");
   sub->callback([&] { action = [&](Program& program) { return run(program, a.run); }; });
 }
 
@@ -60,6 +62,7 @@ void add_sweep(CLI::App& app, Arguments& a, Action& action) {
       ->check(CLI::Range(1, 1024));
   sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
   sub->add_flag("--quiet", a.sweep.quiet, "show no progress");
+  sub->add_option("--junit", a.sweep.junit, "write what held and what failed as JUnit XML to this file");
   sub->callback([&] { action = [&](Program& program) { return sweep(program, a.sweep); }; });
 }
 
@@ -70,6 +73,7 @@ void add_resume(CLI::App& app, Arguments& a, Action& action) {
   sub->add_flag("--force", a.resume.force, "carry on what another build began");
   sub->add_flag("--quiet", a.resume.quiet, "print nothing but a sweep's table");
   sub->add_option("-j", a.resume.workers, "jobs of a sweep at a time")->check(CLI::Range(1, 1024));
+  sub->add_option("--junit", a.resume.junit, "write what held and what failed as JUnit XML to this file");
   sub->callback([&] { action = [&](Program& program) { return resume(program, a.resume); }; });
 }
 
@@ -90,6 +94,14 @@ void add_rest(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("KIND/NAME", a.plugin, "a kind (kernel) or a plugin (kernel/rbf)");
   sub->add_flag("--json", a.json, "as JSON");
   sub->callback([&] { action = [&](Program& program) { return plugins(program, a.plugin, a.json); }; });
+
+  sub = app.add_subcommand("pareto", "What accuracy costs: the settings of a sweep that none beats in both");
+  sub->add_option("DIR", a.pareto.directory, "the sweep's directory")->required();
+  sub->add_option("--cost", a.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")->required();
+  sub->add_option("--error", a.pareto.error, "another: rmse_m, rmse_on_surface_m, footprint_iou")->required();
+  sub->add_option("--within", a.pareto.within,
+                  "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm");
+  sub->callback([&] { action = [&](Program& program) { return pareto(program, a.pareto); }; });
 
   sub = app.add_subcommand("schema", "Print the JSON Schema of config files, for editors");
   sub->callback([&] { action = [&](Program& program) { return schema(program); }; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/gate.hpp"
 #include "config/yaml.hpp"
 #include "record/run_directory.hpp"
 
@@ -58,17 +59,29 @@ int run(Program& program, const RunArguments& arguments) {
     print_plan(config, directory);
     return kDone;
   }
+  check_junit(arguments.junit);
   const bool table = !arguments.quiet && !arguments.json;
   std::unique_ptr<Journal> display;
   if (table) display = std::make_unique<TapTable>(config.options.taps);
-  const RunReport report = start_run(program.workshop, config, directory, arguments.force, display.get());
-  if (arguments.json) {
-    fmt::print("{}", to_json_text(report.summary));
-  } else if (!arguments.quiet) {
-    print_summary(report);
+  return conclude_run(config, {table, arguments.json, arguments.junit},
+                      [&] { return start_run(program.workshop, config, directory, arguments.force, display.get()); });
+}
+
+int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action) {
+  const GateOutput gate{config.options.name, output.junit, output.table};
+  RunReport report;
+  try {
+    report = action();
+  } catch (const Error& trouble) {
+    // A run that failed is a result, too: continuous integration shall see it as one.
+    if (trouble.kind() == Error::Kind::run && !output.junit.empty())
+      conclude({}, {outcome_of(config.id, {}, trouble.what())}, gate);
+    throw;
   }
+  if (output.json) fmt::print("{}", to_json_text(report.summary));
+  if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;
-  return kDone;
+  return conclude(config.expectations, {outcome_of(config.id, report.summary, "")}, gate) ? kDone : kFailed;
 }
 
 }  // namespace palpate::cli

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "config/describe.hpp"
+#include "experiment/expectation.hpp"
 #include "experiment/experiment_options.hpp"
+#include "experiment/summary_fields.hpp"
 #include "record/json.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +38,34 @@ Tree kind_schema(const PluginHost& host, const std::string& kind) {
   return out;
 }
 
+/// `expect:`: fields of the summary and their statistics, with a comparison or several.
+Tree expect_schema() {
+  std::string fields = kFailedRuns;
+  for (const SummaryField& field : summary_fields()) fields += "|" + field.name;
+  std::string statistics;
+  for (const std::string& name : statistic_names()) statistics += (statistics.empty() ? "" : "|") + name;
+  // A dot is any character to a pattern, which is near enough for an editor.
+  const std::string keys = fmt::format("^(({0})|({1})\\(({0})\\))$", fields, statistics);
+  Tree either = Tree::list();
+  for (const char* type : {"string", "boolean", "array"}) {
+    Tree one = Tree::map();
+    one.at("type") = quoted(type);
+    either.items.push_back(std::move(one));
+  }
+  Tree group = Tree::map();
+  group.at("type") = quoted("string");
+  Tree expect = Tree::map();
+  expect.at("description") =
+      quoted("what the summary must say, for example rmse_m: '<= 2 cm'; of a sweep, median(rmse_m): '<= 2 cm'");
+  expect.at("type") = quoted("object");
+  expect.at("patternProperties").at(keys).at("anyOf") = std::move(either);
+  expect.at("additionalProperties") = Tree::scalar("false");
+  Tree out = Tree::map();
+  out.at("anyOf") = Tree::list();
+  out.at("anyOf").items = {std::move(group), std::move(expect)};
+  return out;
+}
+
 }  // namespace
 
 int schema(Program& program) {
@@ -67,6 +97,8 @@ int schema(Program& program) {
   sweep.at("properties").at("grid").at("type") = quoted("object");
   sweep.at("additionalProperties") = Tree::scalar("false");
   properties.at("sweep") = std::move(sweep);
+
+  properties.at("expect") = expect_schema();
 
   Tree& definitions = out.at("definitions");
   definitions = Tree::map();

@@ -29,7 +29,7 @@ void print_sweep_status(const Sweep& sweep) {
   std::map<RunStatus::State, int> counts;
   std::string failures;
   for (const Job& job : sweep.jobs) {
-    const RunStatus status = read_status(sweep.directory / "jobs" / job.id);
+    const RunStatus status = read_status(job_directory(sweep, job));
     ++counts[status.state];
     if (status.state == RunStatus::State::failed) {
       failures += fmt::format("failed: job {} ({}): {}\n", job.index, job.id, status.stop_reason);

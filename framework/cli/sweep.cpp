@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/gate.hpp"
 
 #include <fmt/format.h>
 
@@ -18,12 +19,21 @@ int sweep(Program& program, const SweepArguments& arguments) {
     }
     return kDone;
   }
+  check_junit(arguments.junit);
   prepare_sweep(plan);
   if (!arguments.quiet) fmt::print(stderr, "{} jobs in {}\n", plan.sweep.jobs.size(), plan.sweep.directory.string());
   SweepLine line(arguments.quiet);
   const SweepReport report = run_sweep(program.workshop, plan.sweep, &plan.configs, {}, arguments.workers,
                                        [&](const SweepProgress& progress) { line.show(progress); });
-  return print_sweep(plan.sweep, report, static_cast<int>(plan.configs.front().options.initial.count));
+  return conclude_sweep(plan.sweep, plan.configs.front(), report, arguments.junit);
+}
+
+int conclude_sweep(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
+                   const std::string& junit) {
+  print_sweep(sweep, report, static_cast<int>(config.options.initial.count));
+  if (report.interrupted) return kInterrupted;
+  const bool all_hold = conclude(config.expectations, outcomes_of(sweep), {config.options.name, junit, true});
+  return sweep_status(config.expectations, all_hold, !report.failures.empty());
 }
 
 }  // namespace palpate::cli

@@ -16,8 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `scene` is a group but no plugin: it has no type, and a missing file is an error at once.
-constexpr std::array<std::string_view, 5> kGroups{"kernel", "acquisition", "fitting", "backend", "scene"};
+constexpr std::array<std::string_view, 6> kGroups{"kernel", "acquisition", "fitting", "backend", "scene", "expect"};
+
+/// These groups are no plugins: they have no type, and a missing file is an error at once.
+bool is_plain(const std::string& group) { return group == "scene" || group == "expect"; }
 
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
@@ -131,7 +133,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
   }
   const fs::path file = find_group(group, name, beside);
   if (file.empty()) {
-    if (group == "scene") {
+    if (is_plain(group)) {
       const std::vector<std::string> names = group_names(group, beside);
       throw Error(place.text(), fmt::format("no file {}/{}.yaml", group, name),
                   !names.empty() ? suggestion(name, names)

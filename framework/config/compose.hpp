@@ -23,10 +23,10 @@ Override parse_override(const std::string& text);
 
 /// Reads config files, once each, and composes them.
 ///
-/// Groups are the keys `kernel`, `acquisition`, `fitting`, `backend` and `scene`, wherever they stand (`height.kernel`
-/// too). A plain name there, in the file or as an override, chooses the file <folder>/<group>/<name>.yaml, in the
-/// first folder that has it of: the folders above the config, ./configs, and the program's own configs. A name without
-/// such a file is taken as the type of a plugin with default options.
+/// Groups are the keys `kernel`, `acquisition`, `fitting`, `backend`, `scene` and `expect`, wherever they stand
+/// (`height.kernel` too). A plain name there, in the file or as an override, chooses the file
+/// <folder>/<group>/<name>.yaml, in the first folder that has it of: the folders above the config, ./configs, and the
+/// program's own configs. A name without such a file is taken as the type of a plugin with default options.
 class Composer {
  public:
   /// `shipped` is the program's own folder of configs; it need not exist.

@@ -83,6 +83,7 @@ const Tree* find_child(const Tree& tree, std::string_view name) {
 }  // namespace
 
 const Tree* Tree::find_path(std::string_view path) const {
+  if (const Tree* whole = find(path)) return whole;
   const auto [head, rest] = split_path(path);
   const Tree* child = find_child(*this, head);
   return child == nullptr || rest.empty() ? child : child->find_path(rest);
@@ -91,6 +92,7 @@ const Tree* Tree::find_path(std::string_view path) const {
 Tree& Tree::at_path(std::string_view path, const Place& asker) {
   Tree* tree = this;
   for (std::string_view rest = path; !rest.empty();) {
+    if (Tree* whole = tree->find(rest)) return *whole;
     const auto [head, tail] = split_path(rest);
     if (tree->kind == Kind::list && find_item(*tree, head) == nullptr) {
       throw Error(asker.text(), fmt::format("'{}': the list has no item '{}'", path, head),
@@ -206,8 +208,24 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
   return best;
 }
 
+namespace {
+
+/// The shortest of the known names that `name` is a part of, as rmse is of rmse_m; "" if there is none.
+std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kLeast = 3;
+  std::string best;
+  for (const std::string& candidate : known) {
+    const bool longer = name.size() >= kLeast && candidate.find(name) != std::string::npos;
+    if (longer && (best.empty() || candidate.size() < best.size())) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  const std::string near = nearest(name, known);
+  std::string near = nearest(name, known);
+  if (near.empty()) near = longer_form(name, known);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
   if (known.empty()) return {};
   return fmt::format("known: {}",

@@ -55,7 +55,8 @@ struct Tree {
   /// The entry at `key`, appended if missing; turns a null into a map.
   Tree& at(std::string_view key);
   void erase(std::string_view key);
-  /// The value at a dotted path, or null; list items are named by their number from 0.
+  /// The value at a dotted path, or null; list items are named by their number from 0. A key may have dots itself
+  /// (those of `expect` do): what is left of the path is tried as one key first.
   const Tree* find_path(std::string_view path) const;
   /// The same, but maps on the way are made as needed, with the place of `asker`, who also is to blame in the Error
   /// thrown where a scalar is in the way or a list is shorter.
@@ -84,7 +85,8 @@ struct Tree::Entry {
 /// The name among `known` that `name` was probably meant to be, or "" when none is near.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
-/// "did you mean 'x'?" or "known: a, b, c"; "" when there is nothing to offer.
+/// "did you mean 'x'?", where x is the nearest name or else the shortest one that has `name` in it, or "known: a, b,
+/// c"; "" when there is nothing to offer.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace palpate

@@ -173,13 +173,15 @@ Tree read_yaml(const std::filesystem::path& path) {
 }
 
 Tree parse_value(const std::string& text, const std::string& file) {
+  // A block has lines below its sign; here, `>1` is what someone expects of a number.
+  const bool is_block = !text.empty() && (text.front() == '>' || text.front() == '|');
   try {
-    return Converter(file, false).convert(YAML::Load(text));
+    if (!is_block) return Converter(file, false).convert(YAML::Load(text));
   } catch (const YAML::Exception&) {
-    Tree tree = Tree::scalar(text, true);
-    tree.place.file = std::make_shared<const std::string>(file);
-    return tree;
   }
+  Tree tree = Tree::scalar(text, true);
+  tree.place.file = std::make_shared<const std::string>(file);
+  return tree;
 }
 
 std::string to_yaml(const Tree& tree) {

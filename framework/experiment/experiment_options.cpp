@@ -162,6 +162,6 @@ void ExperimentOptions::list(Fields& fields) {
                              initial.count, columns * rows));
 }
 
-bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads"; }
+bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads" && key != "expect"; }
 
 }  // namespace palpate

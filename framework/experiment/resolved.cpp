@@ -11,8 +11,13 @@ namespace palpate {
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
   Tree input = composed;
   input.erase("sweep");
+  input.erase("expect");
   ResolvedConfig out;
   out.tree = resolve(out.options, input, plugins, out.notes);
+  if (const Tree* expect = composed.find("expect")) {
+    out.expectations = read_expectations(expect);
+    if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
+  }
   Tree identity = Tree::map();
   for (const Tree::Entry& entry : out.tree.entries) {
     if (enters_id(entry.key)) identity.entries.push_back(entry);

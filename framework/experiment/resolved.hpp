@@ -4,6 +4,7 @@
 
 #include "config/compose.hpp"
 #include "config/resolve.hpp"
+#include "experiment/expectation.hpp"
 #include "experiment/experiment_options.hpp"
 
 #include <filesystem>
@@ -14,9 +15,10 @@ namespace palpate {
 
 struct ResolvedConfig {
   ExperimentOptions options;
-  Tree tree;           ///< every field with its final value; reads back as the same config
-  ResolveNotes notes;  ///< where the values came from
-  std::string id;      ///< 12 hex digits: a hash of all that decides what a run computes
+  Tree tree;                              ///< every field with its final value; reads back as the same config
+  ResolveNotes notes;                     ///< where the values came from
+  std::vector<Expectation> expectations;  ///< of `expect:`
+  std::string id;                         ///< 12 hex digits: a hash of all that decides what a run computes
 };
 
 /// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.

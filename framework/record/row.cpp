@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/row.hpp"
 
+#include "record/utf8.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,22 +22,6 @@ std::string number_text(double value) {
 bool is_plain(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
-}
-
-/// The length of the UTF-8 sequence that `text` begins with; 0 if it is not valid (RFC 3629).
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  // No longer forms of shorter sequences, no surrogates, nothing beyond U+10FFFF.
-  const bool refused = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
-                       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
-  return refused ? 0 : length;
 }
 
 std::string json_value(const Scalar& value) {

@@ -5,6 +5,7 @@
 #include "config/yaml.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
+#include "sweep/statistics.hpp"
 
 #include <palpate/error.hpp>
 
@@ -21,8 +22,6 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 namespace {
-
-fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
 
 Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
   Row row;
@@ -50,15 +49,31 @@ void write_failure(const fs::path& directory, const std::string& id, const std::
   write_file(directory / "summary.json", to_json_text(row));
 }
 
+/// Whether the swept key is one of `expect:`.
+bool is_expectation(const Axis& axis) { return axis.key == "expect" || axis.key.compare(0, 7, "expect.") == 0; }
+
 }  // namespace
+
+fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
 
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<Axis>& axes,
                      const fs::path& runs) {
   SweepPlan plan;
-  const Tree base = composer.compose(file, {});
+  // What is expected holds for the whole sweep: it is no axis, and it enters no id.
+  std::vector<Override> expectations;
+  for (const Axis& axis : axes) {
+    if (!is_expectation(axis)) continue;
+    if (axis.values.size() != 1) {
+      throw Error(axis.values.front().place.text(), fmt::format("{}: what is expected cannot be swept", axis.key),
+                  "give it one value");
+    }
+    expectations.push_back({axis.key, axis.values.front()});
+  }
+  const Tree base = composer.compose(file, expectations);
   std::vector<Axis> all;
   if (const Tree* described = base.find("sweep")) all = config_axes(*described);
   for (const Axis& axis : axes) {
+    if (is_expectation(axis)) continue;
     const auto same = std::find_if(all.begin(), all.end(), [&](const Axis& one) { return one.key == axis.key; });
     if (same != all.end()) {
       *same = axis;
@@ -80,6 +95,7 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   for (const Combination& combination : product(all)) {
     // The sweep's own record decides whether surfaces are kept: not by default.
     std::vector<Override> overrides = combination;
+    overrides.insert(overrides.end(), expectations.begin(), expectations.end());
     if (base.find_path("log.surface") == nullptr) {
       Tree off = Tree::scalar("false");
       off.set_layer(kGroupLayer);
@@ -189,14 +205,25 @@ SweepReport run_sweep(const Workshop& workshop, const Sweep& sweep, const std::v
   return report;
 }
 
-std::vector<Row> sweep_results(const Sweep& sweep) {
-  std::vector<Row> rows;
+std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
+  std::vector<std::optional<Row>> summaries;
   for (const Job& job : sweep.jobs) {
+    summaries.emplace_back();
     const fs::path file = job_directory(sweep, job) / "summary.json";
     std::error_code none;
     if (!fs::exists(file, none)) continue;
-    const std::optional<Row> summary = parse_json_row(read_file(file));
-    if (!summary) throw Error(file.string(), "is not a JSON object", "the file is damaged");
+    summaries.back() = parse_json_row(read_file(file));
+    if (!summaries.back()) throw Error(file.string(), "is not a JSON object", "the file is damaged");
+  }
+  return summaries;
+}
+
+std::vector<Row> sweep_results(const Sweep& sweep) {
+  std::vector<Row> rows;
+  const std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
+  for (const Job& job : sweep.jobs) {
+    const std::optional<Row>& summary = summaries[static_cast<std::size_t>(job.index)];
+    if (!summary) continue;
     Row row;
     row.add("job", job.index);
     row.add("id", job.id);
@@ -210,14 +237,6 @@ std::vector<Row> sweep_results(const Sweep& sweep) {
 }
 
 namespace {
-
-/// Linear interpolation between order statistics.
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const auto above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 std::string spread(std::vector<double> values, const char* format, double scale) {
   if (values.empty()) return "-";

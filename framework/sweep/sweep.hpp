@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,12 @@ Sweep read_sweep(const std::filesystem::path& directory);
 SweepReport run_sweep(const Workshop& workshop, const Sweep& sweep, const std::vector<ResolvedConfig>* configs,
                       const ResumeOptions& options, int workers,
                       const std::function<void(const SweepProgress&)>& progress);
+
+/// jobs/<id>
+std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
+
+/// The summary of each job, none for those that have not ended. Throws Error for a damaged one.
+std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
 /// The rows of results.csv: job, id, the swept keys, then the fields of the summary, for jobs that ended.
 std::vector<Row> sweep_results(const Sweep& sweep);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -70,10 +71,21 @@ void expect_rows(const std::string& readme, const std::string& printed) {
   EXPECT_EQ(rows, 2 + 12);
 }
 
+/// The numbered lines of the front in README are those that `palpate pareto` printed, in its order.
+void expect_front(const std::string& readme, const std::string& printed) {
+  std::istringstream lines(printed);
+  std::string front;
+  for (std::string line; std::getline(lines, line);) {
+    if (front.empty() || std::isdigit(static_cast<unsigned char>(line[4])) != 0) front += line + "\n";
+  }
+  EXPECT_THAT(readme, HasSubstr("```\n" + front + "```\n"));
+}
+
 /// Commands whose work is the same in every build, and minutes long under the sanitizers.
 bool only_in_release(const std::string& command) {
 #ifdef __SANITIZE_ADDRESS__
-  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep "}) {
+  for (const char* begin :
+       {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ", "./palpate pareto "}) {
     if (command.rfind(begin, 0) == 0) return true;
   }
   return false;
@@ -100,9 +112,12 @@ TEST(Readme, EveryCommandThatItShowsRunsAndTheTablesAreWhatTheyPrint) {
     } else if (command == "sh tests/benchmark/fitting.sh") {
       ++tables;
       expect_rows(readme, ended.out);
+    } else if (command == "./palpate pareto runs/speed_accuracy/* --cost robot_seconds --error rmse_m") {
+      ++tables;
+      expect_front(readme, ended.out);
     }
   }
-  EXPECT_EQ(tables, only_in_release("sh tests/benchmark/fitting.sh") ? 0 : 2);
+  EXPECT_EQ(tables, only_in_release("sh tests/benchmark/fitting.sh") ? 0 : 3);
 }
 
 TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {

@@ -58,14 +58,14 @@ class Schema : public ::testing::Test {
 
 TEST_F(Schema, AcceptsEveryShippedExperiment) {
   int files = 0;
-  for (const char* folder : {"configs/paper", "runs/reference"}) {
+  for (const char* folder : {"configs/paper", "configs/ci", "runs/reference"}) {
     for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / folder)) {
       if (entry.path().extension() != ".yaml") continue;
       ++files;
       EXPECT_TRUE(accepts(as_json(read_yaml(entry.path())))) << entry.path();
     }
   }
-  EXPECT_GE(files, 6);
+  EXPECT_GE(files, 10);
 }
 
 TEST_F(Schema, RefusesWhatTheProgramRefuses) {
@@ -94,6 +94,10 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({{{"type", "rfb"}}})}})) << "unknown type";
   EXPECT_TRUE(refused("/kernel", {{"type", "scale"}, {"factor", "2 cm"}, {"kernel", rbf}})) << "a length for a number";
   EXPECT_TRUE(refused("/surface", "two_parts")) << "unknown choice";
+  EXPECT_FALSE(refused("/expect", {{"median(rmse_m)", "<= 2 cm"}, {"found", true}}));
+  EXPECT_TRUE(refused("/expect", {{"rmse", "<= 2 cm"}})) << "no field of the summary";
+  EXPECT_TRUE(refused("/expect", {{"meadian(rmse_m)", "<= 2 cm"}})) << "unknown statistic";
+  EXPECT_TRUE(refused("/expect", {{"taps", 17}})) << "no comparison";
 }
 
 }  // namespace

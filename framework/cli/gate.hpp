@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The end of a run or a sweep as continuous integration sees it: expectations, JUnit file, exit status.
+#pragma once
+
+#include "experiment/resolved.hpp"
+#include "sweep/gate.hpp"
+
+#include <string>
+#include <vector>
+
+namespace palpate::cli {
+
+/// Where the verdicts go.
+struct GateOutput {
+  std::string suite;             ///< name of the experiment
+  std::string junit;             ///< file to write, "" for none
+  bool count_on_stdout = false;  ///< "expected: 3 of 3", if there are expectations
+};
+
+/// Throws Error, of kind usage, if no file can be made in the folder of `junit`: better before a long sweep than after.
+void check_junit(const std::string& junit);
+
+/// Judges the runs, prints a line on stderr for each expectation that fails, and writes the JUnit file. Returns whether
+/// all hold. Throws Error.
+bool conclude(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs,
+              const GateOutput& output);
+
+/// The exit status of a sweep: runs that failed make it fail, unless the config says how many may.
+int sweep_status(const std::vector<Expectation>& expectations, bool all_hold, bool any_failed);
+
+/// Prints the result of a sweep and judges it by the config of any of its jobs. Returns the exit status.
+int conclude_sweep(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
+                   const std::string& junit);
+
+}  // namespace palpate::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "config/yaml.hpp"
+#include "record/files.hpp"
+#include "sweep/gnuplot.hpp"
+#include "sweep/pareto_report.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string title_of(const std::string& name, const Pareto& pareto) {
+  int least = pareto.settings.front().jobs;
+  int most = least;
+  for (const Setting& one : pareto.settings) {
+    least = std::min(least, one.jobs);
+    most = std::max(most, one.jobs);
+  }
+  const std::string seeds = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+  return fmt::format("{}: {} settings, {} seed{} each; bars: 95 % intervals of the means", name, pareto.settings.size(),
+                     seeds, most == 1 ? "" : "s");
+}
+
+/// The picture and the table beside results.csv.
+void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& name, const std::optional<double>& bound,
+                 const Setting* chosen) {
+  const fs::path stem = sweep.directory / fmt::format("pareto_{}_{}", slug(pareto.cost.name), slug(pareto.error.name));
+  write_file(stem.string() + ".csv", to_csv(pareto_rows(pareto)));
+  const bool empty = std::all_of(pareto.settings.begin(), pareto.settings.end(),
+                                 [](const Setting& one) { return one.cost.count == 0; });
+  const std::string trouble = empty ? "no setting has a value"
+                                    : draw_png(pareto_script(pareto, title_of(name, pareto), bound, chosen),
+                                               kParetoWidth, kParetoHeight, stem.string() + ".png");
+  if (trouble.empty()) {
+    fmt::print(stderr, "picture: {}.png, table: {}.csv\n", stem.string(), stem.string());
+  } else {
+    fmt::print(stderr, "no picture was drawn: {}; table: {}.csv\n", trouble, stem.string());
+  }
+}
+
+/// The resolved config of the setting's first job, with a head that says why it was chosen. What the sweep expected of
+/// all its runs is not expected of this one.
+void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chosen, double bound) {
+  Tree config = read_run_config(job_directory(sweep, sweep.jobs[chosen.first_job]));
+  config.erase("expect");
+  const char* const kept =
+      pareto.error.more_is_better ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
+  fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
+             fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
+  fmt::print("# {}; {}; {} seeds, of which this is the first.\n{}", error_words(pareto, chosen),
+             cost_words(pareto, chosen), chosen.jobs, to_yaml(config));
+}
+
+}  // namespace
+
+int pareto(Program&, const ParetoArguments& arguments) {
+  if (!is_sweep(arguments.directory))
+    throw Error(arguments.directory, "is not the directory of a sweep", "it has no manifest.jsonl");
+  const Sweep sweep = read_sweep(arguments.directory);
+  const Pareto pareto = make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error);
+  const bool asked = !arguments.within.empty();
+  const std::optional<double> bound = asked ? std::optional(read_bound(pareto, arguments.within)) : std::nullopt;
+  const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
+  if (pareto.unfinished > 0) {
+    fmt::print(stderr, "{} of {} jobs have not ended, 'palpate resume' carries on\n", pareto.unfinished, pareto.jobs);
+  }
+  fmt::print(asked ? stderr : stdout, "{}", pareto_table(pareto));
+  const Tree config = read_run_config(sweep.directory);
+  const Tree* name = config.find("name");
+  write_files(sweep, pareto, name != nullptr ? name->text : "sweep", bound, chosen);
+  if (!bound) return kDone;
+  if (chosen != nullptr) {
+    print_config(sweep, pareto, *chosen, *bound);
+    return kDone;
+  }
+  const Setting* best = best_bounded(pareto);
+  throw Error("", fmt::format("no setting keeps to {} within {}", pareto.error.name, bound_words(pareto, *bound)),
+              best != nullptr ? fmt::format("the nearest is {}: {}", best->name, error_words(pareto, *best))
+                              : "none has an interval: that takes two seeds or more, and no failed job",
+              Error::Kind::run);
+}
+
+}  // namespace palpate::cli

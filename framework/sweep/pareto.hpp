@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// What accuracy costs: the settings of a sweep, each over its seeds, and those that no other beats in both cost and
+// error. sweep/pareto_report.hpp shows them.
+#pragma once
+
+#include "record/row.hpp"
+#include "sweep/statistics.hpp"
+#include "sweep/sweep.hpp"
+
+#include <palpate/options.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A column of results.csv that is compared.
+struct ParetoKey {
+  std::string name;
+  Unit unit = Unit::none;
+  bool more_is_better = false;
+};
+
+/// All jobs that differ in nothing but the seed.
+struct Setting {
+  std::vector<std::string> values;  ///< one for each of Pareto::keys
+  std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
+  std::size_t first_job = 0;        ///< index in Sweep::jobs
+  int jobs = 0;
+  int failed = 0;
+  int unfinished = 0;
+  int without_value = 0;  ///< done, but cost or error is null
+  MeanEstimate cost;      ///< over the jobs that are done and have both values
+  MeanEstimate error;
+  int front = 0;  ///< its number on the front, from 1 in the order of cost; 0 if it is not on it
+
+  /// Whether every job has both values. Others are shown, but the front is made, and the cheapest chosen, without them:
+  /// the mean of the jobs that went well says nothing about those that did not.
+  bool complete() const { return failed == 0 && unfinished == 0 && without_value == 0 && jobs > 0; }
+};
+
+struct Pareto {
+  ParetoKey cost;
+  ParetoKey error;
+  std::vector<std::string> keys;  ///< the swept ones but the seed
+  std::vector<Setting> settings;  ///< in the order of cost, those without a value last
+  int jobs = 0;
+  int unfinished = 0;
+};
+
+/// A place in the plane of two quantities of which less is better.
+struct ParetoPoint {
+  double cost = 0.0;
+  double error = 0.0;
+};
+
+/// Whether each point is such that no other is at most as large in both and smaller in one. Equal points are on the
+/// front together or not at all.
+std::vector<bool> non_dominated(const std::vector<ParetoPoint>& points);
+
+/// Groups the results of `sweep` by all keys but the seed. Throws Error, of the command line, for a column that does
+/// not exist, holds no numbers, is best neither small nor large (coverage_95), or, as cost, is better when it is more.
+Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
+                   const std::string& error);
+
+/// Reads what `--within` says, in the unit of the error. Throws Error.
+double read_bound(const Pareto& pareto, const std::string& within);
+
+/// The end of the error's interval that has to keep to a bound: the upper one, or the lower where more is better.
+double cautious_end(const Pareto& pareto, const Setting& setting);
+
+/// The complete setting of the least mean cost whose interval keeps to `bound` at its cautious end; of equal costs the
+/// one with the better error. Null if there is none. A setting of one seed has no interval and is never chosen.
+const Setting* cheapest_within(const Pareto& pareto, double bound);
+
+/// The complete setting whose interval ends best, whatever it costs. Null if none has an interval.
+const Setting* best_bounded(const Pareto& pareto);
+
+}  // namespace palpate

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// `expect:` read strictly: what it takes, and the words of every refusal.
+#include "experiment/expectation.hpp"
+
+#include "config/yaml.hpp"
+#include "experiment/summary_fields.hpp"
+#include "record/json.hpp"
+#include "support/runs.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+using Comparison = Expectation::Comparison;
+using Statistic = Expectation::Statistic;
+
+std::vector<Expectation> read(const std::string& expect) {
+  const Tree tree = parse_yaml("expect: " + expect + "\n", "c.yaml");
+  return read_expectations(tree.find("expect"));
+}
+
+std::string refused(const std::string& expect) {
+  try {
+    read(expect);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Expectation, ComparesAFieldWithAQuantity) {
+  const Expectation one = read("{rmse_m: <= 2 cm}").at(0);
+  EXPECT_EQ(one.field, "rmse_m");
+  EXPECT_EQ(one.statistic, Statistic::each);
+  EXPECT_EQ(one.comparison, Comparison::at_most);
+  EXPECT_EQ(one.bound, 0.02);
+  EXPECT_EQ(one.unit, "cm");
+  EXPECT_EQ(one.wanted, "<= 2 cm");
+  EXPECT_EQ(one.place, "c.yaml:1:10");
+}
+
+TEST(Expectation, KnowsFiveComparisonsWithAndWithoutBlanks) {
+  const std::pair<const char*, Comparison> signs[] = {{"'>= 9'", Comparison::at_least}, {"'>=9'", Comparison::at_least},
+                                                      {"'>9'", Comparison::above},      {"<=9", Comparison::at_most},
+                                                      {"< 9", Comparison::below},       {"== 9", Comparison::equal}};
+  for (const auto& [text, comparison] : signs) {
+    const Expectation one = read(std::string("{taps: ") + text + "}").at(0);
+    EXPECT_EQ(one.comparison, comparison) << text;
+    EXPECT_EQ(one.bound, 9.0) << text;
+  }
+}
+
+TEST(Expectation, TakesFlagsAndTextsAsTheyAre) {
+  EXPECT_EQ(read("{found: true}").at(0).bound, 1.0);
+  EXPECT_EQ(read("{found: == false}").at(0).bound, 0.0);
+  EXPECT_EQ(read("{status: done}").at(0).text, "done");
+  EXPECT_EQ(read("{stop_reason: tap budget}").at(0).text, "tap budget");
+}
+
+TEST(Expectation, KnowsStatistics) {
+  EXPECT_EQ(read("{mean(found): '>= 0.9'}").at(0).statistic, Statistic::mean);
+  const std::pair<const char*, double> shares[] = {{"min", 0.0},  {"p5", 0.05},    {"p10", 0.1},
+                                                   {"p25", 0.25}, {"median", 0.5}, {"p75", 0.75},
+                                                   {"p90", 0.9},  {"p95", 0.95},   {"max", 1.0}};
+  for (const auto& [name, share] : shares) {
+    const Expectation one = read("{" + std::string(name) + "(rmse_m): < 3 cm}").at(0);
+    EXPECT_EQ(one.statistic, Statistic::quantile);
+    EXPECT_EQ(one.share, share);
+    EXPECT_EQ(one.field, "rmse_m");
+  }
+  EXPECT_EQ(read("{median( rmse_m ): < 3 cm}").at(0).key, "median(rmse_m)");
+}
+
+TEST(Expectation, ReadsNestedFieldsByDotsOrMaps) {
+  EXPECT_EQ(read("{compute.infer: < 1 s}").at(0).field, "compute.infer");
+  EXPECT_EQ(read("{compute: {infer: < 1 s}}").at(0).field, "compute.infer");
+}
+
+TEST(Expectation, TakesSeveralComparisonsOfOneField) {
+  const std::vector<Expectation> both = read("{coverage_95: ['>= 0.9', <= 0.99]}");
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[0].bound, 0.9);
+  EXPECT_EQ(both[1].bound, 0.99);
+}
+
+TEST(Expectation, IsNoneWhereNothingStands) {
+  EXPECT_TRUE(read("{}").empty());
+  EXPECT_TRUE(read("").empty());
+  EXPECT_TRUE(read_expectations(nullptr).empty());
+}
+
+TEST(Expectation, RefusesWhatItDoesNotUnderstandInOneLine) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"{rmse: <= 2 cm}", "c.yaml:1:10: expect: the summary has no field 'rmse', did you mean 'rmse_m'?"},
+      {"{meadian(rmse_m): <= 2 cm}", "c.yaml:1:10: expect: unknown statistic 'meadian', did you mean 'median'?"},
+      {"{median(rmse): <= 2 cm}", "c.yaml:1:10: expect: the summary has no field 'rmse', did you mean 'rmse_m'?"},
+      {"{median(rmse_m: <= 2 cm}",
+       "c.yaml:1:10: expect: 'median(rmse_m' is not a field or STATISTIC(field), write it like "
+       "median(on_surface_taps)"},
+      {"{mean(status): done}", "c.yaml:1:10: expect: 'status' has no statistics, write status alone"},
+      {"{mean(failed_runs): == 0}", "c.yaml:1:10: expect: 'failed_runs' has no statistics, write failed_runs alone"},
+      {"{rmse_m: <= 2}", "c.yaml:1:18: expect.rmse_m: '2' lacks its unit, write a length like '1.7 cm'"},
+      {"{rmse_m: <= 2 s}", "c.yaml:1:18: expect.rmse_m: '2 s' is a time, not a length, write a length like '1.7 cm'"},
+      {"{rmse_m: 2 cm}", "c.yaml:1:18: expect.rmse_m: '2 cm' has no comparison, write a comparison like '<= 2 cm'"},
+      {"{taps: 17}",
+       "c.yaml:1:16: expect.taps: '17' has no comparison, write a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"{taps: => 17}",
+       "c.yaml:1:16: expect.taps: '=> 17' has no comparison, write a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"{taps: <= 2 cm}", "c.yaml:1:16: expect.taps: '2 cm' is not a plain number, this one has no unit"},
+      {"{taps: <= many}", "c.yaml:1:16: expect.taps: 'many' is not a number, write a plain number"},
+      {"{taps: }", "c.yaml:1:10: expect.taps: has no value, write a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"{taps: []}",
+       "c.yaml:1:10: expect.taps: the list is empty, write a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"{taps: [[1]]}",
+       "c.yaml:1:17: expect.taps: is not a comparison, write a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"{found: yes}", "c.yaml:1:17: expect.found: 'yes' is not a truth value, write true or false"},
+      {"{found: '>= 1'}", "c.yaml:1:17: expect.found: '>= 1' does not compare with >=, write true or false"},
+      {"{status: < done}",
+       "c.yaml:1:18: expect.status: '< done' does not compare with <, write the text that it has to be"},
+      {"{compute: {infer: < 1 s}, compute.infer: < 2 s}", "c.yaml:1:35: expect.compute.infer: stands there twice"},
+      {"\n  taps: >1\n  seed: <2",
+       "c.yaml:2:9: expect.taps: has no value (one that begins with > needs quotes), write "
+       "a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"[taps]",
+       "c.yaml:1:9: expect: is not a map of expectations, write expect: {on_surface_taps: \">= 9\", rmse_m: \"<= 2 "
+       "cm\"}"},
+  };
+  for (const auto& [text, message] : cases) EXPECT_EQ(refused(text), message) << text;
+}
+
+TEST(Expectation, StaysOutOfTheIdAndInTheResolvedConfig) {
+  const ResolvedConfig without = test::shipped_config("paper/object_i.yaml");
+  const ResolvedConfig with =
+      test::shipped_config("paper/object_i.yaml", {"expect.rmse_m=<= 2 cm", "expect.mean(compute.infer)=<1s"});
+  EXPECT_EQ(with.id, without.id);
+  EXPECT_EQ(without.tree.find("expect"), nullptr);
+  ASSERT_EQ(with.expectations.size(), 2U);
+  EXPECT_EQ(with.expectations[1].key, "mean(compute.infer)");
+  EXPECT_EQ(with.expectations[1].place, "command line");
+
+  const ResolvedConfig again = resolve_experiment(parse_yaml(to_yaml(with.tree), "again.yaml"), test::shared_host());
+  EXPECT_EQ(to_yaml(again.tree), to_yaml(with.tree));
+  ASSERT_EQ(again.expectations.size(), 2U);
+  EXPECT_EQ(again.expectations[1].bound, 1.0);
+}
+
+TEST(SummaryFields, AreThoseThatARunWrites) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(
+      test::palpate({"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"}, folder.path())
+          .status,
+      0);
+  const auto summary = parse_json_row(test::text_of(test::only_run(folder.path() / "runs") / "summary.json"));
+  ASSERT_TRUE(summary);
+  for (const SummaryField& field : summary_fields()) {
+    const Scalar* value = summary->find(field.name);
+    ASSERT_NE(value, nullptr) << field.name;
+    EXPECT_EQ(std::holds_alternative<std::string>(*value), field.type == SummaryField::Type::text) << field.name;
+    EXPECT_EQ(std::holds_alternative<bool>(*value), field.type == SummaryField::Type::flag) << field.name;
+  }
+  for (const auto& [name, value] : summary->fields) {
+    if (name.find("_process.") != std::string::npos) continue;
+    EXPECT_NE(find_summary_field(name), nullptr) << name << " is not listed";
+  }
+}
+
+TEST(SummaryFields, HaveTheUnitThatTheirNamesEndIn) {
+  EXPECT_EQ(unit_of_column("rmse_m"), Unit::metre);
+  EXPECT_EQ(unit_of_column("compute.infer"), Unit::second);
+  EXPECT_EQ(unit_of_column("drift_m"), Unit::metre) << "not listed";
+  EXPECT_EQ(unit_of_column("idle_seconds"), Unit::second) << "not listed";
+  EXPECT_EQ(unit_of_column("footprint_iou"), Unit::none);
+}
+
+}  // namespace
+}  // namespace palpate

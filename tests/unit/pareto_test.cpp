@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// The front against its definition, and what counts as a setting.
+#include "sweep/pareto.hpp"
+
+#include "sweep/gnuplot.hpp"
+#include "sweep/pareto_report.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+bool beats(const ParetoPoint& a, const ParetoPoint& b) {
+  return a.cost <= b.cost && a.error <= b.error && (a.cost < b.cost || a.error < b.error);
+}
+
+TEST(NonDominated, IsWhatTheDefinitionSaysInThousandsOfRandomCases) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 3000; ++i) {
+    const int count = std::uniform_int_distribution<int>(0, 12)(random);
+    // Few different values: most cases have ties in one coordinate or in both.
+    std::uniform_int_distribution<int> value(0, i % 2 == 0 ? 4 : 1000);
+    std::vector<ParetoPoint> points;
+    for (int k = 0; k < count; ++k) points.push_back({double(value(random)), double(value(random))});
+    const std::vector<bool> front = non_dominated(points);
+    ASSERT_EQ(front.size(), points.size());
+    for (std::size_t a = 0; a < points.size(); ++a) {
+      bool beaten = false;
+      for (const ParetoPoint& other : points) beaten = beaten || beats(other, points[a]);
+      EXPECT_EQ(front[a], !beaten) << "case " << i << ", point " << a;
+    }
+  }
+}
+
+/// A job of a made-up sweep over strategy, taps and seed: cost and error, or how it failed.
+struct Outcome {
+  std::string strategy;
+  std::string seed;
+  double seconds;
+  double rmse;
+  double iou = 0.5;
+  std::string status = "done";
+  bool has_truth = true;
+};
+
+struct MadeUp {
+  Sweep sweep{"runs/x/0123456789ab", {"acquisition", "taps", "seed"}, {}};
+  std::vector<Row> results;
+
+  explicit MadeUp(const std::vector<Outcome>& outcomes) {
+    for (const Outcome& one : outcomes) {
+      const int index = static_cast<int>(sweep.jobs.size());
+      sweep.jobs.push_back({index, "id", {one.strategy, "17", one.seed}});
+      if (one.status == "absent") continue;
+      Row row;
+      row.add("job", index);
+      row.add("acquisition", one.strategy);
+      row.add("taps", "17");
+      row.add("status", one.status);
+      row.add("rmse_m", one.has_truth ? std::optional(one.rmse) : std::nullopt);
+      row.add("footprint_iou", one.iou);
+      row.add("coverage_95", 0.9);
+      row.add("robot_seconds", one.seconds);
+      row.add("found", one.iou > 0.0);
+      results.push_back(std::move(row));
+    }
+  }
+  Pareto pareto(const std::string& cost = "robot_seconds", const std::string& error = "rmse_m") const {
+    return make_pareto(sweep, results, cost, error);
+  }
+  std::string refusal(const std::string& cost, const std::string& error, const std::string& within = "") const {
+    try {
+      const Pareto made = pareto(cost, error);
+      if (!within.empty()) read_bound(made, within);
+    } catch (const Error& trouble) {
+      return trouble.what();
+    }
+    return "accepted";
+  }
+};
+
+const Setting& setting(const Pareto& pareto, const std::string& name) {
+  for (const Setting& one : pareto.settings) {
+    if (one.name == name) return one;
+  }
+  throw std::runtime_error("no setting " + name);
+}
+
+TEST(Pareto, GroupsOverTheSeedAndNamesOnlyTheKeysThatDiffer) {
+  const Pareto pareto = MadeUp({{"a", "1", 10, 0.03}, {"b", "1", 20, 0.01}, {"a", "2", 12, 0.05}}).pareto();
+  EXPECT_EQ(pareto.keys, (std::vector<std::string>{"acquisition", "taps"}));
+  ASSERT_EQ(pareto.settings.size(), 2U);
+  const Setting& a = setting(pareto, "acquisition=a");
+  EXPECT_EQ(a.jobs, 2);
+  EXPECT_EQ(a.first_job, 0U);
+  EXPECT_DOUBLE_EQ(a.cost.mean, 11.0);
+  EXPECT_DOUBLE_EQ(a.error.mean, 0.04);
+}
+
+TEST(Pareto, NumbersTheFrontInTheOrderOfCost) {
+  const Pareto pareto = MadeUp({{"dear", "1", 30, 0.01}, {"bad", "1", 20, 0.05}, {"cheap", "1", 10, 0.03}}).pareto();
+  EXPECT_EQ(setting(pareto, "acquisition=cheap").front, 1);
+  EXPECT_EQ(setting(pareto, "acquisition=dear").front, 2);
+  EXPECT_EQ(setting(pareto, "acquisition=bad").front, 0);
+}
+
+TEST(Pareto, PutsEqualSettingsOnTheFrontTogether) {
+  const Pareto pareto = MadeUp({{"a", "1", 10, 0.01}, {"b", "1", 10, 0.01}, {"c", "1", 10, 0.02}}).pareto();
+  EXPECT_GT(setting(pareto, "acquisition=a").front, 0);
+  EXPECT_GT(setting(pareto, "acquisition=b").front, 0);
+  EXPECT_EQ(setting(pareto, "acquisition=c").front, 0);
+}
+
+TEST(Pareto, TakesMoreForBetterWhereItIs) {
+  const Pareto pareto = MadeUp({{"a", "1", 10, 0, 0.2}, {"b", "1", 20, 0, 0.9}, {"c", "1", 30, 0, 0.5}})
+                            .pareto("robot_seconds", "footprint_iou");
+  EXPECT_TRUE(pareto.error.more_is_better);
+  EXPECT_EQ(setting(pareto, "acquisition=a").front, 1);
+  EXPECT_EQ(setting(pareto, "acquisition=b").front, 2);
+  EXPECT_EQ(setting(pareto, "acquisition=c").front, 0);
+}
+
+TEST(Pareto, NeverNamesASettingWithAJobThatFailedIsMissingOrHasNoValue) {
+  const Outcome failed{"failed", "2", 1, 0.001, 0.5, "failed"};
+  const Outcome absent{"absent", "2", 1, 0.001, 0.5, "absent"};
+  const Outcome unknown{"unknown", "2", 1, 0.001, 0.5, "done", false};
+  const Pareto pareto = MadeUp({{"failed", "1", 1, 0.001},
+                                failed,
+                                {"failed", "3", 1, 0.001},
+                                {"absent", "1", 1, 0.001},
+                                absent,
+                                {"absent", "3", 1, 0.001},
+                                {"unknown", "1", 1, 0.001},
+                                unknown,
+                                {"unknown", "3", 1, 0.001},
+                                {"good", "1", 9, 0.01},
+                                {"good", "2", 9, 0.01}})
+                            .pareto();
+  for (const char* name : {"acquisition=failed", "acquisition=absent", "acquisition=unknown"}) {
+    EXPECT_EQ(setting(pareto, name).front, 0) << name;
+    EXPECT_EQ(setting(pareto, name).error.count, 2U) << "shown all the same";
+  }
+  EXPECT_EQ(pareto.unfinished, 1);
+  EXPECT_EQ(setting(pareto, "acquisition=good").front, 1);
+  ASSERT_NE(cheapest_within(pareto, 0.02), nullptr);
+  EXPECT_EQ(cheapest_within(pareto, 0.02)->name, "acquisition=good");
+  const std::string table = pareto_table(pareto);
+  for (const char* note : {"1 of 3 failed", "1 of 3 unfinished", "1 of 3 without a value"})
+    EXPECT_THAT(table, HasSubstr(note));
+}
+
+TEST(Within, AsksForTheUpperEndOfTheInterval) {
+  // Of 10 and 12 mm: mean 11 mm, half width 12.706 * 1 mm.
+  const Pareto pareto = MadeUp({{"a", "1", 5, 0.010}, {"a", "2", 5, 0.012}}).pareto();
+  EXPECT_EQ(cheapest_within(pareto, 0.0237), nullptr);
+  EXPECT_NE(cheapest_within(pareto, 0.0238), nullptr);
+}
+
+TEST(Within, AsksForTheLowerEndWhereMoreIsBetter) {
+  const Pareto pareto =
+      MadeUp({{"a", "1", 5, 0, 0.80}, {"a", "2", 5, 0, 0.82}}).pareto("robot_seconds", "footprint_iou");
+  EXPECT_EQ(cheapest_within(pareto, 0.69), nullptr) << "0.81 - 12.706 * 0.01 = 0.683";
+  EXPECT_NE(cheapest_within(pareto, 0.68), nullptr);
+}
+
+TEST(Within, TakesTheCheapestAndOfEqualCostsTheBetter) {
+  const Pareto pareto = MadeUp({{"dear", "1", 30, 0.001},
+                                {"dear", "2", 30, 0.001},
+                                {"worse", "1", 10, 0.003},
+                                {"worse", "2", 10, 0.003},
+                                {"better", "1", 10, 0.002},
+                                {"better", "2", 10, 0.002},
+                                {"cheap", "1", 5, 0.009},
+                                {"cheap", "2", 5, 0.009}})
+                            .pareto();
+  EXPECT_EQ(cheapest_within(pareto, 0.005)->name, "acquisition=better");
+  EXPECT_EQ(cheapest_within(pareto, 0.0005), nullptr);
+  EXPECT_EQ(best_bounded(pareto)->name, "acquisition=dear");
+}
+
+TEST(Within, OneSeedIsNeverWithin) {
+  const Pareto pareto = MadeUp({{"a", "1", 5, 0.0}}).pareto();
+  EXPECT_EQ(cheapest_within(pareto, 1.0), nullptr);
+  EXPECT_EQ(best_bounded(pareto), nullptr);
+}
+
+TEST(Within, ReadsTheBoundInTheUnitOfTheError) {
+  const MadeUp made({{"a", "1", 5, 0.01}});
+  EXPECT_EQ(read_bound(made.pareto(), "5mm"), 0.005);
+  EXPECT_EQ(read_bound(made.pareto("robot_seconds", "footprint_iou"), "0.8"), 0.8);
+  EXPECT_EQ(made.refusal("robot_seconds", "rmse_m", "5"),
+            "command line: --within: '5' lacks its unit, write a length like '1.7 cm'");
+  EXPECT_EQ(made.refusal("robot_seconds", "rmse_m", "5 s"),
+            "command line: --within: '5 s' is a time, not a length, write a length like '1.7 cm'");
+  EXPECT_EQ(made.refusal("robot_seconds", "footprint_iou", "80 %"),
+            "command line: --within: '80 %' is not a plain number, this one has no unit");
+}
+
+TEST(Pareto, RefusesColumnsThatCannotBeCompared) {
+  const MadeUp made({{"a", "1", 5, 0.01}});
+  EXPECT_EQ(made.refusal("robot_second", "rmse_m"),
+            "command line: --cost: results.csv has no column 'robot_second', did you mean 'robot_seconds'?");
+  EXPECT_EQ(made.refusal("robot_seconds", "rmse"),
+            "command line: --error: results.csv has no column 'rmse', did you mean 'rmse_m'?");
+  EXPECT_EQ(made.refusal("status", "rmse_m"),
+            "command line: --cost: the column 'status' holds done, not numbers, name one that can be averaged");
+  EXPECT_EQ(made.refusal("robot_seconds", "coverage_95"),
+            "command line: --error: coverage_95 is best at 0.95, neither small nor large, nlpd judges heights and "
+            "intervals together");
+  EXPECT_EQ(made.refusal("footprint_iou", "rmse_m"),
+            "command line: --cost: more of footprint_iou is better, so it is no cost, give it to --error");
+  EXPECT_EQ(MadeUp({{"a", "1", 1, 1, 0.5, "absent"}}).refusal("robot_seconds", "rmse_m"),
+            "runs/x/0123456789ab: no job of this sweep has ended, 'palpate resume' carries on");
+}
+
+TEST(Pareto, ComparesSweptNumbersAndFlagsToo) {
+  const Pareto pareto = MadeUp({{"a", "1", 5, 0.01, 0.0}, {"a", "2", 5, 0.01, 0.5}}).pareto("taps", "found");
+  EXPECT_EQ(pareto.settings.front().cost.mean, 17.0);
+  EXPECT_EQ(pareto.settings.front().error.mean, 0.5);
+  EXPECT_TRUE(pareto.error.more_is_better);
+}
+
+TEST(ParetoTable, AlignsItsColumnsAndChoosesReadableUnits) {
+  const Pareto pareto =
+      MadeUp({{"weighted", "1", 0.0101, 0.030}, {"weighted", "2", 0.0099, 0.032}, {"a", "1", 0.2, 0.01}}).pareto();
+  EXPECT_EQ(pareto_table(pareto).substr(0, pareto_table(pareto).find("mean over")),
+            "front  setting               jobs  robot_seconds [ms]        rmse_m [mm]\n"
+            "    1  acquisition=weighted     2         10.0 +- 1.3  31.0 [18.3, 43.7]\n"
+            "    2  acquisition=a            1          200.0 +- -           10.0 [-]\n");
+}
+
+TEST(ParetoScript, QuotesEveryNameSoThatNothingInItIsACommand) {
+  const std::string evil = "x'; system(\"touch /tmp/owned\"); `touch owned` @macro\nset output";
+  EXPECT_EQ(gnuplot_text("it's"), "'it''s'");
+  const std::string script =
+      pareto_script(MadeUp({{evil, "1", 5, 0.01}, {"b", "1", 6, 0.002}}).pareto(), evil, 0.005, nullptr);
+  EXPECT_THAT(script, Not(HasSubstr("\nset output")));
+  EXPECT_THAT(script, Not(HasSubstr("x'; ")));
+  EXPECT_THAT(script, HasSubstr("x''; system("));
+}
+
+}  // namespace
+}  // namespace palpate

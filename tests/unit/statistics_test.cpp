@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(StudentFactor, IsThatOfThePrintedTables) {
+  // Two-sided 95 %, three decimals, as in every textbook's appendix.
+  const std::pair<std::size_t, double> table[] = {{1, 12.706},   {2, 4.303},      {3, 3.182},  {4, 2.776},
+                                                  {9, 2.262},    {19, 2.093},     {29, 2.045}, {120, 1.980},
+                                                  {1000, 1.962}, {1000000, 1.960}};
+  for (const auto& [degrees, factor] : table) EXPECT_NEAR(student_factor(degrees), factor, 5e-4) << degrees;
+}
+
+TEST(StudentFactor, OfOneDegreeIsThatOfTheCauchyDistribution) {
+  EXPECT_NEAR(student_factor(1), std::tan(3.14159265358979323846 * 0.475), 1e-11);
+}
+
+TEST(StudentFactor, OfTwoDegreesHasAClosedForm) {
+  // t = (2 p - 1) sqrt(2 / (4 p (1 - p))) with p = 0.975.
+  EXPECT_NEAR(student_factor(2), 0.95 * std::sqrt(2.0 / (4.0 * 0.975 * 0.025)), 1e-12);
+}
+
+TEST(MeanEstimate, OfFourNumbersIsWhatOneComputesByHand) {
+  // The squares of the differences from 3 add up to 4 + 1 + 0 + 9 = 14; the standard error is sqrt(14 / 3 / 4).
+  const MeanEstimate estimate = estimate_mean({1.0, 2.0, 3.0, 6.0});
+  EXPECT_EQ(estimate.count, 4U);
+  EXPECT_DOUBLE_EQ(estimate.mean, 3.0);
+  ASSERT_TRUE(estimate.interval);
+  EXPECT_NEAR(estimate.interval->high, 3.0 + 3.182446305 * std::sqrt(14.0 / 12.0), 1e-8);
+  EXPECT_NEAR(estimate.interval->low, 3.0 - 3.182446305 * std::sqrt(14.0 / 12.0), 1e-8);
+}
+
+TEST(MeanEstimate, OfOneValueHasNoInterval) {
+  const MeanEstimate estimate = estimate_mean({7.0});
+  EXPECT_EQ(estimate.mean, 7.0);
+  EXPECT_FALSE(estimate.interval);
+}
+
+TEST(MeanEstimate, OfNothingHasNeitherCountNorInterval) {
+  EXPECT_EQ(estimate_mean({}).count, 0U);
+  EXPECT_FALSE(estimate_mean({}).interval);
+}
+
+TEST(MeanEstimate, OfEqualValuesHasAnIntervalWithoutWidth) {
+  // Three times 0.1 / 3 is not 0.1: the interval would leave its own value out.
+  const MeanEstimate estimate = estimate_mean({0.1, 0.1, 0.1});
+  ASSERT_TRUE(estimate.interval);
+  EXPECT_EQ(estimate.mean, 0.1);
+  EXPECT_EQ(estimate.interval->low, 0.1);
+  EXPECT_EQ(estimate.interval->high, 0.1);
+}
+
+TEST(MeanEstimate, OfLargeNumbersDoesNotOverflow) {
+  EXPECT_NEAR(estimate_mean({1.5e308, 1.6e308, 1.7e308}).mean / 1.6e308, 1.0, 1e-12);
+}
+
+TEST(MeanEstimate, OfCloseNumbersFarFromZeroKeepsItsSpread) {
+  const MeanEstimate estimate = estimate_mean({1e9 - 1.0, 1e9, 1e9 + 1.0});
+  EXPECT_NEAR(estimate.interval->high - estimate.mean, 4.302652730 / std::sqrt(3.0), 1e-6);
+}
+
+TEST(Quantile, InterpolatesBetweenOrderStatistics) {
+  EXPECT_EQ(quantile({1.0, 2.0, 3.0}, 0.5), 2.0);
+  EXPECT_EQ(quantile({1.0, 2.0, 3.0, 4.0}, 0.5), 2.5);
+  EXPECT_EQ(quantile({1.0, 2.0, 3.0, 4.0}, 0.0), 1.0);
+  EXPECT_EQ(quantile({1.0, 2.0, 3.0, 4.0}, 1.0), 4.0);
+  EXPECT_NEAR(quantile({0.0, 10.0}, 0.9), 9.0, 1e-12);
+  EXPECT_EQ(quantile({5.0}, 0.9), 5.0);
+}
+
+TEST(Quantile, IsFiniteWhereNoInfiniteValueHasAPartInIt) {
+  EXPECT_EQ(quantile({1.0, 2.0, kInfinity}, 0.5), 2.0);
+  EXPECT_EQ(quantile({1.0, 2.0, 3.0, kInfinity}, 0.9), kInfinity);
+  EXPECT_EQ(quantile({-kInfinity, 1.0, 2.0}, 0.5), 1.0);
+  EXPECT_EQ(quantile({-kInfinity, 1.0}, 0.5), -kInfinity);
+  EXPECT_EQ(quantile({kInfinity, kInfinity}, 0.5), kInfinity);
+}
+
+}  // namespace
+}  // namespace palpate
