@@ -38,7 +38,7 @@ ProcessState state_of(const TapBelief::Quantity& quantity) {
 Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,
                        const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend)
     : options_(options),
-      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed))),
+      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
       context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted},
       candidates_(make_candidates(options.candidates, scene_->area())),
       initial_(initial_design(options.initial, candidates_, scene_->area(), context_.seed)),
