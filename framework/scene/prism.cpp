@@ -145,6 +145,8 @@ std::string trouble_of_outline(const Outline& outline) {
       return fmt::format("points {} and {} are the same; it closes by itself", i + 1, (i + 1) % n + 1);
     }
     if (folds(outline, i)) return fmt::format("folds back at point {}", (i + 1) % n + 1);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;  // neighbours
       if (meet(outline[i], next(outline, i), outline[j], next(outline, j))) {

@@ -15,8 +15,8 @@ constexpr std::size_t kMostTriangles = 5'000'000;
 using Soup = std::vector<std::array<float, 3>>;
 
 /// Reads STL, OBJ or PLY, told apart by the ending of `file`; faces of more than three corners are divided. Reads no
-/// other file, such as the materials of an OBJ. Throws Error, its `where` the file: another format, cut short, not to
-/// be understood, no triangle, too many.
+/// other file, such as the materials of an OBJ. Works in a process of its own, which a broken file may kill. Throws
+/// Error, its `where` the file: another format, cut short, not to be understood, no triangle, too many.
 Soup import_triangles(const std::string& bytes, const std::string& file);
 
 }  // namespace palpate::shapes

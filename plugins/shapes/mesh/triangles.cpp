@@ -46,6 +46,61 @@ void check_size(const Vector3d& extent, double furthest, double unit, const std:
   }
 }
 
+void check_areas(const Triangles& mesh, const std::string& file) {
+  std::size_t degenerate = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < mesh.corners.size(); ++i) {
+    const auto& [a, b, c] = mesh.corners[i];
+    const Vector3d ab = mesh.points[b] - mesh.points[a];
+    const Vector3d ac = mesh.points[c] - mesh.points[a];
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    // What single precision leaves of three points on a line may be as high as its rounding.
+    if (ab.cross(ac).norm() <= 0x1p-23 * longest && degenerate++ == 0) first = i;
+  }
+  if (degenerate == 0) return;
+  throw Error(file,
+              std::to_string(degenerate) + " of " + std::to_string(mesh.corners.size()) +
+                  " triangles have no area, the first is triangle " + std::to_string(first + 1) + " at " +
+                  place(mesh.points[mesh.corners[first][0]]) + " from the middle of its base",
+              "remove degenerate triangles where the mesh was made");
+}
+
+void check_doubles(const Triangles& mesh, const std::string& file) {
+  std::vector<std::array<std::uint32_t, 3>> sorted = mesh.corners;
+  for (auto& triangle : sorted) std::sort(triangle.begin(), triangle.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice == sorted.end()) return;
+  throw Error(file, "a triangle is there twice, at " + place(mesh.points[(*twice)[0]]) + " from the middle of its base",
+              "remove doubled triangles where the mesh was made");
+}
+
+void check_closed(const Triangles& mesh, const std::string& file) {
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * mesh.corners.size());
+  for (const auto& [a, b, c] : mesh.corners) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      edges.push_back(std::uint64_t{std::min(from, to)} << 32 | std::max(from, to));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::size_t open = 0;
+  std::uint64_t first_open = 0;
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t next = i;
+    while (next < edges.size() && edges[next] == edges[i]) ++next;
+    if (next == i + 1 && open++ == 0) first_open = edges[i];
+    i = next;
+  }
+  if (open > 0) {
+    throw Error(file,
+                "has holes: " + std::to_string(open) + " edges belong to one triangle only, one from " +
+                    place(mesh.points[first_open >> 32]) + " to " + place(mesh.points[first_open & 0xffffffff]) +
+                    " from the middle of its base",
+                "close them where the mesh was made, or write `holes: allow`");
+  }
+}
+
 }  // namespace
 
 Triangles join(const Soup& soup, const Frame& frame, const std::string& file) {
@@ -95,45 +150,9 @@ Triangles join(const Soup& soup, const Frame& frame, const std::string& file) {
 }
 
 void check_surface(const Triangles& mesh, bool holes_allowed, const std::string& file) {
-  std::vector<std::uint64_t> edges;
-  edges.reserve(3 * mesh.corners.size());
-  std::size_t degenerate = 0;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < mesh.corners.size(); ++i) {
-    const auto& [a, b, c] = mesh.corners[i];
-    const Vector3d ab = mesh.points[b] - mesh.points[a];
-    const Vector3d ac = mesh.points[c] - mesh.points[a];
-    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    // What single precision leaves of three points on a line may be as high as its rounding.
-    if (ab.cross(ac).norm() <= 0x1p-23 * longest && degenerate++ == 0) first = i;
-    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-      edges.push_back(std::uint64_t{std::min(from, to)} << 32 | std::max(from, to));
-    }
-  }
-  if (degenerate > 0) {
-    throw Error(file,
-                std::to_string(degenerate) + " of " + std::to_string(mesh.corners.size()) +
-                    " triangles have no area, the first is triangle " + std::to_string(first + 1) + " at " +
-                    place(mesh.points[mesh.corners[first][0]]) + " from the middle of its base",
-                "remove degenerate triangles where the mesh was made");
-  }
-  if (holes_allowed) return;
-  std::sort(edges.begin(), edges.end());
-  std::size_t open = 0;
-  std::uint64_t first_open = 0;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t next = i;
-    while (next < edges.size() && edges[next] == edges[i]) ++next;
-    if (next == i + 1 && open++ == 0) first_open = edges[i];
-    i = next;
-  }
-  if (open > 0) {
-    throw Error(file,
-                "has holes: " + std::to_string(open) + " edges belong to one triangle only, one from " +
-                    place(mesh.points[first_open >> 32]) + " to " + place(mesh.points[first_open & 0xffffffff]) +
-                    " from the middle of its base",
-                "close them where the mesh was made, or write `holes: allow`");
-  }
+  check_areas(mesh, file);
+  check_doubles(mesh, file);
+  if (!holes_allowed) check_closed(mesh, file);
 }
 
 }  // namespace palpate::shapes

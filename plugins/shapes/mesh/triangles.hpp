@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::shapes {
@@ -30,8 +31,8 @@ struct Frame {
 /// than 1e-6 m.
 Triangles join(const Soup& soup, const Frame& frame, const std::string& file);
 
-/// Throws Error, its `where` the file, for triangles without area and, unless allowed, for holes: edges of one triangle
-/// only.
+/// Throws Error, its `where` the file, for triangles without area or there twice and, unless allowed, for holes: edges
+/// of one triangle only.
 void check_surface(const Triangles& mesh, bool holes_allowed, const std::string& file);
 
 }  // namespace palpate::shapes
