@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 namespace palpate::test {
 namespace {
@@ -39,7 +40,7 @@ ShapeCase wave() {
             return within(p.x(), -0.045, 0.045, slack) && within(p.y(), -0.025, 0.025, slack) &&
                    within(p.z(), 0, top(p.x()), 3 * slack);
           },
-          extruded(top, 0.09, 0.05, 4000)};
+          [top] { return extruded(top, 0.09, 0.05, 4000); }};
 }
 
 ShapeCase slope() {
@@ -49,7 +50,7 @@ ShapeCase slope() {
             return within(p.x(), -0.04, 0.04, slack) && within(p.y(), -0.02, 0.02, slack) &&
                    within(p.z(), 0, top(p.x()), 2 * slack);
           },
-          extruded(top, 0.08, 0.04, 1)};
+          [top] { return extruded(top, 0.08, 0.04, 1); }};
 }
 
 ShapeCase dome() {
@@ -61,7 +62,7 @@ ShapeCase dome() {
           [r](const Vector3d& p, double slack) {
             return within(p.z(), 0, 0.03, slack) && (p - Vector3d(0, 0, 0.03 - r)).norm() <= r + slack;
           },
-          turned(profile, kSides)};
+          [profile] { return turned(profile, kSides); }};
 }
 
 ShapeCase cylinder() {
@@ -69,7 +70,9 @@ ShapeCase cylinder() {
           [](const Vector3d& p, double slack) {
             return within(p.z(), 0, 0.04, slack) && std::hypot(p.x(), p.y()) <= 0.03 + slack;
           },
-          turned({{0, 0}, {0.03, 0}, {0.03, 0.04}, {0, 0.04}}, kSides)};
+          [] {
+            return turned({{0, 0}, {0.03, 0}, {0.03, 0.04}, {0, 0.04}}, kSides);
+          }};
 }
 
 ShapeCase cone() {
@@ -77,21 +80,26 @@ ShapeCase cone() {
           [](const Vector3d& p, double slack) {
             return within(p.z(), 0, 0.05, slack) && std::hypot(p.x(), p.y()) <= 0.04 * (1 - p.z() / 0.05) + 2 * slack;
           },
-          turned({{0, 0}, {0.04, 0}, {0, 0.05}}, kSides)};
+          [] {
+            return turned({{0, 0}, {0.04, 0}, {0, 0.05}}, kSides);
+          }};
 }
 
 ShapeCase ellipsoid() {
-  Profile profile{{0, 0}};
-  for (const auto& point : arc(1, 1, -kPi / 2, kPi / 2, 250)) profile.push_back(point);
-  profile.erase(profile.begin() + 1);
-  profile.push_back({0, 2});
-  Surface surface = turned(profile, kSides);
-  for (Vector3d& point : surface.points) point = point.cwiseProduct(Vector3d(0.05, 0.03, 0.02));
+  const auto build = [] {
+    Profile profile{{0, 0}};
+    for (const auto& point : arc(1, 1, -kPi / 2, kPi / 2, 250)) profile.push_back(point);
+    profile.erase(profile.begin() + 1);
+    profile.push_back({0, 2});
+    Surface surface = turned(profile, kSides);
+    for (Vector3d& point : surface.points) point = point.cwiseProduct(Vector3d(0.05, 0.03, 0.02));
+    return surface;
+  };
   return {"ellipsoid", "{type: ellipsoid, length: 10 cm, width: 6 cm, height: 4 cm}",
           [](const Vector3d& p, double slack) {
             return (p - Vector3d(0, 0, 0.02)).cwiseQuotient(Vector3d(0.05, 0.03, 0.02)).norm() <= 1 + slack / 0.02;
           },
-          surface};
+          build};
 }
 
 ShapeCase ring() {
@@ -100,7 +108,9 @@ ShapeCase ring() {
             const double radius = std::hypot(p.x(), p.y());
             return within(p.z(), 0, 0.02, slack) && within(radius, 0.03, 0.05, slack);
           },
-          turned({{0.03, 0}, {0.05, 0}, {0.05, 0.02}, {0.03, 0.02}}, kSides)};
+          [] {
+            return turned({{0.03, 0}, {0.05, 0}, {0.05, 0.02}, {0.03, 0.02}}, kSides);
+          }};
 }
 
 /// A union of rectangles {left, right, low, high}, less a rectangle.
@@ -118,8 +128,10 @@ ShapeCase bars(const std::string& name, const std::string& options, const std::v
           [flat, height](const Vector3d& p, double slack) {
             return within(p.z(), 0, height, slack) && flat(p.x(), p.y(), slack);
           },
-          raised(
-              s, t, [flat](double x, double y) { return flat(x, y, 0.0); }, height)};
+          [flat, s, t, height] {
+            return raised(
+                s, t, [flat](double x, double y) { return flat(x, y, 0.0); }, height);
+          }};
 }
 
 constexpr std::array<double, 4> kNoHole{1, -1, 1, -1};
@@ -145,6 +157,12 @@ const std::vector<ShapeCase>& shape_cases() {
            {{-0.04, 0.04, -0.03, 0.03}}, {-0.02, 0.03, -0.02, 0.01}, {-0.04, -0.02, 0.03, 0.04},
            {-0.03, -0.02, 0.01, 0.03}, 0.025)};
   return cases;
+}
+
+const Surface& ShapeCase::surface() const {
+  static std::map<std::string, Surface> built;
+  const auto found = built.find(name);
+  return found != built.end() ? found->second : built.emplace(name, build()).first->second;
 }
 
 SceneOptions scene_options(const std::string& yaml) {

@@ -18,7 +18,10 @@ struct ShapeCase {
   std::string options;  ///< of the object, as a YAML map
   /// Whether a point of the shape's frame lies in the solid blown up by `slack` metres, or shrunk for a negative one.
   std::function<bool(const Eigen::Vector3d& point, double slack)> inside;
-  Surface surface;  ///< within 3e-6 m
+  std::function<Surface()> build;
+
+  /// Within 3e-6 m; built when it is first asked for, because that takes long.
+  const Surface& surface() const;
 };
 
 inline void PrintTo(const ShapeCase& one, std::ostream* out) { *out << one.options; }

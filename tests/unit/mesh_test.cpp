@@ -41,7 +41,7 @@ class MeshOfPrimitive : public testing::TestWithParam<ShapeCase> {};
 TEST_P(MeshOfPrimitive, HasItsHeights) {
   const TemporaryFolder folder;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto file = folder.write(kFormats[i], written(GetParam().surface, i));
+    const auto file = folder.write(kFormats[i], written(GetParam().surface(), i));
     const std::string pose = std::string("at: [20 cm, 20 cm]") + (i > 0 ? ", " : "") + kPoses[i];
     const auto exact = scene_of({with_fields(GetParam().options, pose)});
     const auto mesh = scene_of({with_fields("{type: mesh, file: '" + file.string() + "', unit: 1 mm}", pose)});
@@ -58,7 +58,7 @@ TEST_P(MeshOfPrimitive, HasItsHeights) {
     }
     EXPECT_LT(worst, 1e-5) << kFormats[i] << " " << pose;
     EXPECT_GT(on_object, 300) << pose;
-    RecordProperty("worst_" + std::to_string(i), std::to_string(worst));
+    RecordProperty("worst_" + std::to_string(i), std::to_string(1e6 * worst) + " um");
   }
 }
 
@@ -105,7 +105,7 @@ TEST(Mesh, LetsNoLineSlipBetweenItsTriangles) {
 
 TEST(Mesh, IsPlacedAtRandomWhollyInside) {
   const TemporaryFolder folder;
-  const auto file = folder.write("a.stl", stl_binary(shape_cases().front().surface));
+  const auto file = folder.write("a.stl", stl_binary(shape_cases().front().surface()));
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     // The primitive and its mesh draw the same numbers and have the same reach, but for the rounding of the file.
     const auto mesh = scene_of({mesh_at(file)}, seed, ", placement: random");

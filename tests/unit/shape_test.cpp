@@ -41,7 +41,7 @@ struct Frame {
       // About the axis across, so that the end of the length rises: a negative angle in the right-handed sense.
       : turn(Eigen::AngleAxisd(pose.rotation * kPi / 180, Vector3d::UnitZ()) *
              Eigen::AngleAxisd(-pose.tilt * kPi / 180, Vector3d::UnitY())),
-        lift(one.surface.support(turn.transpose() * -Vector3d::UnitZ())) {}
+        lift(one.surface().support(turn.transpose() * -Vector3d::UnitZ())) {}
 
   Vector3d to_shape(double x, double y, double z) const {
     return turn.transpose() * Vector3d(x - 0.2, y - 0.2, z - lift);
@@ -76,7 +76,7 @@ TEST_P(Primitive, HasTheHeightOfTheHighestPointThatIsInside) {
       }
     }
     EXPECT_GT(on_object, 15) << pose.tilt;
-    EXPECT_NEAR(scene->highest(), GetParam().surface.support(frame.turn.transpose() * Vector3d::UnitZ()) + frame.lift,
+    EXPECT_NEAR(scene->highest(), GetParam().surface().support(frame.turn.transpose() * Vector3d::UnitZ()) + frame.lift,
                 4e-6);
   }
 }
@@ -86,10 +86,10 @@ TEST_P(Primitive, ReachesAsFarAsItsTriangles) {
   Random random(2, "test/primitive");
   for (int i = 0; i < 500; ++i) {
     const Vector3d direction = random_direction(random);
-    EXPECT_NEAR(shape->support(direction), GetParam().surface.support(direction), 3e-6) << direction.transpose();
+    EXPECT_NEAR(shape->support(direction), GetParam().surface().support(direction), 3e-6) << direction.transpose();
   }
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1), Vector3d(0, 0, -1)}) {
-    EXPECT_NEAR(shape->support(axis), GetParam().surface.support(axis), 3e-6) << axis.transpose();
+    EXPECT_NEAR(shape->support(axis), GetParam().surface().support(axis), 3e-6) << axis.transpose();
   }
 }
 
