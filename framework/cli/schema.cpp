@@ -70,7 +70,7 @@ Tree expect_schema() {
 
 int schema(Program& program) {
   ExperimentOptions options;
-  Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); }));
+  Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); }, &program.host));
   Tree& properties = out.at("properties");
   Tree scene = properties.at("scene");
   Tree scene_name = Tree::map();

@@ -18,7 +18,10 @@ int validate(Program& program, const std::vector<std::string>& configs) {
         const SweepPlan plan = plan_sweep(program.composer, program.host, file, {}, "runs");
         fmt::print("{}: valid, a sweep of {} jobs\n", file, plan.sweep.jobs.size());
       } else {
-        fmt::print("{}: valid, id {}\n", file, resolve_experiment(tree, program.host).id);
+        const ResolvedConfig config = resolve_experiment(tree, program.host);
+        // Only building finds a broken mesh, or objects for which there is no room.
+        build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
+        fmt::print("{}: valid, id {}\n", file, config.id);
       }
     } catch (const Error& trouble) {
       fmt::print(stderr, "{}\n", trouble.what());

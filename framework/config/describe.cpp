@@ -3,6 +3,8 @@
 
 #include "config/quantity.hpp"
 
+#include <palpate/error.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,6 +27,8 @@ std::string range_text(const Field& field) {
 
 class Describer final : public Fields {
  public:
+  explicit Describer(const PluginSource* plugins) : plugins_(plugins) {}
+
   std::vector<FieldDescription> rows;
 
   void real(double& value, const Field& field) override {
@@ -38,6 +42,16 @@ class Describer final : public Fields {
     row.count = count;
     for (std::size_t i = 0; i < count; ++i) {
       row.default_value += (i == 0 ? "[" : ", ") + write_quantity(values[i], field.unit);
+    }
+    row.default_value += "]";
+  }
+  void table(std::vector<double>& values, std::size_t columns, const Field& field) override {
+    FieldDescription& row = add(Type::table, field);
+    row.count = columns;
+    row.default_value = "[";
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i % columns == 0) row.default_value += i == 0 ? "[" : ", [";
+      row.default_value += write_quantity(values[i], field.unit) + (i % columns + 1 == columns ? "]" : ", ");
     }
     row.default_value += "]";
   }
@@ -58,12 +72,12 @@ class Describer final : public Fields {
     std::vector<FieldDescription::CaseDescription> described;
     for (const Case& one : cases) {
       described.push_back(
-          {one.name, one.meaning, one.list ? describe_fields(one.list) : std::vector<FieldDescription>{}});
+          {one.name, one.meaning, one.list ? describe_fields(one.list, plugins_) : std::vector<FieldDescription>{}});
     }
     row.cases = std::move(described);
   }
   void section(Options& options, const Field& field) override {
-    add(Type::section, field).fields = describe_fields([&](Fields& fields) { options.list(fields); });
+    add(Type::section, field).fields = describe_fields([&](Fields& fields) { options.list(fields); }, plugins_);
   }
   void section(bool& present, Options& options, const Field& field) override {
     section(options, field);
@@ -71,7 +85,7 @@ class Describer final : public Fields {
   }
   void sections(const ListAccess& access, const Field& field) override {
     access.resize(1);
-    add(Type::sections, field).fields = describe_fields([&](Fields& fields) { access.item(0).list(fields); });
+    add(Type::sections, field).fields = describe_fields([&](Fields& fields) { access.item(0).list(fields); }, plugins_);
     access.resize(0);
   }
   void plugin(PluginChoice& choice, const Field& field) override {
@@ -85,9 +99,19 @@ class Describer final : public Fields {
   void plugins(std::vector<PluginChoice>&, const char* kind, const Field& field) override {
     add(Type::plugins, field).kind = kind;
   }
+  void adopt(PluginChoice& choice) override {
+    if (plugins_ == nullptr) return;
+    try {
+      plugins_->describe(choice.kind, choice.type, *this);
+    } catch (const Error&) {
+      // `palpate plugins` tells what is wrong with a library; all other options can be described without it.
+    }
+  }
   void require(bool, const char*, const std::string&) override {}
 
  private:
+  const PluginSource* plugins_;
+
   FieldDescription& add(Type type, const Field& field) {
     FieldDescription row;
     row.name = field.name;
@@ -141,6 +165,14 @@ void number_schema(Tree& out, const FieldDescription& field) {
   }
 }
 
+/// As many numbers as `field` has in a row.
+void row_schema(Tree& out, const FieldDescription& field) {
+  out.at("type") = quoted("array");
+  number_schema(out.at("items"), field);
+  out.at("minItems") = Tree::scalar(std::to_string(field.count));
+  out.at("maxItems") = Tree::scalar(std::to_string(field.count));
+}
+
 Tree field_schema(const FieldDescription& field) {
   Tree out = Tree::map();
   const std::string range = field.range.empty() ? "" : " (" + field.range + ")";
@@ -149,15 +181,13 @@ Tree field_schema(const FieldDescription& field) {
     case Type::real:
       number_schema(out, field);
       break;
-    case Type::reals: {
-      out.at("type") = quoted("array");
-      Tree items = Tree::map();
-      number_schema(items, field);
-      out.at("items") = items;
-      out.at("minItems") = Tree::scalar(std::to_string(field.count));
-      out.at("maxItems") = Tree::scalar(std::to_string(field.count));
+    case Type::reals:
+      row_schema(out, field);
       break;
-    }
+    case Type::table:
+      out.at("type") = quoted("array");
+      row_schema(out.at("items"), field);
+      break;
     case Type::integer:
       out.at("type") = quoted("integer");
       break;
@@ -229,6 +259,8 @@ std::string FieldDescription::type_name() const {
       return dimension_name(unit);
     case Type::reals:
       return fmt::format("{} {}s", count, dimension_name(unit));
+    case Type::table:
+      return fmt::format("rows of {} {}s", count, dimension_name(unit));
     case Type::integer:
       return "whole number";
     case Type::flag:
@@ -252,8 +284,8 @@ std::string FieldDescription::type_name() const {
   return {};
 }
 
-std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list) {
-  Describer describer;
+std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list, const PluginSource* plugins) {
+  Describer describer(plugins);
   list(describer);
   return std::move(describer.rows);
 }

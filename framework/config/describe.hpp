@@ -2,6 +2,7 @@
 // Option lists turned into text for people and into JSON Schema for editors.
 #pragma once
 
+#include "config/resolve.hpp"
 #include "config/tree.hpp"
 
 #include <palpate/options.hpp>
@@ -14,7 +15,7 @@ namespace palpate {
 
 /// All that is known of one field.
 struct FieldDescription {
-  enum class Type { real, reals, integer, flag, text, choice, section, sections, plugin, plugins };
+  enum class Type { real, reals, table, integer, flag, text, choice, section, sections, plugin, plugins };
   struct CaseDescription;
 
   std::string name;
@@ -26,7 +27,7 @@ struct FieldDescription {
   std::string source;
   bool required = false;
   bool optional = false;                 ///< a `section` that is absent unless it is written
-  std::size_t count = 0;                 ///< of `reals`
+  std::size_t count = 0;                 ///< of `reals`, and of a row of `table`
   std::string kind;                      ///< of `plugin`
   std::vector<CaseDescription> cases;    ///< of `choice`
   std::vector<FieldDescription> fields;  ///< of `section` and `sections`
@@ -41,8 +42,10 @@ struct FieldDescription::CaseDescription {
   std::vector<FieldDescription> fields;
 };
 
-/// The description of what `list` lists.
-std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list);
+/// The description of what `list` lists. The options of plugins among them (Fields::adopt) come from `plugins`, and are
+/// left out if it is null or cannot tell.
+std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list,
+                                              const PluginSource* plugins = nullptr);
 
 /// An aligned table, a field a line, nested fields indented by their path.
 std::string describe_text(const std::vector<FieldDescription>& fields);

@@ -78,6 +78,29 @@ class Resolver final : public Fields {
     write(field, std::move(list));
   }
 
+  void table(std::vector<double>& values, std::size_t columns, const Field& field) override {
+    if (const Tree* tree = claim(field)) {
+      const auto refuse = [&](const Tree& at) {
+        throw Error(at.place.text(), fmt::format("{}: expects a list of rows of {} values", name(field), columns),
+                    "write [[1 cm, 2 cm], [3 cm, 4 cm]] with the values and units that it needs");
+      };
+      if (tree->kind != Tree::Kind::list) refuse(*tree);
+      values.clear();
+      for (const Tree& row : tree->items) {
+        if (row.kind != Tree::Kind::list || row.items.size() != columns) refuse(row);
+        for (const Tree& item : row.items) {
+          values.push_back(checked(read_quantity(item, name(field), field.unit), item, field));
+        }
+      }
+    }
+    Tree list = Tree::list();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i % columns == 0) list.items.push_back(Tree::list());
+      list.items.back().items.push_back(Tree::scalar(write_quantity(values[i], field.unit)));
+    }
+    write(field, std::move(list));
+  }
+
   void integer(std::int64_t& value, const Field& field) override {
     if (const Tree* tree = claim(field)) value = whole(*tree, field);
     write(field, Tree::scalar(std::to_string(value)));
@@ -209,6 +232,16 @@ class Resolver final : public Fields {
     output_.at(field.name) = std::move(list);
   }
 
+  void adopt(PluginChoice& choice) override {
+    const Tree* type = input_ != nullptr ? input_->find("type") : nullptr;
+    const std::size_t before = output_.entries.size();
+    list_plugin(choice, type != nullptr ? type->place.text() : where(), *this);
+    Tree options = Tree::map();
+    options.entries.assign(output_.entries.begin() + static_cast<std::ptrdiff_t>(before), output_.entries.end());
+    options.place = type != nullptr ? type->place : output_.place;
+    choice.options = std::make_shared<const Tree>(std::move(options));
+  }
+
   void require(bool holds, const char* field, const std::string& reason) override {
     if (holds) return;
     const Place place = input_ != nullptr ? input_->place_of(field) : Place{};
@@ -302,6 +335,17 @@ class Resolver final : public Fields {
     return read_plugin(choice, tree, type, path);
   }
 
+  /// Lists the plugin's options to `fields`; trouble with its library is told at `place`.
+  void list_plugin(const PluginChoice& choice, const std::string& place, Fields& fields) {
+    notes_.plugins.emplace(choice.kind, choice.type);
+    try {
+      plugins_.describe(choice.kind, choice.type, fields);
+    } catch (const Error& trouble) {
+      if (!trouble.where().empty()) throw;
+      throw Error(place, trouble.reason(), trouble.hint(), trouble.kind());
+    }
+  }
+
   /// Fills `choice`; returns what goes into the resolved config.
   Tree read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const std::string& path) {
     const std::string at = type != nullptr ? type->place.text() : where();
@@ -313,14 +357,8 @@ class Resolver final : public Fields {
     }
     Resolver inner(&tree, path + ".", plugins_, notes_, output_.place);
     inner.set_type(type != nullptr ? *type : tree);
-    notes_.plugins.emplace(choice.kind, choice.type);
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
-    try {
-      plugins_.describe(choice.kind, choice.type, inner);
-    } catch (const Error& trouble) {
-      if (!trouble.where().empty()) throw;
-      throw Error(at, trouble.reason(), trouble.hint(), trouble.kind());
-    }
+    list_plugin(choice, at, inner);
     Tree options = inner.finish();
     if (type != nullptr) options.place = type->place;  // where the plugin's own complaints will point
     choice.options = std::make_shared<const Tree>(std::move(options));

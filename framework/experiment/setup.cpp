@@ -39,7 +39,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
                        const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend,
                        const std::string& directory)
     : options_(options),
-      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed))),
+      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
       context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
       candidates_(make_candidates(options.candidates, scene_->area())),
       initial_(initial_design(options.initial, candidates_, scene_->area(), context_.seed)),

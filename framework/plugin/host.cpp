@@ -9,6 +9,7 @@
 #include <palpate/backend.hpp>
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
+#include <palpate/shape.hpp>
 
 #include <fmt/format.h>
 
@@ -203,7 +204,7 @@ std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
 }
 
 std::vector<std::string> PluginHost::kinds() {
-  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Backend::kKind};
+  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Backend::kKind, Shape::kKind};
 }
 
 std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::string& kind) const {

@@ -39,7 +39,7 @@ struct Bench {
       : scene(build_scene(filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}, objects: [{type: wave, rotation: "
                                                "90 deg}], effects: " +
                                                effects + "}"),
-                          1)),
+                          1, test::shared_host())),
         context{test::shared_host(), *scene, 1, nullptr},
         simulator(filled<SimulatorOptions>("{motion: " + motion + "}"), context) {}
 

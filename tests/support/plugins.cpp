@@ -43,7 +43,7 @@ const Scene& wave_scene() {
   static const std::unique_ptr<const Scene> scene = [] {
     SceneOptions options;
     options.objects.resize(1);
-    return build_scene(options, 1);
+    return build_scene(options, 1, contract_host());
   }();
   return *scene;
 }

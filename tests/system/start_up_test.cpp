@@ -58,5 +58,17 @@ TEST(StartUp, LoadsThePluginsOfTheConfigAndNoLibraryOfAnother) {
   EXPECT_THAT(fitted, Contains(of_ceres)) << "the test above would not see them either";
 }
 
+TEST(StartUp, LoadsTheLibrariesOfMeshesForAMeshAlone) {
+  const auto of_meshes = AnyOf(HasSubstr("libassimp"), HasSubstr("libembree"), HasSubstr("libtbb"));
+  const std::set<std::string> cone = loaded_libraries({"scene=cone"});
+  EXPECT_THAT(plugins_among(cone), Not(Contains(HasSubstr("shape/"))));
+  EXPECT_THAT(cone, Not(Contains(of_meshes)));
+
+  const std::string file = (test::source_folder() / "configs/scene/meshes/cup.stl").string();
+  const std::set<std::string> cup = loaded_libraries({"scene=cup", "scene.objects.0.file=" + file});
+  EXPECT_THAT(plugins_among(cup), Contains("shape/mesh.so"));
+  EXPECT_THAT(cup, Contains(of_meshes)) << "the test above would not see them either";
+}
+
 }  // namespace
 }  // namespace palpate

@@ -3,6 +3,8 @@
 
 #include "record/json.hpp"
 
+#include <palpate/error.hpp>
+
 #include <gtest/gtest.h>
 
 namespace palpate {
@@ -155,6 +157,51 @@ TEST(Schema, KnowsTheJsonTypeOfEveryField) {
   EXPECT_EQ(at("properties.kernels.type"), "array");
   EXPECT_EQ(at("properties.kernels.items.allOf.0.$ref"), "#/definitions/kernel");
   EXPECT_EQ(at("properties.kernels.items.allOf.1.required.0"), "type");
+}
+
+struct Points : Options {
+  std::vector<std::array<double, 2>> places{{0.1, 0.2}, {0.3, 0.4}};
+  PluginChoice mesh{"shape", "mesh", nullptr};
+  void list(Fields& fields) override {
+    fields.table(places, Field("places", "corners").in(Unit::metre));
+    fields.adopt(mesh);
+  }
+};
+
+/// Knows shape/mesh, or nothing.
+class OneShape final : public PluginSource {
+ public:
+  explicit OneShape(bool there) : there_(there) {}
+  void describe(const std::string&, const std::string&, Fields& fields) const override {
+    if (!there_) throw Error("", "no plugin shape/mesh");
+    std::string file;
+    fields.text(file, Field("file", "of triangles"));
+  }
+
+ private:
+  bool there_;
+};
+
+TEST(Describe, TellsATableByItsRow) {
+  Points points;
+  const auto fields = describe_fields([&](Fields& list) { points.list(list); });
+  ASSERT_EQ(fields.size(), 1U) << "without plugins, what is adopted is left out";
+  EXPECT_EQ(fields[0].type_name(), "rows of 2 lengths");
+  EXPECT_EQ(fields[0].default_value, "[[0.1 m, 0.2 m], [0.3 m, 0.4 m]]");
+  const Tree schema = schema_of(fields);
+  EXPECT_EQ(schema.find_path("properties.places.type")->text, "array");
+  EXPECT_EQ(schema.find_path("properties.places.items.minItems")->text, "2");
+  EXPECT_EQ(schema.find_path("properties.places.items.items.type")->text, "string");
+}
+
+TEST(Describe, ListsAnAdoptedPluginWhereItsLibraryCanTell) {
+  Points points;
+  const auto list = [&](Fields& fields) { points.list(fields); };
+  const OneShape known(true);
+  const OneShape missing(false);
+  ASSERT_EQ(describe_fields(list, &known).size(), 2U);
+  EXPECT_EQ(describe_fields(list, &known)[1].name, "file");
+  EXPECT_EQ(describe_fields(list, &missing).size(), 1U);
 }
 
 }  // namespace

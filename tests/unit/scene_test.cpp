@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gp/candidates.hpp"
 #include "scene/scene_options.hpp"
+#include "support/support.hpp"
 
 #include <palpate/error.hpp>
 
@@ -29,7 +30,7 @@ ObjectOptions wave_at(double x, double y, double rotation) {
 }
 
 TEST(Scene, ObjectIHasTheHeightsOfThePaper) {
-  const auto scene = build_scene(with(wave_at(0.115, 0.115, 0.0)), 1);
+  const auto scene = build_scene(with(wave_at(0.115, 0.115, 0.0)), 1, test::shared_host());
   EXPECT_DOUBLE_EQ(scene->height(0.115, 0.115), 0.11) << "a crest at the centre";
   EXPECT_DOUBLE_EQ(scene->height(0.155, 0.115), 0.07) << "a trough 4 cm along the length";
   EXPECT_DOUBLE_EQ(scene->height(0.135, 0.115), 0.09);
@@ -42,7 +43,7 @@ TEST(Scene, ObjectIHasTheHeightsOfThePaper) {
 TEST(Scene, ObjectIiRisesFromTwoToEightCentimetres) {
   ObjectOptions object;
   object.type = ObjectOptions::Type::slope;
-  const auto scene = build_scene(with(object), 1);
+  const auto scene = build_scene(with(object), 1, test::shared_host());
   EXPECT_NEAR(scene->height(0.115 - 0.0849999, 0.115), 0.02, 1e-7);
   EXPECT_NEAR(scene->height(0.115, 0.115), 0.05, 1e-15);
   EXPECT_NEAR(scene->height(0.115 + 0.0849999, 0.115), 0.08, 1e-7);
@@ -50,7 +51,7 @@ TEST(Scene, ObjectIiRisesFromTwoToEightCentimetres) {
 }
 
 TEST(Scene, RotationTurnsCounterClockwise) {
-  const auto scene = build_scene(with(wave_at(0.1, 0.1, kPi / 6)), 1);
+  const auto scene = build_scene(with(wave_at(0.1, 0.1, kPi / 6)), 1, test::shared_host());
   const double along = 0.04;  // a trough
   EXPECT_NEAR(scene->height(0.1 + along * std::cos(kPi / 6), 0.1 + along * std::sin(kPi / 6)), 0.07, 1e-12);
 }
@@ -58,7 +59,7 @@ TEST(Scene, RotationTurnsCounterClockwise) {
 TEST(Scene, OnSurfaceIsStrictlyAboveTheMargin) {
   SceneOptions options;
   options.desk = 0.2;
-  const auto scene = build_scene(options, 1);
+  const auto scene = build_scene(options, 1, test::shared_host());
   EXPECT_FALSE(scene->on_surface(0.21));
   EXPECT_TRUE(scene->on_surface(0.2101));
   EXPECT_DOUBLE_EQ(scene->height(0.1, 0.1), 0.2);
@@ -70,7 +71,7 @@ TEST(Scene, RandomPlacementKeepsTheObjectWhollyInsideAndDependsOnTheSeed) {
   double first = -1.0;
   bool moved = false;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const auto scene = build_scene(options, seed);
+    const auto scene = build_scene(options, seed, test::shared_host());
     double cells = 0.0;
     constexpr int kFine = 460;
     for (int i = 0; i < kFine; ++i) {
@@ -83,7 +84,7 @@ TEST(Scene, RandomPlacementKeepsTheObjectWhollyInsideAndDependsOnTheSeed) {
     const double here = scene->height(0.115, 0.115);
     if (first < 0.0) first = here;
     moved = moved || here != first;
-    EXPECT_EQ(here, build_scene(options, seed)->height(0.115, 0.115));
+    EXPECT_EQ(here, build_scene(options, seed, test::shared_host())->height(0.115, 0.115));
   }
   EXPECT_TRUE(moved);
 }
@@ -93,7 +94,7 @@ TEST(Scene, AnObjectTooLargeForTheAreaIsRefused) {
   object.wave.length = 0.4;
   SceneOptions options = with(object);
   options.placement = SceneOptions::Placement::random;
-  EXPECT_THROW(build_scene(options, 1), Error);
+  EXPECT_THROW(build_scene(options, 1, test::shared_host()), Error);
 }
 
 TEST(Candidates, AreCellCentresRowByRow) {

@@ -19,7 +19,7 @@ using test::shipped_config;
 struct Alone {
   explicit Alone(const std::vector<std::string>& overrides)
       : config(shipped_config("paper/object_i.yaml", overrides)),
-        scene(build_scene(config.options.scene, 1)),
+        scene(build_scene(config.options.scene, 1, test::shared_host())),
         context{test::shared_host(), *scene, 1, nullptr},
         candidates(grid_by_count(scene->area(), 9)),
         belief(config.options, candidates, context, clock) {}

@@ -33,7 +33,7 @@ class TappingBench {
                std::uint64_t seed = 1)
       : scene_(build_scene(filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}, objects: " + objects +
                                                 ", effects: " + effects + "}"),
-                           seed)),
+                           seed, shared_host())),
         context_{shared_host(), *scene_, seed, nullptr},
         backend_(context_.create<Backend>(choose(shared_host(), "backend", "simulator", "{motion: " + motion + "}"))) {}
 

@@ -13,6 +13,7 @@
 //     };
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -108,6 +109,9 @@ class Fields {
   virtual void real(std::optional<double>& value, const Field& field) = 0;
   /// `count` real numbers of one dimension, written as a list.
   virtual void reals(double* values, std::size_t count, const Field& field) = 0;
+  /// Rows of `columns` real numbers of one dimension each, written as a list of lists; `values` holds row after row,
+  /// and has as many rows as the config.
+  virtual void table(std::vector<double>& values, std::size_t columns, const Field& field) = 0;
   virtual void integer(std::int64_t& value, const Field& field) = 0;
   virtual void integer(std::optional<std::int64_t>& value, const Field& field) = 0;
   /// `true` or `false`.
@@ -126,6 +130,9 @@ class Fields {
   virtual void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) = 0;
   /// A list of plugins of one kind.
   virtual void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) = 0;
+  /// The options of the plugin `choice.kind`/`choice.type`, which the caller has set, among the fields at hand instead
+  /// of in a group of their own. Their names must differ from those of the fields beside them.
+  virtual void adopt(PluginChoice& choice) = 0;
   /// A law between fields: when `holds` is false, reading fails with `reason` at the place of `field`, which may be a
   /// dotted path to a field of a nested group.
   virtual void require(bool holds, const char* field, const std::string& reason) = 0;
@@ -145,6 +152,16 @@ class Fields {
     Group options = group.value_or(Group{});
     section(present, options, field);
     group = present ? std::optional<Group>(std::move(options)) : std::nullopt;
+  }
+
+  /// A table whose rows are points.
+  template <std::size_t columns>
+  void table(std::vector<std::array<double, columns>>& rows, const Field& field) {
+    std::vector<double> values;
+    for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
+    table(values, columns, field);
+    rows.resize(values.size() / columns);
+    for (std::size_t i = 0; i < values.size(); ++i) rows[i / columns][i % columns] = values[i];
   }
 
   /// A list of groups stored in a vector.

@@ -3,8 +3,8 @@
 //
 //     PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared-exponential kernel")
 //
-// where Rbf implements one of the interfaces (Kernel, Acquisition, Fitting, Backend), has a type `Options`, and is
-// constructed as Rbf(options, context). The library is <kind>/<name>.so; palpate_add_plugin() of the CMake package
+// where Rbf implements one of the interfaces (Kernel, Acquisition, Fitting, Backend, Shape), has a type `Options`, and
+// is constructed as Rbf(options, context). The library is <kind>/<name>.so; palpate_add_plugin() of the CMake package
 // names and places it.
 #pragma once
 

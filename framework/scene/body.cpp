@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "scene/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+Body::Body(std::shared_ptr<const Shape> shape, double tilt)
+    : shape_(std::move(shape)), upright_(tilt == 0.0), tilt_cosine_(std::cos(tilt)), tilt_sine_(std::sin(tilt)) {
+  lift_ = shape_->support(untilted(0.0, 0.0, -1.0));
+  place(0.0, 0.0, 0.0);
+}
+
+void Body::place(double x, double y, double rotation) {
+  // What rounding may add to an outline; beyond, the shape need not be asked.
+  constexpr double kMargin = 1e-9;
+  x_ = x;
+  y_ = y;
+  cosine_ = std::cos(rotation);
+  sine_ = std::sin(rotation);
+  left_ = x - reach(-1.0, 0.0) - kMargin;
+  right_ = x + reach(1.0, 0.0) + kMargin;
+  low_ = y - reach(0.0, -1.0) - kMargin;
+  high_ = y + reach(0.0, 1.0) + kMargin;
+}
+
+double Body::height(double x, double y) const {
+  if (x < left_ || x > right_ || y < low_ || y > high_) return 0.0;
+  const double s = cosine_ * (x - x_) + sine_ * (y - y_);
+  const double t = cosine_ * (y - y_) - sine_ * (x - x_);
+  if (upright_) return std::max(0.0, shape_->top(s, t));
+  // Down the vertical through (s, t), from the desk.
+  const Line line{untilted(s, t, -lift_), untilted(0.0, 0.0, -1.0)};
+  return std::max(0.0, -shape_->first_hit(line));
+}
+
+double Body::highest() const { return shape_->support(untilted(0.0, 0.0, 1.0)) + lift_; }
+
+double Body::reach(double direction_x, double direction_y) const {
+  return shape_->support(
+      untilted(cosine_ * direction_x + sine_ * direction_y, cosine_ * direction_y - sine_ * direction_x, 0.0));
+}
+
+Eigen::Vector3d Body::untilted(double along, double across, double up) const {
+  return {tilt_cosine_ * along + tilt_sine_ * up, across, tilt_cosine_ * up - tilt_sine_ * along};
+}
+
+}  // namespace palpate

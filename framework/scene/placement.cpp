@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "scene/placement.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/random.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Whether a plane across (dx, dy), a direction of unit length from `a` to `b`, separates them.
+bool separates(const Body& a, const Body& b, double dx, double dy) {
+  return a.reach(dx, dy) + b.reach(-dx, -dy) <= dx * (b.x() - a.x()) + dy * (b.y() - a.y());
+}
+
+/// Draws until the body lies wholly inside the area.
+void draw_inside(Body& body, const Area& area, Random& random, std::size_t number) {
+  constexpr int kTries = 100'000;
+  for (int i = 0; i < kTries; ++i) {
+    const double rotation = 2.0 * kPi * random.uniform();
+    const double x = area.width * random.uniform();
+    const double y = area.depth * random.uniform();
+    body.place(x, y, rotation);
+    const bool inside = x >= body.reach(-1, 0) && x <= area.width - body.reach(1, 0) && y >= body.reach(0, -1) &&
+                        y <= area.depth - body.reach(0, 1);
+    if (inside) return;
+  }
+  throw Error(fmt::format("scene.objects.{}", number), "does not fit into the area",
+              "make the object smaller or the area larger");
+}
+
+bool all_separate(const std::vector<Body>& bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!separate(bodies[j], bodies[i])) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool separate(const Body& a, const Body& b) {
+  const double dx = b.x() - a.x();
+  const double dy = b.y() - a.y();
+  const double distance = std::hypot(dx, dy);
+  if (distance == 0.0) return false;
+  const double along = dx / distance;
+  const double across = dy / distance;
+  // Outwards from the line between the two centres, where most pairs are told apart at once.
+  constexpr int kDirections = 180;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = 0.5 * kPi * i / kDirections;
+    const double cosine = std::cos(angle);
+    const double sine = std::sin(angle);
+    if (separates(a, b, cosine * along - sine * across, cosine * across + sine * along)) return true;
+    if (separates(a, b, cosine * along + sine * across, cosine * across - sine * along)) return true;
+  }
+  return false;
+}
+
+void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed) {
+  std::vector<Random> streams;
+  for (std::size_t i = 0; i < bodies.size(); ++i) streams.emplace_back(seed, "scene/placement", i);
+  // All are drawn anew when any two overlap: what stands first would otherwise decide where room is left.
+  constexpr int kRounds = 10'000;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) draw_inside(bodies[i], area, streams[i], i);
+    if (all_separate(bodies)) return;
+  }
+  throw Error("scene.objects", fmt::format("found no room for all {} in {} draws", bodies.size(), kRounds),
+              "make them smaller or fewer, or the area larger");
+}
+
+}  // namespace palpate

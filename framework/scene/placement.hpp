@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Objects at places drawn from the seed.
+#pragma once
+
+#include "scene/body.hpp"
+
+#include <palpate/scene.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace palpate {
+
+/// Whether a vertical plane separates two bodies, so that neither is over the other. May say no of two that are apart
+/// by less than a thousandth of their size; never says yes of two that overlap.
+bool separate(const Body& a, const Body& b);
+
+/// Draws rotation and position of each body until all lie wholly inside the area and none overlaps another: uniform
+/// over all such poses. Each has a stream of random numbers of its own, so that one more object leaves the draws of the
+/// others alone. Throws Error, its `where` the path in the config, when no such poses are found.
+void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed);
+
+}  // namespace palpate

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "import.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <string_view>
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace palpate::shapes {
+namespace {
+
+constexpr const char* kExportAgain = "export it again";
+
+[[noreturn]] void refuse_number(const std::string& file, std::size_t triangles) {
+  throw Error(
+      file, "has " + std::to_string(triangles) + " triangles, at most " + std::to_string(kMostTriangles) + " are read",
+      "reduce their number");
+}
+
+/// What a file names beside itself is not there.
+class NoOtherFiles final : public Assimp::IOSystem {
+ public:
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+
+/// "stl", "obj" or "ply".
+std::string format_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const char* known : {"stl", "obj", "ply"}) {
+    if (ending == std::string(".") + known) return known;
+  }
+  throw Error(file, ending.empty() ? "has no ending that tells its format" : "the format '" + ending + "' is not read",
+              "export it as .stl, .obj or .ply");
+}
+
+/// An STL tells by its length, or by its last word, whether it is complete; assimp reads what is there.
+void check_stl(const std::string& bytes, const std::string& file) {
+  constexpr std::size_t kHeader = 84;
+  constexpr std::size_t kTriangle = 50;
+  std::uint32_t count = 0;
+  if (bytes.size() >= kHeader) std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
+  if (bytes.size() >= kHeader && bytes.size() == kHeader + kTriangle * count) {
+    if (count > kMostTriangles) refuse_number(file, count);
+    return;
+  }
+  const std::string_view text(bytes);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos || text.substr(begin, 5) != "solid") {
+    throw Error(file, "is no STL, neither text nor binary, or cut short", kExportAgain);
+  }
+  if (text.rfind("endsolid") == std::string_view::npos) {
+    throw Error(file, "is cut short: the word 'endsolid' is missing", kExportAgain);
+  }
+}
+
+/// A PLY tells in its header how many rows follow; where some are missing, assimp repeats the last, or worse.
+void check_ply(const std::string& bytes, const std::string& file) {
+  const std::string end_of_header = "\nend_header";
+  const std::size_t header = bytes.find(end_of_header);
+  if (header == std::string::npos) {
+    throw Error(file, "is no PLY or cut short: the line 'end_header' is missing", kExportAgain);
+  }
+  std::istringstream lines(bytes.substr(0, header));
+  std::size_t rows = 0;
+  bool text = false;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word, name;
+    std::size_t count = 0;
+    words >> word >> name;
+    if (word == "format") text = name == "ascii";
+    if (word == "element" && words >> count) rows += count;
+  }
+  const auto body = bytes.begin() + static_cast<std::ptrdiff_t>(header + end_of_header.size());
+  // The last row may lack its line break, the line end_header has one. A row of bytes has one at least.
+  const auto there = static_cast<std::size_t>(
+      text ? std::count(body, bytes.end(), '\n') - (bytes.back() == '\n' ? 1 : 0) : bytes.end() - body);
+  if (there < rows) throw Error(file, "is cut short: its header promises more rows than there are", kExportAgain);
+}
+
+/// As the middle of a sentence.
+std::string reason(std::string message) {
+  while (!message.empty() && (message.back() == '.' || std::isspace(static_cast<unsigned char>(message.back())) != 0)) {
+    message.pop_back();
+  }
+  return message;
+}
+
+Soup triangles_by_assimp(const std::string& bytes, const std::string& file, const std::string& format) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new NoOtherFiles);  // which the importer deletes
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, format.c_str());
+  if (scene == nullptr) {
+    throw Error(file, "cannot be read as " + format + ": " + reason(importer.GetErrorString()), kExportAgain);
+  }
+  Soup out;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene->mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices != 3) continue;  // a point or a line has no surface
+      if (out.size() == 3 * kMostTriangles) refuse_number(file, kMostTriangles + 1);
+      for (unsigned i = 0; i < 3; ++i) {
+        if (face.mIndices[i] >= mesh.mNumVertices)
+          throw Error(file, "a triangle has a corner that is not there", kExportAgain);
+        const aiVector3D& corner = mesh.mVertices[face.mIndices[i]];
+        out.push_back({corner.x, corner.y, corner.z});
+      }
+    }
+  }
+  if (out.empty()) throw Error(file, "has no triangles", "export it as a surface, not as points or lines");
+  return out;
+}
+
+/// Where the answer goes on its way from one process to the other.
+class Pipe {
+ public:
+  Pipe() {
+    if (pipe2(ends_, O_CLOEXEC) != 0)
+      throw Error("", std::string("no pipe: ") + std::strerror(errno), "", Error::Kind::run);
+  }
+  ~Pipe() {
+    close_end(0);
+    close_end(1);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  void close_end(int end) {
+    if (ends_[end] >= 0) close(ends_[end]);
+    ends_[end] = -1;
+  }
+  void write_all(const void* from, std::size_t bytes) const {
+    const char* at = static_cast<const char*>(from);
+    while (bytes > 0) {
+      const ssize_t done = write(ends_[1], at, bytes);
+      if (done <= 0 && errno != EINTR) return;
+      if (done > 0) at += done, bytes -= static_cast<std::size_t>(done);
+    }
+  }
+  std::string read_all() const {
+    std::string out;
+    std::vector<char> piece(1 << 16);
+    while (true) {
+      const ssize_t done = read(ends_[0], piece.data(), piece.size());
+      if (done > 0) out.append(piece.data(), static_cast<std::size_t>(done));
+      if (done == 0 || (done < 0 && errno != EINTR)) return out;
+    }
+  }
+
+ private:
+  int ends_[2];
+};
+
+/// In the process of its own: answers 'T' and the triangles, or 'E', reason and hint.
+[[noreturn]] void answer(const Pipe& pipe, const std::string& bytes, const std::string& file,
+                         const std::string& format) {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  const rlim_t seconds = 5 + bytes.size() / 1'000'000;
+  const rlimit patience{seconds, seconds};
+  setrlimit(RLIMIT_CPU, &patience);
+  alarm(static_cast<unsigned>(12 * seconds));  // and where it waits for ever
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // a failed assertion of assimp would be a second line
+  try {
+    const Soup soup = triangles_by_assimp(bytes, file, format);
+    pipe.write_all("T", 1);
+    pipe.write_all(soup.data(), soup.size() * sizeof soup.front());
+  } catch (const Error& error) {
+    const std::string text = "E" + error.reason() + '\n' + error.hint();
+    pipe.write_all(text.data(), text.size());
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+Soup import_triangles(const std::string& bytes, const std::string& file) {
+  const std::string format = format_of(file);
+  if (format == "stl") check_stl(bytes, file);
+  if (format == "ply") check_ply(bytes, file);
+  // On some broken files assimp 5.2 crashes, aborts or never ends, which must not befall the experiment.
+  Pipe pipe;
+  const pid_t child = fork();
+  if (child < 0)
+    throw Error(file, std::string("no process to read it in: ") + std::strerror(errno), "", Error::Kind::run);
+  if (child == 0) answer(pipe, bytes, file, format);
+  pipe.close_end(1);
+  const std::string said = pipe.read_all();
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (status != 0 || said.empty()) {
+    const bool endless = WIFSIGNALED(status) &&
+                         (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGKILL);
+    throw Error(file,
+                "cannot be read as " + format + ": assimp " + (endless ? "came to no end" : "broke down") + " over it",
+                kExportAgain);
+  }
+  if (said[0] == 'E') {
+    const std::size_t line = std::min(said.find('\n'), said.size() - 1);
+    throw Error(file, said.substr(1, line - 1), said.substr(line + 1));
+  }
+  Soup out((said.size() - 1) / sizeof(Soup::value_type));
+  std::memcpy(out.data(), said.data() + 1, out.size() * sizeof out.front());
+  return out;
+}
+
+}  // namespace palpate::shapes

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "support/shape_laws.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A few roundings of lengths up to a metre, divided by slopes of walls.
+constexpr double kRounding = 1e-11;
+
+Line random_line(const Shape& shape, Random& random) {
+  const double length = shape.support({1, 0, 0});
+  const double width = shape.support({0, 1, 0});
+  const double height = shape.support({0, 0, 1});
+  Line line;
+  line.origin = {2.4 * length * (random.uniform() - 0.5), 2.4 * width * (random.uniform() - 0.5),
+                 height * random.uniform()};
+  do {
+    line.direction = random_direction(random);
+  } while (line.direction.z() > -0.1);
+  return line;
+}
+
+}  // namespace
+
+Vector3d random_direction(Random& random) {
+  while (true) {
+    const Vector3d out(2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1);
+    if (out.norm() > 0.1 && out.norm() <= 1.0) return out.normalized();
+  }
+}
+
+void check_shape_laws(const Shape& shape) {
+  EXPECT_NEAR(shape.support({0, 0, -1}), 0.0, 1e-15) << "rests on the plane 0";
+  EXPECT_NEAR(shape.support({1, 0, 0}), shape.support({-1, 0, 0}), kRounding) << "centred along";
+  EXPECT_NEAR(shape.support({0, 1, 0}), shape.support({0, -1, 0}), kRounding) << "centred across";
+  const double size = shape.support({1, 0, 0}) + shape.support({0, 1, 0}) + shape.support({0, 0, 1});
+
+  Random random(1, "test/shape");
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d a = random_direction(random);
+    const Vector3d b = random_direction(random);
+    EXPECT_LE(shape.support(a + b), shape.support(a) + shape.support(b) + kRounding) << "convex";
+    EXPECT_NEAR(shape.support(3 * a), 3 * shape.support(a), kRounding) << "homogeneous";
+  }
+
+  int hits = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Line line = random_line(shape, random);
+    const double hit = shape.first_hit(line);
+    ASSERT_FALSE(std::isnan(hit));
+    ASSERT_GT(hit, -HUGE_VAL);
+    const double moved = shape.first_hit({line.origin + 0.25 * line.direction, line.direction});
+    if (std::isinf(hit) != std::isinf(moved)) {
+      // On a silhouette a rounding decides: then a line beside agrees with either.
+      ADD_FAILURE() << "hit only from one of two origins: " << line.origin.transpose();
+    } else if (std::isfinite(hit)) {
+      ++hits;
+      EXPECT_NEAR(moved, hit - 0.25, 1e-6 * size) << "counted from the origin";
+      const Vector3d point = line.origin + hit * line.direction;
+      for (int k = 0; k < 20; ++k) {
+        const Vector3d direction = random_direction(random);
+        EXPECT_LE(direction.dot(point), shape.support(direction) + 1e-6 * size) << "no further out than support";
+      }
+    }
+    // In front of a plane that touches the solid, and parallel to it, nothing is met.
+    const Vector3d normal = line.direction.unitOrthogonal();
+    const Vector3d beyond = (shape.support(normal) + 1e-5 * size) * normal;
+    EXPECT_EQ(shape.first_hit({beyond, line.direction}), HUGE_VAL);
+  }
+  EXPECT_GT(hits, 100);
+
+  for (int i = 0; i < 300; ++i) {
+    const Line line = random_line(shape, random);
+    const double s = line.origin.x();
+    const double t = line.origin.y();
+    const double straight = -shape.first_hit({{s, t, 0.0}, {0.0, 0.0, -1.0}});
+    const double top = shape.top(s, t);
+    EXPECT_TRUE(top == straight || std::abs(top - straight) < kRounding) << top << " " << straight;
+  }
+}
+
+}  // namespace palpate::test

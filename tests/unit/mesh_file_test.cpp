@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Every kind of broken mesh file is refused in one line that names the file, the reason and, where there is one, the
+// remedy.
+#include "support/plugins.hpp"
+#include "support/support.hpp"
+#include "support/tessellate.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/shape.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+
+namespace palpate::test {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+/// A block of 80 by 50 by 30 mm: 12 triangles.
+Surface block() {
+  return raised(
+      {-0.04, 0.04}, {-0.025, 0.025}, [](double, double) { return true; }, 0.03);
+}
+
+class MeshFile : public testing::Test {
+ protected:
+  /// What is said of a file with this content; "accepted" if nothing is.
+  std::string refusal(const std::string& name, const std::string& content, const std::string& more = "unit: 1 mm") {
+    return refusal_of(folder_.write(name, content), more);
+  }
+
+  std::string refusal_of(const fs::path& file, const std::string& more = "unit: 1 mm") {
+    try {
+      make<Shape>(shared_host(), "mesh", "{file: '" + file.string() + "', " + more + "}");
+    } catch (const Error& error) {
+      const std::string line = error.what();
+      EXPECT_EQ(line.find('\n'), std::string::npos);
+      EXPECT_THAT(line, StartsWith(file.string() + ": "));
+      return line;
+    }
+    return "accepted";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(MeshFile, IsAcceptedInEachFormatWhenItIsWhole) {
+  EXPECT_EQ(refusal("a.stl", stl_binary(block())), "accepted");
+  EXPECT_EQ(refusal("b.STL", stl_text(block())), "accepted") << "whatever the case of its ending";
+  EXPECT_EQ(refusal("c.obj", obj(block())), "accepted") << "without the file of its materials";
+  EXPECT_EQ(refusal("d.ply", ply(block())), "accepted");
+}
+
+TEST_F(MeshFile, IsAcceptedWithFacesOfManyCorners) {
+  EXPECT_EQ(refusal("a.obj",
+                    "v 0 0 0\nv 9 0 0\nv 9 9 0\nv 0 9 0\nv 0 0 9\nv 9 0 9\nv 9 9 9\nv 0 9 9\n"
+                    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"),
+            "accepted");
+}
+
+TEST_F(MeshFile, ThatIsMissingSaysWhereRelativePathsStart) {
+  EXPECT_THAT(refusal_of("not_there.stl"),
+              AllOf(HasSubstr("no such file, a relative path starts in the current folder, "),
+                    EndsWith(fs::current_path().string())));
+  EXPECT_THAT(refusal_of("/not_there.stl"), EndsWith("/not_there.stl: no such file"));
+}
+
+TEST_F(MeshFile, ThatIsNoFileIsRefused) {
+  fs::create_directory(folder_.path() / "a.stl");
+  EXPECT_THAT(refusal_of(folder_.path() / "a.stl"), HasSubstr("not a regular file"));
+}
+
+TEST_F(MeshFile, OfAnotherFormatIsRefused) {
+  EXPECT_THAT(refusal("a.3mf", "PK"), HasSubstr("the format '.3mf' is not read, export it as .stl, .obj or .ply"));
+  EXPECT_THAT(refusal("a", "solid"), HasSubstr("has no ending that tells its format"));
+}
+
+TEST_F(MeshFile, ThatIsEmptyIsRefused) {
+  for (const char* name : {"a.stl", "a.obj", "a.ply"}) EXPECT_THAT(refusal(name, ""), HasSubstr("is empty, export"));
+}
+
+TEST_F(MeshFile, OfGarbageIsRefused) {
+  std::string bytes;
+  for (int i = 0; i < 3000; ++i) bytes += static_cast<char>(i * 7919 % 251);
+  EXPECT_THAT(refusal("a.stl", bytes), HasSubstr("is no STL, neither text nor binary, or cut short"));
+  EXPECT_NE(refusal("a.obj", bytes), "accepted");
+  EXPECT_THAT(refusal("a.ply", bytes), HasSubstr("is no PLY or cut short: the line 'end_header' is missing"));
+}
+
+TEST_F(MeshFile, WithoutTrianglesIsRefused) {
+  EXPECT_NE(refusal("a.stl", "solid nothing\nendsolid nothing\n"), "accepted");
+  EXPECT_NE(refusal("b.stl", std::string(84, '\0')), "accepted");
+  EXPECT_NE(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "accepted");
+  EXPECT_THAT(refusal("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n"), HasSubstr("has no triangles"));
+}
+
+TEST_F(MeshFile, CutShortAnywhereIsRefused) {
+  // A cut within the last line break or word may leave all that counts.
+  const std::string binary = stl_binary(block());
+  for (std::size_t n = 1; n < binary.size(); n += 13) EXPECT_NE(refusal("a.stl", binary.substr(0, n)), "accepted") << n;
+  const std::string text = stl_text(block());
+  for (std::size_t n = 1; n + 14 < text.size(); n += 29)
+    EXPECT_NE(refusal("b.stl", text.substr(0, n)), "accepted") << n;
+  for (const auto& [name, whole] : {std::pair("c.obj", obj(block())), std::pair("d.ply", ply(block()))}) {
+    for (std::size_t n = 1; n + 3 < whole.size(); n += 11)
+      EXPECT_NE(refusal(name, whole.substr(0, n)), "accepted") << n;
+  }
+}
+
+TEST_F(MeshFile, OverWhichTheReaderBreaksDownIsRefused) {
+  EXPECT_THAT(refusal("a.ply",
+                      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nelement face 2\n"
+                      "property list uchar int vertex_indices\nend_header\nabcdef"),
+              HasSubstr("cannot be read as ply: assimp broke down over it, export it again"));
+}
+
+TEST_F(MeshFile, WithATriangleTwiceIsRefused) {
+  Surface surface = block();
+  const auto [a, b, c] = surface.triangles[0];
+  surface.triangles.push_back({b, a, c});
+  EXPECT_THAT(refusal("a.stl", stl_binary(surface)), HasSubstr("a triangle is there twice, at ("));
+}
+
+TEST_F(MeshFile, WithACoordinateThatIsNotFiniteIsRefused) {
+  std::string binary = stl_binary(block());
+  const float bad = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(&binary[84 + 2 * 50 + 12], &bad, sizeof bad);
+  EXPECT_THAT(refusal("a.stl", binary), HasSubstr("triangle 3 has a coordinate that is not a finite number"));
+}
+
+TEST_F(MeshFile, WithTrianglesWithoutAreaIsRefused) {
+  Surface surface = block();
+  surface.triangles.push_back({0, 1, 1});
+  surface.points.push_back((surface.points[0] + surface.points[1]) / 2);
+  surface.triangles.push_back({0, 1, surface.points.size() - 1});
+  EXPECT_THAT(refusal("a.stl", stl_binary(surface)),
+              AllOf(HasSubstr("2 of 14 triangles have no area, the first is triangle 13 at ("),
+                    EndsWith("remove degenerate triangles where the mesh was made")));
+}
+
+TEST_F(MeshFile, WithAHoleIsRefusedUnlessItIsAllowed) {
+  Surface surface = block();
+  surface.triangles.erase(surface.triangles.begin());
+  EXPECT_THAT(refusal("a.ply", ply(surface)),
+              AllOf(HasSubstr("has holes: 3 edges belong to one triangle only, one from ("),
+                    EndsWith("close them where the mesh was made, or write `holes: allow`")));
+  EXPECT_EQ(refusal("a.ply", ply(surface), "unit: 1 mm, holes: allow"), "accepted");
+}
+
+TEST_F(MeshFile, OfAnUnlikelySizeAsksForTheUnit) {
+  EXPECT_THAT(refusal("a.stl", stl_binary(block()), "unit: 1 m"),
+              HasSubstr("is 80 m large, at most 2 m are allowed, is the unit of 1 m right?"));
+  EXPECT_THAT(refusal("a.stl", stl_binary(block()), "unit: 1 um"),
+              HasSubstr("is 8e-05 m large, at least 1 mm is needed, is the unit of 1e-06 m right?"));
+}
+
+TEST_F(MeshFile, FarFromItsOriginIsRefused) {
+  Surface surface = block();
+  for (Eigen::Vector3d& point : surface.points) point.x() += 100.0;
+  EXPECT_THAT(refusal("a.ply", ply(surface)),
+              HasSubstr("lies 100 m from its origin, where single precision is coarser"));
+}
+
+TEST_F(MeshFile, WithTooManyTrianglesOrBytesIsRefusedBeforeItIsRead) {
+  std::string header(80, ' ');
+  const std::uint32_t count = 5'000'001;
+  header.append(reinterpret_cast<const char*>(&count), sizeof count);
+  const fs::path many = folder_.write("a.stl", header);
+  fs::resize_file(many, 84 + std::uintmax_t{50} * count);
+  EXPECT_THAT(refusal_of(many), HasSubstr("has 5000001 triangles, at most 5000000 are read, reduce their number"));
+  fs::resize_file(many, 600'000'000);
+  EXPECT_THAT(refusal_of(many), HasSubstr("has 600 MB, at most 500 are read, reduce the number of triangles"));
+}
+
+TEST_F(MeshFile, IsKnownAgainByItsChecksum) {
+  const fs::path file = folder_.write("a.ply", ply(block()));
+  const auto choice = [&](const std::string& more) {
+    return choose(shared_host(), "shape", "mesh", "{file: '" + file.string() + "', unit: 1 mm" + more + "}");
+  };
+  const PluginChoice before = choice("");
+  const std::string checksum = before.options->find("checksum")->text;
+  EXPECT_EQ(checksum.size(), 32U);
+  EXPECT_EQ(choice(", checksum: '" + checksum + "'").options->find("checksum")->text, checksum);
+  folder_.write("a.ply", ply(block()) + "\n");
+  EXPECT_NE(choice("").options->find("checksum")->text, checksum);
+  try {
+    choice(", checksum: '" + checksum + "'");
+    FAIL() << "another content was accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(StartsWith("options.yaml:1:"), HasSubstr("plugin.checksum: is not that of " + file.string())));
+  }
+  // Between resolving and building, too.
+  EXPECT_THROW(context_of(shared_host()).create<Shape>(before), Error);
+}
+
+TEST_F(MeshFile, MustHaveItsUnitGiven) {
+  const fs::path file = folder_.write("a.ply", ply(block()));
+  try {
+    choose(shared_host(), "shape", "mesh", "{file: '" + file.string() + "'}");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "options.yaml:1:1: 'plugin.unit' is missing, length of one unit of the file, for example 1 mm");
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// What a config may say of objects, and what it is told when it may not.
+#include "config/resolve.hpp"
+#include "config/yaml.hpp"
+#include "support/shape_cases.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate::test {
+namespace {
+
+/// What is said of an object, without the place.
+std::string refusal(const std::string& object) {
+  try {
+    scene_of({object});
+  } catch (const Error& error) {
+    return error.reason();
+  }
+  return "accepted";
+}
+
+TEST(SceneOptions, RefuseDimensionsThatMakeNoSolid) {
+  EXPECT_EQ(refusal("{type: dome, diameter: 10 cm, height: 51 mm}"),
+            "objects.0.height: is more than half the diameter, which makes half a ball");
+  EXPECT_EQ(refusal("{type: ring, outer: 4 cm, inner: 4 cm}"), "objects.0.inner: is not less than the outer diameter");
+  EXPECT_EQ(refusal("{type: l, length: 8 cm, width: 3 cm, thickness: 3 cm}"),
+            "objects.0.thickness: is not less than length and width, nothing would be left of the second bar");
+  EXPECT_EQ(refusal("{type: cone, height: 0 cm}"), "objects.0.height: 0 cm is out of range");
+  EXPECT_EQ(refusal("{type: wave, height: 1 cm, amplitude: 2 cm}"),
+            "objects.0.amplitude: is larger than the mean height, the top would dip below the desk");
+}
+
+TEST(SceneOptions, RefuseATiltOfMoreThan80Degrees) {
+  EXPECT_EQ(refusal("{type: block, tilt: 80 deg}"), "accepted");
+  EXPECT_EQ(refusal("{type: block, tilt: -80 deg}"), "accepted");
+  EXPECT_EQ(refusal("{type: block, tilt: 80.1 deg}"), "objects.0.tilt: is more than 80 deg");
+  EXPECT_EQ(refusal("{type: block, tilt: -81 deg}"), "objects.0.tilt: is more than 80 deg");
+}
+
+TEST(SceneOptions, RefuseFieldsOfAnotherShape) {
+  EXPECT_EQ(refusal("{type: cylinder, length: 8 cm}"), "unknown option 'length'");
+  EXPECT_EQ(refusal("{type: cube}"), "objects.0.type: unknown value 'cube'");
+}
+
+std::string outline(const std::string& points, const std::string& hole = "[]") {
+  return refusal("{type: polygon, outline: " + points + ", hole: " + hole + "}");
+}
+
+TEST(SceneOptions, RefuseOutlinesThatBoundNothing) {
+  const std::string square = "[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [0 cm, 4 cm]]";
+  EXPECT_EQ(outline(square), "accepted");
+  EXPECT_EQ(refusal("{type: polygon}"), "'objects.0.outline' is missing");
+  EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm]]"), "objects.0.outline: needs three points or more");
+  EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [0 cm, 0 cm]]"),
+            "objects.0.outline: points 4 and 1 are the same; it closes by itself");
+  EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 4 cm], [4 cm, 0 cm], [0 cm, 4 cm]]"),
+            "objects.0.outline: edge 1 meets edge 3");
+  EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm], [2 cm, 0 cm]]"), "objects.0.outline: folds back at point 2");
+  EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [2 cm, 0 cm], [0 cm, 4 cm]]"),
+            "objects.0.outline: edge 1 meets edge 3")
+      << "a corner that touches an edge";
+  EXPECT_EQ(outline("[[0 cm], [4 cm, 0 cm]]"), "objects.0.outline: expects a list of rows of 2 values");
+  EXPECT_EQ(outline("[[0 cm, 0], [4 cm, 0 cm]]").substr(0, 17), "objects.0.outline");
+}
+
+TEST(SceneOptions, RefuseHolesThatLeaveTheOutline) {
+  const std::string square = "[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [0 cm, 4 cm]]";
+  EXPECT_EQ(outline(square, "[[1 cm, 1 cm], [3 cm, 1 cm], [2 cm, 3 cm]]"), "accepted");
+  EXPECT_EQ(outline(square, "[[1 cm, 1 cm], [5 cm, 1 cm], [2 cm, 3 cm]]"),
+            "objects.0.hole: its edge 1 meets edge 2 of the outline");
+  EXPECT_EQ(outline(square, "[[6 cm, 1 cm], [9 cm, 1 cm], [7 cm, 3 cm]]"), "objects.0.hole: lies outside the outline");
+  EXPECT_EQ(outline(square, "[[1 cm, 1 cm], [3 cm, 1 cm]]"), "objects.0.hole: needs three points or more");
+}
+
+TEST(SceneOptions, ReadBackAsTheyWereResolved) {
+  const std::string scene =
+      "{area: {width: 1 m, depth: 1 m}, objects: [{type: polygon, outline: [[0 cm, 0 cm], [1 cm, "
+      "0 cm], [0 cm, 1 cm]], tilt: 3 deg}, {type: ring}]}";
+  SceneOptions options;
+  ResolveNotes notes;
+  const Tree once = resolve(options, parse_yaml(scene, "scene.yaml"), shared_host(), notes);
+  SceneOptions again;
+  EXPECT_EQ(resolve(again, once, shared_host(), notes).canonical(), once.canonical());
+  EXPECT_EQ(again.objects[0].polygon.outline, (Outline{{0, 0}, {0.01, 0}, {0, 0.01}}));
+  EXPECT_TRUE(notes.plugins.empty()) << "no plugin is needed for what is built in";
+}
+
+TEST(SceneOptions, NameThePluginOfAMesh) {
+  SceneOptions options;
+  ResolveNotes notes;
+  const std::string file = (source_folder() / "configs/scene/meshes/cup.stl").string();
+  const Tree tree = resolve(options,
+                            parse_yaml("{area: {width: 1 m, depth: 1 m}, objects: [{type: mesh, file: '" + file +
+                                           "', unit: 1 mm, rotation: 1 rad}]}",
+                                       "scene.yaml"),
+                            shared_host(), notes);
+  EXPECT_EQ(notes.plugins.count({"shape", "mesh"}), 1U);
+  EXPECT_NE(tree.find_path("objects.0.checksum"), nullptr);
+  EXPECT_EQ(options.objects[0].rotation, 1.0);
+  EXPECT_EQ(refusal("{type: mesh, fil: cup.stl, unit: 1 mm}"), "unknown option 'fil'");
+}
+
+TEST(SceneOptions, TakeAnyPluginOfTheKindShape) {
+  const std::string file = (source_folder() / "configs/scene/meshes/cup.stl").string();
+  const std::string options = "file: '" + file + "', unit: 1 mm";
+  EXPECT_EQ(scene_of({"{type: plugin, shape: {type: mesh, " + options + "}}"})->height(0.1, 0.1),
+            scene_of({"{type: mesh, " + options + "}"})->height(0.1, 0.1));
+  EXPECT_EQ(refusal("{type: plugin, shape: {type: torus}}"), "no plugin shape/torus");
+  EXPECT_EQ(refusal("{type: plugin}"), "no shape is chosen");
+}
+
+}  // namespace
+}  // namespace palpate::test
