@@ -38,7 +38,7 @@ std::vector<std::string> shown_commands(const std::string& text) {
 /// A folder that looks like a checkout: `palpate` is the program of this build, output stays in here.
 void imitate_checkout(const fs::path& folder) {
   fs::create_symlink(test::program_file(), folder / "palpate");
-  for (const char* name : {"configs", "tests", "build"})
+  for (const char* name : {"configs", "plugins", "tests", "build"})
     fs::create_symlink(test::source_folder() / name, folder / name);
 }
 

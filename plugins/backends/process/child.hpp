@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// A program under way, spoken to in lines. It knows nothing of taps.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace palpate::process {
+
+/// An open file of this process, closed in those that it starts.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  /// Takes over `number`; -1 stands for none.
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() { close(); }
+
+  int number() const { return number_; }
+  void close();
+
+ private:
+  int number_ = -1;
+};
+
+/// Until when to wait, and what breaks the wait off.
+struct Patience {
+  std::chrono::steady_clock::time_point until;
+  const std::atomic<bool>* interrupted = nullptr;  ///< may be null
+};
+
+/// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
+/// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
+/// directory, and of open files only the three standard ones.
+class Child {
+ public:
+  /// A longer line is refused: a program that never ends its line must not fill the memory.
+  static constexpr std::size_t kLongestLine = 65536;
+  /// How long a program may take for each step of its end: by itself, and after SIGTERM.
+  static constexpr std::chrono::milliseconds kGrace{1000};
+
+  enum class Heard { line, ended, late, interrupted, too_long };
+
+  /// Starts `file` with the arguments `words`, of which the first is its name. Its stderr is appended to `diary`, or
+  /// dropped if that is empty. Throws Error when it cannot be started.
+  Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary);
+  /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM, then SIGKILL, each to the whole group.
+  /// Afterwards nothing of it is left.
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// Writes `text`; Heard::line when all of it is in the pipe, Heard::ended when nobody reads.
+  Heard send(const std::string& text, const Patience& patience);
+  /// Takes the next line of its stdout, without the line end. With `ended`, `too_long` and `late`, what there is of it.
+  Heard hear(std::string& line, const Patience& patience);
+  /// How it ended, for people: "ended with exit status 3, its last words: ...". Waits up to kGrace for that; "closed
+  /// its stdin or stdout" if it is still there.
+  std::string fate();
+
+ private:
+  bool gone() const;
+  bool wait_for_end() const;
+  std::string last_words() const;
+
+  std::string diary_;
+  off_t diary_begin_ = 0;  ///< what others wrote into it before
+  Descriptor input_;       ///< we write
+  Descriptor output_;      ///< we read
+  std::string heard_;      ///< and not yet taken
+  pid_t pid_ = -1;
+};
+
+}  // namespace palpate::process

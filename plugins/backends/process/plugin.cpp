@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// Any program as a backend: it is asked for a tap on a line of its stdin and answers on a line of its stdout.
+//
+// One rule covers all that can go wrong. An answer that carries the number of the tap keeps the program, even if its
+// fields are refused. After anything else (no answer in time, a line that is no answer, a line too many, an end) nobody
+// knows what the next line would belong to or whether the arm still moves: the tap fails, the program is ended before
+// tap() returns, and the next tap starts it again. So no late answer is ever taken for another tap, each trouble costs
+// one tap, and each is told in the record.
+#include "process/child.hpp"
+#include "process/command.hpp"
+#include "process/protocol.hpp"
+
+#include <palpate/error.hpp>
+
+#include <chrono>
+#include <memory>
+
+namespace palpate::backends {
+
+using process::Child;
+
+struct ProcessOptions : Options {
+  std::string command;
+  double deadline = 90.0;
+  double start = 30.0;
+  bool repeatable = false;
+  bool scene_is_truth = false;
+  tapping::MotionOptions motion;
+
+  void list(Fields& fields) override {
+    fields.text(command, Field("command",
+                               "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
+                               "blanks together, nothing else is interpreted, no shell")
+                             .needed());
+    fields.require(process::split_command(command).has_value(), "command", "names no program, or a quote is left open");
+    fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
+                              .in(Unit::second)
+                              .above(0)
+                              .at_most(86400)
+                              .from("longer than motion.timeout, which the program itself should tell"));
+    fields.real(start, Field("start", "how much longer the deadline is for a tap that has to start the program")
+                           .in(Unit::second)
+                           .at_least(0)
+                           .at_most(86400)
+                           .from("an estimate: drivers of robots take seconds"));
+    fields.flag(repeatable, Field("repeatable",
+                                  "a tap can be made again at no risk and is answered alike: taps are "
+                                  "not announced and synced before they move"));
+    fields.flag(scene_is_truth,
+                Field("scene_is_truth", "the scene of the config is what the program taps: compute the errors"));
+    fields.section(motion, Field("motion", "the tapping motion, sent along in SI units"));
+  }
+};
+
+class Process final : public Backend {
+ public:
+  using Options = ProcessOptions;
+
+  /// Throws Error when there is no such program.
+  Process(const Options& options, const Context& context)
+      : options_(options), context_(context), words_(process::split_command(options.command).value()) {
+    const std::optional<std::string> file = process::find_program(words_.front());
+    if (!file) {
+      throw Error("command", "there is no program " + process::shown(words_.front()),
+                  "a name is looked for in PATH, a path from the folder in which palpate runs");
+    }
+    file_ = *file;
+  }
+
+  Contact tap(const TapRequest& request) override {
+    const auto begin = Clock::now();
+    double seconds = options_.deadline;
+    if (!child_) {
+      // Not before the first tap: the folder of the record exists only from then on.
+      child_ = std::make_unique<Child>(file_, words_, diary());
+      seconds += options_.start;
+    }
+    const process::Patience patience{begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)),
+                                     context_.interrupted};
+    process::Answer answer = ask(request, patience);
+    if (!answer.in_step) child_.reset();
+    if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
+    return std::move(answer.contact);
+  }
+
+  bool repeatable() const override { return options_.repeatable; }
+  bool scene_is_truth() const override { return options_.scene_is_truth; }
+  bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+
+  std::string diary() const {
+    return context_.directory.empty() ? std::string() : context_.directory + "/process.stderr.txt";
+  }
+
+  process::Answer ask(const TapRequest& request, const process::Patience& patience) {
+    std::string line;
+    // Whatever there is before the ask is no answer to it, and then the arm had better not move.
+    Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
+    if (heard == Child::Heard::line) return failed("said more than its answer: " + process::shown(line));
+    if (heard == Child::Heard::late) {
+      heard = child_->send(process::ask_line(request, context_, options_.motion), patience);
+      if (heard == Child::Heard::line) heard = child_->hear(line, patience);
+    }
+    switch (heard) {
+      case Child::Heard::line:
+        return process::read_answer(line, request.number);
+      case Child::Heard::ended:
+        return failed(child_->fate());
+      case Child::Heard::late:
+        return failed(
+            line.empty() ? "did not answer in time" : "did not end its answer in time: " + process::shown(line),
+            Outcome::timeout);
+      case Child::Heard::too_long:
+        return failed("answered with an endless line: " + process::shown(line));
+      case Child::Heard::interrupted:
+        break;
+    }
+    return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}};
+  }
+
+  static process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) {
+    return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what}};
+  }
+
+  Options options_;
+  const Context& context_;
+  std::vector<std::string> words_;
+  std::string file_;
+  std::unique_ptr<Child> child_;
+};
+
+PALPATE_PLUGIN(Backend, Process, "process", "any program, asked and answering in JSON lines")
+
+}  // namespace palpate::backends

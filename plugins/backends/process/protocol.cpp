@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// The only user of the JSON library in this plugin.
+#include "process/protocol.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace palpate::process {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestPiece = 80;
+constexpr std::size_t kLongestReason = 200;
+/// Metres from the height 0 of the scene. No arm is that long; a height of the paper's objects in millimetres is beyond
+/// it.
+constexpr double kFarthestHeight = 10.0;
+
+/// Options as JSON in SI, from their field list: an option that the motion gains is sent along without a line here.
+class Written final : public Fields {
+ public:
+  explicit Written(Json& out) : out_(out) {}
+
+  void real(double& value, const Field& field) override { out_[field.name] = value; }
+  void real(std::optional<double>& value, const Field& field) override { maybe(value, field); }
+  void reals(double* values, std::size_t count, const Field& field) override {
+    out_[field.name] = Json(std::vector<double>(values, values + count));
+  }
+  void integer(std::int64_t& value, const Field& field) override { out_[field.name] = value; }
+  void integer(std::optional<std::int64_t>& value, const Field& field) override { maybe(value, field); }
+  void flag(bool& value, const Field& field) override { out_[field.name] = value; }
+  void text(std::string& value, const Field& field) override { out_[field.name] = value; }
+  void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
+    out_[field.name] = cases[index].name;
+    if (cases[index].list) cases[index].list(*this);
+  }
+  void section(Options& options, const Field& field) override {
+    Written inner(out_[field.name] = Json::object());
+    options.list(inner);
+  }
+  void section(bool& present, Options& options, const Field& field) override {
+    out_[field.name] = nullptr;
+    if (present) section(options, field);
+  }
+  void sections(const ListAccess& access, const Field& field) override {
+    Json& items = out_[field.name] = Json::array();
+    for (std::size_t i = 0; i < access.size(); ++i) {
+      Written inner(items.emplace_back(Json::object()));
+      access.item(i).list(inner);
+    }
+  }
+  // A motion holds no plugins.
+  void plugin(PluginChoice&, const Field&) override {}
+  void plugin(std::optional<PluginChoice>&, const char*, const Field&) override {}
+  void plugins(std::vector<PluginChoice>&, const char*, const Field&) override {}
+  void require(bool, const char*, const std::string&) override {}
+
+ private:
+  template <class Value>
+  void maybe(const std::optional<Value>& value, const Field& field) {
+    out_[field.name] = value ? Json(*value) : Json(nullptr);
+  }
+
+  Json& out_;
+};
+
+const std::array<std::pair<const char*, Outcome>, 5> kOutcomes{{{"contact", Outcome::contact},
+                                                                {"no_contact", Outcome::no_contact},
+                                                                {"unreachable", Outcome::unreachable},
+                                                                {"timeout", Outcome::timeout},
+                                                                {"aborted", Outcome::aborted}}};
+
+/// The program's own words in the record: whole characters, none that a terminal obeys.
+std::string cleaned(const std::string& reason) {
+  std::string out;
+  for (std::size_t i = 0; i < reason.size(); ++i) {
+    const auto c = static_cast<unsigned char>(reason[i]);
+    const bool begins = (c & 0xc0) != 0x80;
+    if (begins && out.size() >= kLongestReason) return out + "...";
+    // U+0080 to U+009F are control characters, too: two bytes, of which the first is 0xc2.
+    const bool long_control = c == 0xc2 && i + 1 < reason.size() && static_cast<unsigned char>(reason[i + 1]) < 0xa0;
+    i += long_control ? 1 : 0;
+    out += c < 0x20 || c == 0x7f || long_control ? ' ' : reason[i];
+  }
+  return out;
+}
+
+/// Reads the fields of one answer. The first trouble is kept, and what is read after it means nothing.
+class Reader {
+ public:
+  explicit Reader(const Json& answer) : answer_(answer) {
+    for (const auto& [key, value] : answer.items()) {
+      static const std::array<const char*, 6> kKnown{"tap", "outcome", "height", "force", "seconds", "reason"};
+      if (std::find(kKnown.begin(), kKnown.end(), key) == kKnown.end()) refuse("has an unknown field " + shown(key));
+    }
+  }
+
+  /// Null counts as absent.
+  bool has(const char* field) const { return answer_.contains(field) && !answer_[field].is_null(); }
+
+  /// `range` says in words what `least` and `most` are.
+  double number(const char* field, double least, double most, const char* range) {
+    if (!has(field)) return refuse(lacks(field)), 0.0;
+    if (!answer_[field].is_number()) return refuse(bad(field, "that is not a number")), 0.0;
+    const auto value = answer_[field].get<double>();
+    if (!(value >= least && value <= most)) return refuse(bad(field, range)), 0.0;
+    return value;
+  }
+
+  std::string text(const char* field) {
+    if (!has(field)) return refuse(lacks(field)), "";
+    if (!answer_[field].is_string()) return refuse(bad(field, "that is not a text")), "";
+    return answer_[field].get<std::string>();
+  }
+
+  Outcome outcome() {
+    const std::string name = text("outcome");
+    for (const auto& [known, outcome] : kOutcomes) {
+      if (name == known) return outcome;
+    }
+    refuse("has an unknown outcome");
+    return Outcome::aborted;
+  }
+
+  void refuse(const std::string& why) {
+    if (trouble.empty()) trouble = why;
+  }
+
+  std::string trouble;
+
+ private:
+  static std::string bad(const char* field, const char* how) { return std::string("has a '") + field + "' " + how; }
+  static std::string lacks(const char* field) { return std::string("lacks '") + field + "'"; }
+
+  const Json& answer_;
+};
+
+Contact read_contact(Reader& reader) {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  Contact out;
+  out.outcome = reader.outcome();
+  out.seconds = reader.number("seconds", 0.0, kAny, "that is negative");
+  if (out.outcome == Outcome::contact) {
+    out.height = reader.number("height", -kFarthestHeight, kFarthestHeight, "more than 10 m from 0: it is in metres");
+    if (reader.has("force")) out.force = reader.number("force", 0.0, kAny, "that is negative");
+  } else {
+    out.reason = cleaned(reader.text("reason"));
+    if (out.reason.find_first_not_of(' ') == std::string::npos) reader.refuse("has no words in 'reason'");
+  }
+  return out;
+}
+
+Answer refused(const std::string& line, const std::string& why, bool in_step) {
+  return {in_step, false, {Outcome::aborted, 0.0, 0.0, 0.0, "the answer " + why + ": " + shown(line)}};
+}
+
+}  // namespace
+
+std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion) {
+  Json ask;
+  ask["palpate"] = kProtocol;
+  ask["tap"] = request.number;
+  ask["x"] = request.target.x;
+  ask["y"] = request.target.y;
+  ask["previous"] = nullptr;
+  if (request.previous) ask["previous"] = {{"x", request.previous->x}, {"y", request.previous->y}};
+  ask["predicted"] = nullptr;
+  if (request.predicted) {
+    ask["predicted"] = {{"height", request.predicted->height},
+                        {"standard_deviation", request.predicted->standard_deviation}};
+  }
+  const Area area = context.scene.area();
+  ask["area"] = {{"width", area.width}, {"depth", area.depth}};
+  ask["desk"] = context.scene.desk();
+  ask["seed"] = context.seed;
+  Written fields(ask["motion"] = Json::object());
+  motion.list(fields);
+  return ask.dump() + "\n";
+}
+
+Answer read_answer(const std::string& line, int tap) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (json.is_discarded()) {
+    const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
+    return refused(line, python ? "is not JSON, which has no NaN and no Infinity" : "is not JSON", false);
+  }
+  if (!json.is_object()) return refused(line, "is not a JSON object", false);
+  if (!json.contains("tap")) return refused(line, "lacks 'tap'", false);
+  if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false);
+  Reader reader(json);
+  Contact contact = read_contact(reader);
+  if (!reader.trouble.empty()) return refused(line, reader.trouble, true);
+  return {true, true, std::move(contact)};
+}
+
+std::string shown(const std::string& text) {
+  std::string out = text.substr(0, kLongestPiece);
+  for (char& c : out) c = c >= 0x20 && c < 0x7f ? c : '?';
+  return "'" + out + (text.size() > kLongestPiece ? "..." : "") + "'";
+}
+
+}  // namespace palpate::process

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Whole runs on another program: the shipped example, programs that misbehave, kills and interrupts.
+#include "record/json.hpp"
+#include "support/programs.hpp"
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <set>
+
+namespace palpate {
+namespace {
+
+using test::Cells;
+using test::config;
+using test::csv_rows;
+using test::Ended;
+using test::eventually;
+using test::only_run;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+class ProcessRun : public testing::Test {
+ protected:
+  /// What runs `body` instead of the example.
+  std::string command(const std::string& body) const {
+    return "backend.command=python3 -SE '" + folder_.write("program.py", test::python(body)).string() + "'";
+  }
+
+  std::vector<std::string> run(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"run", config("process.yaml"), "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  fs::path directory() const { return only_run(folder_.path() / "runs"); }
+  std::string diary() const {
+    std::string text;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
+      if (entry.path().filename() == "process.stderr.txt") text += text_of(entry.path());
+    }
+    return text;
+  }
+
+  TemporaryFolder folder_;
+};
+
+std::vector<std::string> outcomes(const fs::path& directory) {
+  std::vector<std::string> out;
+  for (const Cells& row : csv_rows(text_of(directory / "taps.csv"))) out.push_back(row.at("outcome"));
+  return out;
+}
+
+TEST_F(ProcessRun, TheExampleTapsItsDomeFromTheProjectsFolder) {
+  std::string first;
+  for (const char* runs : {"one", "two"}) {
+    const fs::path where = folder_.path() / runs;
+    const Ended ended = test::palpate(run({"--runs", where.string()}), test::source_folder());
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(ended.err, "");
+    const std::string taps = text_of(only_run(where) / "taps.csv");
+    EXPECT_EQ(text_of(only_run(where) / "process.stderr.txt"), "");
+    EXPECT_EQ(text_of(only_run(where) / "taps.jsonl").find("intent"), std::string::npos) << "it is repeatable";
+    if (first.empty()) first = taps;
+    EXPECT_EQ(taps, first);
+  }
+  int on = 0;
+  for (const Cells& row : csv_rows(first)) {
+    const double away = std::hypot(std::stod(row.at("x")) - 0.115, std::stod(row.at("y")) - 0.115);
+    const double dome = std::sqrt(std::max(0.0, 0.06 * 0.06 - away * away));
+    EXPECT_EQ(row.at("outcome"), "contact");
+    EXPECT_NEAR(std::stod(row.at("height")), dome, 1e-12);
+    EXPECT_EQ(row.at("force"), "10");
+    on += dome > 0.01 ? 1 : 0;
+  }
+  EXPECT_GE(on, 5);
+}
+
+TEST_F(ProcessRun, TheExampleIsTwentyLinesLong) {
+  EXPECT_LE(test::lines(text_of(test::source_folder() / "plugins/backends/process/example.py")), 20);
+}
+
+TEST_F(ProcessRun, WhatGoesWrongIsInTheRecordAndTheRunGoesOn) {
+  const std::string program = command(R"(
+for ask in asks():
+    tap = ask["tap"]
+    if tap == 2: print('{"tap": 2, "outcome": "contact", "height": NaN, "seconds": 1}', flush=True)
+    elif tap == 3: sys.exit("no arm, \"not\" today")
+    elif tap == 4: time.sleep(60)
+    elif tap == 5: os.write(1, b'\xff\x00","outcome":"contact",\n')
+    elif tap == 6: tell(ask, outcome="no_contact", seconds=3, reason='an "end",\n\x1bof way')
+    elif tap == 7: tell(ask, outcome="contact", height=70, seconds=3)
+    else: contact(ask)
+)");
+  // The fourth tap has to start the program again: both times count for it.
+  const Ended ended =
+      test::palpate(run({program, "taps=10", "backend.deadline=1s", "backend.start=1s"}), folder_.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const std::vector<std::string> expected{"contact",    "aborted", "aborted", "timeout", "aborted",
+                                          "no_contact", "aborted", "contact", "contact", "contact"};
+  EXPECT_EQ(outcomes(directory()), expected);
+  const std::string taps = text_of(directory() / "taps.jsonl");
+  EXPECT_THAT(taps, HasSubstr(R"(which has no NaN and no Infinity: '{\"tap\": 2)"));
+  EXPECT_THAT(taps, HasSubstr(R"(its last words: 'no arm, \"not\" today')"));
+  EXPECT_THAT(taps, HasSubstr(R"("reason": "an \"end\",  of way")"));
+  EXPECT_EQ(diary(), "no arm, \"not\" today\n");
+  const Ended replayed = test::palpate({"replay", directory().string()}, folder_.path());
+  EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
+  EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 6"));
+}
+
+TEST_F(ProcessRun, KilledWithinATapItLeavesNoProgramAndResumesWithAnUnknownTap) {
+  const std::string program = command(R"(
+print("begin", os.getpid(), file=sys.stderr, flush=True)
+for ask in asks():
+    if ask["tap"] == 3 and not os.path.exists("seen"):
+        open("seen", "w")
+        time.sleep(0.2)
+    contact(ask)
+)");
+  std::vector<std::string> words = run({program, "taps=5", "backend.repeatable=false"});
+  words.insert(words.begin(), test::program_file().string());
+  {
+    test::Child child(words, folder_.path());
+    EXPECT_TRUE(eventually([&] { return fs::exists(folder_.path() / "seen"); }));
+    child.signal(SIGKILL);
+    child.wait();
+  }
+  const long pid = std::stol(diary().substr(6));
+  EXPECT_TRUE(eventually([&] { return !test::running(pid); })) << "its stdin ended, and with that the program";
+  const Ended ended = test::palpate({"resume", directory().string(), "--quiet"}, folder_.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "contact", "unknown", "contact", "contact"}));
+  EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"intent\": true"));
+  const std::string said = diary();
+  EXPECT_THAT(said, ::testing::StartsWith("begin "));
+  EXPECT_NE(said.find("begin ", 1), std::string::npos) << "appended to";
+}
+
+TEST_F(ProcessRun, InterruptedWhileItWaitsTheRunEndsAtOnceAndLeavesNoProgram) {
+  const std::string program = command(
+      "print(os.getpid(), file=sys.stderr, flush=True)\n"
+      "for ask in asks():\n    if ask['tap'] == 2: time.sleep(60)\n    contact(ask)");
+  std::vector<std::string> words = run({program, "backend.repeatable=false"});
+  words.insert(words.begin(), test::program_file().string());
+  test::Child child(words, folder_.path());
+  EXPECT_TRUE(eventually([&] {
+    const std::string runs = (folder_.path() / "runs").string();
+    return fs::exists(runs) && !diary().empty() &&
+           text_of(directory() / "taps.jsonl").find("\"tap\": 2") != std::string::npos;
+  }));
+  child.signal(SIGINT);
+  EXPECT_EQ(child.wait().status, 130);
+  EXPECT_FALSE(test::running(std::stol(diary())));
+  EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "aborted"}));
+  EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"reason\": \"interrupted\""));
+}
+
+TEST_F(ProcessRun, ASweepInThreadsHasAProgramForEachRun) {
+  const std::string program = command(
+      "print(os.getpid(), file=sys.stderr, flush=True)\n"
+      "for ask in asks(): tell(ask, outcome='contact', height=0.01 * ask['seed'], seconds=ask['x'])");
+  const Ended ended = test::palpate(
+      {"sweep", config("process.yaml"), program, "seed=range(0,8)", "taps=5", "-j", "4", "--quiet"}, folder_.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  std::set<std::string> pids;
+  for (const auto& job : fs::directory_iterator(directory() / "jobs")) {
+    const std::string pid = text_of(job.path() / "process.stderr.txt");
+    EXPECT_FALSE(test::running(std::stol(pid)));
+    pids.insert(pid);
+    for (const Cells& row : csv_rows(text_of(job.path() / "taps.csv"))) {
+      EXPECT_EQ(row.at("outcome"), "contact");
+      EXPECT_EQ(row.at("robot_seconds"), row.at("x")) << "the answer to this very ask";
+    }
+  }
+  EXPECT_EQ(pids.size(), 8U);
+}
+
+TEST_F(ProcessRun, AMissingProgramIsOneLineAndLeavesNoRun) {
+  const Ended ended = test::palpate(run({"backend.command=pyhton3 x.py"}), folder_.path());
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("there is no program 'pyhton3'"));
+  EXPECT_EQ(test::lines(ended.err), 1);
+  EXPECT_FALSE(fs::exists(folder_.path() / "runs"));
+}
+
+TEST_F(ProcessRun, TheShippedConfigsAreValid) {
+  EXPECT_EQ(test::palpate({"validate", config("process.yaml")}, folder_.path()).status, 0);
+}
+
+}  // namespace
+}  // namespace palpate

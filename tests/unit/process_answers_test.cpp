@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// What a program may answer, line by line, and what becomes of it.
+#include "unit/process_backend.hpp"
+
+namespace palpate::test {
+namespace {
+
+/// One line as the answer to tap 2, what is said of it, and whether the program goes on.
+struct Odd {
+  const char* name;
+  std::string line;
+  std::string reason;
+  bool kept;
+};
+
+class OddAnswer : public ProcessBackend, public testing::WithParamInterface<Odd> {};
+
+TEST_P(OddAnswer, FailsTheTapWithOneClearLineAndTheNextTapIsFine) {
+  const std::string file = folder_.write("odd", GetParam().line + "\n").string();
+  const Contact contact =
+      second_tap("sys.stdout.buffer.write(open('" + file + "', 'rb').read()); sys.stdout.flush()", GetParam().kept);
+  expect_failure(contact, Outcome::aborted, GetParam().reason);
+}
+
+std::vector<Odd> odd_answers() {
+  const auto said = [](const std::string& what, const std::string& line) {
+    return "the answer " + what + ": '" + line + "'";
+  };
+  const auto odd = [&](const char* name, const std::string& line, const std::string& what, bool kept) {
+    return Odd{name, line, said(what, line), kept};
+  };
+  const std::string deep(60000, '[');
+  const std::string endless(70000, 'x');
+  const std::string nan = "is not JSON, which has no NaN and no Infinity";
+  const std::string far = "has a 'height' more than 10 m from 0: it is in metres";
+  return {
+      odd("Nothing", "", "is not JSON", false),
+      odd("Garbage", "moving to 3", "is not JSON", false),
+      odd("CutOff", R"({"tap": 2, "outcome": "contact", "height": 0.0)", "is not JSON", false),
+      odd("TwoObjects", R"({"tap": 2} {"tap": 2})", "is not JSON", false),
+      odd("List", "[2]", "is not a JSON object", false),
+      odd("NaN", R"({"tap": 2, "outcome": "contact", "height": NaN, "seconds": 1})", nan, false),
+      odd("Infinity", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": Infinity})", nan, false),
+      odd("BeyondDouble", R"({"tap": 2, "outcome": "contact", "height": 1e999})", "is not JSON", false),
+      odd("NoNumber", R"({"outcome": "contact", "height": 0.07, "seconds": 1})", "lacks 'tap'", false),
+      odd("EarlierTap", R"({"tap": 1, "outcome": "contact", "height": 0.07})", "is not that to tap 2", false),
+      odd("NumberAsText", R"({"tap": "2", "outcome": "contact", "height": 1})", "is not that to tap 2", false),
+      odd("NaNAsText", R"({"tap": 2, "outcome": "contact", "height": "NaN", "seconds": 1})",
+          "has a 'height' that is not a number", true),
+      odd("NoOutcome", R"({"tap": 2, "height": 0.07, "seconds": 1})", "lacks 'outcome'", true),
+      odd("UnknownOutcome", R"({"tap": 2, "outcome": "hit", "height": 0.07, "seconds": 1})", "has an unknown outcome",
+          true),
+      odd("OutcomeOfResume", R"({"tap": 2, "outcome": "unknown", "reason": "?", "seconds": 1})",
+          "has an unknown outcome", true),
+      odd("OutcomeAsNumber", R"({"tap": 2, "outcome": 1})", "has a 'outcome' that is not a text", true),
+      odd("NoHeight", R"({"tap": 2, "outcome": "contact", "seconds": 1})", "lacks 'height'", true),
+      odd("NullHeight", R"({"tap": 2, "outcome": "contact", "height": null, "seconds": 1})", "lacks 'height'", true),
+      odd("Millimetres", R"({"tap": 2, "outcome": "contact", "height": 70, "seconds": 1})", far, true),
+      odd("FarBelow", R"({"tap": 2, "outcome": "contact", "height": -1e300, "seconds": 1})", far, true),
+      odd("NoSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07})", "lacks 'seconds'", true),
+      odd("NegativeSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07, "seconds": -1})",
+          "has a 'seconds' that is negative", true),
+      odd("FlagForForce", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "force": true})",
+          "has a 'force' that is not a number", true),
+      odd("NoReason", R"({"tap": 2, "outcome": "no_contact", "seconds": 1})", "lacks 'reason'", true),
+      odd("BlankReason", R"({"tap": 2, "outcome": "no_contact", "seconds": 1, "reason": "\n"})",
+          "has no words in 'reason'", true),
+      odd("MisspeltField", R"({"tap": 2, "outcome": "contact", "heigth": 0.07, "seconds": 1})",
+          "has an unknown field 'heigth'", true),
+      {"NoText", std::string("\0\xff\x1b[2J\xc3", 7), said("is not JSON", "???[2J?"), false},
+      {"BadUtf8InReason", "{\"tap\": 2, \"outcome\": \"no_contact\", \"seconds\": 1, \"reason\": \"\xff\"}",
+       said("is not JSON", R"({"tap": 2, "outcome": "no_contact", "seconds": 1, "reason": "?"})"), false},
+      {"Deep", deep, said("is not JSON", deep.substr(0, 80) + "..."), false},
+      {"TooLong", endless, "the program answered with an endless line: '" + endless.substr(0, 80) + "...'", false},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, OddAnswer, testing::ValuesIn(odd_answers()),
+                         [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace palpate::test

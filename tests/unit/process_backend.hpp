@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// What the tests of the backend `process` share: Python programs, started as a run starts them.
+#pragma once
+
+#include "support/plugins.hpp"
+#include "support/programs.hpp"
+
+#include <palpate/backend.hpp>
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace palpate::test {
+
+namespace fs = std::filesystem;
+
+class ProcessBackend : public testing::Test {
+ protected:
+  ProcessBackend() { fs::create_directory(folder_.path() / "record"); }
+
+  /// The words that start a Python program with this body.
+  std::string command(const std::string& body, const std::string& name = "program.py") {
+    return "python3 -SE '" + folder_.write(name, python(body)).string() + "'";
+  }
+
+  std::shared_ptr<Backend> start(const std::string& command, const std::string& more = "") {
+    return context_.create<Backend>(
+        choose(shared_host(), "backend", "process", "{command: " + yaml_quoted(command) + more + "}"));
+  }
+
+  std::shared_ptr<Backend> open(const std::string& body, const std::string& more = "") {
+    return start(command(body), more);
+  }
+
+  std::string refusal(const std::string& command) {
+    try {
+      start(command)->tap(request(1));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  }
+
+  static TapRequest request(int number) {
+    TapRequest out;
+    out.number = number;
+    out.target = {0.1, 0.2};
+    return out;
+  }
+
+  static Contact tap(Backend& backend, int number) { return backend.tap(request(number)); }
+
+  static void expect_contact(const Contact& contact) {
+    EXPECT_EQ(contact.outcome, Outcome::contact);
+    EXPECT_EQ(contact.height, 0.07);
+    EXPECT_EQ(contact.seconds, 5.5);
+    EXPECT_EQ(contact.reason, "");
+  }
+
+  static void expect_failure(const Contact& contact, Outcome outcome, const std::string& reason) {
+    EXPECT_EQ(contact.outcome, outcome);
+    EXPECT_EQ(contact.reason, reason);
+    EXPECT_EQ(contact.height, 0.0);
+    EXPECT_GE(contact.seconds, 0.0);
+  }
+
+  /// A program that answers every tap but the second, for which it does `odd`; the others it answers in one piece.
+  Contact second_tap(const std::string& odd, bool kept, const std::string& more = "") {
+    const auto backend =
+        open("for ask in asks():\n    if ask['tap'] != 2: contact(ask)\n    else:\n        " + odd + "\n", more);
+    const Contact first = tap(*backend, 1);
+    expect_contact(first);
+    Contact second = tap(*backend, 2);
+    const Contact third = tap(*backend, 3);
+    expect_contact(third);
+    EXPECT_EQ(first.force == third.force, kept) << "whether the same process goes on";
+    EXPECT_EQ(running(static_cast<long>(first.force)), kept);
+    return second;
+  }
+
+  std::string diary() const { return text_of(folder_.path() / "record" / "process.stderr.txt"); }
+
+  TemporaryFolder folder_;
+  std::atomic<bool> interrupted_{false};
+  Context context_{shared_host(), wave_scene(), 1, &interrupted_, (folder_.path() / "record").string()};
+};
+
+}  // namespace palpate::test

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+// The backend `process` against programs that behave and programs that do not.
+#include "unit/process_backend.hpp"
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace palpate::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST_F(ProcessBackend, AsksInOneLineThatHoldsAllThatAProgramNeeds) {
+  const auto backend = open("for line in sys.stdin:\n    sys.stderr.write(line)\n    contact(json.loads(line))",
+                            ", motion: {pause: 250 ms, adaptive_hover: {clearance: 2 cm}}");
+  EXPECT_TRUE(backend->wants_prediction());
+  const Contact contact = tap(*backend, 1);
+  expect_contact(contact);
+  TapRequest second = request(2);
+  second.previous = Target{0.05, 0.125};
+  second.predicted = Prediction{0.03, 0.5};
+  expect_contact(backend->tap(second));
+  const std::string same =
+      R"("area":{"width":0.23,"depth":0.23},"desk":0.0,"seed":1,"motion":{"type":"paper","step":0.03,"pause":0.25,)"
+      R"("speed":0.025,"threshold":10.0,"hover":0.14,"adaptive_hover":{"deviations":2.0,"clearance":0.02,"speed":0.1},)"
+      R"("travel_speed":0.3,"retreat_speed":0.3,"tare":0.2,"overrun":0.03,"timeout":60.0}})"
+      "\n";
+  EXPECT_EQ(diary(), R"({"palpate":1,"tap":1,"x":0.1,"y":0.2,"previous":null,"predicted":null,)" + same +
+                         R"({"palpate":1,"tap":2,"x":0.1,"y":0.2,"previous":{"x":0.05,"y":0.125},)" +
+                         R"("predicted":{"height":0.03,"standard_deviation":0.5},)" + same);
+}
+
+TEST_F(ProcessBackend, SaysWhatItIsTold) {
+  const auto careful = start("true");
+  EXPECT_FALSE(careful->repeatable());
+  EXPECT_FALSE(careful->scene_is_truth());
+  EXPECT_FALSE(careful->wants_prediction());
+  const auto bold = start("true", ", repeatable: true, scene_is_truth: true");
+  EXPECT_TRUE(bold->repeatable());
+  EXPECT_TRUE(bold->scene_is_truth());
+}
+
+TEST_F(ProcessBackend, EveryFailureOfTheProgramsOwnKeepsItsOutcomeAndReason) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    outcome = ['no_contact', 'unreachable', 'timeout', 'aborted'][ask['tap'] - 1]\n"
+      "    tell(ask, outcome=outcome, height=None, reason='h\\u00f6her ' + outcome, seconds=2)");
+  int number = 0;
+  for (const auto& [outcome, name] :
+       {std::pair(Outcome::no_contact, "no_contact"), std::pair(Outcome::unreachable, "unreachable"),
+        std::pair(Outcome::timeout, "timeout"), std::pair(Outcome::aborted, "aborted")}) {
+    const Contact contact = tap(*backend, ++number);
+    expect_failure(contact, outcome, std::string("h\u00f6her ") + name);
+    EXPECT_EQ(contact.seconds, 2.0);
+  }
+}
+
+TEST_F(ProcessBackend, ControlCharactersAndLengthOfAReasonDoNotReachTheRecord) {
+  const Contact contact =
+      second_tap(R"(tell(ask, outcome='no_contact', reason='a\nb\x1b[2J\x7f\x9b' + '\u00e9' * 300, seconds=1))", true);
+  EXPECT_EQ(contact.outcome, Outcome::no_contact);
+  EXPECT_THAT(contact.reason, StartsWith("a b [2J  \u00e9\u00e9"));
+  EXPECT_LT(contact.reason.size(), 210U);
+  EXPECT_EQ(contact.reason.substr(contact.reason.size() - 5), "\u00e9...") << "cut between characters";
+}
+
+TEST_F(ProcessBackend, LongAnswersInSmallPiecesToSlowReadersAreFine) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    time.sleep(0.01)\n"
+      "    line = json.dumps({'tap': ask['tap'], 'outcome': 'contact', 'height': 0.07, 'seconds': 5.5}) + ' ' * 60000\n"
+      "    for piece in (line[:1], line[1:20], line[20:50000], line[50000:], '\\r\\n'):\n"
+      "        print(piece, end='', flush=True)\n"
+      "        time.sleep(0.002)");
+  for (int number = 1; number <= 3; ++number) expect_contact(tap(*backend, number));
+}
+
+TEST_F(ProcessBackend, ASecondLineIsRefusedAtTheNextTapBeforeTheArmMoves) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    print('asked', ask['tap'], file=sys.stderr, flush=True)\n"
+      "    line = json.dumps({'tap': ask['tap'], 'outcome': 'contact', 'height': 0.07, 'seconds': 5.5}) + '\\n'\n"
+      "    os.write(1, (line + ('well done\\n' if ask['tap'] == 1 else '')).encode())");
+  expect_contact(tap(*backend, 1));
+  expect_failure(tap(*backend, 2), Outcome::aborted, "the program said more than its answer: 'well done'");
+  expect_contact(tap(*backend, 3));
+  EXPECT_EQ(diary(), "asked 1\nasked 3\n");
+}
+
+TEST_F(ProcessBackend, AnAnswerAfterTheDeadlineIsNotTakenForAnotherTap) {
+  expect_failure(second_tap("time.sleep(1); contact(ask)", false, ", deadline: 500 ms"), Outcome::timeout,
+                 "the program did not answer in time");
+}
+
+TEST_F(ProcessBackend, HalfAnAnswerByTheDeadlineIsQuoted) {
+  expect_failure(second_tap("os.write(1, b'{\"tap\": 2,'); time.sleep(60)", false, ", deadline: 500 ms"),
+                 Outcome::timeout, "the program did not end its answer in time: '{\"tap\": 2,'");
+}
+
+TEST_F(ProcessBackend, StartingMayTakeLongerThanATap) {
+  const auto backend = open("time.sleep(0.5)\nfor ask in asks(): contact(ask)", ", deadline: 300 ms, start: 20 s");
+  expect_contact(tap(*backend, 1));
+  expect_contact(tap(*backend, 2));
+}
+
+TEST_F(ProcessBackend, AProgramThatIgnoresItsInputAndSigtermIsKilled) {
+  expect_failure(
+      second_tap("import signal; signal.signal(15, signal.SIG_IGN); time.sleep(60)", false, ", deadline: 500 ms"),
+      Outcome::timeout, "the program did not answer in time");
+}
+
+TEST_F(ProcessBackend, AnEarlyEndIsToldWithItsStatusAndItsLastWords) {
+  expect_failure(second_tap("sys.exit('no arm\\x1b\\nnot today')", false), Outcome::aborted,
+                 "the program ended with exit status 1, its last words: 'not today'");
+  EXPECT_EQ(diary(), "no arm\x1b\nnot today\n");
+}
+
+TEST_F(ProcessBackend, AnEndBySignalIsToldWithItsName) {
+  expect_failure(second_tap("os.kill(os.getpid(), 11)", false), Outcome::aborted,
+                 "the program was ended by signal 11 (Segmentation fault)");
+}
+
+TEST_F(ProcessBackend, AnEndBetweenTapsFailsTheNextTap) {
+  const auto backend = open("for ask in asks():\n    contact(ask)\n    sys.exit(4)");
+  for (int number = 1; number <= 4; ++number) {
+    const Contact contact = tap(*backend, number);
+    if (number % 2 == 1) {
+      expect_contact(contact);
+    } else {
+      expect_failure(contact, Outcome::aborted, "the program ended with exit status 4");
+    }
+  }
+}
+
+TEST_F(ProcessBackend, AProgramThatEndsAtEveryTapEndsInFailedTaps) {
+  const auto backend = open("sys.exit('broken')");
+  for (int number = 1; number <= 5; ++number) {
+    expect_failure(tap(*backend, number), Outcome::aborted,
+                   "the program ended with exit status 1, its last words: 'broken'");
+  }
+}
+
+TEST_F(ProcessBackend, AClosedStdoutFailsTheTap) {
+  expect_failure(second_tap("os.close(1); time.sleep(60)", false), Outcome::aborted,
+                 "the program closed its stdin or stdout");
+}
+
+TEST_F(ProcessBackend, AClosedStdinFailsTheTapAndRaisesNoSigpipe) {
+  const auto backend = open("ask = json.loads(sys.stdin.readline())\nos.close(0)\ncontact(ask)\ntime.sleep(60)");
+  expect_contact(tap(*backend, 1));
+  expect_failure(tap(*backend, 2), Outcome::aborted, "the program closed its stdin or stdout");
+  sigset_t pending;
+  ::sigpending(&pending);
+  EXPECT_EQ(::sigismember(&pending, SIGPIPE), 0);
+}
+
+TEST_F(ProcessBackend, InterruptedWhileItWaitsTheTapIsAbortedAndTheProgramEnded) {
+  const auto backend =
+      open("for ask in asks():\n    print(os.getpid(), file=sys.stderr, flush=True)\n    time.sleep(60)");
+  std::thread user([this] {
+    eventually([this] { return !diary().empty(); });
+    interrupted_ = true;
+  });
+  expect_failure(tap(*backend, 1), Outcome::aborted, "interrupted");
+  user.join();
+  EXPECT_FALSE(running(std::stol(diary())));
+}
+
+TEST_F(ProcessBackend, NothingIsLeftOfTheProgramNorOfWhatItStarted) {
+  auto backend = open(
+      "import subprocess\n"
+      "other = subprocess.Popen(['sleep', '60'])\n"
+      "print(other.pid, file=sys.stderr, flush=True)\n"
+      "for ask in asks(): contact(ask)");
+  const auto pid = static_cast<long>(tap(*backend, 1).force);
+  const long other = std::stol(diary());
+  EXPECT_TRUE(running(pid));
+  EXPECT_TRUE(running(other));
+  EXPECT_EQ(::getpgid(static_cast<pid_t>(pid)), pid) << "a process group of its own";
+  backend.reset();
+  EXPECT_FALSE(fs::exists("/proc/" + std::to_string(pid))) << "not even a zombie";
+  EXPECT_TRUE(eventually([&] { return !running(other); }));
+}
+
+TEST_F(ProcessBackend, AnEndIsToldThoughWhatTheProgramStartedHoldsItsStdout) {
+  const auto backend = open("import subprocess\nsubprocess.Popen(['sleep', '60'])\nsys.exit(5)");
+  expect_failure(tap(*backend, 1), Outcome::aborted, "the program ended with exit status 5");
+}
+
+TEST_F(ProcessBackend, TwoBackendsHoldNoneOfEachOthersPipes) {
+  const std::string body = "for ask in asks(): contact(ask)\nprint('end of input', file=sys.stderr)";
+  auto first = open(body);
+  const auto second = open(body);
+  expect_contact(tap(*first, 1));
+  expect_contact(tap(*second, 1));
+  first.reset();  // would have to be killed, and say nothing, if the second program held its stdin
+  EXPECT_EQ(diary(), "end of input\n");
+  expect_contact(tap(*second, 2));
+}
+
+TEST_F(ProcessBackend, NoOpenFileOfOursReachesTheProgram) {
+  const int ours = ::open("/dev/null", O_RDONLY);  // NOLINT: without O_CLOEXEC on purpose
+  const auto backend = open(
+      "files = sorted(os.listdir('/proc/self/fd'))\n"
+      "for ask in asks(): tell(ask, outcome='aborted', seconds=0, reason=' '.join(files))");
+  EXPECT_EQ(tap(*backend, 1).reason, "0 1 2 3") << "3 is the list itself";
+  ::close(ours);
+}
+
+TEST_F(ProcessBackend, ArgumentsArriveAsTheyAreWrittenWithoutAShell) {
+  const std::string program =
+      command("for ask in asks(): tell(ask, outcome='aborted', seconds=0, reason=repr(sys.argv[1:]))");
+  const auto backend =
+      start(program + R"(  "two  words" '$HOME;`date` *' a"b c"d ''	$HOME > x | y & \n "it's" '"')");
+  EXPECT_EQ(tap(*backend, 1).reason,
+            R"(['two  words', '$HOME;`date` *', 'ab cd', '', '$HOME', '>', 'x', '|', 'y', '&', '\\n', "it's", '"'])");
+}
+
+TEST_F(ProcessBackend, AnExecutableOfAnyLanguageIsStartedByItsPath) {
+  const fs::path file = folder_.write("my robot", R"(#!/bin/sh
+n=0
+while read -r ask; do
+  n=$((n + 1))
+  echo "{\"tap\": $n, \"outcome\": \"contact\", \"height\": 7e-2, \"seconds\": 5.5}"
+done
+)");
+  fs::permissions(file, fs::perms::owner_all);
+  const auto backend = start("'" + file.string() + "'");
+  for (int number = 1; number <= 3; ++number) expect_contact(tap(*backend, number));
+}
+
+TEST_F(ProcessBackend, WhatItWritesToStderrIsKeptOverRestartsAndFillsNoMemory) {
+  const auto backend = open("sys.stderr.write('x' * 999999 + '\\n')\nfor ask in asks():\n    contact(ask)\n    break");
+  EXPECT_FALSE(fs::exists(folder_.path() / "record" / "process.stderr.txt")) << "nothing starts before the first tap";
+  for (int number = 1; number <= 3; ++number) tap(*backend, number);
+  EXPECT_EQ(diary().size(), 2'000'000U);
+}
+
+TEST_F(ProcessBackend, WithoutARecordStderrIsDropped) {
+  context_.directory.clear();
+  const auto backend = open("sys.exit('unheard')");
+  expect_failure(tap(*backend, 1), Outcome::aborted, "the program ended with exit status 1");
+}
+
+TEST_F(ProcessBackend, WhatCannotBeStartedIsRefusedWhenItIsBuilt) {
+  EXPECT_THAT(refusal("pyhton3 x.py"),
+              HasSubstr("command: there is no program 'pyhton3', a name is looked for in PATH"));
+  EXPECT_THAT(refusal("./nowhere"), HasSubstr("command: there is no program './nowhere'"));
+  EXPECT_THAT(refusal(folder_.path().string()), HasSubstr("there is no program"));
+  EXPECT_THAT(refusal(folder_.write("plain", "x").string()), HasSubstr("there is no program"));
+  for (const char* text : {"", "  ", "''", "python3 'open", "\"open"}) {
+    EXPECT_THAT(refusal(text), HasSubstr("command: names no program, or a quote is left open")) << text;
+  }
+}
+
+TEST_F(ProcessBackend, AFileThatIsNoProgramIsNotGivenToAShell) {
+  const fs::path file = folder_.write("script", "touch " + (folder_.path() / "touched").string() + "\n");
+  fs::permissions(file, fs::perms::owner_all);
+  EXPECT_THAT(refusal(file.string()), HasSubstr("command: cannot start '" + file.string() + "': Exec format error"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "touched"));
+}
+
+TEST_F(ProcessBackend, AThousandTapsAreQuick) {
+  const auto backend = open("for ask in asks(): contact(ask)");
+  tap(*backend, 1);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int number = 2; number <= 1001; ++number) expect_contact(tap(*backend, number));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  RecordProperty("taps_per_second", static_cast<int>(1000 / seconds));
+  // About 0.05 s; a wait that slept instead of being woken would take 20.
+  EXPECT_LT(seconds, 10.0);
+}
+
+}  // namespace
+}  // namespace palpate::test
