@@ -30,6 +30,12 @@ class Written final : public Fields {
   void reals(double* values, std::size_t count, const Field& field) override {
     out_[field.name] = Json(std::vector<double>(values, values + count));
   }
+  void table(std::vector<double>& values, std::size_t columns, const Field& field) override {
+    Json& rows = out_[field.name] = Json::array();
+    for (std::size_t i = 0; i < values.size(); i += columns) {
+      rows.push_back(std::vector<double>(&values[i], &values[i] + columns));
+    }
+  }
   void integer(std::int64_t& value, const Field& field) override { out_[field.name] = value; }
   void integer(std::optional<std::int64_t>& value, const Field& field) override { maybe(value, field); }
   void flag(bool& value, const Field& field) override { out_[field.name] = value; }
@@ -57,6 +63,7 @@ class Written final : public Fields {
   void plugin(PluginChoice&, const Field&) override {}
   void plugin(std::optional<PluginChoice>&, const char*, const Field&) override {}
   void plugins(std::vector<PluginChoice>&, const char*, const Field&) override {}
+  void adopt(PluginChoice&) override {}
   void require(bool, const char*, const std::string&) override {}
 
  private:
