@@ -212,7 +212,8 @@ std::vector<Case> cases() {
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
            "bad.yaml:10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
       line("HoverBelowTheObject", "backend: {motion: {hover: 5 cm}}",
-           "bad.yaml:10:27: backend/simulator: motion.hover: an object is as high as the arm travels, or higher, raise it or "
+           "bad.yaml:10:27: backend/simulator: motion.hover: an object is as high as the arm travels, or higher, raise "
+           "it or "
            "lower the "
            "object"),
 

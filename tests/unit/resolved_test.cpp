@@ -28,9 +28,10 @@ TEST(ResolvedConfig, HasAnIdOfTwelveHexadecimalDigits) {
 }
 
 TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
-  EXPECT_EQ(
-      test::shipped_config("paper/object_i.yaml", {"repeat=forbid", "weight.prior_mean=0", "backend.motion.hover=13.5cm"}).id,
-      test::shipped_config("paper/object_i.yaml").id);
+  EXPECT_EQ(test::shipped_config("paper/object_i.yaml",
+                                 {"repeat=forbid", "weight.prior_mean=0", "backend.motion.hover=13.5cm"})
+                .id,
+            test::shipped_config("paper/object_i.yaml").id);
 }
 
 TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
