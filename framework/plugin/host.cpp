@@ -133,7 +133,8 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
   try {
     call();
   } catch (const Error& refusal) {
-    if (const Tree* option = options != nullptr ? options->find(refusal.where()) : nullptr) {
+    const bool names_option = options != nullptr && !refusal.where().empty();
+    if (const Tree* option = names_option ? options->find_path(refusal.where()) : nullptr) {
       throw Error(option->place.file ? option->place.text() : place,
                   fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
     }

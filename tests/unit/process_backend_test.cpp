@@ -27,7 +27,7 @@ TEST_F(ProcessBackend, AsksInOneLineThatHoldsAllThatAProgramNeeds) {
   expect_contact(backend->tap(second));
   const std::string same =
       R"("area":{"width":0.23,"depth":0.23},"desk":0.0,"seed":1,"motion":{"type":"paper","step":0.03,"pause":0.25,)"
-      R"("speed":0.025,"threshold":10.0,"hover":0.14,"adaptive_hover":{"deviations":2.0,"clearance":0.02,"speed":0.1},)"
+      R"("speed":0.024,"threshold":10.0,"hover":0.135,"adaptive_hover":{"deviations":2.0,"clearance":0.02,"speed":0.1},)"
       R"("travel_speed":0.3,"retreat_speed":0.3,"tare":0.2,"overrun":0.03,"timeout":60.0}})"
       "\n";
   EXPECT_EQ(diary(), R"({"palpate":1,"tap":1,"x":0.1,"y":0.2,"previous":null,"predicted":null,)" + same +
