@@ -20,6 +20,8 @@ bool any(const Effects& effects) {
          effects.pose_noise || effects.missed_contacts || effects.false_contacts || effects.reach || effects.shaft;
 }
 
+constexpr const char* kTooLong = "the tap took longer than motion.timeout";
+
 bool change_motion(const Effects& effects) {
   return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
          effects.missed_contacts || effects.false_contacts;
@@ -50,10 +52,16 @@ Contact Simulator::tap(const TapRequest& request) {
   if (!perfect_) return imperfect_tap(request, descent);
 #endif
   const double surface = scene_.height(request.target.x, request.target.y);
-  const double seconds = tapping::travel_seconds(options_.motion, request) +
-                         tapping::ideal_seconds(options_.motion, descent, surface) +
-                         tapping::retreat_seconds(options_.motion, descent, surface);
-  return paced({Outcome::contact, surface, options_.motion.threshold, seconds, {}});
+  Contact contact = ideal_descent(descent, surface);
+  contact.seconds +=
+      tapping::travel_seconds(options_.motion, request) + tapping::retreat_seconds(options_.motion, descent, surface);
+  return paced(std::move(contact));
+}
+
+Contact Simulator::ideal_descent(const tapping::Descent& descent, double surface) const {
+  const double seconds = tapping::ideal_seconds(options_.motion, descent, surface);
+  if (seconds > options_.motion.timeout) return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout, kTooLong};
+  return {Outcome::contact, surface, options_.motion.threshold, seconds, {}};
 }
 
 #ifndef PALPATE_WITHOUT_EFFECTS
