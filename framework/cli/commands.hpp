@@ -81,7 +81,7 @@ struct ParetoArguments {
   std::string directory;
   std::string cost;
   std::string error;
-  std::string within;  ///< "" where nothing is asked for
+  std::optional<std::string> within;
 };
 int pareto(Program& program, const ParetoArguments& arguments);
 

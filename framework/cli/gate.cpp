@@ -25,6 +25,11 @@ void check_junit(const std::string& junit) {
   if (::access(folder.c_str(), W_OK) != 0) throw Error(junit, "its folder cannot be written to");
 }
 
+void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutcome>& runs, const GateOutput& output) {
+  if (output.junit.empty()) return;
+  write_file(output.junit, junit_xml(output.suite, test_cases(output.suite, runs, verdicts)));
+}
+
 bool conclude(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs,
               const GateOutput& output) {
   const std::vector<Verdict> verdicts = judge(expectations, runs);
@@ -34,8 +39,7 @@ bool conclude(const std::vector<Expectation>& expectations, const std::vector<Ru
   for (const Verdict& verdict : verdicts) {
     if (!verdict.holds) fmt::print(stderr, "{}\n", verdict_line(verdict));
   }
-  if (!output.junit.empty())
-    write_file(output.junit, junit_xml(output.suite, test_cases(output.suite, runs, verdicts)));
+  write_junit(verdicts, runs, output);
   return held == static_cast<std::ptrdiff_t>(verdicts.size());
 }
 

@@ -20,6 +20,9 @@ struct GateOutput {
 /// Throws Error, of kind usage, if no file can be made in the folder of `junit`: better before a long sweep than after.
 void check_junit(const std::string& junit);
 
+/// Writes the JUnit file, if one is asked for. Throws Error.
+void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutcome>& runs, const GateOutput& output);
+
 /// Judges the runs, prints a line on stderr for each expectation that fails, and writes the JUnit file. Returns whether
 /// all hold. Throws Error.
 bool conclude(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs,

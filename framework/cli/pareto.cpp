@@ -67,21 +67,19 @@ int pareto(Program&, const ParetoArguments& arguments) {
     throw Error(arguments.directory, "is not the directory of a sweep", "it has no manifest.jsonl");
   const Sweep sweep = read_sweep(arguments.directory);
   const Pareto pareto = make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error);
-  const bool asked = !arguments.within.empty();
-  const std::optional<double> bound = asked ? std::optional(read_bound(pareto, arguments.within)) : std::nullopt;
+  const bool asked = arguments.within.has_value();
+  const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
   if (pareto.unfinished > 0) {
     fmt::print(stderr, "{} of {} jobs have not ended, 'palpate resume' carries on\n", pareto.unfinished, pareto.jobs);
   }
   fmt::print(asked ? stderr : stdout, "{}", pareto_table(pareto));
+  // First what was asked for: the directory may be one where nothing can be written.
+  if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
   const Tree config = read_run_config(sweep.directory);
   const Tree* name = config.find("name");
   write_files(sweep, pareto, name != nullptr ? name->text : "sweep", bound, chosen);
-  if (!bound) return kDone;
-  if (chosen != nullptr) {
-    print_config(sweep, pareto, *chosen, *bound);
-    return kDone;
-  }
+  if (!bound || chosen != nullptr) return kDone;
   const Setting* best = best_bounded(pareto);
   throw Error("", fmt::format("no setting keeps to {} within {}", pareto.error.name, bound_words(pareto, *bound)),
               best != nullptr ? fmt::format("the nearest is {}: {}", best->name, error_words(pareto, *best))

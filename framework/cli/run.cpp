@@ -74,8 +74,10 @@ int conclude_run(const ResolvedConfig& config, const RunOutput& output, const st
     report = action();
   } catch (const Error& trouble) {
     // A run that failed is a result, too: continuous integration shall see it as one.
-    if (trouble.kind() == Error::Kind::run && !output.junit.empty())
-      conclude({}, {outcome_of(config.id, {}, trouble.what())}, gate);
+    if (trouble.kind() == Error::Kind::run) {
+      const std::vector<RunOutcome> runs{outcome_of(config.id, {}, trouble.what())};
+      write_junit(judge(config.expectations, runs), runs, gate);
+    }
     throw;
   }
   if (output.json) fmt::print("{}", to_json_text(report.summary));

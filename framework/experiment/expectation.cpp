@@ -65,6 +65,10 @@ void collect(const Tree& map, const std::string& prefix, std::vector<Line>& line
   for (const Tree::Entry& entry : map.entries) {
     const std::string key = without_spaces(prefix + entry.key);
     if (entry.value.is_map()) {
+      if (entry.value.entries.empty()) {
+        throw Error(place_of(entry).text(), fmt::format("expect.{}: expects nothing", key),
+                    "write \"<= 2 cm\" or the like");
+      }
       collect(entry.value, key + ".", lines);
       continue;
     }

@@ -45,20 +45,22 @@ std::string xml_text(const std::string& text) {
 }  // namespace
 
 std::string junit_xml(const std::string& suite, const std::vector<TestCase>& cases) {
-  const auto failures =
-      std::count_if(cases.begin(), cases.end(), [](const TestCase& one) { return !one.failure.empty(); });
+  const auto failures = std::count_if(cases.begin(), cases.end(),
+                                      [](const TestCase& one) { return !one.failure.empty() && !one.tolerated; });
+  const auto skipped = std::count_if(cases.begin(), cases.end(),
+                                     [](const TestCase& one) { return one.tolerated && !one.failure.empty(); });
   double seconds = 0.0;
   for (const TestCase& one : cases) seconds += one.seconds;
   const std::string counts =
       fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.6f}\"", cases.size(), failures, seconds);
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites " + counts + ">\n";
-  out += fmt::format("  <testsuite name=\"{}\" {} skipped=\"0\">\n", xml_text(suite), counts);
+  out += fmt::format("  <testsuite name=\"{}\" {} skipped=\"{}\">\n", xml_text(suite), counts, skipped);
   for (const TestCase& one : cases) {
     out += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\"", xml_text(one.group),
                        xml_text(one.name), one.seconds);
-    out += one.failure.empty()
-               ? std::string("/>\n")
-               : fmt::format(">\n      <failure message=\"{}\"/>\n    </testcase>\n", xml_text(one.failure));
+    out += one.failure.empty() ? std::string("/>\n")
+                               : fmt::format(">\n      <{} message=\"{}\"/>\n    </testcase>\n",
+                                             one.tolerated ? "skipped" : "failure", xml_text(one.failure));
   }
   return out + "  </testsuite>\n</testsuites>\n";
 }

@@ -11,7 +11,8 @@ struct TestCase {
   std::string group;  ///< JUnit's classname
   std::string name;
   double seconds = 0.0;
-  std::string failure;  ///< one line; "" when it passed
+  std::string failure;     ///< one line; "" when it passed
+  bool tolerated = false;  ///< its failure is told, but not counted
 };
 
 /// A document with one suite. Bytes that XML 1.0 cannot hold become U+FFFD.

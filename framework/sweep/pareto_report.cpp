@@ -170,7 +170,7 @@ AxisRange axis_range(const Pareto& pareto, const Pick& pick, const Scale& scale,
     const MeanEstimate& estimate = pick(one);
     if (estimate.count == 0) continue;
     means.push_back(estimate.mean / scale.factor);
-    const Interval interval = estimate.interval.value_or(Interval{estimate.mean, estimate.mean});
+    const MeanInterval interval = estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
     ends.push_back(interval.low / scale.factor);
     ends.push_back(interval.high / scale.factor);
   }
@@ -205,7 +205,7 @@ class PointWriter {
 
  private:
   static std::string ends(const MeanEstimate& estimate, const Scale& scale, const AxisRange& range) {
-    const Interval interval = estimate.interval.value_or(Interval{estimate.mean, estimate.mean});
+    const MeanInterval interval = estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
     return fmt::format("{} {}", range.clipped(interval.low / scale.factor),
                        range.clipped(interval.high / scale.factor));
   }

@@ -30,7 +30,7 @@ MeanEstimate estimate_mean(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double value : values) squares += (value - out.mean) * (value - out.mean);
   const double half = student_factor(values.size() - 1) * std::sqrt(squares / (n - 1.0) / n);
-  out.interval = Interval{out.mean - half, out.mean + half};
+  out.interval = MeanInterval{out.mean - half, out.mean + half};
   return out;
 }
 

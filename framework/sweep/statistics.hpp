@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// Two ends, the low one first.
-struct Interval {
+struct MeanInterval {
   double low = 0.0;
   double high = 0.0;
 };
@@ -19,7 +19,7 @@ struct Interval {
 struct MeanEstimate {
   std::size_t count = 0;
   double mean = 0.0;  ///< 0 of no values
-  std::optional<Interval> interval;
+  std::optional<MeanInterval> interval;
 };
 
 /// Of finite values.

@@ -46,7 +46,7 @@ TEST(GuardedTap, OnARigidSurfaceTakesTheTimeOfTheClosedFormAndFindsItsHeight) {
   for (const char* yaml : kMotions) {
     const MotionOptions options = motion(yaml);
     for (int i = 0; i < 50; ++i) {
-      const double surface = 0.12 * random.uniform();
+      const double surface = 0.134 * random.uniform();
       const std::optional<Prediction> guess{{surface - 0.03 + 0.08 * random.uniform(), 0.005}};
       const Descent descent = plan_descent(options, 0.0, guess);
       // A start within three periods of the surface may be reached before the contact on the way is certain.
@@ -56,10 +56,9 @@ TEST(GuardedTap, OnARigidSurfaceTakesTheTimeOfTheClosedFormAndFindsItsHeight) {
       // Until three periods are above the threshold the set-point goes on by that much.
       const double most = 5 * kPeriod * std::max(options.speed, 0.1);
       EXPECT_NEAR(run.tap.height(), surface, options.type == MotionOptions::Type::continuous ? 1e-3 : most) << yaml;
-      // Each stage is rounded up to whole periods, and takes three more to be sure; continuous watches 0.1 s longer.
-      const double watched = options.type == MotionOptions::Type::continuous ? 0.1 : 0.0;
+      // Each stage is rounded up to whole periods, and takes three more to be sure.
       const double step_more = options.type == MotionOptions::Type::paper ? options.pause : 0.0;
-      const double closed = ideal_seconds(options, descent, surface) + watched;
+      const double closed = ideal_seconds(options, descent, surface);
       EXPECT_GT(run.tap.seconds(), closed - 0.05) << yaml << " at " << surface;
       EXPECT_LT(run.tap.seconds(), closed + 0.25 + step_more) << yaml << " at " << surface;
     }
@@ -79,6 +78,25 @@ TEST(GuardedTap, NeverCommandsFasterThanItsSpeedsNorBelowItsFloor) {
       last = one.set_point;
     }
   }
+}
+
+TEST(GuardedTap, NeverBacksOffAboveItsHover) {
+  const MotionOptions options = motion("{type: two_stage, back_off: 10 cm}");
+  const Descent descent = plan_descent(options, 0.0, {});
+  const Trial run(options, descent, 0.1, 1500.0);
+  for (const Moment& one : run.moments) EXPECT_LE(one.set_point, descent.hover);
+  EXPECT_EQ(run.tap.outcome(), Outcome::contact);
+}
+
+TEST(GuardedTap, KeepsItsResultWhateverItIsToldAfterwards) {
+  const MotionOptions options = motion("{type: continuous}");
+  Trial run(options, plan_descent(options, 0.0, {}), 0.08, 1500.0);
+  const double height = run.tap.height();
+  const double seconds = run.tap.seconds();
+  for (int i = 0; i < 10'000; ++i) run.tap.next(0.13, 100.0);
+  EXPECT_EQ(run.tap.outcome(), Outcome::contact);
+  EXPECT_EQ(run.tap.height(), height);
+  EXPECT_EQ(run.tap.seconds(), seconds);
 }
 
 TEST(GuardedTap, DoesNotTakeTwoLoudPeriodsForAContact) {

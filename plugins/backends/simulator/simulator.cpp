@@ -52,16 +52,16 @@ Contact Simulator::tap(const TapRequest& request) {
   if (!perfect_) return imperfect_tap(request, descent);
 #endif
   const double surface = scene_.height(request.target.x, request.target.y);
-  Contact contact = ideal_descent(descent, surface);
-  contact.seconds +=
-      tapping::travel_seconds(options_.motion, request) + tapping::retreat_seconds(options_.motion, descent, surface);
+  Contact contact = ideal_tap(descent, surface);
+  contact.seconds += tapping::travel_seconds(options_.motion, request);
   return paced(std::move(contact));
 }
 
-Contact Simulator::ideal_descent(const tapping::Descent& descent, double surface) const {
-  const double seconds = tapping::ideal_seconds(options_.motion, descent, surface);
-  if (seconds > options_.motion.timeout) return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout, kTooLong};
-  return {Outcome::contact, surface, options_.motion.threshold, seconds, {}};
+Contact Simulator::ideal_tap(const tapping::Descent& descent, double surface) const {
+  const double down = tapping::ideal_seconds(options_.motion, descent, surface);
+  const double up = tapping::retreat_seconds(options_.motion, descent, surface);
+  if (down > options_.motion.timeout) return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout + up, kTooLong};
+  return {Outcome::contact, surface, options_.motion.threshold, down + up, {}};
 }
 
 #ifndef PALPATE_WITHOUT_EFFECTS
@@ -82,40 +82,32 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const tapping::Desce
     dz = effects.pose_noise->vertical * normal();
   }
   const double surface = contact_height(scene_, effects, target.x + dx, target.y + dy);
-  Contact contact;
-  if (moves_) {
-    contact = simulated_descent(request.number, descent, surface);
-  } else {
-    contact = {Outcome::contact,
-               surface,
-               options_.motion.threshold,
-               tapping::ideal_seconds(options_.motion, descent, surface),
-               {}};
-  }
-  contact.seconds +=
-      tapping::travel_seconds(options_.motion, request) + tapping::retreat_seconds(options_.motion, descent, surface);
+  Contact contact = moves_ ? simulated_tap(request.number, descent, surface) : ideal_tap(descent, surface);
+  contact.seconds += tapping::travel_seconds(options_.motion, request);
   if (contact.outcome == Outcome::contact) contact.height += dz;
   return paced(std::move(contact));
 }
 
-Contact Simulator::simulated_descent(int number, const tapping::Descent& descent, double surface) const {
+Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, double surface) const {
   using tapping::GuardedTap;
   const Effects& effects = scene_.effects();
   Touch touch(effects, surface, descent.hover, options_.motion.threshold,
               context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
   Arm arm(effects.joint_lag, GuardedTap::kPeriod, descent.hover);
   GuardedTap tap(options_.motion, descent);
+  Touch::Felt felt{};
   while (!tap.done()) {
-    const Touch::Felt felt = touch.feel(arm.position());
+    felt = touch.feel(arm.position());
     arm.follow(tap.next(felt.height, felt.force));
   }
+  const double seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
   switch (tap.outcome()) {
     case Outcome::contact:
-      return {Outcome::contact, tap.height(), tap.peak_force(), tap.seconds(), {}};
+      return {Outcome::contact, tap.height(), tap.peak_force(), seconds, {}};
     case Outcome::timeout:
-      return {Outcome::timeout, 0.0, 0.0, tap.seconds(), "the tap took longer than motion.timeout"};
+      return {Outcome::timeout, 0.0, 0.0, seconds, kTooLong};
     default:
-      return {tap.outcome(), 0.0, 0.0, tap.seconds(), "the descent reached its floor without a contact"};
+      return {tap.outcome(), 0.0, 0.0, seconds, "the descent ended without a contact"};
   }
 }
 #endif

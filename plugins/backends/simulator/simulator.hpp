@@ -30,9 +30,9 @@ class Simulator final : public Backend {
   bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
 
  private:
-  Contact ideal_descent(const tapping::Descent& descent, double surface) const;
+  Contact ideal_tap(const tapping::Descent& descent, double surface) const;
   Contact imperfect_tap(const TapRequest& request, const tapping::Descent& descent) const;
-  Contact simulated_descent(int number, const tapping::Descent& descent, double surface) const;
+  Contact simulated_tap(int number, const tapping::Descent& descent, double surface) const;
   Contact paced(Contact contact) const;
 
   SimulatorOptions options_;

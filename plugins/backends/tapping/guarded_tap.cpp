@@ -3,19 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate::tapping {
 namespace {
 
 /// Periods above the threshold until it counts as a contact: one alone may be noise.
 constexpr int kConsecutive = 3;
-/// How long the arm is watched after it was stopped: what it presses on meanwhile tells of the onset, too.
-constexpr double kStop = 0.1;
-/// How far above the contact the samples begin that tell of its onset: enough of free air to know the zero by.
-constexpr double kTraceAbove = 0.02;
-/// How near to its goal the arm must come before the next stage, and how long that may take at most.
+/// How near to its goal the arm must come before the next stage. One that has not come nearer by as much again for so
+/// many seconds is held up, and will not.
 constexpr double kNear = 0.001;
-constexpr double kArrival = 2.0;
+constexpr double kHeldUp = 2.0;
 
 }  // namespace
 
@@ -23,6 +21,7 @@ GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent)
     : motion_(motion), descent_(descent), set_point_(descent.hover) {}
 
 double GuardedTap::next(double height, double force) {
+  if (done()) return set_point_;
   ++periods_;
   const double felt = force - zero_;
   const bool taring = stage_ == Stage::tare || stage_ == Stage::settle;
@@ -78,13 +77,7 @@ double GuardedTap::next(double height, double force) {
       }
       break;
     case Stage::stop:
-      if (waited(kStop)) {
-        const double contact = trace_.back().height;
-        const auto near = std::find_if(trace_.begin(), trace_.end(),
-                                       [&](const Sample& one) { return one.height < contact + kTraceAbove; });
-        trace_.erase(trace_.begin(), near);
-        finish(Outcome::contact, onset(trace_).value_or(first_));
-      }
+      if (waited(kWatched)) finish(Outcome::contact, onset_of_descent(trace_).value_or(first_));
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {
@@ -112,6 +105,7 @@ void GuardedTap::enter(Stage stage) {
   entered_ = periods_;
   above_ = 0;
   sum_ = 0.0;
+  gap_ = std::numeric_limits<double>::infinity();
   switch (stage) {
     case Stage::clear:
       goal_ = std::min(descent_.hover, set_point_ + motion_.adaptive_hover->clearance);
@@ -122,7 +116,9 @@ void GuardedTap::enter(Stage stage) {
                                                          : descent_.floor;
       break;
     case Stage::back_off:
-      goal_ = set_point_ + motion_.back_off;
+      // From where the contact began: a soft object may have given way by more than that, and would be tared.
+      goal_ = std::min(descent_.hover,
+                       std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) + motion_.back_off);
       break;
     case Stage::fine:
       goal_ = std::max(descent_.floor, first_ - motion_.back_off);
@@ -158,8 +154,16 @@ bool GuardedTap::ramp(double goal, double speed) {
   return false;
 }
 
-/// An arm that trails its set-point may still press on what it should be clear of.
-bool GuardedTap::arrived(double height) const { return std::abs(height - set_point_) < kNear || waited(kArrival); }
+/// Whether the arm is where it was sent, or will not come any nearer. One that trails its set-point may still press on
+/// what it should be clear of.
+bool GuardedTap::arrived(double height) {
+  const double gap = std::abs(height - set_point_);
+  if (gap < gap_ - kNear) {
+    gap_ = gap;
+    nearer_ = periods_;
+  }
+  return gap < kNear || static_cast<double>(periods_ - nearer_) * kPeriod >= kHeldUp;
+}
 
 /// Half a period of grace: 0.5 s are 50 periods, whatever their sum rounds to.
 bool GuardedTap::waited(double seconds) const {

@@ -16,9 +16,10 @@ namespace palpate::tapping {
 /// declared when the force has been above its threshold for three periods. What then follows is the motion's:
 /// - paper: the set-point stays, the pause passes, and the height is read while the arm still presses: too low by what
 ///   the contact gives way under the set-point's lead.
-/// - two_stage: the set-point is put where the arm is, backs off, rests and tares, and comes down slowly to a gentler
-///   threshold; the height is that of the second contact. No second contact within twice the way back means that the
-///   first was none, and the descent goes on.
+/// - two_stage: the set-point is put where the arm is, backs off until the tip is clear, rests and tares, and comes
+/// down
+///   slowly to a gentler threshold; the height is that of the second contact. No second contact within twice the way
+///   back means that the first was none, and the descent goes on.
 /// - continuous: the set-point is put where the arm is, and the height is that of the onset (onset.hpp).
 class GuardedTap {
  public:
@@ -47,7 +48,7 @@ class GuardedTap {
   void touched(double height);
   void descend(double height);
   bool ramp(double goal, double speed);
-  bool arrived(double height) const;
+  bool arrived(double height);
   bool waited(double seconds) const;
   void finish(Outcome outcome, double height);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
@@ -63,6 +64,8 @@ class GuardedTap {
   double sum_ = 0.0;   ///< of forces while taring
   double peak_ = 0.0;
   double first_ = 0.0;         ///< height of the first contact of two_stage
+  double gap_ = 0.0;           ///< least distance of arm and set-point in this stage
+  long nearer_ = 0;            ///< the period in which it last became less
   int above_ = 0;              ///< periods above the threshold, without a break
   std::vector<Sample> trace_;  ///< of the descent, for the onset
   Outcome outcome_ = Outcome::unknown;

@@ -117,8 +117,8 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
     seconds += (descent.hover - end) / adaptive.speed;
     from = end;
     if (surface > descent.start) {  // hit on the way: back off, then as always
-      seconds += adaptive.clearance / adaptive.speed;
-      from += adaptive.clearance;
+      from = std::min(descent.hover, end + adaptive.clearance);
+      seconds += (from - end) / adaptive.speed;
     }
   }
   const double down = from - surface;
@@ -127,10 +127,12 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
     case MotionOptions::Type::paper:
       // Whole steps are counted, though contact cuts the last one short: the pause follows all the same.
       return seconds + std::max(1.0, std::ceil(down / motion.step)) * motion.pause;
-    case MotionOptions::Type::two_stage:
-      return seconds + motion.back_off / motion.speed + motion.pause + motion.back_off / motion.fine_speed;
+    case MotionOptions::Type::two_stage: {
+      const double back = std::min(motion.back_off, descent.hover - surface);
+      return seconds + back / motion.speed + motion.pause + back / motion.fine_speed;
+    }
     case MotionOptions::Type::continuous:
-      return seconds;
+      return seconds + kWatched;
   }
   return seconds;
 }

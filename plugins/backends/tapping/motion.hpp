@@ -51,8 +51,12 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
 double travel_seconds(const MotionOptions& motion, const TapRequest& request);
 double retreat_seconds(const MotionOptions& motion, const Descent& descent, double height);
 
+/// How long `continuous` watches the arm once it has stopped it, seconds: what the arm presses on meanwhile tells of
+/// the onset, too.
+constexpr double kWatched = 0.1;
+
 /// Seconds from arrival to contact with a rigid surface at `surface`, for an arm that follows its set-point at once and
-/// feels without noise: what GuardedTap needs then, but for its period.
+/// feels without noise: what GuardedTap needs then, but for whole periods and those that it takes to be sure.
 double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface);
 
 }  // namespace palpate::tapping

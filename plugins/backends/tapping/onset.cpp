@@ -7,6 +7,10 @@
 namespace palpate::tapping {
 namespace {
 
+/// The shortest part of a descent that is looked at, metres, and the share of it that the rise may take.
+constexpr double kFirstWindow = 0.02;
+constexpr double kInside = 0.6;
+
 /// What the best hinge with this kink explains: the sum of squares that it takes off that of the forces about their
 /// mean. Negative where the force would fall with the depth.
 double explained(const std::vector<Sample>& samples, double kink) {
@@ -64,6 +68,19 @@ std::optional<double> onset(const std::vector<Sample>& samples) {
     }
   }
   return 0.5 * (low + high);
+}
+
+std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
+  if (descent.empty()) return std::nullopt;
+  const double bottom = descent.back().height;
+  for (double window = kFirstWindow;; window *= 2.0) {
+    const auto first =
+        std::find_if(descent.begin(), descent.end(), [&](const Sample& one) { return one.height < bottom + window; });
+    const std::optional<double> found = onset({first, descent.end()});
+    // A kink at the upper end of the window is that of a window that begins within the rise.
+    const bool inside = found && *found - bottom < kInside * window;
+    if (inside || first == descent.begin()) return found;
+  }
 }
 
 }  // namespace palpate::tapping

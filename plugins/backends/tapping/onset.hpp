@@ -21,4 +21,9 @@ struct Sample {
 /// an interval fits as well (a rigid surface, met between two samples), the lowest.
 std::optional<double> onset(const std::vector<Sample>& samples);
 
+/// The onset of the contact with which `descent` ends, its samples in the order of time. Only its last part is looked
+/// at, since the zero of the force may wander on the way: as much as shows the whole rise, which is long on a soft
+/// object, with air above it.
+std::optional<double> onset_of_descent(const std::vector<Sample>& descent);
+
 }  // namespace palpate::tapping
