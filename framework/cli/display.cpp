@@ -54,11 +54,11 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   const char* source = tap.source == Source::initial    ? "initial"
                        : tap.source == Source::fallback ? "fallback"
                                                         : "acquisition";
-  fmt::print("{:>4}  {:<11}  {:>6.2f}  {:>6.2f}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}\n", tap.number, source,
+  fmt::print("{:>4}  {:<11}  {:>6.2f}  {:>6.2f}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}{}\n", tap.number, source,
              tap.target.x * 100, tap.target.y * 100,
              touched ? fmt::format("{:.2f}", tap.contact.height * 100) : std::string("-"), contact,
              scaled(tap.max_standard_deviation, 100, "{:.2f}"), scaled(tap.errors.rmse, 100, "{:.2f}"),
-             scaled(tap.errors.footprint_iou, 1, "{:.2f}"));
+             scaled(tap.errors.footprint_iou, 1, "{:.2f}"), touched ? "" : "  " + tap.contact.reason);
   std::fflush(stdout);
 }
 

@@ -52,6 +52,9 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
 void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chosen, double bound) {
   Tree config = read_run_config(job_directory(sweep, sweep.jobs[chosen.first_job]));
   config.erase("expect");
+  // Not among the sweeps of this name: what is said of them below, runs/NAME/*, would no longer be one directory.
+  Tree& name = config.at("name");
+  name = Tree::scalar(name.text + "_best", true);
   const char* const kept =
       pareto.error.more_is_better ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
   fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),

@@ -23,7 +23,7 @@ class Resolver final : public Fields {
     output_.place = input_ != nullptr ? input_->place : parent;
     if (input_ != nullptr && input_->kind != Tree::Kind::map && input_->kind != Tree::Kind::null) {
       throw Error(input_->place.text(), fmt::format("{} is not a group of options", owner()),
-                  "write {key: value, ...}");
+                  fmt::format("write {{key: value, ...}}{}", path_.empty() ? "" : " or " + path_ + "KEY=VALUE"));
     }
   }
 

@@ -92,7 +92,7 @@ Judgement judge_each(const Expectation& one, const std::vector<RunOutcome>& runs
   int missed = 0;
   std::string got;
   for (const RunOutcome& run : runs) {
-    const Judgement judgement = judge_run(one, run);
+    Judgement judgement = judge_run(one, run);
     if (runs.size() == 1) return judgement;
     if (judgement.holds) continue;
     if (missed++ == 0) got = fmt::format("{} in {}", judgement.got, run.label);

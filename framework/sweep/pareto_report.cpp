@@ -220,7 +220,7 @@ constexpr double kListLeft = 0.635;  // of the picture's width: where the list o
 
 /// The name in lines that fit beside the plot, broken behind commas where it can be.
 std::vector<std::string> wrapped(const std::string& name) {
-  constexpr std::size_t kLongest = 54;
+  constexpr std::size_t kLongest = 48;
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin < name.size();) {
     std::size_t end = name.size();

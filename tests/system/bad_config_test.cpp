@@ -128,7 +128,7 @@ std::vector<Case> cases() {
       line("MapWhereAValueBelongs", "seed: {value: 1}",
            "bad.yaml:10:7: seed: is a list or a map, not a number, write a plain number"),
       line("ValueWhereAMapBelongs", "initial: 3",
-           "bad.yaml:10:10: initial is not a group of options, write {key: value, ...}"),
+           "bad.yaml:10:10: initial is not a group of options, write {key: value, ...} or initial.KEY=VALUE"),
       line("MapWhereAListBelongs", "scene: {objects: {type: wave}}",
            "bad.yaml:10:18: scene.objects: expects a list, write [{...}, {...}]"),
       line("ListOfTheWrongLength", "scene: {objects: [{type: wave, at: [1 cm]}]}",
@@ -212,10 +212,9 @@ std::vector<Case> cases() {
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
            "bad.yaml:10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
       line("HoverBelowTheObject", "backend: {motion: {hover: 5 cm}}",
-           "bad.yaml:10:27: backend/simulator: motion.hover: an object is as high as the arm travels, or higher, raise "
-           "it or "
-           "lower the "
-           "object"),
+           "bad.yaml:10:27: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, "
+           "raise "
+           "it or lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "weight: {hyperparameters: shared, kernel: {type: rbf}}",
            "bad.yaml:10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared; "

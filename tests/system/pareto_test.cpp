@@ -206,6 +206,8 @@ TEST(Pareto, RefusesWhatCannotBeComparedInOneLine) {
   EXPECT_EQ(refused("robot_seconds", "stop_reason", {}),
             "command line: --error: the column 'stop_reason' holds tap budget, not numbers, name one that can be "
             "averaged\n");
+  EXPECT_THAT(refused("robot_seconds", "rmse_m", {"--within", ""}), HasSubstr("--within"))
+      << "a variable that is not set";
   EXPECT_EQ(refused("robot_seconds", "rmse_m", {"--within", "5"}),
             "command line: --within: '5' lacks its unit, write a length like '1.7 cm'\n");
   const Ended run = pareto(folder, folder.path(), "robot_seconds", "rmse_m");

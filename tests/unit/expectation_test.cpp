@@ -114,6 +114,8 @@ TEST(Expectation, RefusesWhatItDoesNotUnderstandInOneLine) {
       {"{taps: }", "c.yaml:1:10: expect.taps: has no value, write a comparison like '>= 9', with >=, <=, >, < or =="},
       {"{taps: []}",
        "c.yaml:1:10: expect.taps: the list is empty, write a comparison like '>= 9', with >=, <=, >, < or =="},
+      {"{taps: {}}",
+       "c.yaml:1:16: expect.taps: is not a comparison, write a comparison like '>= 9', with >=, <=, >, < or =="},
       {"{taps: [[1]]}",
        "c.yaml:1:17: expect.taps: is not a comparison, write a comparison like '>= 9', with >=, <=, >, < or =="},
       {"{found: yes}", "c.yaml:1:17: expect.found: 'yes' is not a truth value, write true or false"},

@@ -119,8 +119,20 @@ TEST(TestCases, AreOneARunAndOneAnExpectation) {
   EXPECT_EQ(cases[2].failure, "c.yaml:1:10: expected failed_runs == 0, got 1 of 2");
 }
 
+TEST(TestCases, TellFailuresThatAreFewEnoughWithoutCountingThem) {
+  const Tree tree = parse_yaml("expect: {failed_runs: <= 1}\n", "c.yaml");
+  const std::vector<RunOutcome> runs{run(0, 1, 0.1), failed(1)};
+  const std::vector<TestCase> cases = test_cases("x", runs, judge(read_expectations(tree.find("expect")), runs));
+  ASSERT_EQ(cases.size(), 3U);
+  EXPECT_TRUE(cases[1].tolerated);
+  const std::string xml = junit_xml("x", cases);
+  EXPECT_NE(xml.find("failures=\"0\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("skipped=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("<skipped message=\"the arm is gone\"/>"), std::string::npos) << xml;
+}
+
 TEST(JUnit, IsOneSuiteWithItsCountsAndItsTime) {
-  EXPECT_EQ(junit_xml("x", {{"x", "job 0", 0.25, ""}, {"x", "job 1", 0.5, "the arm is gone"}}),
+  EXPECT_EQ(junit_xml("x", {{"x", "job 0", 0.25, "", false}, {"x", "job 1", 0.5, "the arm is gone", false}}),
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
             "<testsuites tests=\"2\" failures=\"1\" errors=\"0\" time=\"0.750000\">\n"
             "  <testsuite name=\"x\" tests=\"2\" failures=\"1\" errors=\"0\" time=\"0.750000\" skipped=\"0\">\n"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "config/resolve.hpp"
-
-#include "config/yaml.hpp"
+#include "resolve_fixtures.hpp"
 
 #include <palpate/error.hpp>
 
@@ -9,6 +7,11 @@
 
 namespace palpate {
 namespace {
+
+using test::refusal;
+using test::resolved;
+using test::Several;
+using test::TwoPlugins;
 
 /// A field of every type.
 struct Inner : Options {
@@ -56,69 +59,15 @@ struct Pair : Options {
   }
 };
 
-struct Several : Options {
-  std::vector<PluginChoice> parts;
-  void list(Fields& fields) override {
-    fields.plugins(parts, "kernel", Field("parts", "some kernels").needed());
-    fields.require(!parts.empty(), "parts", "needs at least one kernel");
-  }
-};
-
 struct SeveralByDefault : Options {
   std::vector<PluginChoice> parts{{"kernel", "smooth", nullptr}, {"kernel", "rough", nullptr}};
   void list(Fields& fields) override { fields.plugins(parts, "kernel", Field("parts", "some kernels")); }
 };
 
-/// Points, and a plugin's options beside them.
-struct Adopting : Options {
-  std::vector<std::array<double, 2>> points;
-  PluginChoice chosen{"kernel", "rough", nullptr};
-  double last = 1.0;
-  void list(Fields& fields) override {
-    fields.table(points, Field("points", "some places").in(Unit::metre).at_least(0));
-    fields.adopt(chosen);
-    fields.real(last, Field("last", "after them"));
-  }
-};
-
-/// Knows kernel/smooth with one option, kernel/rough with two, and kernel/many, which has kernels inside.
-class TwoPlugins final : public PluginSource {
- public:
-  void describe(const std::string& kind, const std::string& name, Fields& fields) const override {
-    double scale = 0.1;
-    double nu = 1.5;
-    if (name == "many") {
-      Several().list(fields);
-      return;
-    }
-    if (name != "smooth" && name != "rough") {
-      throw Error("", "no plugin " + kind + "/" + name, suggestion(name, {"rough", "smooth"}));
-    }
-    fields.real(scale, Field("scale", "its reach").in(Unit::metre).above(0));
-    if (name == "rough") fields.real(nu, Field("nu", "its order"));
-  }
-};
-
 constexpr const char* kGroup = "group: {width: 1 m}\n";
 
-Tree resolved(Options& options, const std::string& text, ResolveNotes* notes = nullptr) {
-  ResolveNotes own;
-  return resolve(options, parse_yaml(text, "c.yaml"), TwoPlugins(), notes != nullptr ? *notes : own);
-}
-
-template <class T = Everything>
-std::string refusal(const std::string& text) {
-  T options;
-  try {
-    resolved(options, text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 /// With the required group behind the lines.
-std::string refused_line(const std::string& line) { return refusal(line + "\n" + kGroup); }
+std::string refused_line(const std::string& line) { return refusal<Everything>(line + "\n" + kGroup); }
 
 TEST(Resolve, FillsEveryFieldFromTheConfig) {
   Everything all;
@@ -168,7 +117,8 @@ TEST(Resolve, TakesTheWordNoneForAnAbsentNumber) {
 
 TEST(Resolve, RefusesAnUnknownOptionAndSuggestsTheNearest) {
   EXPECT_EQ(refused_line("whol: 3"), "c.yaml:1:1: unknown option 'whol', did you mean 'whole'?");
-  EXPECT_EQ(refusal("group: {width: 1 m, depth: 2 m}"), "c.yaml:1:21: unknown option 'depth', known: width");
+  EXPECT_EQ(refusal<Everything>("group: {width: 1 m, depth: 2 m}"),
+            "c.yaml:1:21: unknown option 'depth', known: width");
 }
 
 TEST(Resolve, RefusesTheOptionOfACaseThatWasNotChosen) {
@@ -179,7 +129,8 @@ TEST(Resolve, RefusesWhatIsOutOfRangeAndNamesTheBound) {
   EXPECT_EQ(refused_line("real: -0.1"), "c.yaml:1:7: real: -0.1 is out of range, it must be at least 0");
   EXPECT_EQ(refused_line("real: 1.1"), "c.yaml:1:7: real: 1.1 is out of range, it must be at most 1");
   EXPECT_EQ(refused_line("whole: 11"), "c.yaml:1:8: whole: 11 is out of range, it must be at most 10");
-  EXPECT_EQ(refusal("group: {width: 0 cm}"), "c.yaml:1:16: group.width: 0 cm is out of range, it must be above 0 m");
+  EXPECT_EQ(refusal<Everything>("group: {width: 0 cm}"),
+            "c.yaml:1:16: group.width: 0 cm is out of range, it must be above 0 m");
   EXPECT_EQ(refused_line("items: [{width: 1 m}, {width: -1 m}]"),
             "c.yaml:1:31: items.1.width: -1 m is out of range, it must be above 0 m");
 }
@@ -220,21 +171,23 @@ TEST(Resolve, RefusesAListWhereAValueBelongs) {
 }
 
 TEST(Resolve, RefusesAValueWhereAGroupBelongs) {
-  EXPECT_EQ(refusal("group: 3"), "c.yaml:1:8: group is not a group of options, write {key: value, ...}");
+  EXPECT_EQ(refusal<Everything>("group: 3"),
+            "c.yaml:1:8: group is not a group of options, write {key: value, ...} or group.KEY=VALUE");
   EXPECT_EQ(refused_line("items: {width: 1 m}"), "c.yaml:1:8: items: expects a list, write [{...}, {...}]");
-  EXPECT_EQ(refused_line("items: [3]"), "c.yaml:1:9: items.0 is not a group of options, write {key: value, ...}");
+  EXPECT_EQ(refused_line("items: [3]"),
+            "c.yaml:1:9: items.0 is not a group of options, write {key: value, ...} or items.0.KEY=VALUE");
 }
 
 TEST(Resolve, PlacesAMissingOptionAtTheGroupThatLacksIt) {
-  EXPECT_EQ(refusal("real: 0\ngroup: {}\n"), "c.yaml:2:8: 'group.width' is missing, of it");
+  EXPECT_EQ(refusal<Everything>("real: 0\ngroup: {}\n"), "c.yaml:2:8: 'group.width' is missing, of it");
 }
 
 TEST(Resolve, PlacesTheOptionOfAMissingGroupAtTheConfig) {
-  EXPECT_EQ(refusal("# only this\nreal: 0\n"), "c.yaml:2:1: 'group.width' is missing, of it");
+  EXPECT_EQ(refusal<Everything>("# only this\nreal: 0\n"), "c.yaml:2:1: 'group.width' is missing, of it");
 }
 
 TEST(Resolve, TakesAMissingOptionForMisspeltWhenANearNameIsThere) {
-  EXPECT_EQ(refusal("group: {widht: 1 m}\n"), "c.yaml:1:9: unknown option 'widht', did you mean 'width'?");
+  EXPECT_EQ(refusal<Everything>("group: {widht: 1 m}\n"), "c.yaml:1:9: unknown option 'widht', did you mean 'width'?");
 }
 
 TEST(Resolve, PlacesABrokenLawAtTheNestedOptionThatItNames) {
@@ -364,42 +317,6 @@ TEST(ResolvePlugins, DropsOptionsThatALaterTypeOfAnItemLacks) {
   resolve(several, input, TwoPlugins(), notes);
   ASSERT_EQ(notes.dropped.size(), 1U);
   EXPECT_EQ(notes.dropped[0].path, "parts.0.nu");
-}
-
-TEST(Resolve, ReadsATableRowByRow) {
-  Adopting some;
-  const Tree tree = resolved(some, "points: [[1 cm, 2 cm], [3 mm, 0 m], [5 m, 6 m]]\n");
-  EXPECT_EQ(some.points, (std::vector<std::array<double, 2>>{{0.01, 0.02}, {0.003, 0.0}, {5.0, 6.0}}));
-  Adopting again;
-  EXPECT_EQ(resolved(again, "points: [[0.01 m, 0.02 m], [3 mm, 0 cm], [5 m, 6 m]]").canonical(), tree.canonical());
-  Adopting none;
-  resolved(none, "points: []\n");
-  EXPECT_TRUE(none.points.empty());
-}
-
-TEST(Resolve, RefusesATableWithAWrongRow) {
-  EXPECT_EQ(
-      refusal<Adopting>("points: [[1 cm, 2 cm], [3 cm]]\n"),
-      "c.yaml:1:24: points: expects a list of rows of 2 values, write [[1 cm, 2 cm], [3 cm, 4 cm]] with the values "
-      "and units that it needs");
-  EXPECT_EQ(refusal<Adopting>("points: 3 cm\n").substr(0, 47), "c.yaml:1:9: points: expects a list of rows of 2");
-  EXPECT_EQ(refusal<Adopting>("points: [1 cm, 2 cm]\n").substr(0, 48),
-            "c.yaml:1:10: points: expects a list of rows of 2");
-  EXPECT_EQ(refusal<Adopting>("points: [[1 cm, -2 cm]]\n"),
-            "c.yaml:1:17: points: -2 cm is out of range, it must be at least 0 m");
-  EXPECT_NE(refusal<Adopting>("points: [[1 cm, 2]]\n"), "accepted");
-}
-
-TEST(Resolve, ReadsAnAdoptedPluginAmongTheFieldsAtHand) {
-  Adopting some;
-  ResolveNotes notes;
-  const Tree tree = resolved(some, "nu: 2.5\nlast: 3\n", &notes);
-  EXPECT_EQ(tree.canonical(), parse_yaml("{points: [], scale: 0.1 m, nu: 2.5, last: 3}", "c.yaml").canonical());
-  ASSERT_NE(some.chosen.options, nullptr);
-  EXPECT_EQ(some.chosen.options->canonical(), parse_yaml("{scale: 0.1 m, nu: 2.5}", "c.yaml").canonical());
-  EXPECT_EQ(notes.plugins.count({"kernel", "rough"}), 1U);
-  EXPECT_EQ(refusal<Adopting>("nuu: 2.5\n"), "c.yaml:1:1: unknown option 'nuu', did you mean 'nu'?");
-  EXPECT_EQ(refusal<Adopting>("scale: 0 m\n"), "c.yaml:1:8: scale: 0 m is out of range, it must be above 0 m");
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ Touch::Touch(const Effects& effects, double surface, double hover, double thresh
       jerk_at_(-std::numeric_limits<double>::infinity()),
       jerk_(kJerk * threshold),
       jerk_left_(kJerkPeriods),
-      normal_(std::move(random)) {
+      normal_(random) {
   if (effects.stiffness) {
     const Stiffness& stiffness = *effects.stiffness;
     give_ = 1.0 / stiffness.object;

@@ -11,7 +11,7 @@ namespace palpate::backends {
 /// Standard normal numbers from a stream, by Box and Muller's method: in pairs, of which the second waits.
 class Normal {
  public:
-  explicit Normal(Random random) : random_(std::move(random)) {}
+  explicit Normal(Random random) : random_(random) {}
 
   double operator()() {
     if (spare_) {

@@ -10,10 +10,17 @@
 
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <thread>
 
 namespace palpate::backends {
 namespace {
+
+std::string centimetres(double height) {
+  std::ostringstream out;
+  out << 100.0 * height << " cm";
+  return out.str();
+}
 
 bool any(const Effects& effects) {
   return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.tip_radius ||
@@ -42,7 +49,10 @@ Simulator::Simulator(const Options& options, const Context& context)
       perfect_(!any(scene_.effects())),
       moves_(change_motion(scene_.effects())) {
   if (scene_.highest() >= scene_.desk() + options.motion.hover) {
-    throw Error("motion.hover", "an object is as high as the arm travels, or higher", "raise it or lower the object");
+    throw Error("motion.hover",
+                "an object is " + centimetres(scene_.highest() - scene_.desk()) + " high, and the arm travels at " +
+                    centimetres(options.motion.hover),
+                "raise it or lower the object");
   }
 }
 
