@@ -233,15 +233,15 @@ TEST(JUnit, TakesAnyName) {
   EXPECT_THAT(junit_cases(folder.path() / "out.xml").at(0), HasSubstr("<&\"\xef\xbf\xbd\xc3\xbc|"));
 }
 
-TEST(JUnit, TellsOfARunThatFailed) {
+TEST(JUnit, TellsOfARunThatFailedAndOfWhatWasExpectedOfIt) {
   const TemporaryFolder folder;
   const Ended ended = test::palpate(
       {"run", paper(), "--quiet", "--junit", "out.xml", "expect.found=true", "acquisition=throws_in_score"},
       folder.path(), {"PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("throws_in_score").string()});
   EXPECT_EQ(ended.status, 1) << ended.err;
   const std::vector<std::string> cases = junit_cases(folder.path() / "out.xml");
-  ASSERT_EQ(cases.size(), 1U);
-  EXPECT_THAT(cases[0], Not(EndsWith("|True|")));
+  ASSERT_EQ(cases.size(), 2U);
+  for (const std::string& one : cases) EXPECT_THAT(one, Not(EndsWith("|True|")));
 }
 
 TEST(JUnit, IsRefusedBeforeTheRunWhereItCannotBeWritten) {
