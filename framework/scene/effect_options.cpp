@@ -112,7 +112,9 @@ void EffectOptions::list(Fields& fields) {
   fields.section(force_noise, Field("force_noise", "white noise of the force sensor"));
   fields.section(force_drift, Field("force_drift", "the force sensor's zero wanders during the descent"));
   fields.section(stiffness, Field("stiffness", "the object, and the arm, give way"));
-  fields.section(joint_lag, Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
+  fields.section(
+      joint_lag,
+      Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
   fields.section(tip_radius, Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
   fields.section(pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
   fields.section(missed_contacts, Field("missed_contacts", "contacts that are not felt"));
