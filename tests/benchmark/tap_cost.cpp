@@ -4,11 +4,9 @@
 // both need for a perfect tap.
 //     tap_cost                  the table
 //     tap_cost --perfect N      N taps of object I without effects, nothing else
-#include "config/resolve.hpp"
-#include "config/yaml.hpp"
 #include "scene/scene_options.hpp"
 #include "simulator/simulator.hpp"
-#include "support/support.hpp"
+#include "support/filled.hpp"
 
 #include <fmt/format.h>
 
@@ -25,14 +23,7 @@ namespace {
 
 using backends::Simulator;
 using backends::SimulatorOptions;
-
-template <class Filled>
-Filled filled(const std::string& yaml) {
-  Filled options;
-  ResolveNotes notes;
-  resolve(options, parse_yaml(yaml, "tap_cost"), test::shared_host(), notes);
-  return options;
-}
+using test::filled;
 
 struct Bench {
   Bench(const std::string& effects, const std::string& motion)

@@ -2,6 +2,8 @@
 // Groups of options that may be absent, by the example that they exist for: the effects of a scene.
 #include "scene/effect_options.hpp"
 #include "config/describe.hpp"
+#include "config/resolve.hpp"
+#include "config/yaml.hpp"
 #include "tapping_bench.hpp"
 
 #include <palpate/error.hpp>

@@ -2,9 +2,8 @@
 // A simulator over a scene given in YAML, for tests of taps.
 #pragma once
 
-#include "config/resolve.hpp"
-#include "config/yaml.hpp"
 #include "scene/scene_options.hpp"
+#include "support/filled.hpp"
 #include "support/plugins.hpp"
 #include "support/support.hpp"
 
@@ -16,15 +15,6 @@
 #include <vector>
 
 namespace palpate::test {
-
-/// An options struct filled from a YAML map, checked as a run would.
-template <class Filled>
-Filled filled(const std::string& yaml) {
-  Filled options;
-  ResolveNotes notes;
-  resolve(options, parse_yaml(yaml, "options.yaml"), shared_host(), notes);
-  return options;
-}
 
 class TappingBench {
  public:
