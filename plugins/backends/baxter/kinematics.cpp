@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/kinematics.hpp"
+
+#include <kdl/chain.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <kdl/chainiksolverpos_lma.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
+
+namespace palpate::baxter {
+namespace {
+
+constexpr double kHalfPi = 1.57079632679;  // as many digits as the robot's own description has
+constexpr double kAccuracy = 1e-6;
+constexpr int kIterations = 100;
+
+/// Position of a joint in the frame of the one before, metres, and its rotation as roll, pitch and yaw.
+struct Step {
+  double x, y, z, roll, pitch, yaw;
+};
+
+/// base -> torso -> left_arm_mount, then joint by joint; every joint turns about its own z.
+constexpr Step kMount = {0.024645, 0.219645, 0.118588, 0, 0, 0.7854};
+constexpr Step kSteps[] = {
+    {0.055695, 0, 0.011038, 0, 0, 0},            // s0
+    {0.069, 0, 0.27035, -kHalfPi, 0, 0},         // s1
+    {0.102, 0, 0, kHalfPi, 0, kHalfPi},          // e0
+    {0.069, 0, 0.26242, -kHalfPi, -kHalfPi, 0},  // e1
+    {0.10359, 0, 0, kHalfPi, 0, kHalfPi},        // w0
+    {0.01, 0, 0.2707, -kHalfPi, -kHalfPi, 0},    // w1
+    {0.115975, 0, 0, kHalfPi, 0, kHalfPi},       // w2
+};
+constexpr double kHand = 0.11355;  // left_wrist -> left_hand, along z
+
+KDL::Frame frame(const Step& step) {
+  return {KDL::Rotation::RPY(step.roll, step.pitch, step.yaw), KDL::Vector(step.x, step.y, step.z)};
+}
+
+/// KDL turns a joint after the fixed part of its segment, a URDF before it: so each joint takes the next one's step.
+KDL::Chain left_arm(const Eigen::Vector3d& tip) {
+  KDL::Chain out;
+  out.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), frame(kMount) * frame(kSteps[0])));
+  for (int i = 1; i < 7; ++i) out.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotZ), frame(kSteps[i])));
+  out.addSegment(
+      KDL::Segment(KDL::Joint(KDL::Joint::RotZ), KDL::Frame(KDL::Vector(tip.x(), tip.y(), kHand + tip.z()))));
+  return out;
+}
+
+KDL::JntArray array_of(const Joints& joints) {
+  KDL::JntArray out(7);
+  out.data = joints;
+  return out;
+}
+
+}  // namespace
+
+struct Arm::Chain {
+  explicit Chain(const Eigen::Vector3d& tip)
+      : arm(left_arm(tip)), forward(arm), tangent(arm), inverse(arm, kAccuracy, kIterations) {}
+  KDL::Chain arm;
+  KDL::ChainFkSolverPos_recursive forward;
+  KDL::ChainJntToJacSolver tangent;
+  KDL::ChainIkSolverPos_LMA inverse;
+};
+
+Arm::Arm(const Eigen::Vector3d& tip) : chain_(std::make_unique<Chain>(tip)) {}
+Arm::~Arm() = default;
+Arm::Arm(Arm&&) noexcept = default;
+Arm& Arm::operator=(Arm&&) noexcept = default;
+
+Pose Arm::tip(const Joints& joints) const {
+  KDL::Frame at;
+  chain_->forward.JntToCart(array_of(joints), at);
+  Pose out;
+  out.position = {at.p.x(), at.p.y(), at.p.z()};
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  double w = 0.0;
+  at.M.GetQuaternion(x, y, z, w);
+  out.rotation = Eigen::Quaterniond(w, x, y, z);
+  return out;
+}
+
+std::optional<Joints> Arm::solve(const Pose& tip, const Joints& seed, double margin) const {
+  const Eigen::Quaterniond& q = tip.rotation;
+  const KDL::Frame goal(KDL::Rotation::Quaternion(q.x(), q.y(), q.z(), q.w()),
+                        KDL::Vector(tip.position.x(), tip.position.y(), tip.position.z()));
+  KDL::JntArray found(7);
+  if (chain_->inverse.CartToJnt(array_of(seed), goal, found) < 0) return std::nullopt;
+  const Joints out = found.data;
+  if (!out.allFinite() || beyond_limits(out, margin) >= 0) return std::nullopt;
+  return out;
+}
+
+Eigen::Matrix<double, 3, 7> Arm::jacobian(const Joints& joints) const {
+  KDL::Jacobian out(7);
+  chain_->tangent.JntToJac(array_of(joints), out);
+  return out.data.topRows<3>();
+}
+
+const Joints& lower_limits() {
+  static const Joints limits =
+      (Joints() << -1.70167993878, -2.147, -3.05417993878, -0.05, -3.059, -1.57079632679, -3.059).finished();
+  return limits;
+}
+
+const Joints& upper_limits() {
+  static const Joints limits = (Joints() << 1.70167993878, 1.047, 3.05417993878, 2.618, 3.059, 2.094, 3.059).finished();
+  return limits;
+}
+
+int beyond_limits(const Joints& joints, double margin) {
+  for (int i = 0; i < 7; ++i) {
+    if (!(joints(i) >= lower_limits()(i) + margin && joints(i) <= upper_limits()(i) - margin)) return i;
+  }
+  return -1;
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/options.hpp"
+
+#include "baxter/unavailable.hpp"
+
+namespace palpate::baxter {
+namespace {
+
+/// The arm's firmware stops at 16 N ("squish"), for two seconds. A threshold must leave room for what the arm presses
+/// on while three samples are taken and it comes to rest.
+constexpr double kGreatestThreshold = 12.0;
+constexpr double kReflex = 16.0;
+
+}  // namespace
+
+void ToolOptions::list(Fields& fields) {
+  fields.reals(
+      tip, 3,
+      Field("tip", "the point of the tool that touches, in the frame left_hand: x, y, and z away from the flange")
+          .in(Unit::metre)
+          .at_least(-0.6)
+          .at_most(0.6)
+          .needed());
+  fields.real(gripper, Field("gripper",
+                             "how far from left_hand the robot has its frame left_gripper, which is what it "
+                             "reports; checked at the start")
+                           .in(Unit::metre)
+                           .at_least(0)
+                           .at_most(0.6)
+                           .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
+}
+
+void PlaceOptions::list(Fields& fields) {
+  fields.reals(corner, 2,
+               Field("corner", "the corner (0, 0) of the area in the robot's frame base: x forward, y to the left")
+                   .in(Unit::metre)
+                   .at_least(-1.5)
+                   .at_most(1.5)
+                   .needed());
+  fields.real(height, Field("height", "of the scene's zero, from which desk and heights count, in the frame base")
+                          .in(Unit::metre)
+                          .at_least(-1)
+                          .at_most(1)
+                          .needed());
+  fields.real(rotation, Field("rotation", "of the scene about the vertical, from base's x axis to the scene's")
+                            .in(Unit::radian)
+                            .at_least(-6.3)
+                            .at_most(6.3));
+}
+
+void CalibrationOptions::list(Fields& fields) {
+  fields.reals(
+      at, 2,
+      Field("at", "where to tap, a place in the area at which nothing lies on the desk").in(Unit::metre).needed());
+  fields.real(tolerance, Field("tolerance", "how far the desk may be from where `place` has it; farther ends the run")
+                             .in(Unit::metre)
+                             .above(0)
+                             .at_most(0.05)
+                             .from("Baxter's absolute accuracy is 2 to 10 mm"));
+}
+
+void BaxterOptions::list(Fields& fields) {
+  require_available(fields);
+  fields.section(motion, Field("motion", "the tapping motion"));
+  fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
+                 "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
+  fields.section(tool, Field("tool", "what is fixed to the flange of the left arm").needed());
+  fields.section(place, Field("place", "where the scene lies before the robot").needed());
+  fields.section(calibration,
+                 Field("calibration", "begin with a tap on the bare desk, and take its height for the desk's"));
+  fields.choice(force_sign,
+                Field("force_sign", "of the force along z in endpoint_state when the tool is pressed upwards")
+                    .from("Rethink documents neither frame nor sign"),
+                {{"positive", "it rises", {}}, {"negative", "it falls", {}}});
+  fields.real(force_stop,
+              Field("force_stop",
+                    "change of the force since the tare, in any direction, at which the arm stops whatever it does")
+                  .in(Unit::newton)
+                  .above(0)
+                  .at_most(kReflex)
+                  .from("the arm's firmware stops it at 16 N"));
+  fields.require(force_stop > motion.threshold, "force_stop", "must lie above motion.threshold");
+  fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),
+                {{"own", "this program", {}}, {"robot", "the robot's IKService, whose answers are checked", {}}});
+  fields.flag(dry_run, Field("dry_run", "connect, check and compute every pose of the whole area, but move nothing"));
+  fields.flag(view, Field("view", "publish the surface, its standard deviation and the taps, to be seen in RViz"));
+  fields.flag(bag, Field("bag", "record what the robot says and is told in a rosbag in the run's folder"));
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// What a Baxter says and takes, in plain numbers. On one side of this door the driver decides (tap.*, watch.*) and
+// knows no ROS; on the other side ros/ carries messages and decides nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::baxter {
+
+/// left_s0, left_s1, left_e0, left_e1, left_w0, left_w1, left_w2: from the shoulder to the wrist, radians.
+using Joints = Eigen::Matrix<double, 7, 1>;
+constexpr std::array<const char*, 7> kJointNames = {"left_s0", "left_s1", "left_e0", "left_e1",
+                                                    "left_w0", "left_w1", "left_w2"};
+
+/// Where something is in the robot's frame `base` (x forward, y left, z up; metres), and how it is turned.
+struct Pose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+
+/// When a message came, and when its sender says it was made; seconds. The two clocks may differ by seconds, so ages
+/// come from `received` and the stamp only tells whether the sender goes on.
+struct Arrival {
+  double received = 0.0;
+  double stamp = 0.0;
+};
+
+/// The joints of the left arm, from whichever of the robot's joint_states has them. Numbers are as they came: they may
+/// be NaN.
+struct JointReading : Arrival {
+  Joints position;
+};
+
+/// The end of the arm as the robot sees it: the pose of its frame left_gripper in `base`, and the force that it
+/// estimates from the springs in its joints, newtons. Frame and sign of that force are not documented.
+struct EndpointReading : Arrival {
+  Pose pose;
+  Eigen::Vector3d force;
+};
+
+/// /robot/state. It has no stamp.
+struct StateReading {
+  double received = 0.0;
+  bool ready = false;
+  bool enabled = false;
+  bool stopped = false;
+  bool error = false;
+  enum class Button { unpressed, pressed, unknown, released } estop_button = Button::unpressed;
+  enum class Source { none, user, unknown, fault, brain } estop_source = Source::none;
+};
+
+/// Whether the arm's firmware feels a collision: it then holds for two seconds and goes on by itself.
+struct CollisionReading : Arrival {
+  bool collision = false;
+};
+
+/// The latest of every stream, and who has been sending. A stream that has not been heard is absent.
+struct Snapshot {
+  double now = 0.0;  ///< protocol time: the clock of the robot's network, which may be a simulated one
+  std::optional<JointReading> joints;
+  std::optional<EndpointReading> endpoint;
+  std::optional<StateReading> state;
+  std::optional<CollisionReading> collision;
+  std::vector<std::string> joint_senders;  ///< the nodes that have sent joints of the left arm
+  std::vector<std::string> state_senders;  ///< the nodes that have sent /robot/state
+  std::string malformed;  ///< the first message whose parts do not fit together, told in words; empty if none did
+};
+
+/// An arm of a Baxter at the end of a wire.
+class Robot {
+ public:
+  virtual ~Robot() = default;
+
+  virtual Snapshot read() = 0;
+
+  /// Waits until protocol time has come to `time`. False if that clock stood still for two seconds of real time, which
+  /// a simulated clock does when its sender is gone.
+  virtual bool wait_until(double time) = 0;
+
+  /// Sends one set-point of the joints. The robot forgets it after its own time-out (0.2 s) and then holds where it is:
+  /// who wants to be followed sends all the time, who stops sending stops the arm.
+  virtual void command(const Joints& target) = 0;
+
+  /// From now on writes what is heard and sent, and what is shown, to a rosbag. Throws Error if it cannot be opened.
+  virtual void record(const std::string& file) = 0;
+
+  /// What the robot's own inverse kinematics says of a pose of left_gripper.
+  struct Answer {
+    std::optional<Joints> joints;  ///< none: it says that there is no solution
+    std::string trouble;           ///< why there is no answer at all, one line; empty if there is one
+  };
+  /// Asks it, starting from `seed`; returns within a second of real time.
+  virtual Answer solve(const Pose& gripper, const Joints& seed) = 0;
+};
+
+}  // namespace palpate::baxter
