@@ -109,6 +109,20 @@ const Joints& upper_limits() {
   return limits;
 }
 
+const Joints& untucked() {
+  static const Joints posture = (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.50).finished();
+  return posture;
+}
+
+const Eigen::Quaterniond& straight_down() {
+  // What is left of the untucked rotation when its tilt is taken out.
+  static const Eigen::Quaterniond rotation = [] {
+    const Eigen::Quaterniond hand = Arm(Eigen::Vector3d::Zero()).tip(untucked()).rotation;
+    return Eigen::Quaterniond(0.0, hand.x(), hand.y(), 0.0).normalized();
+  }();
+  return rotation;
+}
+
 int beyond_limits(const Joints& joints, double margin) {
   for (int i = 0; i < 7; ++i) {
     if (!(joints(i) >= lower_limits()(i) + margin && joints(i) <= upper_limits()(i) - margin)) return i;

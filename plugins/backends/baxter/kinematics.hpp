@@ -42,7 +42,10 @@ const Joints& upper_limits();
 /// The first joint that is beyond its limit less `margin`; -1 if all are within.
 int beyond_limits(const Joints& joints, double margin);
 
-/// How far left_gripper lies from left_hand along its z axis where no gripper is configured, metres.
-constexpr double kGripperOffset = 0.025;
+/// The posture from which solutions are sought: Rethink's "untucked", elbow out, the tool nearly straight down.
+const Joints& untucked();
+
+/// The rotation of the hand when the tool points straight down, turned about the vertical as it is when untucked.
+const Eigen::Quaterniond& straight_down();
 
 }  // namespace palpate::baxter

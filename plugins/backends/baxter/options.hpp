@@ -48,6 +48,9 @@ struct BaxterOptions : Options {
   bool dry_run = false;
   bool view = true;
   bool bag = false;
+
+  /// What to multiply the force along z with, so that it rises when the tool is pressed upwards.
+  double sign() const { return force_sign == ForceSign::positive ? 1.0 : -1.0; }
   void list(Fields& fields) override;
 };
 

@@ -17,8 +17,8 @@ constexpr double kHeldUp = 2.0;
 
 }  // namespace
 
-GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent)
-    : motion_(motion), descent_(descent), set_point_(descent.hover) {}
+GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, AtContact at_contact)
+    : motion_(motion), descent_(descent), at_contact_(at_contact), set_point_(descent.hover) {}
 
 double GuardedTap::next(double height, double force) {
   if (done()) return set_point_;
@@ -131,7 +131,7 @@ void GuardedTap::enter(Stage stage) {
 void GuardedTap::touched(double height) {
   first_ = height;
   // Wherever the arm trails its set-point, holding that would press on.
-  if (motion_.type != MotionOptions::Type::paper) set_point_ = height;
+  if (motion_.type != MotionOptions::Type::paper || at_contact_ == AtContact::hold) set_point_ = height;
   switch (motion_.type) {
     case MotionOptions::Type::paper:
       return enter(Stage::rest);

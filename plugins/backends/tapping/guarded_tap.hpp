@@ -14,7 +14,8 @@ namespace palpate::tapping {
 ///
 /// Every period the caller tells the measured height and force and commands the set-point that it gets. A contact is
 /// declared when the force has been above its threshold for three periods. What then follows is the motion's:
-/// - paper: the set-point stays, the pause passes, and the height is read while the arm still presses: too low by what
+/// - paper: the set-point stays (or not: AtContact), the pause passes, and the height is read while the arm still
+/// presses: too low by what
 ///   the contact gives way under the set-point's lead.
 /// - two_stage: the set-point is put where the arm is, backs off until the tip is clear, rests and tares, and comes
 /// down
@@ -26,7 +27,11 @@ class GuardedTap {
   /// Of the control loop: Baxter's joint states come at 100 Hz.
   static constexpr double kPeriod = 0.01;
 
-  GuardedTap(const MotionOptions& motion, const Descent& descent);
+  /// What the set-point of `paper` does at a contact: it stays ahead of the arm, as in the paper, or it is put where
+  /// the arm is, as the other motions do and as a robot that stops at 16 N needs.
+  enum class AtContact { press, hold };
+
+  GuardedTap(const MotionOptions& motion, const Descent& descent, AtContact at_contact = AtContact::press);
 
   /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m).
   double next(double height, double force);
@@ -55,6 +60,7 @@ class GuardedTap {
 
   MotionOptions motion_;
   Descent descent_;
+  AtContact at_contact_;
   Stage stage_ = Stage::tare;
   long periods_ = 0;
   long entered_ = 0;  ///< the period in which the stage began

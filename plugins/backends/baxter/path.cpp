@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace palpate::baxter {
+namespace {
+
+/// Between two poses for which joints are sought, metres: what joints in between miss is below 0.1 mm.
+constexpr double kColumnStep = 0.005;
+constexpr double kLineStep = 0.01;
+/// The hand turns so much (rad) between two poses of a line at most.
+constexpr double kTurnStep = 0.05;
+/// Farthest turn of a joint per step: several times what is seen within reach. Beyond, the arm would swing over to
+/// another posture, or is near one that it cannot leave evenly.
+constexpr double kJump = 0.15;
+
+std::string place_text(const Pose& pose) {
+  std::ostringstream out;
+  out.precision(1);
+  out << std::fixed << "(" << 100 * pose.position.x() << ", " << 100 * pose.position.y() << ", "
+      << 100 * pose.position.z() << ") cm of base";
+  return out.str();
+}
+
+int steps(double length, double step) { return std::max(1, static_cast<int>(std::ceil(length / step - 1e-9))); }
+
+}  // namespace
+
+void Path::add(const Joints& joints, double distance) {
+  at_.push_back(joints_.empty() ? 0.0 : at_.back() + distance);
+  joints_.push_back(joints);
+}
+
+/// The index of the point that ends the segment around `distance`.
+std::size_t Path::segment(double distance) const {
+  const auto after = std::upper_bound(at_.begin(), at_.end(), distance);
+  const auto index = static_cast<std::size_t>(after - at_.begin());
+  return std::clamp<std::size_t>(index, 1, at_.size() - 1);
+}
+
+Joints Path::at(double distance) const {
+  if (at_.size() == 1 || distance <= 0.0) return joints_.front();
+  if (distance >= at_.back()) return joints_.back();
+  const std::size_t i = segment(distance);
+  const double share = (distance - at_[i - 1]) / (at_[i] - at_[i - 1]);
+  return (1.0 - share) * joints_[i - 1] + share * joints_[i];
+}
+
+double Path::advance(double distance, double speed, double seconds) const {
+  if (distance >= length()) return length();
+  const std::size_t i = segment(distance);
+  const double turn = (joints_[i] - joints_[i - 1]).cwiseAbs().maxCoeff() / (at_[i] - at_[i - 1]);
+  const double fastest = turn > 0.0 ? std::min(speed, kJointSpeed / turn) : speed;
+  return std::min(length(), distance + fastest * seconds);
+}
+
+Path Path::back(double distance) const {
+  Path out;
+  const double from = std::clamp(distance, 0.0, length());
+  out.add(at(from), 0.0);
+  double last = from;
+  for (std::size_t i = at_.size(); i-- > 0;) {
+    if (at_[i] >= last) continue;
+    out.add(joints_[i], last - at_[i]);
+    last = at_[i];
+  }
+  return out;
+}
+
+double Path::steepest() const {
+  double out = 0.0;
+  for (std::size_t i = 1; i < at_.size(); ++i) {
+    out = std::max(out, (joints_[i] - joints_[i - 1]).cwiseAbs().maxCoeff() / (at_[i] - at_[i - 1]));
+  }
+  return out;
+}
+
+Planner::Planner(const PlaceOptions& place, const Arm& arm, Inverse inverse)
+    : corner_(place.corner[0], place.corner[1]),
+      rotation_(place.rotation),
+      height_(place.height),
+      arm_(arm),
+      inverse_(std::move(inverse)) {}
+
+Pose Planner::pose(const Target& place, double height) const {
+  const Eigen::Vector2d flat = corner_ + rotation_ * Eigen::Vector2d(place.x, place.y);
+  return {{flat.x(), flat.y(), height_ + height}, straight_down()};
+}
+
+Eigen::Vector3d Planner::to_scene(const Eigen::Vector3d& base) const {
+  const Eigen::Vector2d flat = rotation_.inverse() * (base.head<2>() - corner_);
+  return {flat.x(), flat.y(), base.z() - height_};
+}
+
+Joints Planner::solve(const Pose& tip, const Joints& seed, const char* what) const {
+  const std::optional<Joints> found = inverse_(tip, seed);
+  if (!found) throw NoPath{"no position of the joints within their limits puts the tool upright at " + place_text(tip)};
+  if (what != nullptr && (*found - seed).cwiseAbs().maxCoeff() > kJump) {
+    throw NoPath{std::string("the joints would jump ") + what + " at " + place_text(tip)};
+  }
+  return *found;
+}
+
+Path Planner::column(const Target& place, const Target& middle, double hover, double floor, double speed) const {
+  const Joints seed = solve(pose(middle, hover), untucked(), nullptr);
+  Joints joints = solve(pose(place, hover), seed, nullptr);
+  Path out;
+  out.add(joints, 0.0);
+  const int count = steps(hover - floor, kColumnStep);
+  const double step = (hover - floor) / count;
+  for (int i = 1; i <= count; ++i) {
+    joints = solve(pose(place, hover - i * step), joints, "on the way down");
+    out.add(joints, step);
+  }
+  if (out.steepest() * speed > kJointSpeed) {
+    throw NoPath{"a joint would have to turn faster than 0.4 rad/s on the way down to " +
+                 place_text(pose(place, floor)) + " at the speed of the motion"};
+  }
+  return out;
+}
+
+Path Planner::line(const Joints& from, const Joints& to) const {
+  const Pose start = arm_.tip(from);
+  const Pose end = arm_.tip(to);
+  const double length = (end.position - start.position).norm();
+  const double turn = start.rotation.angularDistance(end.rotation);
+  const double posture = (to - from).cwiseAbs().maxCoeff();
+  const int count = std::max({steps(length, kLineStep), steps(turn, kTurnStep), steps(posture, kTurnStep)});
+  // A turn on the spot takes as long as moving a lever of 20 cm would.
+  const double step = std::max({length, 0.2 * turn, 0.2 * posture}) / count;
+  Path out;
+  out.add(from, 0.0);
+  if (!(step > 0.0)) return out;
+  Joints last = from;
+  for (int i = 1; i <= count; ++i) {
+    const double share = static_cast<double>(i) / count;
+    Pose between;
+    between.position = (1.0 - share) * start.position + share * end.position;
+    between.rotation = start.rotation.slerp(share, end.rotation);
+    // Sought near the mean of both ends, so that the way ends in `to` and not in another posture with the same tip.
+    const Joints joints = i == count ? to : solve(between, (1.0 - share) * from + share * to, nullptr);
+    if ((joints - last).cwiseAbs().maxCoeff() > kJump) {
+      throw NoPath{"the joints would jump on the way at " + place_text(between) +
+                   ": bring the arm over the area with its elbow out, as it is when untucked"};
+    }
+    out.add(joints, step);
+    last = joints;
+  }
+  return out;
+}
+
+Path Planner::up(const Joints& from, double rise) const {
+  Path out;
+  out.add(from, 0.0);
+  if (!(rise > 0.0)) return out;
+  Pose tip = arm_.tip(from);
+  Joints joints = from;
+  const int count = steps(rise, kColumnStep);
+  for (int i = 1; i <= count; ++i) {
+    tip.position.z() += rise / count;
+    joints = solve(tip, joints, "on the way up");
+    out.add(joints, rise / count);
+  }
+  return out;
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The left arm of a Baxter as a backend.
+#include "baxter/options.hpp"
+#include "baxter/ros/connect.hpp"
+#include "baxter/tapper.hpp"
+
+#include <palpate/belief.hpp>
+#include <palpate/error.hpp>
+#include <palpate/plugin.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace palpate::baxter {
+namespace {
+
+/// What happens on the way, one line each, beside the record of the run: `baxter.txt`.
+class Diary {
+ public:
+  /// An empty `directory` keeps none. The folder is there from the first tap on.
+  explicit Diary(std::string directory) : directory_(std::move(directory)) {}
+
+  void note(const std::string& line) {
+    if (directory_.empty()) return;
+    std::ofstream(directory_ + "/baxter.txt", std::ios::app) << line << '\n';
+  }
+
+  /// A name for the rosbag that no earlier part of the run has taken.
+  std::string bag() const {
+    for (int part = 1;; ++part) {
+      std::string file = directory_ + "/baxter" + (part > 1 ? "-" + std::to_string(part) : "") + ".bag";
+      if (!std::filesystem::exists(file)) return file;
+    }
+  }
+
+  bool kept() const { return !directory_.empty(); }
+
+ private:
+  std::string directory_;
+};
+
+}  // namespace
+
+class Baxter final : public Backend {
+ public:
+  using Options = BaxterOptions;
+
+  /// Joins the robot's network and checks all that can be checked before anything moves. Throws Error.
+  Baxter(const Options& options, const Context& context)
+      : options_(options),
+        scene_(context.scene),
+        diary_(context.directory),
+        robot_(connect({!options.dry_run, options.inverse_kinematics == Options::InverseKinematics::robot})),
+        tapper_(options, context.scene, *robot_, context.interrupted,
+                [this](const std::string& line) { diary_.note(line); }) {
+    tapper_.check();
+    if (options.view) view_ = make_view(options.place, scene_.area(), scene_.desk());
+  }
+
+  Contact tap(const TapRequest& request) override {
+    if (options_.bag && !recording_ && diary_.kept()) robot_->record(diary_.bag());
+    recording_ = true;
+    if (view_) view_->target(request.target);
+    Contact contact = tapper_.tap(request);
+    if (view_ && contact.outcome == Outcome::contact) {
+      view_->tapped(request.target, contact.height, scene_.on_surface(contact.height));
+    }
+    return contact;
+  }
+
+  void show(const Belief& belief) override {
+    if (!view_) return;
+    view_->surface(belief.candidates(), belief.height_mean(), belief.height_variance().cwiseMax(0.0).cwiseSqrt());
+  }
+
+  bool repeatable() const override { return false; }
+  bool scene_is_truth() const override { return false; }
+  bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
+
+ private:
+  Options options_;
+  const Scene& scene_;
+  Diary diary_;
+  std::unique_ptr<Robot> robot_;
+  Tapper tapper_;
+  std::unique_ptr<View> view_;  ///< before the robot goes, this goes
+  bool recording_ = false;
+};
+
+PALPATE_PLUGIN(Backend, Baxter, "baxter", "the left arm of a Baxter, over ROS 1")
+
+}  // namespace palpate::baxter

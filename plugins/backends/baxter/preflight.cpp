@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/preflight.hpp"
+
+#include <palpate/error.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace palpate::baxter {
+namespace {
+
+constexpr double kAboveTravel = 0.3;   ///< m that the arm may be above the height of travel
+constexpr double kBelowFloor = 0.01;   ///< m that the tip may be below the end of a descent
+constexpr double kAgreement = 0.005;   ///< m between kinematics and endpoint_state: both come from the same joints
+constexpr double kAgreedTurn = 0.035;  ///< rad, likewise
+constexpr double kUpright = 0.35;      ///< rad that the tool may lean before the first motion puts it upright
+
+[[noreturn]] void refuse(const std::string& where, const std::string& reason, const std::string& hint) {
+  throw Error(where, reason, hint, Error::Kind::run);
+}
+
+std::string centimetres(double length) {
+  std::ostringstream out;
+  out.precision(2);
+  out << std::fixed << 100.0 * length << " cm";
+  return out.str();
+}
+
+/// Own kinematics against the robot's: they must agree on left_gripper, but for a gripper that the config does not
+/// know.
+void check_gripper(const JointReading& joints, const EndpointReading& endpoint, double gripper) {
+  const Pose hand = Arm(Eigen::Vector3d::Zero()).tip(joints.position);
+  const Eigen::Vector3d seen = hand.rotation.inverse() * (endpoint.pose.position - hand.position);
+  const double aside = std::hypot(seen.x(), seen.y());
+  const double turned = hand.rotation.angularDistance(endpoint.pose.rotation);
+  if (aside <= kAgreement && std::abs(seen.z() - gripper) <= kAgreement && turned <= kAgreedTurn) return;
+  if (aside <= kAgreement && turned <= kAgreedTurn) {
+    refuse("tool.gripper",
+           "the robot has left_gripper " + centimetres(seen.z()) + " from left_hand, the config has it at " +
+               centimetres(gripper),
+           "a gripper is configured on the robot that the config does not know: see what is mounted, then correct "
+           "tool.gripper and tool.tip");
+  }
+  refuse("tool.gripper",
+         "joints and endpoint_state disagree by " + centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm()) +
+             " about where left_gripper is",
+         "this is another arm than the Baxter whose lengths are known, or its gripper is mounted askew");
+}
+
+}  // namespace
+
+Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
+  const Area area = scene.area();
+  return {area.width, area.depth, scene.desk() - options.motion.overrun - kBelowFloor,
+          scene.desk() + options.motion.hover + kAboveTravel};
+}
+
+void check_before_flight(const Snapshot& seen, const BaxterOptions& options, const Planner& planner,
+                         const Workspace& workspace, bool moving) {
+  if (const std::optional<Fault> fault = Watch::fit(seen, moving)) refuse("", fault->reason, "");
+  if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0 && moving) {
+    refuse("", std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is beyond its limit",
+           "move the arm by hand");
+  }
+  check_gripper(*seen.joints, *seen.endpoint, options.tool.gripper);
+  if (!moving) return;
+  const Pose tip = Arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)).tip(seen.joints->position);
+  const std::string breach = workspace.breach(planner.to_scene(tip.position));
+  if (!breach.empty()) {
+    refuse("", breach,
+           "bring the tool by hand to a place above the area; palpate moves the arm there and nowhere else");
+  }
+  const Eigen::Vector3d down = tip.rotation * Eigen::Vector3d::UnitZ();
+  if (std::acos(std::min(1.0, std::max(-1.0, -down.z()))) > kUpright) {
+    refuse("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
+  }
+}
+
+int check_reach(const Planner& planner, const Area& area, double hover, double floor, double speed, double spacing) {
+  const auto count = [&](double length) { return static_cast<int>(std::ceil(length / spacing)) + 1; };
+  const int nx = count(area.width);
+  const int ny = count(area.depth);
+  const Target middle{0.5 * area.width, 0.5 * area.depth};
+  int missed = 0;
+  std::string first;
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      const Target place{area.width * i / (nx - 1), area.depth * j / (ny - 1)};
+      try {
+        planner.column(place, middle, hover, floor, speed);
+      } catch (const NoPath& none) {
+        if (missed++ == 0) {
+          first = "the first at (" + centimetres(place.x) + ", " + centimetres(place.y) + "): " + none.reason;
+        }
+      }
+    }
+  }
+  if (missed > 0) {
+    refuse(
+        "place",
+        std::to_string(missed) + " of " + std::to_string(nx * ny) + " places of the area cannot be reached, " + first,
+        "put the middle of the area near x = 60 cm, y = 20 cm of base");
+  }
+  return nx * ny;
+}
+
+}  // namespace palpate::baxter

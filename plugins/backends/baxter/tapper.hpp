@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// One tap of the arm: plan, travel, tare, come down until it touches, stop there, go up again; and what is done when a
+// rule is broken on the way.
+#pragma once
+
+#include "baxter/path.hpp"
+#include "baxter/preflight.hpp"
+#include "baxter/watch.hpp"
+#include "tapping/guarded_tap.hpp"
+
+#include <palpate/backend.hpp>
+#include <palpate/scene.hpp>
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace palpate::baxter {
+
+/// Moves the arm, and is the only one to do so. A tap begins and ends at the height of travel; the first begins
+/// wherever above the area the arm is.
+class Tapper {
+ public:
+  /// `robot` must outlive it; `interrupted` may be null; `note` gets what happens, one line each, for the diary of the
+  /// run.
+  Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, const std::atomic<bool>* interrupted,
+         std::function<void(const std::string&)> note);
+
+  Tapper(const Tapper&) = delete;
+  Tapper& operator=(const Tapper&) = delete;
+
+  /// Taps. What goes wrong is an outcome: `unreachable` before anything moved; `aborted` by a fault, whose reason ends
+  /// with where the arm was left, and which `ends_run` if the robot needs a person.
+  Contact tap(const TapRequest& request);
+
+  /// Looks at everything that must be right before anything moves. Throws Error.
+  void check();
+
+ private:
+  Contact attempt(const TapRequest& request);
+  Contact descend(const TapRequest& request, const Path& column);
+  void calibrate();
+  void start();
+  void go_to(const Joints& hover);
+  void follow(const Path& path, double speed);
+  void settle(const Joints& goal);
+  bool clear_of_force(const Path& column);
+  std::string recover(const Fault& fault);
+  void rise();
+  Path column(const Target& place) const;
+  std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
+
+  void step(const Joints& command);
+  void hold(const Joints& joints, double seconds);
+  void take(Snapshot seen);
+  double height() const;
+  double force() const;
+
+  BaxterOptions options_;
+  const Scene& scene_;
+  Robot& robot_;
+  const std::atomic<bool>* interrupted_;
+  std::function<void(const std::string&)> note_;
+  Arm arm_;
+  Planner planner_;
+  Workspace workspace_;
+  Watch watch_;
+  Snapshot seen_;
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  ///< of what was seen, in the frame of the scene
+  double next_ = 0.0;                              ///< when the next period begins
+  bool recovering_ = false;
+  bool calibrated_ = false;
+  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force before the descent
+};
+
+}  // namespace palpate::baxter

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace palpate::baxter {
+namespace {
+
+using Then = Fault::Then;
+using Button = StateReading::Button;
+
+std::string number(double value, int digits = 1) {
+  std::ostringstream out;
+  out.precision(digits);
+  out << std::fixed << value;
+  return out.str();
+}
+
+std::string degrees(double radians) { return number(radians * 180.0 / 3.14159265358979323846) + " deg"; }
+
+std::string names(const std::vector<std::string>& all) {
+  std::string out;
+  for (const std::string& one : all) out += (out.empty() ? "" : " and ") + one;
+  return out;
+}
+
+/// What the robot's state forbids.
+std::optional<Fault> state_forbids(const StateReading& state, const std::optional<JointReading>& joints, bool moving) {
+  if (state.estop_button == Button::pressed) {
+    return Fault{"the emergency stop is pressed: release it, reset and enable the robot", Then::silence, true};
+  }
+  if (state.estop_button == Button::released) {
+    return Fault{"the emergency stop was pressed and is released: reset the robot and enable it", Then::silence, true};
+  }
+  if (state.error) {
+    return Fault{"the robot reports an error: see its screen, reset it and enable it", Then::silence, true};
+  }
+  if (state.stopped) return Fault{"the robot is stopped: reset it and enable it", Then::silence, true};
+  if (!moving) return std::nullopt;
+  if (!state.enabled && joints && joints->position(1) < -1.6) {
+    return Fault{"the robot is disabled and its arm is tucked (left_s1 at " + degrees(joints->position(1)) +
+                     "): untuck it, which enables it",
+                 Then::silence, true};
+  }
+  if (!state.enabled) {
+    return Fault{"the robot is disabled: enable it, palpate never does that itself", Then::silence, true};
+  }
+  if (!state.ready) return Fault{"the robot is not ready: wait until it has started", Then::silence, true};
+  return std::nullopt;
+}
+
+std::optional<Fault> stale(const char* stream, double age, double most) {
+  if (age <= most) return std::nullopt;
+  return Fault{std::string(stream) + " did not come for " + number(age, 2) +
+                   " s: see to the network and to the robot's processes",
+               Then::silence, true};
+}
+
+std::optional<Fault> late(const char* stream, const Arrival& arrival, double& least) {
+  const double delay = arrival.received - arrival.stamp;
+  if (!std::isfinite(delay)) return Fault{std::string(stream) + " has a stamp that is no number", Then::silence, true};
+  least = std::min(least, delay);
+  if (delay - least <= Watch::kLate) return std::nullopt;
+  return Fault{std::string(stream) + " comes with stamps " + number(delay - least, 2) +
+                   " s older than before: its data are stale, see to the network and to the robot's processes",
+               Then::silence, true};
+}
+
+}  // namespace
+
+std::string Workspace::breach(const Eigen::Vector3d& tip) const {
+  const auto beyond = [](double value, double least, double most) { return !(value >= least && value <= most); };
+  const std::string where = "the tip is at (" + number(100 * tip.x()) + ", " + number(100 * tip.y()) + ", " +
+                            number(100 * tip.z()) + ") cm of the scene, ";
+  if (beyond(tip.x(), -kSideways, width + kSideways) || beyond(tip.y(), -kSideways, depth + kSideways)) {
+    return where + "more than " + number(100 * kSideways, 0) + " cm beside the area";
+  }
+  if (!(tip.z() >= floor)) return where + "below the floor of " + number(100 * floor) + " cm";
+  if (!(tip.z() <= ceiling)) return where + "above the ceiling of " + number(100 * ceiling) + " cm";
+  return {};
+}
+
+Watch::Watch(const Workspace& workspace, double force_stop) : workspace_(workspace), force_stop_(force_stop) {}
+
+void Watch::begin() {
+  sent_.clear();
+  joints_.reset();
+  too_strong_ = 0;
+  last_force_.reset();
+  collision_expected_ = false;
+  tare_.reset();
+}
+
+void Watch::sent(double time, const Joints& target) {
+  sent_.push_back({time, target});
+  while (sent_.front().time < time - kTrail) sent_.pop_front();
+}
+
+std::optional<Joints> Watch::last_sent() const {
+  return sent_.empty() ? std::nullopt : std::optional<Joints>(sent_.back().target);
+}
+
+std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
+  if (!seen.malformed.empty()) return Fault{seen.malformed, Then::silence, true};
+  if (!seen.state || !seen.joints || !seen.endpoint) {
+    return Fault{"not all of joints, endpoint and state were heard", Then::silence, true};
+  }
+  if (auto fault = stale("/robot/state", seen.now - seen.state->received, kStateFresh)) return fault;
+  if (auto fault = state_forbids(*seen.state, seen.joints, moving)) return fault;
+  if (seen.state_senders.size() > 1) {
+    return Fault{"/robot/state comes from more than one node, " + names(seen.state_senders) +
+                     ": one of them is no robot, end it",
+                 Then::silence, true};
+  }
+  if (seen.joint_senders.size() > 1) {
+    return Fault{"joints of the left arm come from more than one node, " + names(seen.joint_senders) +
+                     ": one of them is no robot, end it",
+                 Then::silence, true};
+  }
+  if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh)) return fault;
+  if (auto fault = stale("endpoint_state of the left arm", seen.now - seen.endpoint->received, kFresh)) {
+    fault->then = Then::hold;  // where the arm is, is still known
+    return fault;
+  }
+  if (!seen.joints->position.allFinite()) {
+    return Fault{"/robot/joint_states has a position that is no number: restart the robot", Then::silence, true};
+  }
+  if (!seen.endpoint->force.allFinite() || !seen.endpoint->pose.position.allFinite()) {
+    return Fault{"endpoint_state has a force or a place that is no number: restart the robot", Then::hold, true};
+  }
+  if (seen.endpoint->force.isZero(0.0)) {
+    return Fault{"endpoint_state has a force of exactly zero: this robot, a Gazebo simulation perhaps, does not feel",
+                 Then::hold, true};
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& tip) {
+  if (auto fault = fit(seen, true)) return fault;
+  if (auto fault = sound(seen)) return fault;
+  if (!collision_expected_ && seen.collision && seen.collision->collision) {
+    return Fault{
+        "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
+        "motion.threshold",
+        Then::retreat, true};
+  }
+  const std::string breach = workspace_.breach(tip);
+  if (!breach.empty())
+    return Fault{breach + ": see whether place and tool are as the config has them", Then::hold, true};
+  if (auto fault = force(seen)) return fault;
+  return follows(seen);
+}
+
+std::optional<Fault> Watch::sound(const Snapshot& seen) {
+  if (auto fault = late("/robot/joint_states", *seen.joints, joint_delay_)) return fault;
+  if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_)) {
+    fault->then = Then::hold;
+    return fault;
+  }
+  if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
+    return Fault{std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is at " +
+                     degrees(seen.joints->position(joint)) + ", beyond its limit: move the arm by hand",
+                 Then::hold, true};
+  }
+  if (joints_) {
+    const double jump = (seen.joints->position - joints_->position).cwiseAbs().maxCoeff();
+    if (jump > kJump) {
+      return Fault{"/robot/joint_states jumped by " + degrees(jump) + ": no joint turns so fast, restart the robot",
+                   Then::silence, true};
+    }
+  }
+  joints_ = seen.joints;
+  const Eigen::Vector3d& now = seen.endpoint->force;
+  if (!last_force_ || now != *last_force_) {
+    last_force_ = now;
+    force_changed_ = seen.now;
+  }
+  if (seen.now - force_changed_ > kFrozen) {
+    return Fault{"endpoint_state has had the same force to the last digit for " + number(seen.now - force_changed_, 2) +
+                     " s: its sender is frozen, restart the robot",
+                 Then::hold, true};
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> Watch::force(const Snapshot& seen) {
+  if (!tare_) return std::nullopt;
+  const double change = (seen.endpoint->force - *tare_).norm();
+  too_strong_ = change > force_stop_ ? too_strong_ + 1 : 0;
+  if (too_strong_ < kForceSamples) return std::nullopt;
+  return Fault{"the force changed by " + number(change) +
+                   " N, more than force_stop allows: take a lower motion.speed "
+                   "or motion.threshold, or see what the arm met",
+               Then::retreat, true};
+}
+
+std::optional<Fault> Watch::follows(const Snapshot& seen) const {
+  if (sent_.empty()) return std::nullopt;
+  const Joints& now = seen.joints->position;
+  const auto from = [&](const Joints& target) { return (now - target).cwiseAbs().maxCoeff(); };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Sent& one : sent_) nearest = std::min(nearest, from(one.target));
+  const double behind = from(sent_.back().target);
+  if (behind <= kFollowing && nearest <= kOffTheWay) return std::nullopt;
+  return Fault{"the arm does not follow, a joint is " + degrees(behind) +
+                   " from where it was sent: see what blocks it, and whether others command it",
+               Then::hold, true};
+}
+
+}  // namespace palpate::baxter

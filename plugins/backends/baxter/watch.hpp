@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The rules under which the arm may move, looked at in every period. The first that is broken stops it.
+#pragma once
+
+#include "baxter/kinematics.hpp"
+#include "baxter/options.hpp"
+#include "baxter/robot.hpp"
+
+#include <Eigen/Core>
+
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace palpate::baxter {
+
+/// A rule that was broken: why, what may still be done, and whether the run may go on.
+struct Fault {
+  /// What is left to do, from least to most.
+  enum class Then {
+    silence,  ///< send nothing more: the arm holds where it is by itself, or is not ours to move
+    hold,     ///< send the measured joints for a moment, then nothing
+    retreat,  ///< hold, and when the arm stands still and all other rules hold, go straight up
+  };
+  std::string reason;  ///< cause and remedy, one line
+  Then then = Then::silence;
+  bool ends_run = true;
+};
+
+/// The space in which the tip may be, in the frame of the scene, metres.
+struct Workspace {
+  double width, depth;  ///< the area; the tip may leave it sideways by kSideways
+  double floor, ceiling;
+  static constexpr double kSideways = 0.1;
+  /// What is wrong with the place of a tip; empty if nothing is.
+  std::string breach(const Eigen::Vector3d& tip) const;
+};
+
+/// Sources of the numbers: the robot's own limits and times where they are known (its firmware stops at 16 N, forgets
+/// commands after 0.2 s, trails its set-point by 0.3 to 0.4 s), else several times what a sound robot shows.
+class Watch {
+ public:
+  static constexpr double kFresh = 0.1;       ///< s, greatest age of joints and endpoint, sent every 0.01 s
+  static constexpr double kStateFresh = 0.5;  ///< s, greatest age of /robot/state
+  static constexpr double kLate = 0.3;        ///< s by which a stamp may lie farther back than the best so far
+  static constexpr double kFrozen = 0.5;      ///< s for which a force may be the same to the last digit
+  static constexpr double kJump = 0.15;       ///< rad between two readings
+  static constexpr double kFollowing = 0.2;   ///< rad from the set-point
+  static constexpr double kOffTheWay = 0.06;  ///< rad from every set-point of the last kTrail seconds
+  static constexpr double kTrail = 0.8;       ///< s
+  static constexpr int kForceSamples = 2;     ///< above force_stop: one alone may be noise
+
+  Watch(const Workspace& workspace, double force_stop);
+
+  /// Forgets what was commanded and felt: before a motion, after a pause in which nothing was sent.
+  void begin();
+  /// The force (N) from which force_stop counts; until it is set no force stops.
+  void set_tare(const std::optional<Eigen::Vector3d>& force) { tare_ = force; }
+  /// Whether a collision felt by the robot's firmware is a fault; not while one waits for its end.
+  void expect_collision(bool expected) { collision_expected_ = expected; }
+
+  /// Looks at what was read; `tip` is where the joints in it have the tip, in the frame of the scene.
+  std::optional<Fault> look(const Snapshot& seen, const Eigen::Vector3d& tip);
+  /// Tells what is sent, so that look() can judge whether the arm follows.
+  void sent(double time, const Joints& target);
+  /// The last of what was sent; none since begin().
+  std::optional<Joints> last_sent() const;
+
+  /// The rules of the robot's state, of who sends it, and of the age and soundness of the data: what must hold even
+  /// while nothing moves. `moving`: the arm must be enabled.
+  static std::optional<Fault> fit(const Snapshot& seen, bool moving);
+
+ private:
+  std::optional<Fault> sound(const Snapshot& seen);
+  std::optional<Fault> follows(const Snapshot& seen) const;
+  std::optional<Fault> force(const Snapshot& seen);
+
+  Workspace workspace_;
+  double force_stop_;
+  std::optional<Eigen::Vector3d> tare_;
+  bool collision_expected_ = false;
+  struct Sent {
+    double time;
+    Joints target;
+  };
+  std::deque<Sent> sent_;
+  std::optional<JointReading> joints_;  ///< the reading before
+  std::optional<Eigen::Vector3d> last_force_;
+  double force_changed_ = 0.0;  ///< when it last was another
+  int too_strong_ = 0;
+  double joint_delay_ = std::numeric_limits<double>::infinity();  ///< least of received - stamp so far
+  double endpoint_delay_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace palpate::baxter
