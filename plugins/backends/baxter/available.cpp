@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "baxter/unavailable.hpp"
+#include "baxter/available.hpp"
 
 namespace palpate::baxter {
 
-void require_available(Fields&) {}
+bool available() { return true; }
 
 }  // namespace palpate::baxter

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/options.hpp"
 
-#include "baxter/unavailable.hpp"
+#include "baxter/available.hpp"
 
 namespace palpate::baxter {
 namespace {
@@ -11,16 +11,13 @@ namespace {
 constexpr double kGreatestThreshold = 12.0;
 constexpr double kReflex = 16.0;
 
+Field mandatory(Field field) { return available() ? field.needed() : field; }
+
 }  // namespace
 
 void ToolOptions::list(Fields& fields) {
-  fields.reals(
-      tip, 3,
-      Field("tip", "the point of the tool that touches, in the frame left_hand: x, y, and z away from the flange")
-          .in(Unit::metre)
-          .at_least(-0.6)
-          .at_most(0.6)
-          .needed());
+  const char* meaning = "the point of the tool that touches, in the frame left_hand: x, y, and z away from the flange";
+  fields.reals(tip, 3, mandatory(Field("tip", meaning).in(Unit::metre).at_least(-0.6).at_most(0.6)));
   fields.real(gripper, Field("gripper",
                              "how far from left_hand the robot has its frame left_gripper, which is what it "
                              "reports; checked at the start")
@@ -31,17 +28,10 @@ void ToolOptions::list(Fields& fields) {
 }
 
 void PlaceOptions::list(Fields& fields) {
-  fields.reals(corner, 2,
-               Field("corner", "the corner (0, 0) of the area in the robot's frame base: x forward, y to the left")
-                   .in(Unit::metre)
-                   .at_least(-1.5)
-                   .at_most(1.5)
-                   .needed());
-  fields.real(height, Field("height", "of the scene's zero, from which desk and heights count, in the frame base")
-                          .in(Unit::metre)
-                          .at_least(-1)
-                          .at_most(1)
-                          .needed());
+  const char* corner_is = "the corner (0, 0) of the area in the robot's frame base: x forward, y to the left";
+  fields.reals(corner, 2, mandatory(Field("corner", corner_is).in(Unit::metre).at_least(-1.5).at_most(1.5)));
+  const char* height_is = "of the scene's zero, from which desk and heights count, in the frame base";
+  fields.real(height, mandatory(Field("height", height_is).in(Unit::metre).at_least(-1).at_most(1)));
   fields.real(rotation, Field("rotation", "of the scene about the vertical, from base's x axis to the scene's")
                             .in(Unit::radian)
                             .at_least(-6.3)
@@ -60,12 +50,11 @@ void CalibrationOptions::list(Fields& fields) {
 }
 
 void BaxterOptions::list(Fields& fields) {
-  require_available(fields);
   fields.section(motion, Field("motion", "the tapping motion"));
   fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
                  "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
-  fields.section(tool, Field("tool", "what is fixed to the flange of the left arm").needed());
-  fields.section(place, Field("place", "where the scene lies before the robot").needed());
+  fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
+  fields.section(place, Field("place", "where the scene lies before the robot"));
   fields.section(calibration,
                  Field("calibration", "begin with a tap on the bare desk, and take its height for the desk's"));
   fields.choice(force_sign,

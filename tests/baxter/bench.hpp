@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// What the tests of the driver start from: the place and the tool of configs/backend/fake_baxter.yaml, a sound robot.
+#pragma once
+
+#include "baxter/path.hpp"
+#include "baxter/preflight.hpp"
+#include "baxter/watch.hpp"
+#include "support/plugins.hpp"
+
+#include <cmath>
+
+namespace palpate::baxter::test {
+
+/// As configs/backend/fake_baxter.yaml has them.
+inline BaxterOptions fake_options() {
+  BaxterOptions out;
+  out.motion.type = tapping::MotionOptions::Type::continuous;
+  out.motion.speed = 0.03;
+  out.motion.threshold = 6.0;
+  out.motion.travel_speed = 0.15;
+  out.motion.retreat_speed = 0.1;
+  out.motion.tare = 0.5;
+  out.motion.overrun = 0.02;
+  out.tool.tip[2] = 0.15;
+  out.place.corner[0] = 0.507;
+  out.place.corner[1] = 0.067;
+  out.place.height = -0.17;
+  out.place.rotation = 10.0 * 3.14159265358979323846 / 180.0;
+  return out;
+}
+
+/// A planner over them with the program's own inverse kinematics.
+class PlannerBench {
+ public:
+  explicit PlannerBench(const BaxterOptions& options = fake_options())
+      : arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)),
+        planner(options.place, arm,
+                [this](const Pose& tip, const Joints& seed) { return arm.solve(tip, seed, 0.03); }) {}
+  PlannerBench(const PlannerBench&) = delete;
+  PlannerBench& operator=(const PlannerBench&) = delete;
+
+  /// Joints with the tool upright and its tip there, in the frame of the scene.
+  Joints at(double x, double y, double z) const { return arm.solve(planner.pose({x, y}, z), untucked()).value(); }
+
+  Arm arm;
+  Planner planner;
+};
+
+/// What a robot says with which nothing is wrong, at protocol time `now`, its arm at `joints`.
+inline Snapshot sound(double now, const Joints& joints) {
+  Snapshot out;
+  out.now = now;
+  out.joints = JointReading{{now, now + 5.0}, joints};  // its clock is another
+  const Pose gripper = Arm({0.0, 0.0, 0.025}).tip(joints);
+  // No sensor says the same twice.
+  out.endpoint = EndpointReading{{now, now + 5.0}, gripper, {0.3, -0.2, 1.0 + 0.1 * std::sin(1000.0 * now)}};
+  out.state = StateReading{now, true, true, false, false, StateReading::Button::unpressed, StateReading::Source::none};
+  out.collision = CollisionReading{{now, now + 5.0}, false};
+  out.joint_senders = {"/realtime_loop"};
+  out.state_senders = {"/realtime_loop"};
+  return out;
+}
+
+}  // namespace palpate::baxter::test
