@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The robot of the tests in the same process and without ROS: time goes on when somebody waits for it.
+#pragma once
+
+#include "baxter/bench.hpp"
+#include "baxter/robot.hpp"
+#include "fake_baxter/body.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpate::baxter::test {
+
+using palpate::fake_baxter::Body;
+using palpate::fake_baxter::BodyOptions;
+using palpate::fake_baxter::FaultKind;
+
+inline BodyOptions body_options(const BaxterOptions& options) {
+  BodyOptions out;
+  out.tool = options.tool;
+  out.place = options.place;
+  out.hover = options.motion.hover;
+  return out;
+}
+
+class BodyRobot final : public Robot {
+ public:
+  BodyRobot(const Scene& scene, const BodyOptions& options)
+      : body(scene, options), gripper_({0, 0, options.tool.gripper}) {
+    hear();
+  }
+
+  Snapshot read() override { return heard_; }
+
+  bool wait_until(double time) override {
+    if (body.active(FaultKind::freeze_clock) != nullptr) return false;
+    while (body.now() < time - 1e-9) {
+      body.step();
+      hear();
+      heights.push_back(body.tip().z());
+      if (every_period) every_period();
+    }
+    return true;
+  }
+
+  void command(const Joints& target) override {
+    commands.push_back(target);
+    body.command(target);
+  }
+
+  void record(const std::string&) override {}
+
+  Answer solve(const Pose& gripper, const Joints& seed) override {
+    ++asked;
+    if (answer) return answer(gripper, seed);
+    return {gripper_.solve(gripper, seed), {}};
+  }
+
+  Body body;
+  std::vector<Joints> commands;
+  std::vector<double> heights;                               ///< of the tip after every period
+  std::function<void()> every_period;                        ///< called then
+  std::function<Answer(const Pose&, const Joints&)> answer;  ///< instead of what is right
+  int asked = 0;
+
+ private:
+  void hear() {
+    const fake_baxter::Said said = body.said();
+    heard_.now = body.now();
+    if (said.joints) heard_.joints = said.joints;
+    if (said.endpoint) heard_.endpoint = said.endpoint;
+    if (said.state) heard_.state = said.state;
+    if (said.collision) heard_.collision = said.collision;
+    heard_.joint_senders = heard_.state_senders = {"/realtime_loop"};
+    if (body.active(FaultKind::second_state) != nullptr) heard_.state_senders.push_back("/mock_robot");
+  }
+
+  Arm gripper_;
+  Snapshot heard_;
+};
+
+}  // namespace palpate::baxter::test
