@@ -13,6 +13,7 @@ namespace palpate {
 void Experiment::run(Journal& journal, int most_taps) {
   budget_ = std::min<std::int64_t>(options_.taps, most_taps);
   for (;;) {
+    show_belief();
     if (std::optional<std::string> reason = stop_reason()) {
       result_.stop_reason = *reason;
       return;
@@ -25,6 +26,7 @@ void Experiment::run(Journal& journal, int most_taps) {
     journal.announce(*tap);
     perform(*tap);
     journal.record(*tap, clock_.take());
+    if (tap->contact.ends_run) fail(tap->contact);
   }
 }
 

@@ -34,7 +34,8 @@ class Experiment {
   /// Takes over the taps of an earlier process, in their order. Call before run().
   void resume(const std::vector<PastTap>& past);
 
-  /// Taps until a stop rule holds, or `most_taps` are made, and tells `journal` of every tap.
+  /// Taps until a stop rule holds, or `most_taps` are made, and tells `journal` of every tap. Throws Error when the
+  /// backend cannot go on; the last tap is then told already.
   void run(Journal& journal, int most_taps = std::numeric_limits<int>::max());
 
   /// What was counted so far, without errors: builds and computes nothing.
@@ -61,6 +62,8 @@ class Experiment {
   std::optional<Prediction> predict(int candidate) const;
   Contact touch(const TapRecord& tap);
   void absorb(const Target& target, const Contact& contact, Source source);
+  [[noreturn]] void fail(const Contact& last) const;
+  void show_belief();
   void count(const Contact& contact, Source source);
 
   ExperimentOptions options_;

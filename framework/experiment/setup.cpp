@@ -78,7 +78,17 @@ Contact Experiment::touch(const TapRecord& tap) {
   const PhaseClock::Scope in_tap(clock_, Phase::robot);
   Contact contact = backend_->tap({tap.number, tap.target, previous_, tap.predicted});
   if (contact.outcome != Outcome::contact || std::isfinite(contact.height)) return contact;
-  return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused};
+  return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused, contact.ends_run};
+}
+
+void Experiment::fail(const Contact& last) const {
+  const std::string reason = last.reason.empty() ? "cannot go on, and gives no reason" : last.reason;
+  throw Error("backend/" + options_.backend.type, reason, {}, Error::Kind::run);
+}
+
+void Experiment::show_belief() {
+  const PhaseClock::Scope log(clock_, Phase::log);
+  if (result_.taps > 0) backend_->show(belief_);
 }
 
 void Experiment::count(const Contact& contact, Source source) {

@@ -17,20 +17,46 @@ namespace fs = std::filesystem;
 
 namespace {
 
+bool has(const Row& row, const char* field) {
+  const Scalar* value = row.find(field);
+  return value != nullptr && !std::holds_alternative<std::monostate>(*value);
+}
+
+/// What a row tells of the loop that wrote it: the models that were built, perhaps only because the backend showed
+/// them.
+struct Built {
+  bool heights = false;
+  bool labels = false;
+  bool surface = false;
+};
+
+Built built_at(const Row& row) {
+  return {has(row, "height_process.signal"), has(row, "weight_process.signal"), has(row, "surface_process.signal")};
+}
+
 /// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
 class Recorded final : public Backend {
  public:
-  Recorded(std::vector<PastTap> taps, bool truth_known, bool predicted)
-      : taps_(std::move(taps)), truth_known_(truth_known), predicted_(predicted) {}
+  /// `built`: for each tap, what was built when the next one was chosen.
+  Recorded(std::vector<PastTap> taps, std::vector<Built> built, bool truth_known, bool predicted)
+      : taps_(std::move(taps)), built_(std::move(built)), truth_known_(truth_known), predicted_(predicted) {}
   Contact tap(const TapRequest& request) override {
     return taps_.at(static_cast<std::size_t>(request.number - 1)).contact;
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_known_; }
   bool wants_prediction() const override { return predicted_; }
+  /// Reading more than was built would fill fields that the record leaves empty; reading less, leave some empty.
+  void show(const Belief& belief) override {
+    const Built& built = built_.at(static_cast<std::size_t>(belief.taps() - 1));
+    if (built.heights) belief.uncertainty();
+    if (built.labels) belief.weight();
+    if (built.surface) belief.height_mean();
+  }
 
  private:
   std::vector<PastTap> taps_;
+  std::vector<Built> built_;
   bool truth_known_;
   bool predicted_;
 };
@@ -72,19 +98,17 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   }
   if (recorded.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
   std::vector<PastTap> taps;
+  std::vector<Built> built;
   for (std::size_t i = 0; i < recorded.size(); ++i) {
+    built.push_back(built_at(recorded[std::min(i + 1, recorded.size() - 1)]));
     taps.push_back(past_tap(recorded[i], fmt::format("{}: tap {}", (directory / "taps.jsonl").string(), i + 1)));
   }
-  const auto known = [&](const char* field) {
-    const Scalar* value = recorded.front().find(field);
-    return value != nullptr && !std::holds_alternative<std::monostate>(*value);
-  };
-
   const auto made = static_cast<int>(taps.size());
   const bool cut = made < config.options.taps;
   Experiment experiment(
       config.options, workshop.host, workshop.interrupted,
-      std::make_shared<Recorded>(std::move(taps), known("true_on_surface"), known("predicted.height")));
+      std::make_shared<Recorded>(std::move(taps), std::move(built), has(recorded.front(), "true_on_surface"),
+                                 has(recorded.front(), "predicted.height")));
   Collector collector;
   experiment.run(collector, made);
 
@@ -102,13 +126,14 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   if (!fs::exists(directory / "summary.json", none)) return report;
   const std::optional<Row> summary = parse_json_row(read_file(directory / "summary.json"));
   if (!summary) throw Error((directory / "summary.json").string(), "is not a JSON object", "the file is damaged");
-  RunResult result = experiment.result();
-  std::string failure;
-  // A record that ended before its budget ended for a reason that the taps alone do not show.
-  if (cut) {
+  // A failed run asks its models nothing any more: see carry_out().
+  const bool failed = shown(summary->find("status")) == "failed";
+  RunResult result = failed ? experiment.counts() : experiment.result();
+  // A record that failed, or ended before its budget, did so for a reason that the taps alone do not show.
+  if (failed || cut) {
     if (const Scalar* reason = summary->find("stop_reason")) result.stop_reason = shown(reason);
-    if (shown(summary->find("status")) == "failed") failure = result.stop_reason;
   }
+  const std::string failure = failed ? result.stop_reason : std::string();
   compare(*summary, summary_row(config, result, failure, Stopwatch{}, {}), 0, report);
   return report;
 }

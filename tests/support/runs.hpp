@@ -7,6 +7,7 @@
 #include "experiment/resolved.hpp"
 #include "support/support.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,14 @@ class Collector : public Journal {
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override { taps.push_back(tap); }
 };
 
-/// Answers with what the test scripts; a plain desk at 0 once the script has ended.
+/// Answers with what the test scripts; a plain desk at 0 once the script has ended. Reads of the belief what `reading`
+/// reads when it is shown.
 class ScriptedBackend final : public Backend {
  public:
   explicit ScriptedBackend(std::vector<Contact> answers, bool truth = false)
       : answers_(std::move(answers)), truth_(truth) {}
   std::vector<TapRequest> requests;
+  std::function<void(const Belief&)> reading;
 
   Contact tap(const TapRequest& request) override {
     requests.push_back(request);
@@ -42,6 +45,9 @@ class ScriptedBackend final : public Backend {
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_; }
+  void show(const Belief& belief) override {
+    if (reading) reading(belief);
+  }
 
  private:
   std::vector<Contact> answers_;

@@ -2,6 +2,7 @@
 // Plugin kind `backend`: whatever can be tapped, a simulator, a record or a robot.
 #pragma once
 
+#include <palpate/belief.hpp>
 #include <palpate/types.hpp>
 
 #include <optional>
@@ -33,8 +34,9 @@ class Backend {
 
   virtual ~Backend() = default;
 
-  /// Taps the world and returns when the tool is clear again. Throws Error only for trouble that ends the run; a tap
-  /// that merely failed says so in its outcome.
+  /// Taps the world and returns when the tool is clear again. A tap that failed says so in its outcome, and if it must
+  /// be the last, in Contact::ends_run. An Error ends the run, too, but the tap is then lost to the record: it is for
+  /// trouble in which nothing was tapped.
   virtual Contact tap(const TapRequest& request) = 0;
 
   /// Whether a tap can be made again at no risk. If not, each tap is announced in the log and synced before it moves.
@@ -42,6 +44,11 @@ class Backend {
 
   /// Whether taps depend on what the models expect. If so, the loop builds the process of the heights for it.
   virtual bool wants_prediction() const { return false; }
+
+  /// Called after every tap, once it is recorded and the belief has it, and at the start of a run that is carried on:
+  /// for a robot whose surface people watch. Maps are computed for it when it reads them, as for a strategy; whatever
+  /// it reads, the taps are the same. An Error ends the run.
+  virtual void show(const Belief& /*belief*/) {}
 
   /// Whether the scene of the config is the very world that is tapped, so that errors against it mean something.
   virtual bool scene_is_truth() const = 0;

@@ -23,7 +23,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 4;
+constexpr std::uint32_t kPluginAbi = 5;
 
 struct Context;
 

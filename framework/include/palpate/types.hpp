@@ -42,7 +42,10 @@ struct Contact {
       0.0;             ///< of the touched point, metres, in the frame of `Scene::desk()`; meaningful only for `contact`
   double force = 0.0;  ///< at contact, newtons; meaningful only for `contact`
   double seconds = 0.0;  ///< robot time that the tap took, whatever its outcome
-  std::string reason;    ///< why a tap failed, one line; empty for `contact`
+  std::string reason;    ///< why a tap failed or the run ends, one line; else empty
+  /// No other tap can be made until somebody has seen to the robot. The tap is recorded like any other, then the run
+  /// fails with `reason`; `palpate resume --retry-failed` goes on after it.
+  bool ends_run = false;
 };
 
 }  // namespace palpate

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// A backend of a robot that stands still after its fifth tap until somebody has seen to it, as a fault of safety does:
+// the next process finds it mended. Meanwhile it shows what is believed.
+#include <palpate/backend.hpp>
+#include <palpate/plugin.hpp>
+
+namespace broken {
+
+class Backend final : public palpate::Backend {
+ public:
+  using Options = palpate::NoOptions;
+  Backend(const Options&, const palpate::Context&) {}
+
+  palpate::Contact tap(const palpate::TapRequest& request) override {
+    if (request.number != 5) return {palpate::Outcome::contact, 0.01 * request.number, 8.0, 1.0, {}};
+    return {palpate::Outcome::aborted, 0.0, 0.0, 1.0, "the e-stop is pressed", true};
+  }
+  bool repeatable() const override { return false; }
+  bool scene_is_truth() const override { return false; }
+  void show(const palpate::Belief& belief) override { shown_ += belief.height_mean().sum(); }
+
+ private:
+  double shown_ = 0.0;
+};
+
+PALPATE_PLUGIN(palpate::Backend, Backend, PLUGIN_NAME, "cannot go on after its fifth tap")
+
+}  // namespace broken
