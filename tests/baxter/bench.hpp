@@ -15,7 +15,7 @@ namespace palpate::baxter::test {
 inline BaxterOptions fake_options() {
   BaxterOptions out;
   out.motion.type = tapping::MotionOptions::Type::continuous;
-  out.motion.speed = 0.03;
+  out.motion.speed = 0.02;
   out.motion.threshold = 6.0;
   out.motion.travel_speed = 0.15;
   out.motion.retreat_speed = 0.1;

@@ -166,8 +166,23 @@ void Tapper::start() {
 /// Straight up from where the arm is to the height of travel, if it is below.
 void Tapper::rise() {
   const double hover = scene_.desk() + options_.motion.hover;
-  if (height() < hover - kNearHover)
-    follow(planner_.up(seen_.joints->position, hover - height()), options_.motion.retreat_speed);
+  if (height() >= hover - kNearHover) return;
+  const Path up = planner_.up(seen_.joints->position, hover - height());
+  follow(up, options_.motion.retreat_speed);
+  await_height(up.end());
+}
+
+/// Waits until the arm has come up after its set-point: one that went sideways before would cut the corner, and what
+/// stands there.
+void Tapper::await_height(const Joints& top) {
+  const double hover = scene_.desk() + options_.motion.hover;
+  const double begin = seen_.now;
+  while (height() < hover - kNearHover) {
+    if (seen_.now > begin + kSettling) {
+      throw Fault{"the arm did not come up to the height of travel: see what holds it", Then::hold, true};
+    }
+    step(top);
+  }
 }
 
 void Tapper::go_to(const Joints& hover) {
@@ -234,6 +249,7 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
     step(command);
   }
   follow(column.back(plan.hover - height()), options_.motion.retreat_speed);
+  await_height(column.front());
   switch (tap.outcome()) {
     case Outcome::contact:
       if (!clear_of_force(column)) {
@@ -251,10 +267,6 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
 
 /// Whether the force at rest is what it was before the descent.
 bool Tapper::clear_of_force(const Path& column) {
-  const double hover = scene_.desk() + options_.motion.hover;
-  for (double patience = kSettling; height() < hover - kNearHover && patience > 0.0; patience -= kPeriod) {
-    step(column.front());
-  }
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < kForceSamples; ++i) {
     step(column.front());

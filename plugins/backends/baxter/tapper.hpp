@@ -48,6 +48,7 @@ class Tapper {
   bool clear_of_force(const Path& column);
   std::string recover(const Fault& fault);
   void rise();
+  void await_height(const Joints& top);
   Path column(const Target& place) const;
   std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
 
