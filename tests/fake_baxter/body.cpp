@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+#include "fake_baxter/body.hpp"
+
+#include <palpate/error.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::fake_baxter {
+namespace {
+
+constexpr double kObject = 1500.0;        // N/m, where the scene has no stiffness
+constexpr double kForceNoise = 1.5;       // N, where it has no noise
+constexpr double kLeastNoise = 0.01;      // N: a real sensor never says the same twice
+constexpr double kBias = 2.0;             // N, standard deviation of the bias
+constexpr double kBiasByJoints = 2.0;     // N/rad, of how it depends on each joint
+constexpr double kTuckedShoulder = -1.6;  // rad: with left_s1 below it the robot refuses to be enabled
+constexpr double kAbove = 0.03;           // m, of the start
+constexpr double kSlack = 1e-9;           // of times that are sums of periods, s
+
+/// Greatest speed of each joint, rad/s.
+Joints greatest_speed() { return (Joints() << 1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0).finished(); }
+
+/// Straight down, with the hand turned about the vertical as in the untucked posture.
+Eigen::Quaterniond straight_down(const baxter::Arm& arm) {
+  const Eigen::Matrix3d untucked_hand = arm.tip(untucked()).rotation.toRotationMatrix();
+  Eigen::Vector3d x = untucked_hand.col(0);
+  x.z() = 0.0;
+  x.normalize();
+  const Eigen::Vector3d z(0.0, 0.0, -1.0);
+  Eigen::Matrix3d rotation;
+  rotation << x, z.cross(x), z;
+  return Eigen::Quaterniond(rotation);
+}
+
+}  // namespace
+
+const Joints& untucked() {
+  static const Joints joints = (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.50).finished();
+  return joints;
+}
+
+const Joints& tucked() {
+  static const Joints joints = (Joints() << -1.0, -2.174, 3.0, 2.55, 0.0, 0.01, 0.0).finished();
+  return joints;
+}
+
+Body::Body(const Scene& scene, const BodyOptions& options)
+    : scene_(scene),
+      place_(options.place),
+      tool_(Eigen::Vector3d(options.tool.tip)),
+      gripper_({0.0, 0.0, options.tool.gripper}),
+      seed_(options.seed),
+      begin_(options.begin),
+      lag_(scene.effects().joint_lag.value_or(JointLag{kLag, 0.0})),
+      object_give_(1.0 / kObject),
+      arm_give_(0.0),
+      noise_(kForceNoise),
+      normal_(Random(options.seed, "fake_baxter/noise")) {
+  const Effects& effects = scene.effects();
+  if (effects.stiffness) {
+    object_give_ = 1.0 / effects.stiffness->object;
+    if (effects.stiffness->arm) arm_give_ = 1.0 / *effects.stiffness->arm;
+  }
+  if (effects.force_noise) noise_ = std::max(kLeastNoise, effects.force_noise->deviation);
+  backends::Normal bias(Random(options.seed, "fake_baxter/bias"));
+  for (double& one : bias_.reshaped()) one = kBias * bias();
+  for (double& one : bias_by_joints_.reshaped()) one = kBiasByJoints * bias();
+
+  position_ = start_joints(options);
+  measured_ = target_ = position_;
+  hold(true);
+  if (options.start == Start::tucked && !options.start_at) assembly_ = Assembly(false);
+  touch();
+  measure();
+}
+
+Joints Body::start_joints(const BodyOptions& options) const {
+  if (!options.start_at && options.start == Start::untucked) return untucked();
+  if (!options.start_at && options.start == Start::tucked) return tucked();
+  const Area area = scene_.area();
+  Eigen::Vector3d at(area.width / 2, area.depth / 2, scene_.desk() + options.hover + kAbove);
+  if (options.start == Start::low) at = {kAbove, kAbove, scene_.desk() + kAbove};
+  if (options.start_at) at = *options.start_at;
+  baxter::Pose pose;
+  const Eigen::Rotation2Dd turn(place_.rotation);
+  pose.position << Eigen::Vector2d(place_.corner) + turn * at.head<2>(), place_.height + at.z();
+  pose.rotation = straight_down(tool_);
+  const std::optional<Joints> found = tool_.solve(pose, untucked());
+  if (!found) throw Error("--start", "the arm cannot reach where it should start", "move the scene by backend.place");
+  return *found;
+}
+
+Eigen::Vector3d Body::in_scene(const Joints& joints) const {
+  const Eigen::Vector3d at = tool_.tip(joints).position;
+  const Eigen::Rotation2Dd back(-place_.rotation);
+  Eigen::Vector3d out;
+  out << back * (at.head<2>() - Eigen::Vector2d(place_.corner)), at.z() - place_.height;
+  return out;
+}
+
+double Body::now() const { return begin_ + static_cast<double>(periods_) * kPeriod; }
+
+void Body::command(const Joints& target) {
+  ++commands_;
+  if (!target.allFinite() || active(FaultKind::drop_commands) != nullptr) return;
+  target_ = target.cwiseMax(baxter::lower_limits()).cwiseMin(baxter::upper_limits());
+  commanded_ = now();
+}
+
+void Body::enable(bool wanted) {
+  const bool refused = position_(1) < kTuckedShoulder || active(FaultKind::tucked) != nullptr;
+  assembly_.enable(wanted, refused);
+}
+
+void Body::inject(const Fault& fault, const Trigger& trigger) {
+  faults_.push_back({fault, trigger, 0, {}});
+  if (trigger.descent == 0) begin(faults_.back());
+}
+
+const Fault* Body::active(FaultKind kind) const {
+  for (const Armed& one : faults_) {
+    if (one.fault.kind != kind || !one.since) continue;
+    // Of the faults that pass by themselves, these two need no more than their time.
+    if (kind == FaultKind::drop_commands && now() >= *one.since + one.fault.amount) continue;
+    return &one.fault;
+  }
+  return nullptr;
+}
+
+bool Body::faulty() const {
+  return std::any_of(faults_.begin(), faults_.end(), [](const Armed& one) { return one.since.has_value(); });
+}
+
+void Body::begin(Armed& armed) {
+  armed.since = now();
+  switch (armed.fault.kind) {
+    case FaultKind::estop:
+      assembly_.press();
+      break;
+    case FaultKind::error:
+      assembly_.fail();
+      break;
+    case FaultKind::squish:
+      held_until_ = now() + kHeld;
+      hold(false);
+      break;
+    case FaultKind::disabled:
+      assembly_.enable(false, false);
+      break;
+    case FaultKind::tucked:
+      assembly_.enable(false, true);
+      position_ = measured_ = target_ = tucked();
+      hold(true);
+      touch();
+      measure();
+      break;
+    default:
+      break;
+  }
+}
+
+void Body::watch_faults(double height_before) {
+  const double height = in_scene(position_)(2);
+  for (Armed& one : faults_) {
+    if (one.since) {
+      const bool pressed = assembly_.state().estop_button == Assembly::State::Button::pressed;
+      const bool over = now() >= *one.since + one.fault.amount;
+      if (one.fault.kind == FaultKind::estop && pressed && over) assembly_.release();
+      continue;
+    }
+    const double mark = scene_.desk() + one.trigger.height;
+    if (height_before >= mark && height < mark && ++one.descents == one.trigger.descent) begin(one);
+  }
+}
+
+Body::Mode Body::choose_mode() const {
+  const Assembly::State& state = assembly_.state();
+  if (!state.enabled) return state.stopped || state.error ? Mode::stopped : Mode::disabled;
+  if (now() < held_until_ - kSlack) return Mode::reflex;
+  return now() - commanded_ > timeout_ + kSlack ? Mode::timed_out : Mode::following;
+}
+
+/// The arm stays where it is: at once by the brakes, else as its joints come to rest there.
+void Body::hold(bool brakes) {
+  reference_ = position_;
+  if (!brakes) return;
+  lagged_.clear();
+  for (int i = 0; i < 7; ++i) lagged_.emplace_back(lag_, kPeriod, position_(i));
+}
+
+void Body::follow() {
+  if (mode_ == Mode::following) {
+    const Joints most = kPeriod * greatest_speed();
+    reference_ += (target_ - reference_).cwiseMax(-most).cwiseMin(most);
+  }
+  for (int i = 0; i < 7; ++i) {
+    backends::Arm& joint = lagged_[static_cast<std::size_t>(i)];
+    joint.follow(reference_(i));
+    position_(i) = joint.position();
+  }
+}
+
+/// Where the tip is under what it presses on.
+void Body::touch() {
+  const Eigen::Vector3d at = in_scene(position_);
+  const double pressed = std::max(0.0, scene_.height(at.x(), at.y()) - at.z());
+  pressing_ = pressed / (object_give_ + arm_give_);
+  measured_ = position_;
+  if (pressing_ > 0.0 && arm_give_ > 0.0) {
+    const Eigen::Matrix<double, 3, 7> jacobian = tool_.jacobian(position_);
+    const Eigen::Matrix3d square = jacobian * jacobian.transpose();
+    measured_ += jacobian.transpose() * (square.inverse() * Eigen::Vector3d(0.0, 0.0, pressing_ * arm_give_));
+  }
+}
+
+/// Held where it presses, the arm is not held again for the same force, but for one still greater.
+void Body::feel_reflex() {
+  if (pressing_ < kReflex) reflex_above_ = kReflex;
+  if (mode_ == Mode::reflex) reflex_above_ = std::max(reflex_above_, pressing_ + 0.5);
+  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= reflex_above_) return;
+  held_until_ = now() + kHeld;
+  mode_ = Mode::reflex;
+  hold(false);
+}
+
+void Body::measure() {
+  const baxter::Pose pose = gripper_.tip(measured_);
+  Eigen::Vector3d force = bias_ + bias_by_joints_ * (position_ - untucked());
+  force.z() += pressing_;
+  for (double& one : force.reshaped()) one += noise_ * normal_();
+  if (const Fault* bias = active(FaultKind::bias)) force.z() += bias->amount;
+  if (active(FaultKind::zero_wrench) != nullptr) force.setZero();
+  if (active(FaultKind::nan_wrench) != nullptr) force.setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
+  endpoint_speed_ = (pose.position - endpoint_.pose.position) / kPeriod;
+  if (periods_ == 0) endpoint_speed_.setZero();
+  endpoint_.pose = pose;
+  endpoint_.force = force;
+}
+
+void Body::step() {
+  const double height_before = in_scene(position_)(2);
+  const Joints before = measured_;
+  ++periods_;
+  const Mode mode = choose_mode();
+  const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
+  if (mode != mode_ && mode != Mode::following) hold(brakes);
+  mode_ = mode;
+  if (!brakes) follow();
+  touch();
+  feel_reflex();
+  speed_ = (measured_ - before) / kPeriod;
+  watch_faults(height_before);
+  measure();
+}
+
+Said Body::said() const {
+  Said out;
+  double stamp = now();
+  for (const Armed& one : faults_) {
+    if (one.fault.kind == FaultKind::stale_stamps && one.since) stamp = *one.since;
+  }
+  const Fault* never = active(FaultKind::no_data);
+  const auto heard = [&](FaultKind killed, const char* stream) {
+    return active(killed) == nullptr && (never == nullptr || never->text != stream);
+  };
+  const auto stamped = [&](auto reading) {
+    reading.received = now();
+    reading.stamp = stamp;
+    return reading;
+  };
+  if (heard(FaultKind::kill_joints, "joints")) {
+    baxter::JointReading joints;
+    joints.position = measured_;
+    if (const Fault* jump = active(FaultKind::jump_joints)) joints.position(1) += jump->amount;
+    out.joints = stamped(joints);
+    out.speed = speed_;
+  }
+  if (heard(FaultKind::kill_endpoint, "endpoint")) {
+    out.endpoint = stamped(endpoint_);
+    out.tip_speed = endpoint_speed_;
+  }
+  if (heard(FaultKind::kill_state, "state")) {
+    out.state = assembly_.state();
+    out.state->received = now();
+  }
+  if (never == nullptr || never->text != "collision") {
+    baxter::CollisionReading collision;
+    collision.collision = now() < held_until_ - kSlack;
+    out.collision = stamped(collision);
+  }
+  return out;
+}
+
+const char* name_of(Body::Mode mode) {
+  switch (mode) {
+    case Body::Mode::following:
+      return "following";
+    case Body::Mode::timed_out:
+      return "timed_out";
+    case Body::Mode::reflex:
+      return "reflex";
+    case Body::Mode::stopped:
+      return "stopped";
+    case Body::Mode::disabled:
+      return "disabled";
+  }
+  return "";
+}
+
+}  // namespace palpate::fake_baxter

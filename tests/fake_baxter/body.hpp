@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// The robot of the tests without ROS: a left arm of Baxter's over a scene, 100 times a second of its own time. It draws
+// all noise from a seed: equal commands at equal times bring equal readings.
+#pragma once
+
+#include "baxter/kinematics.hpp"
+#include "baxter/options.hpp"
+#include "fake_baxter/assembly.hpp"
+#include "fake_baxter/faults.hpp"
+#include "simulator/arm.hpp"
+
+#include <palpate/scene.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace palpate::fake_baxter {
+
+using baxter::Joints;
+
+/// Untucked, as Rethink's tools leave the arm: the posture that the arm keeps while it works, radians.
+const Joints& untucked();
+/// Tucked, as a real arm reads: left_s1 is beyond the limit of its description.
+const Joints& tucked();
+
+/// How the arm stands when it is switched on.
+enum class Start {
+  hover,     ///< tool straight down, 3 cm above the height of travel, over the middle of the area
+  low,       ///< tool straight down, 3 cm above the desk, 3 cm from the corner of the area
+  untucked,  ///< as Rethink's tools leave it
+  tucked     ///< as it is shipped; cannot be enabled
+};
+
+struct BodyOptions {
+  baxter::ToolOptions tool;
+  baxter::PlaceOptions place;
+  double hover = 0.135;    ///< of travel, metres above the desk
+  std::uint64_t seed = 1;  ///< of all noise
+  Start start = Start::hover;
+  std::optional<Eigen::Vector3d> start_at;  ///< of the tip, straight down, in the scene's frame; goes before `start`
+  double begin = 100.0;                     ///< time at the start, seconds
+};
+
+/// What the robot says at the end of a period; a stream that is silent is absent. `received` is when it is said.
+struct Said {
+  std::optional<baxter::JointReading> joints;
+  Joints speed = Joints::Zero();  ///< of the joints, rad/s
+  std::optional<baxter::EndpointReading> endpoint;
+  Eigen::Vector3d tip_speed = Eigen::Vector3d::Zero();  ///< of left_gripper, m/s
+  std::optional<baxter::StateReading> state;
+  std::optional<baxter::CollisionReading> collision;
+};
+
+/// The arm and its firmware.
+///
+/// Every joint follows its set-point with a lag (scene.effects.joint_lag, 0.35 s if absent). The tip presses on
+/// whatever the scene has below it as on a spring (scene.effects.stiffness, 1500 N/m if absent); if the arm gives way,
+/// too, the measured joints show it. The published force is that, with a bias that depends on the pose and with noise
+/// (scene.effects.force_noise, 1.5 N if absent), and it rises along z when something presses the tool upwards.
+class Body {
+ public:
+  static constexpr double kPeriod = 0.01;  ///< s
+  static constexpr double kReflex = 16.0;  ///< N, above which the firmware holds the arm
+  static constexpr double kHeld = 2.0;     ///< s, for so long
+  static constexpr double kLag = 0.35;     ///< s
+
+  enum class Mode { following, timed_out, reflex, stopped, disabled };
+
+  /// `scene` must outlive it. Throws Error if the arm cannot stand where it should start.
+  Body(const Scene& scene, const BodyOptions& options);
+
+  /// A set-point for all joints, radians, as of now; values that are not finite are ignored.
+  void command(const Joints& target);
+  /// For how long a set-point is followed, seconds.
+  void set_command_timeout(double seconds) { timeout_ = seconds; }
+  void enable(bool wanted);
+  void stop() { assembly_.stop(); }
+  void reset() { assembly_.reset(); }
+
+  /// Lets something go wrong from `trigger` on.
+  void inject(const Fault& fault, const Trigger& trigger = {});
+  /// The fault of this kind if it has begun, else null.
+  const Fault* active(FaultKind kind) const;
+  /// Whether any has begun.
+  bool faulty() const;
+
+  /// One period.
+  void step();
+
+  double now() const;
+  Said said() const;
+
+  /// What is so, whatever is said.
+  Mode mode() const { return mode_; }
+  Joints joints() const { return measured_; }                          ///< with what the arm gives way
+  const Joints& set_point() const { return reference_; }               ///< that the joints follow
+  Eigen::Vector3d tip() const { return in_scene(measured_); }          ///< in the scene's frame, metres
+  double set_point_height() const { return in_scene(reference_)(2); }  ///< of the tip, in the scene's frame, metres
+  double pressing() const { return pressing_; }                        ///< N, upwards on the tool
+  long commands() const { return commands_; }                          ///< received so far
+  double latest_command() const { return commanded_; }                 ///< its time; before any, the distant past
+  double command_timeout() const { return timeout_; }
+
+ private:
+  struct Armed {
+    Fault fault;
+    Trigger trigger;
+    int descents;                 ///< through the trigger's height so far
+    std::optional<double> since;  ///< when it began
+  };
+
+  Eigen::Vector3d in_scene(const Joints& joints) const;
+  Joints start_joints(const BodyOptions& options) const;
+  void begin(Armed& armed);
+  void watch_faults(double height_before);
+  Mode choose_mode() const;
+  void hold(bool brakes);
+  void follow();
+  void touch();
+  void feel_reflex();
+  void measure();
+
+  const Scene& scene_;
+  baxter::PlaceOptions place_;
+  baxter::Arm tool_;     ///< its tip is the tool's
+  baxter::Arm gripper_;  ///< its tip is left_gripper
+  std::uint64_t seed_;
+  double begin_;
+  JointLag lag_;
+  double object_give_;  ///< m/N
+  double arm_give_;     ///< m/N
+  double noise_;        ///< N
+  backends::Normal normal_;
+  Eigen::Vector3d bias_;                        ///< N, in the untucked posture
+  Eigen::Matrix<double, 3, 7> bias_by_joints_;  ///< N/rad
+
+  Assembly assembly_{true};
+  std::vector<Armed> faults_;
+  long periods_ = 0;
+  Mode mode_ = Mode::timed_out;
+  double timeout_ = 0.2;
+  double commanded_ = -1e9;
+  long commands_ = 0;
+  Joints target_;                      ///< of the latest command
+  Joints reference_;                   ///< what the joints follow
+  std::vector<backends::Arm> lagged_;  ///< the joints, one each
+  Joints position_;                    ///< of the joints, but for what the arm gives way
+  Joints measured_;
+  Joints speed_ = Joints::Zero();
+  double pressing_ = 0.0;
+  double reflex_above_ = kReflex;  ///< N; rises while the arm is held where it presses
+  double held_until_ = -1e9;
+  baxter::EndpointReading endpoint_;
+  Eigen::Vector3d endpoint_speed_ = Eigen::Vector3d::Zero();
+};
+
+/// As it stands in a trace: "following", "timed_out", ...
+const char* name_of(Body::Mode mode);
+
+}  // namespace palpate::fake_baxter

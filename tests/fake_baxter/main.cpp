@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// fake_baxter CONFIG [KEY=VALUE ...]: the robot of an experiment, on the ROS network that ROS_MASTER_URI names.
+#include "config/compose.hpp"
+#include "experiment/resolved.hpp"
+#include "fake_baxter/node.hpp"
+#include "plugin/host.hpp"
+#include "scene/scene_options.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+namespace palpate::fake_baxter {
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void on_signal(int) { stop = true; }
+
+/// The options of the backend baxter, whether or not its plugin is there.
+class WithBaxter final : public PluginSource {
+ public:
+  explicit WithBaxter(const PluginHost& host) : host_(host) {}
+  void describe(const std::string& kind, const std::string& name, Fields& fields) const override {
+    if (kind != "backend" || name != "baxter") return host_.describe(kind, name, fields);
+    baxter::BaxterOptions options;
+    options.list(fields);
+  }
+
+ private:
+  const PluginHost& host_;
+};
+
+struct Arguments {
+  std::string config;
+  std::vector<std::string> overrides;
+  NodeOptions node;
+  std::string start = "hover";
+  std::string start_at;
+  std::vector<std::string> faults;
+  std::string at = "start";
+  std::string companion;
+};
+
+ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
+  Composer composer(std::filesystem::path(PALPATE_SOURCE_FOLDER) / "configs");
+  std::vector<Override> overrides;
+  for (const std::string& text : a.overrides) overrides.push_back(parse_override(text));
+  return load_experiment(composer, plugins, a.config, overrides);
+}
+
+Eigen::Vector3d parse_place(const std::string& text) {
+  double at[3];
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &at[0], &at[1], &at[2], &used) != 3 ||
+      text.size() != static_cast<std::size_t>(used)) {
+    throw Error("--start-at", "takes x,y,z in metres, for example 0.115,0.115,0.1, not '" + text + "'");
+  }
+  return Eigen::Vector3d(at);
+}
+
+BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter, std::uint64_t seed) {
+  BodyOptions out;
+  out.tool = baxter.tool;
+  out.place = baxter.place;
+  out.hover = baxter.motion.hover;
+  out.seed = seed;
+  const std::vector<std::string> starts{"hover", "low", "untucked", "tucked"};
+  const auto found = std::find(starts.begin(), starts.end(), a.start);
+  if (found == starts.end()) throw Error("--start", "takes hover, low, untucked or tucked, not '" + a.start + "'");
+  out.start = static_cast<Start>(found - starts.begin());
+  if (!a.start_at.empty()) out.start_at = parse_place(a.start_at);
+  if (a.node.rate <= 0.0) {
+    out.begin = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  }
+  return out;
+}
+
+int run(const Arguments& a) {
+  std::vector<Fault> faults;
+  for (const std::string& words : a.faults) faults.push_back(parse_fault(words));
+  const Trigger trigger = parse_trigger(a.at);
+  const PluginHost host({std::filesystem::path(PALPATE_BUILD_FOLDER) / "lib" / "palpate"});
+  const WithBaxter plugins(host);
+  const ResolvedConfig config = read_config(a, plugins);
+  if (config.options.backend.type != "baxter") {
+    throw Error("backend", "is '" + config.options.backend.type + "', not 'baxter'", "add backend=fake_baxter");
+  }
+  baxter::BaxterOptions baxter;
+  fill(*config.options.backend.options, plugins, "backend", [&](Fields& fields) { baxter.list(fields); });
+  const auto seed = static_cast<std::uint64_t>(config.options.seed);
+  const std::unique_ptr<const Scene> scene = build_scene(config.options.scene, seed, host);
+  Body body(*scene, body_options(a, baxter, seed));
+  bool second = false;
+  for (const Fault& fault : faults) {
+    body.inject(fault, starts_with_robot(fault.kind) ? Trigger{} : trigger);
+    second = second || fault.kind == FaultKind::second_state;
+  }
+  Companion gripper("end_effector");
+  std::optional<Companion> impostor;
+  if (second) impostor.emplace("second_state");
+  const baxter::Arm arm({0.0, 0.0, baxter.tool.gripper});
+  serve(body, a.node, gripper, impostor ? &*impostor : nullptr, arm, stop);
+  return 0;
+}
+
+int run_main(int argc, char** argv) {
+  CLI::App app{
+      "fake_baxter: the left arm of a Baxter over the scene of an experiment, on a ROS network. All noise comes from\n"
+      "the config's seed, tool and place from its backend.",
+      "fake_baxter"};
+  Arguments a;
+  CLI::Option* companion = app.add_option("--companion", a.companion, "");
+  companion->group("");
+  app.add_option("CONFIG", a.config, "the experiment, a YAML file");
+  app.add_option("KEY=VALUE", a.overrides, "override a value or a group, as palpate takes them");
+  app.add_option("--rate", a.node.rate, "seconds of the robot's time in a second, told on /clock; 0: real time")
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--patience", a.node.patience, "seconds that /clock waits for a driver that was sending")
+      ->check(CLI::Range(0.0, 60.0));
+  app.add_option("--start", a.start, "hover, low, untucked or tucked");
+  app.add_option("--start-at", a.start_at, "x,y,z of the tip in the scene's frame, metres");
+  app.add_option("--fault", a.faults, "what goes wrong: NAME or NAME=VALUE; may be given again")->take_all();
+  app.add_option("--at", a.at, "when: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
+  app.add_option("--trace", a.node.trace, "a CSV file with a row for every period");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wish) {
+    return app.exit(wish);
+  } catch (const CLI::Error& trouble) {
+    throw Error("", trouble.what(), "see fake_baxter --help");
+  }
+  if (!a.companion.empty()) return serve_companion(a.companion);
+  if (a.config.empty()) throw Error("", "CONFIG is required", "see fake_baxter --help");
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  return run(a);
+}
+
+}  // namespace
+}  // namespace palpate::fake_baxter
+
+int main(int argc, char** argv) {
+  try {
+    return palpate::fake_baxter::run_main(argc, argv);
+  } catch (const palpate::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return error.kind() == palpate::Error::Kind::usage ? 2 : 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fake_baxter: {}\n", error.what());
+    return 1;
+  }
+}

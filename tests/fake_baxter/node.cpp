@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+#include "fake_baxter/node.hpp"
+
+#include "fake_baxter/inverse.hpp"
+#include "fake_baxter/old_state.hpp"
+
+#include <palpate/error.hpp>
+
+#include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndpointState.h>
+#include <baxter_core_msgs/JointCommand.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/Empty.h>
+#include <std_msgs/Float64.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace palpate::fake_baxter {
+namespace {
+
+constexpr double kMasterPatience = 5.0;        // s of real time
+constexpr double kGripperPeriod = 1.0 / 38.0;  // s
+constexpr double kLead = 2.0 * Body::kPeriod;  // s that /clock may be ahead of the driver
+constexpr double kNap = 0.005;                 // s of real time between looks at signals
+constexpr double kBacklog = 0.1;               // s of real time that are caught up
+constexpr const char* kSoftware = "1.2.0.57";
+
+/// As the robot has them in joint_states, all that it has.
+constexpr const char* kAllJoints[] = {"head_nod", "head_pan", "left_e0",  "left_e1",  "left_s0",  "left_s1",
+                                      "left_w0",  "left_w1",  "left_w2",  "right_e0", "right_e1", "right_s0",
+                                      "right_s1", "right_w0", "right_w1", "right_w2", "torso_t0"};
+
+/// The place of each joint of the left arm among them.
+std::size_t place_of(const std::string& joint) {
+  return static_cast<std::size_t>(std::find(std::begin(kAllJoints), std::end(kAllJoints), joint) -
+                                  std::begin(kAllJoints));
+}
+
+ros::Time time_of(double seconds) {
+  ros::Time out;
+  out.fromSec(seconds);
+  return out;
+}
+
+/// A message as it goes over the wire; the force in it stands for the arm's whole wrench.
+baxter_core_msgs::EndpointState message_of(const baxter::EndpointReading& reading, const Eigen::Vector3d& speed) {
+  baxter_core_msgs::EndpointState out;
+  out.header.frame_id = "base";
+  out.header.stamp = time_of(reading.stamp);
+  out.pose.position.x = reading.pose.position.x();
+  out.pose.position.y = reading.pose.position.y();
+  out.pose.position.z = reading.pose.position.z();
+  out.pose.orientation.x = reading.pose.rotation.x();
+  out.pose.orientation.y = reading.pose.rotation.y();
+  out.pose.orientation.z = reading.pose.rotation.z();
+  out.pose.orientation.w = reading.pose.rotation.w();
+  out.twist.linear.x = speed.x();
+  out.twist.linear.y = speed.y();
+  out.twist.linear.z = speed.z();
+  out.wrench.force.x = reading.force.x();
+  out.wrench.force.y = reading.force.y();
+  out.wrench.force.z = reading.force.z();
+  return out;
+}
+
+sensor_msgs::JointState message_of(const baxter::JointReading& reading, const Joints& speed) {
+  sensor_msgs::JointState out;
+  out.header.stamp = time_of(reading.stamp);
+  out.name.assign(std::begin(kAllJoints), std::end(kAllJoints));
+  out.position.assign(out.name.size(), 0.0);
+  out.velocity.assign(out.name.size(), 0.0);
+  out.effort.assign(out.name.size(), 0.0);
+  for (std::size_t i = 0; i < baxter::kJointNames.size(); ++i) {
+    const std::size_t place = place_of(baxter::kJointNames[i]);
+    out.position[place] = reading.position(static_cast<Eigen::Index>(i));
+    out.velocity[place] = speed(static_cast<Eigen::Index>(i));
+  }
+  return out;
+}
+
+baxter_core_msgs::AssemblyState message_of(const baxter::StateReading& state) {
+  baxter_core_msgs::AssemblyState out;
+  out.ready = state.ready;
+  out.enabled = state.enabled;
+  out.stopped = state.stopped;
+  out.error = state.error;
+  out.estop_button = static_cast<std::uint8_t>(state.estop_button);
+  out.estop_source = static_cast<std::uint8_t>(state.estop_source);
+  return out;
+}
+
+void join_network(bool clock) {
+  if (std::getenv("ROS_MASTER_URI") == nullptr) throw Error("ROS_MASTER_URI", "is not set");
+  const ros::M_string no_remappings;
+  ros::init(no_remappings, "realtime_loop", ros::init_options::NoSigintHandler);
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kMasterPatience);
+  while (!ros::master::check()) {
+    if (ros::WallTime::now() > end) {
+      throw Error("", "there is no ROS master at " + ros::master::getURI(), {}, Error::Kind::run);
+    }
+    ros::WallDuration(0.05).sleep();
+  }
+  // Nodes look at it when they start.
+  if (clock) ros::param::set("/use_sim_time", true);
+}
+
+class Node {
+ public:
+  Node(Body& body, const NodeOptions& options, Companion& gripper, Companion* second, const baxter::Arm& arm)
+      : body_(body), options_(options), gripper_(gripper), second_(second), trace_(options.trace) {
+    join_network(options.rate > 0.0);
+    node_.emplace();
+    node_->setCallbackQueue(&queue_);
+    const Fault* software = body.active(FaultKind::software);
+    node_->setParam("/rethink/software_version", software != nullptr ? software->text : std::string(kSoftware));
+    advertise();
+    if (body.active(FaultKind::ik_absent) == nullptr) inverse_.emplace(arm);
+    subscribe();
+    gripper_.tell(body.now());
+    gripper_.wait_until_up();
+  }
+  ~Node() {
+    trace_.flush();
+    inverse_.reset();
+    node_.reset();
+    ros::shutdown();
+  }
+
+  void run(const std::atomic<bool>& stop) {
+    const double rate = options_.rate > 0.0 ? options_.rate : 1.0;
+    const ros::WallDuration period(Body::kPeriod / rate);
+    ros::WallTime due = ros::WallTime::now();
+    publish();
+    std::puts("ready");
+    std::fflush(stdout);
+    while (!stop) {
+      due += period;
+      // With /clock nothing needs to be caught up; in real time, a little.
+      const ros::WallTime oldest = ros::WallTime::now() - ros::WallDuration(options_.rate > 0.0 ? 0.0 : kBacklog);
+      due = std::max(due, oldest);
+      queue_.callAvailable();
+      while (!stop && ros::WallTime::now() < due) {
+        queue_.callAvailable(std::min(ros::WallDuration(kNap), due - ros::WallTime::now()));
+      }
+      wait_for_driver(stop);
+      step();
+    }
+  }
+
+ private:
+  void advertise() {
+    ros::NodeHandle& node = *node_;
+    endpoint_ = node.advertise<baxter_core_msgs::EndpointState>("/robot/limb/left/endpoint_state", 1);
+    joints_ = node.advertise<sensor_msgs::JointState>("/robot/joint_states", 1);
+    collision_ =
+        node.advertise<baxter_core_msgs::CollisionDetectionState>("/robot/limb/left/collision_detection_state", 1);
+    if (body_.active(FaultKind::old_state) != nullptr) {
+      publish_state_ = advertise_old_state(node);
+    } else {
+      const ros::Publisher state = node.advertise<baxter_core_msgs::AssemblyState>("/robot/state", 1);
+      publish_state_ = [state](const baxter::StateReading& reading) { state.publish(message_of(reading)); };
+    }
+    if (options_.rate > 0.0) clock_ = node.advertise<rosgraph_msgs::Clock>("/clock", 1);
+  }
+
+  template <class Message>
+  void listen(const std::string& topic, const std::function<void(const Message&)>& action) {
+    const boost::function<void(const boost::shared_ptr<const Message>&)> callback =
+        [action](const boost::shared_ptr<const Message>& message) { action(*message); };
+    heard_.push_back(node_->subscribe<Message>(topic, 1, callback, {}, ros::TransportHints().tcpNoDelay()));
+  }
+
+  void subscribe() {
+    listen<baxter_core_msgs::JointCommand>("/robot/limb/left/joint_command", [this](const auto& m) { command(m); });
+    listen<std_msgs::Float64>("/robot/limb/left/joint_command_timeout",
+                              [this](const auto& m) { body_.set_command_timeout(m.data); });
+    listen<std_msgs::Bool>("/robot/set_super_enable", [this](const auto& m) { body_.enable(m.data != 0); });
+    listen<std_msgs::Empty>("/robot/set_super_stop", [this](const auto&) { body_.stop(); });
+    listen<std_msgs::Empty>("/robot/set_super_reset", [this](const auto&) { body_.reset(); });
+  }
+
+  /// Set-points by name, of some joints or all; other modes than positions are not modelled.
+  void command(const baxter_core_msgs::JointCommand& message) {
+    heard_at_ = body_.now();
+    gave_up_ = false;
+    const bool positions = message.mode == baxter_core_msgs::JointCommand::POSITION_MODE ||
+                           message.mode == baxter_core_msgs::JointCommand::RAW_POSITION_MODE;
+    if (!positions || message.names.size() != message.command.size()) return;
+    Joints target = body_.set_point();
+    for (std::size_t i = 0; i < message.names.size(); ++i) {
+      for (std::size_t j = 0; j < baxter::kJointNames.size(); ++j) {
+        if (message.names[i] == baxter::kJointNames[j]) target(static_cast<Eigen::Index>(j)) = message.command[i];
+      }
+    }
+    body_.command(target);
+  }
+
+  void wait_for_driver(const std::atomic<bool>& stop) {
+    if (options_.rate <= 0.0) return;
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(options_.patience);
+    while (!stop && !gave_up_ && ahead_of_driver()) {
+      if (ros::WallTime::now() >= end) gave_up_ = true;
+      queue_.callAvailable(ros::WallDuration(kNap));
+    }
+  }
+
+  bool ahead_of_driver() const {
+    const double since = body_.now() - heard_at_;
+    return since < body_.command_timeout() && since > kLead - Body::kPeriod / 2;
+  }
+
+  void step() {
+    body_.step();
+    trace_.write(body_);
+    if (body_.active(FaultKind::die) != nullptr) {
+      trace_.flush();
+      std::_Exit(1);
+    }
+    if (inverse_) {
+      const Fault* slow = body_.active(FaultKind::ik_slow);
+      inverse_->standing(body_.joints());
+      inverse_->spoil(body_.active(FaultKind::ik_invalid) != nullptr, slow != nullptr ? slow->amount : 0.0);
+    }
+    publish();
+  }
+
+  void publish() {
+    const Said said = body_.said();
+    if (said.endpoint) endpoint_.publish(message_of(*said.endpoint, said.tip_speed));
+    if (said.joints) joints_.publish(message_of(*said.joints, said.speed));
+    if (said.state) publish_state_(*said.state);
+    if (said.collision) {
+      baxter_core_msgs::CollisionDetectionState collision;
+      collision.header.stamp = time_of(said.collision->stamp);
+      collision.collision_state = said.collision->collision;
+      collision_.publish(collision);
+    }
+    while (gripper_due_ <= body_.now()) {
+      gripper_.tell(body_.now());
+      gripper_due_ = std::max(gripper_due_, body_.now() - kGripperPeriod) + kGripperPeriod;
+    }
+    if (second_ != nullptr && body_.active(FaultKind::second_state) != nullptr) second_->tell(body_.now());
+    // Last, so that who sees the time most likely has what was said at that time.
+    if (options_.rate > 0.0 && body_.active(FaultKind::freeze_clock) == nullptr) {
+      rosgraph_msgs::Clock clock;
+      clock.clock = time_of(body_.now());
+      clock_.publish(clock);
+    }
+  }
+
+  Body& body_;
+  NodeOptions options_;
+  Companion& gripper_;
+  Companion* second_;
+  Trace trace_;
+  ros::CallbackQueue queue_;
+  std::optional<ros::NodeHandle> node_;
+  std::optional<InverseKinematics> inverse_;
+  ros::Publisher endpoint_, joints_, collision_, clock_;
+  std::function<void(const baxter::StateReading&)> publish_state_;
+  std::vector<ros::Subscriber> heard_;
+  double heard_at_ = -1e9;  ///< when a driver last sent a command, whatever became of it
+  bool gave_up_ = false;    ///< waiting for it
+  double gripper_due_ = 0.0;
+};
+
+}  // namespace
+
+void serve(Body& body, const NodeOptions& options, Companion& gripper, Companion* second, const baxter::Arm& arm,
+           const std::atomic<bool>& stop) {
+  Node(body, options, gripper, second, arm).run(stop);
+}
+
+}  // namespace palpate::fake_baxter

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The robot of the tests on a ROS network: the topics, the service and the parameters of a Baxter with software 1.2.
+#pragma once
+
+#include "fake_baxter/body.hpp"
+#include "fake_baxter/companion.hpp"
+
+#include <atomic>
+#include <fstream>
+#include <string>
+
+namespace palpate::fake_baxter {
+
+struct NodeOptions {
+  /// Seconds of the robot's time in a second of real time, told on /clock; 0: the robot lives in real time, and there
+  /// is no /clock.
+  double rate = 0.0;
+  double patience = 0.1;  ///< s of real time that /clock waits for a driver that was sending commands
+  std::string trace;      ///< a file, "" for none
+};
+
+/// One row a period of what is so, whatever is said: t, x, y, z of the tip in the scene's frame, height of the
+/// set-point, pressing force, mode, commands so far, whether a fault has begun.
+class Trace {
+ public:
+  /// "" writes nothing. Throws Error.
+  explicit Trace(const std::string& file);
+  void write(const Body& body);
+  void flush() { out_.flush(); }
+
+ private:
+  std::ofstream out_;
+  long rows_ = 0;
+};
+
+/// Publishes what `body` says 100 times a second of its time and hands it what comes, until `stop`. Needs a master,
+/// waits for it for five seconds. Prints "ready" once all is advertised. Throws Error.
+///
+/// With /clock, time does not run away from a driver: while commands come, it goes no further than two periods past the
+/// latest one, unless none comes for `patience`. So a driver on a busy machine is not late, and one that is gone is
+/// still noticed.
+/// `second` publishes another /robot/state, where that is among the faults of `body`; may be null.
+void serve(Body& body, const NodeOptions& options, Companion& gripper, Companion* second, const baxter::Arm& arm,
+           const std::atomic<bool>& stop);
+
+}  // namespace palpate::fake_baxter
