@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/ros/connect.hpp"
+
+#include "baxter/ros/link.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <set>
+#include <thread>
+
+#include <unistd.h>
+
+namespace palpate::baxter {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Of the promised five seconds, from the beginning of connect():
+constexpr milliseconds kReach(2500);   ///< until the master has answered
+constexpr milliseconds kListed(3300);  ///< until everything is listed at the master that is needed
+constexpr milliseconds kHeard(4200);   ///< until it has been heard
+constexpr milliseconds kTold(4600);    ///< until it is known why not
+
+constexpr milliseconds kLookUp(1000);       ///< for the name of a robot's host
+constexpr milliseconds kOnePublisher(300);  ///< for what it has to say of itself
+constexpr milliseconds kAskAgain(100);      ///< the master, which serves one question at a time
+constexpr milliseconds kLook(2);
+
+constexpr const char* kVersionParameter = "/rethink/software_version";
+constexpr const char* kOldState = "d7ff2b9fa7d5f688665ce44db4ee2af8";  ///< AssemblyState before 1.2
+
+Error trouble(const std::string& where, const std::string& reason, const std::string& hint) {
+  return Error(where, reason, hint, Error::Kind::run);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  }
+  return text;
+}
+
+std::string address_of(const Place& place) { return place.host + ":" + std::to_string(place.port); }
+
+/// One attempt to join the network.
+class Visit {
+ public:
+  explicit Visit(const Wishes& wishes)
+      : wishes_(wishes), begin_(Steady::now()), network_(find_network(begin_ + kReach)) {}
+
+  std::unique_ptr<Robot> join() {
+    try {
+      expect_all_listed();
+      expect_hosts_found();
+      start_node(network_);
+      std::unique_ptr<Link> link = make_link(network_, wishes_.commands);
+      expect_all_heard(*link);
+      return link;
+    } catch (const Unreached& reason) {
+      throw trouble(network_.where(), std::string("the master does not answer any more: ") + reason.what(),
+                    "start it again");
+    }
+  }
+
+ private:
+  Deadline until(milliseconds since_begin) const { return begin_ + since_begin; }
+
+  /// What is missing at the master, as the Error to throw; none if nothing is.
+  std::optional<Error> not_listed(const Graph& graph) const {
+    std::vector<std::string> missing;
+    for (const Stream& stream : Link::needed()) {
+      if (Graph::of(graph.publishers, stream.topic).empty()) missing.emplace_back(stream.topic);
+    }
+    const char* baxter = "is it the master of a Baxter?";
+    if (missing.size() == Link::needed().size()) {
+      return trouble(network_.where(), "nobody publishes " + joined(missing), baxter);
+    }
+    const auto version = network_.master.parameter(kVersionParameter, until(kTold));
+    if (!version) return trouble(kVersionParameter, "is not set at the master", baxter);
+    if (version->rfind("1.2.", 0) != 0) {
+      throw trouble(kVersionParameter, "the robot's software is " + *version,
+                    "this driver knows 1.2: update the robot");
+    }
+    if (!missing.empty()) {
+      return trouble(network_.where(), "nobody publishes " + joined(missing),
+                     "the robot may be starting, or a node of it has ended");
+    }
+    if (wishes_.inverse_kinematics && Graph::of(graph.services, kSolverService).empty()) {
+      return trouble(kSolverService, "nobody offers this service",
+                     "set inverse_kinematics: own, or start the robot again");
+    }
+    return {};
+  }
+
+  void expect_all_listed() {
+    for (;;) {
+      const Graph graph = network_.master.graph(until(kTold));
+      const std::optional<Error> missing = not_listed(graph);
+      if (!missing) return;
+      if (Steady::now() > until(kListed)) throw *missing;
+      std::this_thread::sleep_for(kAskAgain);
+    }
+  }
+
+  /// roscpp looks names up while it subscribes, for as long as that takes; so it is done here before.
+  void expect_hosts_found() const {
+    const Graph graph = network_.master.graph(until(kTold));
+    std::vector<std::string> topics = {"/clock", kCollisionTopic};
+    for (const Stream& stream : Link::needed()) topics.emplace_back(stream.topic);
+    std::set<std::string> found;
+    for (const std::string& topic : topics) {
+      for (const std::string& node : Graph::of(graph.publishers, topic)) {
+        const auto place = place_of(node);
+        if (!place || !found.insert(place->host).second) continue;
+        try {
+          look_up(place->host, place->port, within(kLookUp, until(kTold)));
+        } catch (const Unreached& reason) {
+          throw unknown_host(topic, node, *place, reason);
+        }
+      }
+    }
+  }
+
+  std::optional<Place> place_of(const std::string& node) const {
+    const auto uri = network_.master.node(node, until(kTold));
+    return uri ? parse_uri(*uri, "http") : std::nullopt;
+  }
+
+  static Error unknown_host(const std::string& topic, const std::string& node, const Place& place,
+                            const Unreached& reason) {
+    return trouble(topic,
+                   "its publisher " + node + " is on the host " + place.host + ", which does not resolve here (" +
+                       reason.what() + ")",
+                   "add it to /etc/hosts, or install libnss-mdns for names in .local");
+  }
+
+  void expect_all_heard(Link& link) const {
+    while (!all_heard(link)) {
+      if (Steady::now() > until(kHeard)) throw why_not_heard(link);
+      std::this_thread::sleep_for(kLook);
+    }
+  }
+
+  bool all_heard(Link& link) const {
+    const auto heard = link.heard();
+    return link.clock_runs() && std::all_of(heard.begin(), heard.end(), [](bool yes) { return yes; }) &&
+           (!wishes_.commands || link.listened_to());
+  }
+
+  Error why_not_heard(Link& link) const {
+    if (!link.clock_runs()) {
+      return trouble("/use_sim_time", "is set, but no time comes on /clock",
+                     "start what simulates the time, or delete the parameter and start all nodes again");
+    }
+    const Graph graph = network_.master.graph(until(kTold));
+    const auto heard = link.heard();
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+      if (!heard[i]) return why_silent(Link::needed()[i], graph, link.read().malformed);
+    }
+    return why_nobody_listens(graph);
+  }
+
+  Error why_silent(const Stream& stream, const Graph& graph, const std::string& malformed) const {
+    const auto& nodes = Graph::of(graph.publishers, stream.topic);
+    std::optional<Error> why;
+    std::vector<std::string> mute;
+    for (const std::string& node : nodes) {
+      const auto place = place_of(node);
+      if (!place) continue;
+      try {
+        const Offer offer = ask_publisher(*place, stream.topic, within(kOnePublisher, until(kTold)));
+        if (offer.md5 != stream.md5) return other_message(stream, node, offer);
+        mute.push_back(node);
+      } catch (const Unreached& reason) {
+        why = unreachable(stream.topic, node, *place, reason);
+      }
+    }
+    if (!malformed.empty()) return trouble(stream.topic, malformed, "is it a Baxter?");
+    if (mute.empty() && why) return *why;
+    return trouble(stream.topic, joined(mute) + " publishes it, but nothing that is needed has come",
+                   "look at it with rostopic echo; the robot may be starting");
+  }
+
+  static Error other_message(const Stream& stream, const std::string& node, const Offer& offer) {
+    const bool old = offer.md5 == kOldState;
+    return trouble(
+        stream.topic,
+        node + " sends " + offer.type + " with md5 sum " + offer.md5 + ", this driver knows " + stream.type + " with " +
+            stream.md5,
+        old ? "which came with the robot's software 1.2: update the robot" : "the robot's software must be 1.2");
+  }
+
+  static Error unreachable(const std::string& topic, const std::string& node, const Place& place,
+                           const Unreached& reason) {
+    switch (reason.why()) {
+      case Unreached::Why::name:
+        return unknown_host(topic, node, place, reason);
+      case Unreached::Why::refused:
+        return trouble(topic, "its publisher " + node + " is not at " + address_of(place) + " (" + reason.what() + ")",
+                       "start it again, or remove what is left of it with rosnode cleanup");
+      default:
+        return trouble(topic,
+                       "its publisher " + node + " at " + address_of(place) + " does not answer: " + reason.what(),
+                       "check that no firewall lies between, or start it again");
+    }
+  }
+
+  Error why_nobody_listens(const Graph& graph) const {
+    const auto& nodes = Graph::of(graph.subscribers, kCommandTopic);
+    if (nodes.empty()) {
+      return trouble(kCommandTopic, "nobody listens to it",
+                     "the robot may be starting; set dry_run: true to do without");
+    }
+    std::string name = network_.own_name;
+    if (name.empty()) {
+      char host[256] = "";
+      gethostname(host, sizeof host - 1);
+      name = host;
+    }
+    return trouble(
+        kCommandTopic,
+        joined(nodes) + " listens to it but has not come to this machine, which it is told to find as " + name,
+        "set ROS_IP to this machine's address on the robot's network");
+  }
+
+  Wishes wishes_;
+  Deadline begin_;
+  Network network_;
+};
+
+}  // namespace
+
+std::unique_ptr<Robot> connect(const Wishes& wishes) { return Visit(wishes).join(); }
+
+}  // namespace palpate::baxter

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/ros/graph.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+
+#include <xmlrpcpp/XmlRpcException.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+namespace palpate::baxter {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+using Why = Unreached::Why;
+
+constexpr const char* kCaller = "/palpate";
+constexpr std::size_t kLongest = 16'000'000;  ///< bytes of an answer; a whole network's description has some 10'000
+
+// ---- XML-RPC: one question, one answer, over a connection of its own ----
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// The body of an answer over HTTP.
+std::string http_body(Wire& wire, Deadline deadline) {
+  std::string text;
+  std::size_t head = std::string::npos;
+  while ((head = text.find("\r\n\r\n")) == std::string::npos) {
+    const std::string some = wire.receive_some(4096, deadline);
+    text += some;
+    if (some.empty() || std::string("HTTP/").compare(0, text.size(), text, 0, 5) != 0 || text.size() > kLongest) {
+      throw Unreached(Why::nonsense, "what answers there is no ROS");
+    }
+  }
+  const std::string header = lower(text.substr(0, head + 2));
+  std::string body = text.substr(head + 4);
+  const std::size_t field = header.find("\r\ncontent-length:");
+  if (field == std::string::npos) throw Unreached(Why::nonsense, "what answers there is no ROS");
+  const std::size_t length = std::strtoul(header.c_str() + field + std::strlen("\r\ncontent-length:"), nullptr, 10);
+  if (length > kLongest) throw Unreached(Why::nonsense, "what answers there is no ROS");
+  if (body.size() < length) body += wire.receive(length - body.size(), deadline);
+  return body;
+}
+
+/// The third part of ROS' answers, whose first is 1 for success; an invalid value if it was not a success.
+XmlRpcValue call(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
+                 Deadline deadline) {
+  std::string body = "<?xml version=\"1.0\"?>\r\n<methodCall><methodName>" + method + "</methodName>\r\n<params>";
+  for (const XmlRpcValue& argument : arguments) body += "<param>" + argument.toXml() + "</param>";
+  body += "</params></methodCall>\r\n";
+  Wire wire(address, deadline);
+  wire.send("POST /RPC2 HTTP/1.1\r\nUser-Agent: palpate\r\nHost: ros\r\nContent-Type: text/xml\r\nContent-length: " +
+                std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" + body,
+            deadline);
+  const std::string answer = http_body(wire, deadline);
+  const std::size_t start = answer.find("<value>");
+  int offset = static_cast<int>(start);
+  XmlRpcValue parts;
+  if (start == std::string::npos || answer.find("<fault>") != std::string::npos || !parts.fromXml(answer, &offset) ||
+      parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
+    throw Unreached(Why::nonsense, "what answers there is no ROS");
+  }
+  if (static_cast<int>(parts[0]) != 1) return {};
+  return parts[2];
+}
+
+/// The same, with what the library throws at answers of another form.
+template <class Read>
+auto understood(const Read& read) {
+  try {
+    return read();
+  } catch (const XmlRpc::XmlRpcException& exception) {
+    throw Unreached(Why::nonsense, "its answer makes no sense: " + exception.getMessage());
+  }
+}
+
+std::optional<std::string> text_of(XmlRpcValue value) {
+  switch (value.getType()) {
+    case XmlRpcValue::TypeString:
+      return static_cast<std::string>(value);
+    case XmlRpcValue::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case XmlRpcValue::TypeInt:
+      return static_cast<int>(value) != 0 ? "true" : "false";
+    default:
+      return {};
+  }
+}
+
+Graph::Nodes nodes_of(XmlRpcValue& list) {
+  Graph::Nodes nodes;
+  for (int i = 0; i < list.size(); ++i) {
+    auto& names = nodes[static_cast<std::string&>(list[i][0])];
+    for (int j = 0; j < list[i][1].size(); ++j) names.push_back(static_cast<std::string&>(list[i][1][j]));
+  }
+  return nodes;
+}
+
+// ---- TCPROS: a header each way, then messages ----
+
+std::string number(std::size_t value) {
+  const auto bits = static_cast<std::uint32_t>(value);
+  std::string bytes;
+  for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((bits >> shift) & 0xffU);
+  return bytes;
+}
+
+std::size_t number_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t bits = 0;
+  for (unsigned i = 0; i < 4; ++i)
+    bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  return bits;
+}
+
+/// A number and as many bytes.
+std::string receive_block(Wire& wire, Deadline deadline) {
+  const std::size_t length = number_at(wire.receive(4, deadline), 0);
+  if (length > kLongest) throw Unreached(Why::nonsense, "what answers there is no ROS");
+  return wire.receive(length, deadline);
+}
+
+using Header = std::map<std::string, std::string>;
+
+Header exchange_headers(Wire& wire, const Header& ours, Deadline deadline) {
+  std::string fields;
+  for (const auto& [key, value] : ours) fields += number(key.size() + 1 + value.size()) + key + "=" + value;
+  wire.send(number(fields.size()) + fields, deadline);
+  const std::string answer = receive_block(wire, deadline);
+  Header theirs;
+  for (std::size_t at = 0; at + 4 <= answer.size();) {
+    const std::size_t length = number_at(answer, at);
+    if (length > answer.size() - at - 4) throw Unreached(Why::nonsense, "what answers there is no ROS");
+    const std::string field = answer.substr(at + 4, length);
+    const std::size_t equals = field.find('=');
+    if (equals != std::string::npos) theirs[field.substr(0, equals)] = field.substr(equals + 1);
+    at += 4 + length;
+  }
+  if (theirs.count("error") != 0) throw Unreached(Why::nonsense, "it refuses: " + theirs["error"]);
+  return theirs;
+}
+
+}  // namespace
+
+std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme) {
+  const std::string prefix = scheme + "://";
+  if (uri.compare(0, prefix.size(), prefix) != 0) return {};
+  std::string rest = uri.substr(prefix.size());
+  if (!rest.empty() && rest.back() == '/') rest.pop_back();
+  const std::size_t colon = rest.find(':');
+  if (colon == std::string::npos || colon == 0) return {};
+  const std::string digits = rest.substr(colon + 1);
+  if (digits.empty() || digits.size() > 5 || digits.find_first_not_of("0123456789") != std::string::npos) return {};
+  const int port = std::stoi(digits);
+  if (port < 1 || port > 65535 || rest.find_first_of("/ \t") != std::string::npos) return {};
+  return Place{rest.substr(0, colon), port};
+}
+
+const std::vector<std::string>& Graph::of(const Nodes& nodes, const std::string& name) {
+  static const std::vector<std::string> nobody;
+  const auto found = nodes.find(name);
+  return found == nodes.end() ? nobody : found->second;
+}
+
+void Master::greet(Deadline deadline) const {
+  understood([&] { return call(address_, "getPid", {XmlRpcValue(kCaller)}, deadline); });
+}
+
+Graph Master::graph(Deadline deadline) const {
+  return understood([&] {
+    XmlRpcValue state = call(address_, "getSystemState", {XmlRpcValue(kCaller)}, deadline);
+    return Graph{nodes_of(state[0]), nodes_of(state[1]), nodes_of(state[2])};
+  });
+}
+
+std::optional<std::string> Master::parameter(const std::string& name, Deadline deadline) const {
+  return understood([&] {
+    return text_of(call(address_, "getParam", {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline));
+  });
+}
+
+std::optional<std::string> Master::node(const std::string& name, Deadline deadline) const {
+  return understood([&] {
+    return text_of(call(address_, "lookupNode", {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline));
+  });
+}
+
+std::optional<std::string> Master::service(const std::string& name, Deadline deadline) const {
+  return understood([&] {
+    return text_of(call(address_, "lookupService", {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline));
+  });
+}
+
+Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadline) {
+  return understood([&] {
+    XmlRpcValue protocols;
+    protocols[0][0] = std::string("TCPROS");
+    XmlRpcValue way = call(look_up(node.host, node.port, deadline), "requestTopic",
+                           {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
+    if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3) {
+      throw Unreached(Why::nonsense, "it says that it does not publish it");
+    }
+    const Address address = look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline);
+    Wire wire(address, deadline);
+    Header answer = exchange_headers(
+        wire, {{"callerid", kCaller}, {"topic", topic}, {"md5sum", "*"}, {"type", "*"}, {"message_definition", ""}},
+        deadline);
+    return Offer{answer["type"], answer["md5sum"]};
+  });
+}
+
+std::string call_service(const Address& address, const std::string& name, const std::string& md5,
+                         const std::string& request, Deadline deadline) {
+  Wire wire(address, deadline);
+  exchange_headers(wire, {{"callerid", kCaller}, {"service", name}, {"md5sum", md5}, {"persistent", "0"}}, deadline);
+  wire.send(number(request.size()) + request, deadline);
+  const bool served = wire.receive(1, deadline)[0] != 0;
+  std::string answer = receive_block(wire, deadline);
+  if (!served) throw Unreached(Why::nonsense, "the service failed" + (answer.empty() ? answer : ": " + answer));
+  return answer;
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The network of ROS as its master and nodes describe it, asked with deadlines: who publishes, whether its host can be
+// found from here, what messages it sends; and one call of a service. In plain sockets, before and beside roscpp.
+#pragma once
+
+#include "baxter/ros/socket.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::baxter {
+
+/// A host and a port, as in http://host:port/ and rosrpc://host:port.
+struct Place {
+  std::string host;
+  int port = 0;
+};
+
+/// None if `uri` is not of the form scheme://host:port, with or without a slash at the end.
+std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme);
+
+/// Who does what on the network: for each name the nodes.
+struct Graph {
+  using Nodes = std::map<std::string, std::vector<std::string>>;
+  Nodes publishers;   ///< of a topic
+  Nodes subscribers;  ///< of a topic
+  Nodes services;     ///< who offers it
+
+  static const std::vector<std::string>& of(const Nodes& nodes, const std::string& name);
+};
+
+/// The master. All members throw Unreached.
+class Master {
+ public:
+  explicit Master(const Address& address) : address_(address) {}
+
+  /// Whether it is one: asks for its process.
+  void greet(Deadline deadline) const;
+  Graph graph(Deadline deadline) const;
+  /// A parameter as text, booleans as "true" and "false"; none if it is not set or is neither.
+  std::optional<std::string> parameter(const std::string& name, Deadline deadline) const;
+  /// Where a node can be asked; none if the master does not know it.
+  std::optional<std::string> node(const std::string& name, Deadline deadline) const;
+  /// Where a service is; none if nobody offers it.
+  std::optional<std::string> service(const std::string& name, Deadline deadline) const;
+
+ private:
+  Address address_;
+};
+
+/// What a publisher says of its messages.
+struct Offer {
+  std::string type;
+  std::string md5;
+};
+
+/// Subscribes at a publisher, whose node is at `node`, to messages of any kind, hears what kind it has, and leaves.
+/// Throws Unreached.
+Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadline);
+
+/// Calls a service once: `request` and the result are messages as ROS serialises them. Throws Unreached; what the
+/// service says when it fails is in its words.
+std::string call_service(const Address& address, const std::string& name, const std::string& md5,
+                         const std::string& request, Deadline deadline);
+
+}  // namespace palpate::baxter

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Between connect(), which knows what to wait for and what to say when it does not come, and roscpp's side.
+#pragma once
+
+#include "baxter/ros/connect.hpp"
+#include "baxter/ros/graph.hpp"
+#include "baxter/ros/node.hpp"
+
+#include <array>
+#include <memory>
+
+namespace palpate::baxter {
+
+/// A topic of the robot.
+struct Stream {
+  const char* topic;
+  const char* type;
+  const char* md5;
+};
+
+constexpr const char* kJointTopic = "/robot/joint_states";
+constexpr const char* kEndpointTopic = "/robot/limb/left/endpoint_state";
+constexpr const char* kStateTopic = "/robot/state";
+constexpr const char* kCollisionTopic = "/robot/limb/left/collision_detection_state";
+constexpr const char* kCommandTopic = "/robot/limb/left/joint_command";
+constexpr const char* kSolverService = "/ExternalTools/left/PositionKinematicsNode/IKService";
+
+/// The robot, perhaps not yet heard in full.
+class Link : public Robot {
+ public:
+  /// The streams without which nothing goes: joints, endpoint, state; and whether each has brought something.
+  static const std::array<Stream, 3>& needed();
+  virtual std::array<bool, 3> heard() = 0;
+  virtual bool clock_runs() = 0;   ///< protocol time is known
+  virtual bool listened_to() = 0;  ///< somebody receives the set-points
+};
+
+/// Subscribes and advertises. The node must have been started.
+std::unique_ptr<Link> make_link(const Network& network, bool commands);
+
+}  // namespace palpate::baxter

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/ros/node.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <xmlrpcpp/XmlRpcUtil.h>
+
+namespace ros::master {
+// Part of the library's interface, but of no header: reads the master's address.
+void init(const M_string& remappings);
+}  // namespace ros::master
+
+namespace palpate::baxter {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLookUp(1000);
+constexpr milliseconds kAnswer(2000);
+constexpr milliseconds kFarewell(500);
+
+Error trouble(const std::string& where, const std::string& reason, const std::string& hint) {
+  return Error(where, reason, hint, Error::Kind::run);
+}
+
+/// Empty if it is not set: roscpp takes the one for the other.
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+bool is_own_address(const std::string& text) {
+  in_addr wanted4{};
+  in6_addr wanted6{};
+  const bool is4 = inet_pton(AF_INET, text.c_str(), &wanted4) == 1;
+  if (!is4 && inet_pton(AF_INET6, text.c_str(), &wanted6) != 1) return false;
+  if (is4 && (ntohl(wanted4.s_addr) >> 24) == 127) return true;  // the whole block is this machine
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return true;  // not known, so not wrong
+  bool found = false;
+  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
+    if (entry->ifa_addr == nullptr) continue;
+    if (is4 && entry->ifa_addr->sa_family == AF_INET) {
+      const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
+      found = found || address->sin_addr.s_addr == wanted4.s_addr;
+    } else if (!is4 && entry->ifa_addr->sa_family == AF_INET6) {
+      const auto* address = reinterpret_cast<const sockaddr_in6*>(entry->ifa_addr);
+      found = found || std::memcmp(&address->sin6_addr, &wanted6, sizeof wanted6) == 0;
+    }
+  }
+  freeifaddrs(list);
+  return found;
+}
+
+/// By what name the others on the network reach this machine. Throws Error.
+std::string own_name(Deadline deadline) {
+  const std::string ip = variable("ROS_IP");
+  const std::string name = variable("ROS_HOSTNAME");
+  if (!ip.empty() && !name.empty()) {
+    throw trouble("ROS_IP=" + ip, "is set beside ROS_HOSTNAME=" + name, "unset one of them");
+  }
+  if (!ip.empty() && !is_own_address(ip)) {
+    throw trouble("ROS_IP=" + ip, "is no address of this machine, so the robot could not reach it",
+                  "set it to the address of the interface on the robot's network (ip -brief address)");
+  }
+  if (!name.empty()) {
+    try {
+      look_up(name, 1, within(kLookUp, deadline));
+    } catch (const Unreached& reason) {
+      throw trouble("ROS_HOSTNAME=" + name, std::string("does not resolve (") + reason.what() + ")",
+                    "set ROS_IP to this machine's address instead");
+    }
+  }
+  return ip.empty() ? name : ip;
+}
+
+/// Told by roscpp's XML-RPC library on stderr, and of no use to anyone whose robot works.
+class Nothing : public XmlRpc::XmlRpcErrorHandler {
+  void error(const char*) override {}
+};
+
+/// roscpp from the first connection to the end of the process.
+class Node {
+ public:
+  explicit Node(const Network& network) : uri_(network.uri), address_(network.address) {
+    // What roscpp has to tell is told by connect(), the watch and the record; what is left is that something comes back
+    // again, in the middle of palpate's own lines.
+    ROSCONSOLE_AUTOINIT;
+    ros::console::set_logger_level("ros", ros::console::levels::Fatal);
+    ros::console::notifyLoggerLevelsChanged();
+    static Nothing nothing;
+    XmlRpc::XmlRpcErrorHandler::setErrorHandler(&nothing);
+    ros::master::setRetryTimeout(ros::WallDuration(1.0));
+    try {
+      ros::init(ros::M_string(), "palpate",
+                ros::init_options::NoSigintHandler | ros::init_options::AnonymousName | ros::init_options::NoRosout);
+      ros::start();
+    } catch (const std::exception& exception) {
+      throw trouble(network.where(), std::string("roscpp does not start: ") + exception.what(),
+                    "check the variables ROS_*");
+    }
+  }
+
+  ~Node() {
+    forget_silent_master();
+    ros::shutdown();
+    ros::waitForShutdown();
+  }
+
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  const std::string& uri() const { return uri_; }
+  const Address& address() const { return address_; }
+
+ private:
+  std::string uri_;
+  Address address_;
+};
+
+/// The process' node, for those who may not start it.
+const Node* running = nullptr;
+
+}  // namespace
+
+Network find_network(Deadline deadline) {
+  const std::string uri = variable("ROS_MASTER_URI");
+  if (uri.empty()) {
+    throw trouble("ROS_MASTER_URI", "is not set",
+                  "set it to the robot's master, http://<the robot's name>.local:11311");
+  }
+  const std::string where = "ROS_MASTER_URI=" + uri;
+  const std::optional<Place> place = parse_uri(uri, "http");
+  if (!place) throw trouble(where, "is not of the form http://host:port", "as in http://011305P0001.local:11311");
+  const std::string name = own_name(deadline);
+  const std::string at = place->host + ":" + std::to_string(place->port);
+  try {
+    const Address address = look_up(place->host, place->port, within(kLookUp, deadline));
+    const Master master(address);
+    master.greet(within(kAnswer, deadline));
+    return {uri, address, master, name};
+  } catch (const Unreached& reason) {
+    switch (reason.why()) {
+      case Unreached::Why::name:
+        throw trouble(where, "the name " + place->host + " does not resolve (" + reason.what() + ")",
+                      "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
+      case Unreached::Why::refused:
+        throw trouble(where, std::string("no master at ") + at + " (" + reason.what() + ")",
+                      "start the robot, or mend the variable");
+      case Unreached::Why::silent:
+        throw trouble(where, at + " does not answer within " + std::to_string(kAnswer.count() / 1000) + " s",
+                      "check that the robot is on and that no firewall lies between");
+      default:
+        throw trouble(where, at + " is no ROS master: " + reason.what(), "mend the variable");
+    }
+  }
+}
+
+void start_node(const Network& network) {
+  static const Node node(network);
+  running = &node;
+  if (node.uri() != network.uri) {
+    throw trouble(network.where(), "this process has been a node of " + node.uri() + " and cannot change",
+                  "start another one");
+  }
+  if (!ros::ok()) {
+    throw trouble(network.where(), "this process' node has been told to shut down", "start it again");
+  }
+}
+
+void forget_silent_master() {
+  if (running == nullptr) return;
+  try {
+    Master(running->address()).greet(Steady::now() + kFarewell);
+  } catch (const Unreached&) {
+    ros::master::init({{"__master", "http://127.0.0.1:9"}});  // discard: nobody listens there
+  }
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// roscpp in this process. It aborts or waits for ever where the environment is wrong or a host is gone, so everything
+// is looked at first.
+#pragma once
+
+#include "baxter/ros/graph.hpp"
+
+#include <string>
+
+namespace palpate::baxter {
+
+/// The network that the environment names, with a master that has answered.
+struct Network {
+  std::string uri;  ///< of the master
+  Address address;
+  Master master;
+  std::string own_name;  ///< what others reach this machine by, if the environment says; else empty
+
+  /// For the place of an Error: "ROS_MASTER_URI=http://...".
+  std::string where() const { return "ROS_MASTER_URI=" + uri; }
+};
+
+/// Checks ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME and asks the master. Throws Error (kind `run`) before `deadline`.
+Network find_network(Deadline deadline);
+
+/// Starts roscpp, once a process; it leaves the network when the process ends. Throws Error if it cannot, or was
+/// started with another master, or has been told to go.
+void start_node(const Network& network);
+
+/// Before subscribers and publishers go: taking leave of a master that does not answer would wait for minutes, so if it
+/// does not do so within half a second roscpp takes it for gone from now on.
+void forget_silent_master();
+
+}  // namespace palpate::baxter

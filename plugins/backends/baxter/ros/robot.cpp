@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/ros/bag.hpp"
+#include "baxter/ros/link.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <mutex>
+#include <thread>
+
+#include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndpointState.h>
+#include <baxter_core_msgs/JointCommand.h>
+#include <baxter_core_msgs/SolvePositionIK.h>
+#include <pthread.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/JointState.h>
+
+namespace palpate::baxter {
+namespace {
+
+namespace msgs = baxter_core_msgs;
+namespace traits = ros::message_traits;
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// How long a simulated clock may stand still.
+constexpr seconds kStandstill(2);
+/// A simulated second may pass in a twentieth of a real one: looked at so often, it is not overslept by 4 ms.
+constexpr microseconds kSimulatedNap(150);
+/// The longest sleep in real time, lest a clock that is set back be slept through.
+constexpr milliseconds kLongestNap(50);
+/// For an answer of the robot's inverse kinematics, with room in the promised second.
+constexpr milliseconds kSolve(900);
+
+constexpr std::size_t kArm = kJointNames.size();
+
+void add_once(std::vector<std::string>& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// The arm's joints among named ones: all of them, or none; a message with only some of them is malformed.
+struct ArmPart {
+  std::size_t count = 0;
+  Joints position = Joints::Zero();
+};
+
+ArmPart arm_part(const sensor_msgs::JointState& message) {
+  ArmPart part;
+  for (std::size_t joint = 0; joint < kArm; ++joint) {
+    const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[joint]);
+    if (found == message.name.end()) continue;
+    ++part.count;
+    const auto at = static_cast<std::size_t>(found - message.name.begin());
+    if (at < message.position.size()) part.position[static_cast<Eigen::Index>(joint)] = message.position[at];
+  }
+  return part;
+}
+
+std::string counts(const sensor_msgs::JointState& message) {
+  return std::to_string(message.name.size()) + " names and " + std::to_string(message.position.size()) + " positions";
+}
+
+/// ROS' bytes of a message, without the length before them.
+template <class Message>
+std::string bytes_of(const Message& message) {
+  std::string bytes(ros::serialization::serializationLength(message), '\0');
+  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                     static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
+class RosRobot final : public Link {
+ public:
+  RosRobot(const Network& network, bool commands) : master_(network.master), bag_(std::make_shared<Bag>()) {
+    set_current_bag(bag_);
+    handle_.setCallbackQueue(&queue_);
+    // Of joint_states two nodes send, and the one's message must not push out the other's.
+    subscribe<sensor_msgs::JointState>(kJointTopic, 10, &RosRobot::on_joints);
+    subscribe<msgs::EndpointState>(kEndpointTopic, 1, &RosRobot::on_endpoint);
+    subscribe<msgs::AssemblyState>(kStateTopic, 1, &RosRobot::on_state);
+    subscribe<msgs::CollisionDetectionState>(kCollisionTopic, 1, &RosRobot::on_collision);
+    if (commands) {
+      command_publisher_ = handle_.advertise<msgs::JointCommand>(kCommandTopic, 1);
+      command_.mode = msgs::JointCommand::POSITION_MODE;
+      command_.names.assign(kJointNames.begin(), kJointNames.end());
+      command_.command.resize(kArm);
+    }
+    // Signals are for the threads that were there before.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    spinner_ = std::thread([this] { spin(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+
+  ~RosRobot() override {
+    forget_silent_master();
+    stop_ = true;
+    queue_.disable();
+    spinner_.join();
+    for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
+    command_publisher_.shutdown();
+  }
+
+  Snapshot read() override {
+    const std::lock_guard lock(mutex_);
+    Snapshot snapshot = latest_;
+    snapshot.now = ros::Time::now().toSec();
+    return snapshot;
+  }
+
+  bool wait_until(double time) override {
+    double last = ros::Time::now().toSec();
+    auto moved = Steady::now();
+    for (double now = last; now < time; now = ros::Time::now().toSec()) {
+      if (now != last) {
+        last = now;
+        moved = Steady::now();
+      } else if (Steady::now() - moved > kStandstill) {
+        return false;
+      }
+      if (ros::Time::isSimTime()) {
+        std::this_thread::sleep_for(kSimulatedNap);
+      } else {
+        std::this_thread::sleep_for(
+            std::min<std::chrono::duration<double>>(std::chrono::duration<double>(time - now), kLongestNap));
+      }
+    }
+    return true;
+  }
+
+  void command(const Joints& target) override {
+    std::copy(target.begin(), target.end(), command_.command.begin());
+    command_publisher_.publish(command_);
+    bag_->write_own(kCommandTopic, command_, false);
+  }
+
+  void record(const std::string& file) override { bag_->open(file); }
+
+  Answer solve(const Pose& gripper, const Joints& seed) override;
+
+  std::array<bool, 3> heard() override {
+    const std::lock_guard lock(mutex_);
+    return {latest_.joints.has_value(), latest_.endpoint.has_value(), latest_.state.has_value()};
+  }
+
+  bool clock_runs() override { return !ros::Time::now().isZero(); }
+  bool listened_to() override { return command_publisher_.getNumSubscribers() > 0; }
+
+ private:
+  template <class Message>
+  using Event = ros::MessageEvent<const Message>;
+
+  template <class Message>
+  void subscribe(const char* topic, std::uint32_t queue, void (RosRobot::*take)(const Event<Message>&, Snapshot&)) {
+    const boost::function<void(const Event<Message>&)> heard = [this, topic, take](const Event<Message>& event) {
+      bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
+      const std::lock_guard lock(mutex_);
+      (this->*take)(event, latest_);
+    };
+    subscribers_.push_back(handle_.subscribe<const Event<Message>&>(topic, queue, heard, ros::VoidConstPtr(),
+                                                                    ros::TransportHints().tcpNoDelay()));
+  }
+
+  void on_joints(const Event<sensor_msgs::JointState>& event, Snapshot& latest) {
+    const sensor_msgs::JointState& message = *event.getConstMessage();
+    const ArmPart part = arm_part(message);
+    if (part.count == 0) return;  // the gripper's, or the other arm's
+    if (part.count != kArm || message.position.size() != message.name.size()) {
+      malformed(latest, std::string(kJointTopic) + " has " + std::to_string(part.count) +
+                            " of the left arm's seven joints, " + counts(message));
+      return;
+    }
+    latest.joints = JointReading{{event.getReceiptTime().toSec(), message.header.stamp.toSec()}, part.position};
+    add_once(latest.joint_senders, event.getPublisherName());
+  }
+
+  void on_endpoint(const Event<msgs::EndpointState>& event, Snapshot& latest) {
+    const msgs::EndpointState& message = *event.getConstMessage();
+    const auto& position = message.pose.position;
+    const auto& turn = message.pose.orientation;
+    const auto& force = message.wrench.force;
+    latest.endpoint = EndpointReading{{event.getReceiptTime().toSec(), message.header.stamp.toSec()},
+                                      {{position.x, position.y, position.z}, {turn.w, turn.x, turn.y, turn.z}},
+                                      {force.x, force.y, force.z}};
+  }
+
+  void on_state(const Event<msgs::AssemblyState>& event, Snapshot& latest) {
+    const msgs::AssemblyState& message = *event.getConstMessage();
+    add_once(latest.state_senders, event.getPublisherName());
+    if (message.estop_button > msgs::AssemblyState::ESTOP_BUTTON_RELEASED ||
+        message.estop_source > msgs::AssemblyState::ESTOP_SOURCE_BRAIN) {
+      malformed(latest, std::string(kStateTopic) + " has estop_button " + std::to_string(message.estop_button) +
+                            " and estop_source " + std::to_string(message.estop_source));
+      return;
+    }
+    StateReading state;
+    state.received = event.getReceiptTime().toSec();
+    state.ready = message.ready != 0;
+    state.enabled = message.enabled != 0;
+    state.stopped = message.stopped != 0;
+    state.error = message.error != 0;
+    state.estop_button = static_cast<StateReading::Button>(message.estop_button);
+    state.estop_source = static_cast<StateReading::Source>(message.estop_source);
+    latest.state = state;
+  }
+
+  void on_collision(const Event<msgs::CollisionDetectionState>& event, Snapshot& latest) {
+    const msgs::CollisionDetectionState& message = *event.getConstMessage();
+    latest.collision =
+        CollisionReading{{event.getReceiptTime().toSec(), message.header.stamp.toSec()}, message.collision_state != 0};
+  }
+
+  static void malformed(Snapshot& latest, const std::string& words) {
+    if (latest.malformed.empty()) latest.malformed = words;
+  }
+
+  void spin() {
+    // Woken by every message and by the end; the time-out only matters if that wake-up falls between two waits.
+    while (!stop_) queue_.callAvailable(ros::WallDuration(0.05));
+  }
+
+  std::string asked_solver(const std::string& request, Deadline deadline);
+
+  Master master_;
+  std::shared_ptr<Bag> bag_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle handle_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::Publisher command_publisher_;
+  msgs::JointCommand command_;
+  std::optional<Address> solver_;  ///< where IKService was found
+  std::mutex mutex_;
+  Snapshot latest_;  ///< guarded by mutex_; its `now` is not used
+  std::atomic<bool> stop_{false};
+  std::thread spinner_;
+};
+
+std::string RosRobot::asked_solver(const std::string& request, Deadline deadline) {
+  const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
+  if (solver_) {
+    try {
+      return call_service(*solver_, kSolverService, md5, request, deadline);
+    } catch (const Unreached& reason) {
+      solver_.reset();
+      if (reason.why() != Unreached::Why::refused) throw;
+      // It may have been started again, elsewhere.
+    }
+  }
+  const auto uri = master_.service(kSolverService, deadline);
+  if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
+  const auto place = parse_uri(*uri, "rosrpc");
+  if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
+  solver_ = look_up(place->host, place->port, deadline);
+  return call_service(*solver_, kSolverService, md5, request, deadline);
+}
+
+Robot::Answer RosRobot::solve(const Pose& gripper, const Joints& seed) {
+  msgs::SolvePositionIKRequest request;
+  request.seed_mode = msgs::SolvePositionIKRequest::SEED_USER;
+  request.pose_stamp.resize(1);
+  geometry_msgs::PoseStamped& pose = request.pose_stamp[0];
+  pose.header.stamp = ros::Time::now();
+  pose.header.frame_id = "base";
+  pose.pose.position.x = gripper.position.x();
+  pose.pose.position.y = gripper.position.y();
+  pose.pose.position.z = gripper.position.z();
+  pose.pose.orientation.x = gripper.rotation.x();
+  pose.pose.orientation.y = gripper.rotation.y();
+  pose.pose.orientation.z = gripper.rotation.z();
+  pose.pose.orientation.w = gripper.rotation.w();
+  request.seed_angles.resize(1);
+  request.seed_angles[0].header = pose.header;
+  request.seed_angles[0].name.assign(kJointNames.begin(), kJointNames.end());
+  request.seed_angles[0].position.assign(seed.begin(), seed.end());
+
+  const auto trouble = [](const std::string& words) { return Answer{{}, std::string(kSolverService) + ": " + words}; };
+  msgs::SolvePositionIKResponse response;
+  try {
+    std::string bytes = asked_solver(bytes_of(request), Steady::now() + kSolve);
+    ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                       static_cast<std::uint32_t>(bytes.size()));
+    ros::serialization::deserialize(stream, response);
+  } catch (const Unreached& reason) {
+    return trouble(reason.what());
+  } catch (const ros::Exception& exception) {
+    return trouble(std::string("its answer cannot be read: ") + exception.what());
+  }
+  if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
+    return trouble("its answer has not one part for one pose");
+  }
+  const sensor_msgs::JointState& joints = response.joints[0];
+  if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
+  const ArmPart part = arm_part(joints);
+  if (part.count != kArm || joints.position.size() != joints.name.size()) {
+    return trouble("its answer has " + std::to_string(part.count) + " of the seven joints, " + counts(joints));
+  }
+  return {part.position, {}};
+}
+
+}  // namespace
+
+const std::array<Stream, 3>& Link::needed() {
+  using JointState = sensor_msgs::JointState;
+  using EndpointState = msgs::EndpointState;
+  using AssemblyState = msgs::AssemblyState;
+  static const std::array<Stream, 3> streams = {
+      Stream{kJointTopic, traits::datatype<JointState>(), traits::md5sum<JointState>()},
+      Stream{kEndpointTopic, traits::datatype<EndpointState>(), traits::md5sum<EndpointState>()},
+      Stream{kStateTopic, traits::datatype<AssemblyState>(), traits::md5sum<AssemblyState>()}};
+  return streams;
+}
+
+std::unique_ptr<Link> make_link(const Network& network, bool commands) {
+  return std::make_unique<RosRobot>(network, commands);
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/ros/bag.hpp"
+#include "baxter/ros/connect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <ros/node_handle.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
+#include <visualization_msgs/MarkerArray.h>
+
+namespace palpate::baxter {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double kTapSize = 0.008;     ///< of what marks a tap, metres
+constexpr double kLineWidth = 0.002;   ///< of the area's border, metres
+constexpr double kArrowLength = 0.08;  ///< above the desk, where the arm goes next, metres
+constexpr double kArrowWidth = 0.006;
+constexpr const char* kFrame = "base";
+
+std_msgs::ColorRGBA colour(float red, float green, float blue) {
+  std_msgs::ColorRGBA result;
+  result.r = red;
+  result.g = green;
+  result.b = blue;
+  result.a = 1.0F;
+  return result;
+}
+
+class RosView final : public View {
+ public:
+  RosView(const PlaceOptions& place, const Area& area, double desk)
+      : place_(place), turn_(place.rotation), area_(area), desk_(desk), bag_(current_bag()) {
+    surface_publisher_ = handle_.advertise<sensor_msgs::PointCloud2>(kSurface, 1, true);
+    taps_publisher_ = handle_.advertise<MarkerArray>(kTaps, 1, true);
+    show_taps();
+  }
+
+  void target(const Target& place) override {
+    next_ = place;
+    show_taps();
+  }
+
+  void tapped(const Target& place, double height, bool on_surface) override {
+    (on_surface ? on_ : off_).push_back(in_base(place.x, place.y, height));
+    next_.reset();
+    show_taps();
+  }
+
+  void surface(const Points& places, const VectorView& height, const VectorView& deviation) override {
+    const auto count = static_cast<std::size_t>(std::min({places.rows(), height.size(), deviation.size()}));
+    sensor_msgs::PointCloud2 cloud;
+    // No stamp: it is as good in a minute as it is now, and RViz drops what is older than its transforms.
+    cloud.header.frame_id = kFrame;
+    cloud.height = 1;
+    cloud.is_dense = height.allFinite() && deviation.allFinite();
+    sensor_msgs::PointCloud2Modifier modifier(cloud);
+    const auto real = sensor_msgs::PointField::FLOAT32;
+    modifier.setPointCloud2Fields(4, "x", 1, real, "y", 1, real, "z", 1, real, "intensity", 1, real);
+    modifier.resize(count);
+    sensor_msgs::PointCloud2Iterator<float> value(cloud, "x");
+    for (std::size_t i = 0; i < count; ++i, ++value) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const geometry_msgs::Point point = in_base(places(row, 0), places(row, 1), height[row]);
+      value[0] = static_cast<float>(point.x);
+      value[1] = static_cast<float>(point.y);
+      value[2] = static_cast<float>(point.z);
+      value[3] = static_cast<float>(deviation[row]);
+    }
+    publish(surface_publisher_, cloud);
+  }
+
+ private:
+  static constexpr const char* kSurface = "palpate/surface";
+  static constexpr const char* kTaps = "palpate/taps";
+
+  geometry_msgs::Point in_base(double x, double y, double z) const {
+    geometry_msgs::Point point;
+    point.x = place_.corner[0] + std::cos(turn_) * x - std::sin(turn_) * y;
+    point.y = place_.corner[1] + std::sin(turn_) * x + std::cos(turn_) * y;
+    point.z = place_.height + z;
+    return point;
+  }
+
+  /// One marker a namespace, always with the same id, so that each message replaces the one before.
+  static Marker marker(const char* name, int type, double width, const std_msgs::ColorRGBA& color,
+                       std::vector<geometry_msgs::Point> points) {
+    Marker result;
+    result.header.frame_id = kFrame;
+    result.ns = name;
+    result.id = 0;
+    result.type = type;
+    result.action = points.empty() ? Marker::DELETE : Marker::ADD;
+    result.pose.orientation.w = 1.0;
+    result.scale.x = result.scale.y = result.scale.z = width;
+    result.color = color;
+    result.points = std::move(points);
+    return result;
+  }
+
+  void show_taps() {
+    MarkerArray array;
+    array.markers.push_back(
+        marker("area", Marker::LINE_STRIP, kLineWidth, colour(0.8F, 0.8F, 0.8F),
+               {in_base(0, 0, desk_), in_base(area_.width, 0, desk_), in_base(area_.width, area_.depth, desk_),
+                in_base(0, area_.depth, desk_), in_base(0, 0, desk_)}));
+    array.markers.push_back(marker("on object", Marker::SPHERE_LIST, kTapSize, colour(0.1F, 0.7F, 0.2F), on_));
+    array.markers.push_back(marker("off object", Marker::CUBE_LIST, kTapSize, colour(0.3F, 0.4F, 0.8F), off_));
+    std::vector<geometry_msgs::Point> arrow;
+    if (next_) arrow = {in_base(next_->x, next_->y, desk_ + kArrowLength), in_base(next_->x, next_->y, desk_)};
+    Marker next = marker("next", Marker::ARROW, kArrowWidth, colour(0.9F, 0.5F, 0.1F), arrow);
+    next.scale.y = 2 * kArrowWidth;  // of the head
+    next.scale.z = 4 * kArrowWidth;  // its length
+    array.markers.push_back(next);
+    publish(taps_publisher_, array);
+  }
+
+  template <class Message>
+  void publish(ros::Publisher& publisher, const Message& message) {
+    publisher.publish(message);
+    if (bag_) bag_->write_own(publisher.getTopic(), message, true);
+  }
+
+  PlaceOptions place_;
+  double turn_;
+  Area area_;
+  double desk_;
+  std::shared_ptr<Bag> bag_;
+  ros::NodeHandle handle_;
+  ros::Publisher surface_publisher_;
+  ros::Publisher taps_publisher_;
+  std::vector<geometry_msgs::Point> on_, off_;
+  std::optional<Target> next_;
+};
+
+}  // namespace
+
+std::unique_ptr<View> make_view(const PlaceOptions& place, const Area& area, double desk) {
+  return std::make_unique<RosView>(place, area, desk);
+}
+
+}  // namespace palpate::baxter
