@@ -10,22 +10,23 @@ packages() {
   done
 }
 
-# missing PACKAGE...: those of them that are not installed.
-missing() {
-  [ $# -gt 0 ] || return 0
-  if ! command -v dpkg-query >/dev/null 2>&1; then
-    printf '%s\n' "$@"
-    return 0
-  fi
-  installed=$(dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' "$@" 2>/dev/null | sed -n 's/^ii *//p')
-  for package in "$@"; do
-    printf '%s\n' "$installed" | grep -qxF "$package" || printf '%s\n' "$package"
-  done
+# look: asks which packages of packages.txt, of any heading, are installed, and keeps their names in `installed`. Where
+# there is no dpkg, none is known to be.
+look() {
+  installed=
+  command -v dpkg-query >/dev/null 2>&1 || return 0
+  installed=$(dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' \
+    $(sed '/^\[/d;s/[[:space:]]*#.*//' "$root/packages.txt") 2>/dev/null | sed -n 's/^[a-z]i *//p')
 }
 
-# install HEADING...: installs what is missing, if it may. Sets `installed_some` when it did.
+# missing PACKAGE...: those of them that are not installed.
+missing() {
+  [ $# -eq 0 ] || printf '%s\n' "$@" | grep -vxF -e "$installed" || true
+}
+
+# install HEADING...: installs what is missing, if it may.
 install() {
-  installed_some=no
+  look
   list=$(missing $(packages "$@") | tr '\n' ' ')
   if [ -z "$list" ]; then
     [ "$no_install" = no ] || say "no package is missing"
@@ -45,30 +46,32 @@ install() {
     return 0
   fi
   say "installing $list"
-  if { $as_root apt-get update -q && DEBIAN_FRONTEND=noninteractive $as_root apt-get install -q -y --no-install-recommends $list; } \
+  if ! { $as_root apt-get update -q && DEBIAN_FRONTEND=noninteractive $as_root apt-get install -q -y --no-install-recommends $list; } \
       >"$root/build/install.log" 2>&1; then
-    installed_some=yes
-  else
     tail -n 5 "$root/build/install.log" >&2
     say "installing failed, the whole story is in build/install.log; going on with what is there"
   fi
+  look
 }
 
-# build PRESET TARGET...: configures if that was never done or packages came, then builds what changed.
+# build PRESET TARGET...: configures if that was never done or other packages are installed than were then, whoever
+# installed them, and builds what changed.
 build() {
   preset=$1
   shift
   log=$root/build/$preset.log
-  if [ "$installed_some" = yes ] || [ ! -f "$root/build/$preset/build.ninja" ]; then
+  known=$root/build/$preset/packages # that were installed when it was configured
+  if [ ! -f "$root/build/$preset/build.ninja" ] || [ ! -f "$known" ] || [ "$(cat "$known")" != "$installed" ]; then
     if ! cmake --preset "$preset" -S "$root" >"$log" 2>&1; then
-      grep -A 4 -E 'CMake Error|Could NOT' "$log" >&2
+      grep -A 4 -E 'CMake Error|Could NOT' "$log" >&2 || true
       say "configuring failed, the whole story is in build/$preset.log"
       exit 1
     fi
+    printf '%s\n' "$installed" >"$known"
     say "building preset $preset, about a minute or two"
   fi
   if ! ninja -C "$root/build/$preset" --quiet "$@" >"$log" 2>&1; then
-    grep -m 10 -E 'error|FAILED' "$log" >&2
+    grep -m 10 -E 'error|FAILED' "$log" >&2 || true
     say "building failed, the whole story is in build/$preset.log"
     exit 1
   fi
