@@ -2,8 +2,10 @@
 // The backend for Baxter as a build without ROS has it.
 #include "config/compose.hpp"
 #include "config/describe.hpp"
+#include "experiment/experiment.hpp"
 #include "experiment/resolved.hpp"
 #include "support/plugins.hpp"
+#include "support/runs.hpp"
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>
@@ -57,28 +59,32 @@ std::string remedy() {
          "' installs it, then build again, as ./palpate does by itself";
 }
 
-TEST_F(WithoutRos, AConfigIsToldWhatToInstallAndNotFirstWhatItLacks) {
+TEST_F(WithoutRos, ARunIsToldWhatToInstallAndNotFirstWhatItsConfigLacks) {
   ASSERT_NE(packages("ros"), "");
   const fs::path configs = test::source_folder() / "configs";
-  Composer composer(configs);
   const PluginHost plugins = host();
-  try {
-    load_experiment(composer, plugins, configs / "paper" / "object_i.yaml", {parse_override("backend=baxter")});
-    FAIL() << "a robot that this build cannot reach was accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.what(), "command line: backend.type: " + remedy());
-    EXPECT_EQ(error.kind(), Error::Kind::usage);
+  for (const char* backend : {"backend=baxter", "backend=fake_baxter"}) {
+    Composer composer(configs);
+    const ResolvedConfig config =
+        load_experiment(composer, plugins, configs / "paper" / "object_i.yaml", {parse_override(backend)});
+    try {
+      Experiment(config.options, plugins, nullptr);
+      FAIL() << "a robot that this build cannot reach was accepted";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), ::testing::EndsWith("backend/baxter: " + remedy()));
+      EXPECT_EQ(error.kind(), Error::Kind::usage);
+    }
   }
 }
 
-TEST_F(WithoutRos, ACompleteChoiceIsRefusedInTheSameWords) {
-  try {
-    test::choose(host(), "backend", "baxter",
-                 "{tool: {tip: [0 cm, 0 cm, 15 cm]}, place: {corner: [50 cm, 0 cm], height: 0 cm}}");
-    FAIL() << "a robot that this build cannot reach was accepted";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::EndsWith("plugin.type: " + remedy()));
-  }
+TEST_F(WithoutRos, WhatARobotRecordedElsewhereHasTheSameConfigAndId) {
+  // So it can be replayed, compared and drawn at a desk without ROS.
+  const fs::path configs = test::source_folder() / "configs";
+  const PluginHost plugins = host();
+  Composer composer(configs);
+  const ResolvedConfig here =
+      load_experiment(composer, plugins, configs / "paper" / "object_i.yaml", {parse_override("backend=fake_baxter")});
+  EXPECT_EQ(here.id, test::shipped_config("paper/object_i.yaml", {"backend=fake_baxter"}).id);
 }
 
 TEST_F(WithoutRos, AllOptionsAreListedAllTheSame) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The backend of a build without ROS: it lists its options like the real one, and no config can use it.
+// The backend of a build without ROS: its options are those of the real one, so that what a robot recorded elsewhere
+// can be read and replayed here; only tapping needs what this build has not.
+#include "baxter/available.hpp"
 #include "baxter/options.hpp"
-#include "baxter/unavailable.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
@@ -16,7 +17,7 @@ constexpr const char* kAbsent =
 
 }  // namespace
 
-void require_available(Fields& fields) { fields.require(false, "type", kAbsent); }
+bool available() { return false; }
 
 class Absent final : public Backend {
  public:
