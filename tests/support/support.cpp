@@ -3,12 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -41,9 +45,12 @@ Child::Child(const std::vector<std::string>& words, const fs::path& folder,
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
+  const pid_t parent = ::getpid();
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("cannot fork");
   if (pid_ > 0) return;
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);  // the test was gone before the line above
   // In the child only calls that are safe after a fork, up to setenv, which no other thread can disturb here.
   ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
   ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
@@ -61,12 +68,29 @@ Child::~Child() {
 
 void Child::signal(int number) const { ::kill(pid_, number); }
 
-Ended Child::wait() {
+bool Child::running() const {
+  siginfo_t info{};
+  return pid_ > 0 && ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == 0;
+}
+
+std::string Child::out() const { return text_of(scratch_.path() / "out"); }
+std::string Child::err() const { return text_of(scratch_.path() / "err"); }
+
+Ended Child::wait(double limit) {
+  if (limit < 1e8) {
+    // Looks again and again: a process cannot be waited for with a limit otherwise, but by threads or signals.
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(limit);
+    while (running() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (running()) signal(SIGKILL);
+  }
   int status = 0;
   ::waitpid(pid_, &status, 0);
   pid_ = -1;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, text_of(scratch_.path() / "out"), text_of(scratch_.path() / "err")};
+  return {code, out(), err()};
 }
 
 Ended run_program(const std::vector<std::string>& words, const fs::path& folder,

@@ -37,7 +37,8 @@ struct Ended {
 /// A program under way, started without a shell.
 class Child {
  public:
-  /// `words[0]` is the program. `folder` becomes its working directory; `environment` adds NAME=VALUE.
+  /// `words[0]` is the program. `folder` becomes its working directory; `environment` adds NAME=VALUE, and NAME alone
+  /// takes it away. It is killed when the thread that made it ends, however that ends.
   Child(const std::vector<std::string>& words, const std::filesystem::path& folder,
         const std::vector<std::string>& environment = {});
   ~Child();
@@ -45,8 +46,14 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   void signal(int number) const;
-  /// Waits for its end and collects what it printed.
-  Ended wait();
+  /// Waits for its end and collects what it printed. What has not ended after `limit` seconds is killed.
+  Ended wait(double limit = 1e9);
+
+  int pid() const { return pid_; }
+  bool running() const;
+  /// What it printed so far.
+  std::string out() const;
+  std::string err() const;
 
  private:
   TemporaryFolder scratch_;

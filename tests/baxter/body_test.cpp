@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+// The robot of the tests is itself tested: against closed forms, and against what is known of a real Baxter.
+#include "body_bench.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate::test {
+namespace {
+
+using fake_baxter::Body;
+using fake_baxter::parse_fault;
+using fake_baxter::parse_trigger;
+using fake_baxter::Said;
+using fake_baxter::Start;
+using ::testing::HasSubstr;
+using State = baxter::StateReading;
+
+constexpr const char* kBare = "[]";
+constexpr const char* kQuiet = "{stiffness: {object: 1500 N/m}, force_noise: {deviation: 0 N}}";
+
+void inject(Body& body, const std::string& fault, const std::string& at = "start") {
+  body.inject(parse_fault(fault), parse_trigger(at));
+}
+
+TEST(FakeBody, StandsStraightDownAboveTheMiddle) {
+  const BodyBench bench;
+  EXPECT_LT((bench.body.tip() - Eigen::Vector3d(0.115, 0.115, 0.165)).norm(), 2e-6);
+  const Eigen::Vector3d along = bench.tool.tip(bench.body.joints()).rotation * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((along + Eigen::Vector3d::UnitZ()).norm(), 1e-4);
+  EXPECT_LT(baxter::beyond_limits(bench.body.joints(), 0.1), 0);
+}
+
+TEST(FakeBody, StandsWhereItIsTold) {
+  fake_baxter::BodyOptions options = fake_options();
+  options.start_at = Eigen::Vector3d(0.02, 0.2, 0.05);
+  EXPECT_LT((BodyBench(kBare, "{}", options).body.tip() - *options.start_at).norm(), 2e-6);
+  options.start_at = Eigen::Vector3d(2.0, 0.2, 0.05);
+  EXPECT_THROW(BodyBench(kBare, "{}", options), Error);
+}
+
+TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
+  BodyBench bench(kBare, "{}");
+  const double speed = 0.05;
+  for (int i = 0; i < 300; ++i) {
+    bench.target.array() += speed * Body::kPeriod;
+    bench.hold(Body::kPeriod);
+  }
+  // The set-point is a staircase: half a step of it is the arm's by chance.
+  const baxter::Joints lag = bench.target - bench.body.joints();
+  for (double one : lag) EXPECT_NEAR(one, speed * Body::kLag, speed * Body::kPeriod);
+  const Said said = bench.body.said();
+  for (double one : said.speed) EXPECT_NEAR(one, speed, 1e-4);
+}
+
+TEST(FakeBody, KeepsToTheSpeedOfItsJointsHoweverFarTheSetPointJumps) {
+  BodyBench bench(kBare, "{}");
+  bench.target(1) -= 1.5;
+  for (int i = 0; i < 100; ++i) {
+    bench.hold(Body::kPeriod);
+    EXPECT_LT(bench.body.said().speed.cwiseAbs().maxCoeff(), 1.5);
+  }
+  EXPECT_LT(bench.body.said().speed(1), -1.0);
+}
+
+TEST(FakeBody, HoldsWhenCommandsStopFor200Milliseconds) {
+  BodyBench bench(kBare, "{}");
+  bench.lead({0.115, 0.115, 0.10}, 0.03);
+  bench.wait(0.19);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+  bench.wait(0.01);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::timed_out);
+  bench.wait(3.0);
+  const baxter::Joints held = bench.body.joints();
+  bench.wait(3.0);
+  EXPECT_LT((bench.body.joints() - held).cwiseAbs().maxCoeff(), 1e-4);
+  bench.body.set_command_timeout(1.0);
+  bench.body.command(bench.target);
+  bench.wait(0.9);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+}
+
+TEST(FakeBody, PressesByItsStiffnessTimesTheDepth) {
+  BodyBench bench(kBare, kQuiet);
+  bench.lead({0.115, 0.115, 0.01}, 0.05);
+  bench.hold(2.0);
+  const double zero = bench.body.said().endpoint->force.z();
+  EXPECT_EQ(bench.body.pressing(), 0.0);
+  bench.lead({0.115, 0.115, -0.005}, 0.01);
+  bench.hold(3.0);
+  EXPECT_NEAR(bench.body.tip().z(), -0.005, 1e-5);
+  EXPECT_NEAR(bench.body.pressing(), 1500 * 0.005, 0.02);
+  // The bias follows the pose, which is another one now.
+  EXPECT_NEAR(bench.body.said().endpoint->force.z() - zero, 7.5, 1.0) << "upwards is positive";
+}
+
+TEST(FakeBody, GivesWayWithAnArmThatDoesAndTheJointsShowIt) {
+  BodyBench bench(kBare, "{stiffness: {object: 1500 N/m, arm: 1000 N/m}, force_noise: {deviation: 0 N}}");
+  bench.lead({0.115, 0.115, -0.01}, 0.02);
+  bench.hold(3.0);
+  const double force = 0.01 / (1.0 / 1500 + 1.0 / 1000);
+  EXPECT_NEAR(bench.body.pressing(), force, 0.05);
+  EXPECT_NEAR(bench.body.tip().z(), -force / 1500, 1e-4) << "as deep as the object gives way";
+  EXPECT_NEAR(bench.body.set_point_height(), -0.01, 1e-5);
+}
+
+TEST(FakeBody, TouchesTheSceneWhereItsTipIs) {
+  BodyBench bench(kObjectI, kQuiet);
+  const double top = bench.scene->height(0.1, 0.08);
+  ASSERT_GT(top, 0.06);
+  bench.lead({0.1, 0.08, 0.15}, 0.1);
+  bench.hold(2.0);
+  bench.lead({0.1, 0.08, 0.0}, 0.02, [&] { return bench.body.pressing() > 3.0; });
+  EXPECT_NEAR(bench.body.tip().z(), top - 3.0 / 1500, 3e-4);
+}
+
+TEST(FakeBody, TheFirmwareHoldsItForTwoSecondsAbove16NewtonsAndThenItGoesOn) {
+  BodyBench bench(kBare, kQuiet);
+  const auto reflex = [&] { return bench.body.mode() == Body::Mode::reflex; };
+  bench.lead({0.115, 0.115, -0.03}, 0.05, reflex);
+  ASSERT_TRUE(reflex());
+  const double begin = bench.body.now();
+  EXPECT_GT(bench.body.pressing(), Body::kReflex);
+  EXPECT_LT(bench.body.pressing(), Body::kReflex + 1.5);
+  bench.target =
+      bench.tool.solve({bench.in_base({0.115, 0.115, 0.05}), bench.tool.tip(bench.target).rotation}, bench.target)
+          .value();
+  while (reflex()) {
+    EXPECT_TRUE(bench.body.said().collision->collision);
+    EXPECT_LT(bench.body.tip().z(), 0.0) << "commands are ignored";
+    bench.hold(Body::kPeriod);
+  }
+  EXPECT_NEAR(bench.body.now() - begin, Body::kHeld, 0.011);
+  EXPECT_FALSE(bench.body.said().collision->collision);
+  bench.hold(3.0);
+  EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
+}
+
+TEST(FakeBody, HasNoiseAndABiasThatDependsOnThePose) {
+  BodyBench bench;
+  const auto mean = [&] {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double squares = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      bench.hold(Body::kPeriod);
+      const Eigen::Vector3d force = bench.body.said().endpoint->force;
+      sum += force;
+      squares += force.z() * force.z();
+    }
+    const double z = sum.z() / 1000;
+    EXPECT_NEAR(std::sqrt(squares / 1000 - z * z), 1.5, 0.15);
+    return Eigen::Vector3d(sum / 1000);
+  };
+  const Eigen::Vector3d here = mean();
+  EXPECT_GT(here.norm(), 0.5);
+  bench.lead({0.02, 0.2, 0.12}, 0.2);
+  bench.hold(2.0);
+  EXPECT_GT((mean() - here).norm(), 0.2);
+}
+
+TEST(FakeBody, IsTheSameForEqualSeedsAndAnotherForOthers) {
+  fake_baxter::BodyOptions options = fake_options();
+  BodyBench one(kObjectI, kLikeBaxter, options);
+  BodyBench two(kObjectI, kLikeBaxter, options);
+  options.seed = 2;
+  BodyBench other(kObjectI, kLikeBaxter, options);
+  for (BodyBench* bench : {&one, &two, &other}) bench->lead({0.1, 0.1, 0.12}, 0.1);
+  EXPECT_EQ(one.body.said().endpoint->force, two.body.said().endpoint->force);
+  EXPECT_EQ(one.body.joints(), two.body.joints());
+  EXPECT_NE(one.body.said().endpoint->force, other.body.said().endpoint->force);
+}
+
+TEST(FakeBody, AnEmergencyStopNeedsItsButtonReleasedThenAResetAndThenEnable) {
+  BodyBench bench;
+  inject(bench.body, "estop=1");
+  bench.hold(0.5);
+  const auto state = [&] { return *bench.body.said().state; };
+  EXPECT_EQ(bench.body.mode(), Body::Mode::stopped);
+  EXPECT_EQ(state().estop_button, State::Button::pressed);
+  bench.body.reset();
+  EXPECT_TRUE(state().stopped) << "refused while it is pressed";
+  bench.hold(0.6);
+  EXPECT_EQ(state().estop_button, State::Button::released);
+  bench.body.enable(true);
+  EXPECT_FALSE(state().enabled);
+  bench.body.reset();
+  EXPECT_FALSE(state().stopped);
+  EXPECT_FALSE(state().enabled);
+  bench.hold(0.1);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::disabled);
+  bench.body.enable(true);
+  bench.hold(0.1);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+}
+
+TEST(FakeBody, TuckedItRefusesToBeEnabled) {
+  fake_baxter::BodyOptions options = fake_options();
+  options.start = Start::tucked;
+  BodyBench started(kBare, "{}", options);
+  BodyBench faulty;
+  inject(faulty.body, "tucked");
+  for (BodyBench* bench : {&started, &faulty}) {
+    EXPECT_LT(bench->body.said().joints->position(1), -1.6);
+    bench->body.enable(true);
+    EXPECT_FALSE(bench->body.said().state->enabled);
+  }
+}
+
+TEST(FakeBody, AFaultBeginsOnTheDescentAndAtTheHeightAskedFor) {
+  BodyBench bench(kBare, kQuiet);
+  inject(bench.body, "error", "2:8cm");
+  for (int descent = 1; descent <= 2; ++descent) {
+    bench.lead({0.115, 0.115, 0.12}, 0.2);
+    bench.hold(2.0);
+    EXPECT_FALSE(bench.body.faulty());
+    bench.lead({0.115, 0.115, 0.05}, 0.05, [&] { return bench.body.faulty(); });
+    if (descent == 1) bench.hold(2.0);
+    EXPECT_EQ(bench.body.faulty(), descent == 2);
+  }
+  EXPECT_NEAR(bench.body.tip().z(), 0.08, 0.001);
+  EXPECT_TRUE(bench.body.said().state->error);
+  const double height = bench.body.tip().z();
+  bench.hold(2.0);
+  EXPECT_NEAR(bench.body.tip().z(), height, 0.001) << "brakes";
+}
+
+TEST(FakeBody, SaysWhatItsFaultsMakeOfIt) {
+  const auto said = [](const std::string& fault) {
+    BodyBench bench;
+    bench.hold(0.5);
+    inject(bench.body, fault);
+    const Said before = bench.body.said();
+    bench.hold(0.5);
+    return std::make_pair(before, bench.body.said());
+  };
+  EXPECT_FALSE(said("kill_endpoint").second.endpoint);
+  EXPECT_FALSE(said("no_data=endpoint").second.endpoint);
+  EXPECT_FALSE(said("kill_joints").second.joints);
+  EXPECT_FALSE(said("kill_state").second.state);
+  EXPECT_FALSE(said("no_data=collision").second.collision);
+  EXPECT_TRUE(said("nan_wrench").second.endpoint->force.array().isNaN().all());
+  EXPECT_TRUE(said("zero_wrench").second.endpoint->force.isZero(0.0));
+  EXPECT_FALSE(said("disabled").second.state->enabled);
+  EXPECT_TRUE(said("squish").second.collision->collision);
+  const auto frozen = said("freeze_endpoint");
+  EXPECT_EQ(frozen.first.endpoint->force, frozen.second.endpoint->force);
+  EXPECT_GT(frozen.second.endpoint->stamp, frozen.first.endpoint->stamp);
+  const auto stale = said("stale_stamps");
+  EXPECT_NE(stale.first.endpoint->force, stale.second.endpoint->force);
+  EXPECT_EQ(stale.second.endpoint->stamp, stale.first.endpoint->stamp);
+  EXPECT_EQ(stale.second.joints->stamp, stale.first.joints->stamp);
+  const auto jump = said("jump_joints=0.4");
+  const auto none = said("bias=-12");
+  EXPECT_NEAR(jump.second.joints->position(1) - none.second.joints->position(1), 0.4, 1e-9);
+  EXPECT_NEAR(none.second.endpoint->force.z() - jump.second.endpoint->force.z(), -12.0, 1e-9);
+}
+
+TEST(FakeBody, DroppedCommandsLetTheArmStopAndGoOnWhenTheyAreHeardAgain) {
+  BodyBench bench;
+  inject(bench.body, "drop_commands=1");
+  bench.hold(0.9);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::timed_out);
+  bench.hold(0.2);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+}
+
+TEST(FakeBody, FaultsAreNamedOrRefusedInOneLine) {
+  const auto refusal = [](const auto& parse, const std::string& words) {
+    try {
+      parse(words);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_THAT(refusal(parse_fault, "estopp"), HasSubstr("there is no fault 'estopp', there are estop, error,"));
+  EXPECT_THAT(refusal(parse_fault, "bias=much"), HasSubstr("bias takes a number, not 'much'"));
+  EXPECT_THAT(refusal(parse_fault, "error=1"), HasSubstr("error takes no value"));
+  EXPECT_THAT(refusal(parse_fault, "no_data=nothing"), HasSubstr("endpoint, joints, state or collision"));
+  EXPECT_EQ(refusal(parse_fault, "software=1.1.1"), "taken");
+  for (const char* at : {"", "later", "0:8cm", "1:", "1.5:8cm", "1:8", "x:8cm"}) {
+    EXPECT_NE(refusal(parse_trigger, at), "taken") << at;
+  }
+  EXPECT_EQ(parse_trigger("3:8cm").descent, 3);
+  EXPECT_DOUBLE_EQ(parse_trigger("3:8cm").height, 0.08);
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// The robot of the tests on a real ROS network.
+#include "robot_lab.hpp"
+#include "support/programs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <map>
+#include <sstream>
+
+namespace palpate::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::vector<std::string> robot_words(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> out{(source_folder() / "configs/paper/object_i.yaml").string(), "backend=fake_baxter",
+                               "scene=object_i_arm", "--rate", "10"};
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+/// The lines of what the probe heard: "sender topic size count rate", by the first three.
+struct Heard {
+  long count;
+  double rate;
+};
+std::map<std::string, Heard> heard(const RobotLab& lab, const std::string& seconds) {
+  const Ended probe = lab.probe({"listen", seconds});
+  EXPECT_EQ(probe.status, 0) << probe.err;
+  std::map<std::string, Heard> out;
+  std::istringstream lines(probe.out);
+  std::string sender, topic, size;
+  Heard one{};
+  while (lines >> sender >> topic >> size >> one.count >> one.rate) out[sender + " " + topic + " " + size] = one;
+  return out;
+}
+
+TEST(FakeRobot, ItsMessagesAreThoseOfARealRobotByTheirMd5Sums) {
+  // As published by Rethink: in code generated from its definitions by others, too.
+  EXPECT_EQ(run_program({probe_file().string(), "md5"}, ".").out,
+            "EndpointState 44bea01d596ff699fa1447bec34167ac\n"
+            "JointCommand 19bfec8434dd568ab3c633d187c36f2e\n"
+            "AssemblyState 356d9dd237ce73b2667da9235f541933\n"
+            "OldAssemblyState d7ff2b9fa7d5f688665ce44db4ee2af8\n"
+            "CollisionDetectionState 7bde38c182b4d08fdc0635b116f65d04\n"
+            "SolvePositionIK 18cc92fd96853eb10b34de0b5c7d3cba\n"
+            "SolvePositionIKRequest 2587e42983d0081d0a2288230991073b\n"
+            "SolvePositionIKResponse d9b0c2b3932e08421f5094cf62743b9f\n");
+}
+
+TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const auto streams = heard(lab, "10");
+  // In the robot's own time; of a queue of one message some may be lost on a busy machine.
+  const auto expect_rate = [&](const std::string& name, double rate) {
+    ASSERT_EQ(streams.count(name), 1U) << name;
+    EXPECT_GT(streams.at(name).rate, 0.7 * rate) << name;
+    EXPECT_LT(streams.at(name).rate, 1.05 * rate) << name;
+  };
+  expect_rate("/realtime_loop /robot/limb/left/endpoint_state 1", 100);
+  expect_rate("/realtime_loop /robot/joint_states 17", 100);
+  expect_rate("/realtime_loop /robot/state 1", 100);
+  expect_rate("/realtime_loop /robot/limb/left/collision_detection_state 1", 100);
+  expect_rate("/end_effector_publisher /robot/joint_states 1", 38);
+  EXPECT_EQ(streams.size(), 5U);
+}
+
+TEST(FakeRobot, StopsResetsAndIsEnabledLikeARealOne) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  EXPECT_EQ(lab.probe({"switches"}).out,
+            "stop: enabled 0 stopped 1 error 0 button 0 source 2\n"
+            "enable: enabled 0 stopped 1 error 0 button 0 source 2\n"
+            "reset: enabled 0 stopped 0 error 0 button 0 source 0\n"
+            "enable: enabled 1 stopped 0 error 0 button 0 source 0\n");
+}
+
+TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
+  RobotLab lab;
+  std::vector<std::string> words = robot_words();
+  words.back() = "20";
+  lab.start_robot(words);
+  // 5 ms late each time are 100 ms of the robot's time at this rate, if that did not wait.
+  EXPECT_EQ(lab.probe({"drive", "5", "0.005"}).out, "late 0\n");
+  lab.end_robot();
+  const std::vector<Cells> trace = lab.trace();
+  const auto commands = [&](std::size_t row) { return std::stol(trace[row].at("commands")); };
+  std::size_t first = 0;
+  while (first < trace.size() && commands(first) == 0) ++first;
+  std::size_t last = trace.size() - 1;
+  while (last > first && commands(last) == commands(last - 1)) --last;
+  ASSERT_GT(last, first + 400);
+  for (std::size_t row = first; row <= last; ++row) {
+    EXPECT_EQ(trace[row].at("mode"), "following") << row;
+    // Ahead by two periods at most, but where the robot had waited for long.
+    if (row > first + 3) {
+      EXPECT_GT(commands(row), commands(row - 4)) << row;
+    }
+  }
+  EXPECT_EQ(trace.back().at("mode"), "timed_out") << "a driver that is gone is noticed";
+}
+
+TEST(FakeRobot, AnswersForItsInverseKinematics) {
+  const auto answer = [](const std::vector<std::string>& more) {
+    RobotLab lab;
+    lab.start_robot(robot_words(more));
+    return lab.probe({"inverse"}).out;
+  };
+  EXPECT_EQ(answer({}), "7 joints, where they are\n");
+  EXPECT_EQ(answer({"--fault", "ik_invalid"}), "invalid\n");
+  EXPECT_EQ(answer({"--fault", "ik_absent"}), "absent\n");
+}
+
+TEST(FakeRobot, ASecondNodeMayClaimToBeTheRobot) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "second_state"}));
+  const auto streams = heard(lab, "5");
+  EXPECT_EQ(streams.count("/second_robot /robot/state 1"), 1U);
+  EXPECT_EQ(streams.count("/realtime_loop /robot/state 1"), 1U);
+}
+
+TEST(FakeRobot, OldFirmwareIsNotUnderstood) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "old_state"}));
+  const auto streams = heard(lab, "5");
+  EXPECT_EQ(streams.count("/realtime_loop /robot/state 1"), 0U);
+  EXPECT_EQ(streams.count("/realtime_loop /robot/joint_states 17"), 1U);
+}
+
+TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
+  const auto refusal = [](const std::vector<std::string>& words) {
+    std::vector<std::string> all{fake_baxter_file().string()};
+    all.insert(all.end(), words.begin(), words.end());
+    const Ended ended = run_program(all, ".");
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    return ended.err;
+  };
+  EXPECT_THAT(refusal(robot_words({"--fault", "sulk"})), HasSubstr("there is no fault 'sulk'"));
+  EXPECT_THAT(refusal(robot_words({"--at", "soon"})), HasSubstr("takes 'start' or DESCENT:HEIGHT"));
+  EXPECT_THAT(refusal(robot_words({"--start", "asleep"})), HasSubstr("takes hover, low, untucked or tucked"));
+  EXPECT_THAT(refusal({robot_words().front()}), HasSubstr("add backend=fake_baxter"));
+}
+
+TEST(FakeRobot, EndsWhenItIsToldAndUnregistersItsNodes) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
+  const Ended ended = lab.end_robot();
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(lab.nodes(), IsEmpty());
+  const std::vector<Cells> trace = lab.trace();
+  ASSERT_FALSE(trace.empty());
+  EXPECT_EQ(trace.back().at("mode"), "timed_out");
+  EXPECT_NEAR(std::stod(trace.back().at("z")), 0.165, 1e-4);
+}
+
+/// The processes that have this one for a parent.
+std::vector<long> children_of(long pid) {
+  const std::string id = std::to_string(pid);
+  std::istringstream words(text_of("/proc/" + id + "/task/" + id + "/children"));
+  std::vector<long> out;
+  for (long child = 0; words >> child;) out.push_back(child);
+  return out;
+}
+
+TEST(FakeRobot, LeavesNothingRunning) {
+  std::vector<long> all;
+  std::filesystem::path folder;
+  {
+    RobotLab lab;
+    lab.start_robot(robot_words({"--fault", "second_state"}));
+    folder = lab.folder();
+    all = children_of(lab.robot().pid());
+    ASSERT_EQ(all.size(), 2U) << "nodes of their own";
+    all.push_back(lab.robot().pid());
+    all.push_back(lab.master_pid());
+    for (const long pid : all) EXPECT_TRUE(running(pid));
+  }
+  for (const long pid : all) EXPECT_FALSE(running(pid));
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
+TEST(FakeRobot, KilledItTakesItsCompanionsAlong) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::vector<long> companions = children_of(lab.robot().pid());
+  ASSERT_EQ(companions.size(), 1U);
+  lab.robot().signal(SIGKILL);
+  EXPECT_TRUE(eventually([&] { return !running(companions.front()); }));
+}
+
+}  // namespace
+}  // namespace palpate::test
