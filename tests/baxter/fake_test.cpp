@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The robot of the tests on a real ROS network.
 #include "robot_lab.hpp"
+#include "robot_words.hpp"
 #include "support/programs.hpp"
 
 #include <gmock/gmock.h>
@@ -17,13 +18,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::vector<std::string> robot_words(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> out{(source_folder() / "configs/paper/object_i.yaml").string(), "backend=fake_baxter",
-                               "scene=object_i_arm", "--rate", "10"};
-  out.insert(out.end(), more.begin(), more.end());
-  return out;
-}
 
 /// The lines of what the probe heard: "sender topic size count rate", by the first three.
 struct Heard {

@@ -39,7 +39,7 @@ constexpr Reference kReferences[] = {
 };
 
 TEST(BaxterKinematics, AgreesWithFiveReferencePoses) {
-  const baxter::Arm arm({0, 0, baxter::kGripperOffset});
+  const baxter::Arm arm({0, 0, 0.025});
   for (const Reference& one : kReferences) {
     const baxter::Pose pose = arm.tip(baxter::Joints(one.joints));
     EXPECT_LT((pose.position - Eigen::Vector3d(one.position)).norm(), 1e-6) << one.name;

@@ -122,7 +122,7 @@ std::string RobotLab::ask_master(const std::string& method) const {
                            "</methodName><params><param><value><string>/lab</string></value></param></params>"
                            "</methodCall>";
   return ask(port_, "POST / HTTP/1.0\r\nContent-Type: text/xml\r\nContent-Length: " + std::to_string(body.size()) +
-                             "\r\n\r\n" + body);
+                        "\r\n\r\n" + body);
 }
 
 std::vector<std::string> RobotLab::nodes() const {

@@ -21,9 +21,12 @@ class Diary {
   /// An empty `directory` keeps none. The folder is there from the first tap on.
   explicit Diary(std::string directory) : directory_(std::move(directory)) {}
 
-  void note(const std::string& line) {
-    if (directory_.empty()) return;
-    std::ofstream(directory_ + "/baxter.txt", std::ios::app) << line << '\n';
+  void note(const std::string& line) { waiting_ += line + '\n'; }
+
+  /// Writes what has been noted so far.
+  void write() {
+    if (!directory_.empty()) std::ofstream(directory_ + "/baxter.txt", std::ios::app) << waiting_;
+    waiting_.clear();
   }
 
   /// A name for the rosbag that no earlier part of the run has taken.
@@ -38,6 +41,7 @@ class Diary {
 
  private:
   std::string directory_;
+  std::string waiting_;
 };
 
 }  // namespace
@@ -63,6 +67,7 @@ class Baxter final : public Backend {
     recording_ = true;
     if (view_) view_->target(request.target);
     Contact contact = tapper_.tap(request);
+    diary_.write();
     if (view_ && contact.outcome == Outcome::contact) {
       view_->tapped(request.target, contact.height, scene_.on_surface(contact.height));
     }

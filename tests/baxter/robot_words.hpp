@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The words with which tests start the robot and the program, and what they read of the record.
+#pragma once
+
+#include "record/json.hpp"
+#include "support/support.hpp"
+
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+
+inline std::string object_i() { return (source_folder() / "configs/paper/object_i.yaml").string(); }
+
+/// For fake_baxter: object I as an arm like Baxter feels it, at ten times the speed of real time.
+inline std::vector<std::string> robot_words(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> out{object_i(), "backend=fake_baxter", "scene=object_i_arm", "--rate", "10"};
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+/// For palpate: the paper's experiment on it, so many taps of it.
+inline std::vector<std::string> run_words(int taps, const std::vector<std::string>& more = {}) {
+  const std::string initial = std::to_string(std::min(taps, 3));
+  std::vector<std::string> out{
+      "run", object_i(), "backend=fake_baxter", "taps=" + std::to_string(taps), "--quiet", "initial.count=" + initial};
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+/// The results among the lines of a run's log, without the announcements.
+inline std::vector<Row> results(const std::filesystem::path& run) {
+  std::vector<Row> out;
+  for (const Row& row : read_json_lines(run / "taps.jsonl").rows) {
+    if (row.find("intent") == nullptr) out.push_back(row);
+  }
+  return out;
+}
+
+/// One field of them as text, "" for null.
+inline std::string field(const Row& row, const char* name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? csv_cell(*value) : "no such field";
+}
+
+}  // namespace palpate::test

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// Whole runs on the robot of the tests, over a real master: what is reconstructed, and what is left when the program is
+// killed, interrupted, or somebody has to see to the robot.
+#include "robot_lab.hpp"
+#include "robot_words.hpp"
+#include "support/programs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+
+namespace palpate::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> outcomes(const fs::path& run) {
+  std::vector<std::string> out;
+  for (const Row& row : results(run)) out.push_back(field(row, "outcome"));
+  return out;
+}
+
+/// Looks until the only run has so many lines in its log; another process writes it.
+bool logged(const fs::path& runs, int lines) {
+  return eventually([&] {
+    std::error_code none;
+    for (const auto& entry : fs::recursive_directory_iterator(runs, none)) {
+      if (entry.path().filename() != "taps.jsonl") continue;
+      const std::string text = text_of(entry.path());
+      return std::count(text.begin(), text.end(), '\n') >= lines;
+    }
+    return false;
+  });
+}
+
+/// Looks until the robot's tip has come below `height` (m).
+bool low(const RobotLab& lab, double height) {
+  return eventually([&] {
+    const std::vector<Cells> trace = lab.trace();
+    return !trace.empty() && std::stod(trace.back().at("z")) < height;
+  });
+}
+
+double last_height(const RobotLab& lab) { return std::stod(lab.trace().back().at("z")); }
+
+/// Root of the mean squared error of the height mean over the places that truly lie on the object, as rmse_height_m is
+/// defined; `truth` is a surface.csv with the truth.
+double rmse_height(const fs::path& surface, const fs::path& truth) {
+  const std::vector<Cells> cells = csv_rows(text_of(surface));
+  const std::vector<Cells> known = csv_rows(text_of(truth));
+  EXPECT_EQ(cells.size(), known.size());
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_EQ(cells[i].at("x"), known[i].at("x"));
+    const double height = std::stod(known[i].at("true_height"));
+    if (!(height > 0.01)) continue;
+    sum += std::pow(std::stod(cells[i].at("height_mean")) - height, 2);
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
+TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffects) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const Ended ended = lab.palpate({"run", object_i(), "backend=fake_baxter", "--runs", "robot"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err, "") << "ROS keeps to itself";
+  EXPECT_THAT(ended.out, HasSubstr("done: tap budget after 17 taps"));
+  const fs::path run = only_run(lab.folder() / "robot");
+  EXPECT_EQ(outcomes(run), std::vector<std::string>(17, "contact"));
+
+  const Ended simulated =
+      lab.palpate({"run", object_i(), "scene=object_i_arm", "backend=continuous", "backend.motion.speed=2cm/s",
+                   "backend.motion.threshold=6N", "--runs", "simulator"});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  const fs::path other = only_run(lab.folder() / "simulator");
+  const double on_robot = rmse_height(run / "surface.csv", other / "surface.csv");
+  const double in_simulator = rmse_height(other / "surface.csv", other / "surface.csv");
+  RecordProperty("rmse_height_mm_robot", std::to_string(1e3 * on_robot));
+  RecordProperty("rmse_height_mm_simulator", std::to_string(1e3 * in_simulator));
+  EXPECT_NEAR(on_robot, in_simulator, 0.005);
+
+  const std::optional<Row> summary = parse_json_row(text_of(run / "summary.json"));
+  for (const char* name : {"rmse_m", "rmse_on_surface_m", "rmse_height_m", "footprint_iou", "nlpd", "coverage_95"}) {
+    EXPECT_EQ(field(*summary, name), "") << name << ": a robot knows no truth";
+  }
+  EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop")) << "the program has signed off";
+  lab.end_robot();
+  for (const Cells& row : lab.trace())
+    ASSERT_LT(std::stod(row.at("force")), 16.0) << "the firmware would have stopped it";
+}
+
+TEST(RobotRun, WorksInRealTimeAsWell) {
+  RobotLab lab;
+  std::vector<std::string> words = robot_words();
+  words.back() = "0";
+  lab.start_robot(words);
+  const Ended ended = lab.palpate(run_words(1));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact"));
+}
+
+TEST(RobotRun, IsReplayedToTheLastDigitWithoutTheRobot) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  ASSERT_EQ(lab.palpate(run_words(4)).status, 0);
+  lab.end_robot();
+  const Ended replay = lab.palpate({"replay", only_run(lab.folder() / "runs").string()});
+  EXPECT_EQ(replay.status, 0) << replay.out << replay.err;
+}
+
+TEST(RobotRun, KilledInATapLeavesTheArmHoldingAndIsResumedWithTheTapUnknown) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
+  ASSERT_TRUE(logged(lab.folder() / "runs", 3)) << "tap 2 is announced";
+  ASSERT_TRUE(low(lab, 0.07)) << "on the way down";
+  program->signal(SIGKILL);
+  program->wait();
+  const fs::path run = only_run(lab.folder() / "runs");
+  ASSERT_TRUE(eventually([&] { return lab.trace().back().at("mode") == "timed_out"; })) << "by its own time-out";
+  EXPECT_LT(last_height(lab), 0.07);
+
+  const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(outcomes(run), ElementsAre("contact", "unknown", "contact", "contact"));
+}
+
+TEST(RobotRun, InterruptedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
+  ASSERT_TRUE(logged(lab.folder() / "runs", 3));
+  ASSERT_TRUE(low(lab, 0.07));
+  program->signal(SIGINT);
+  const Ended ended = program->wait(60.0);
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  const fs::path run = only_run(lab.folder() / "runs");
+  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted"));
+  EXPECT_EQ(field(results(run).back(), "reason"), "interrupted; the arm was raised to the height of travel");
+  EXPECT_NEAR(last_height(lab), 0.135, 0.011);
+  EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
+
+  const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));
+}
+
+TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "estop=1", "--at", "2:8cm"}));
+  const Ended failed = lab.palpate(run_words(4));
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_THAT(failed.err, HasSubstr("the emergency stop is pressed"));
+  const fs::path run = only_run(lab.folder() / "runs");
+  const Ended too_early = lab.palpate({"resume", run.string(), "--retry-failed", "--quiet"});
+  EXPECT_EQ(too_early.status, 1);
+  EXPECT_THAT(too_early.err,
+              HasSubstr("the emergency stop was pressed and is released: reset the robot and enable it"));
+  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted")) << "what is refused before it moves is no tap";
+  ASSERT_THAT(lab.probe({"switches"}).out, EndsWith("enable: enabled 1 stopped 0 error 0 button 0 source 0\n"));
+  const Ended resumed = lab.palpate({"resume", run.string(), "--retry-failed", "--quiet"});
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));
+}
+
+TEST(RobotRun, AsksTheRobotsInverseKinematicsIfItIsToldTo) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const Ended ended = lab.palpate(run_words(2, {"backend.inverse_kinematics=robot"}));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact", "contact"));
+}
+
+TEST(RobotRun, CallsAPlaceUnreachableWhereTheRobotsInverseKinematicsHasNoAnswer) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "ik_invalid"}));
+  const Ended ended = lab.palpate(run_words(2, {"backend.inverse_kinematics=robot"}));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("unreachable", "unreachable"));
+  lab.end_robot();
+  EXPECT_EQ(lab.trace().back().at("commands"), "0");
+}
+
+TEST(RobotRun, ComputesEveryPoseOfTheAreaInADryRunAndMovesNothing) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "disabled"}));
+  const Ended ended = lab.palpate(run_words(2, {"backend.dry_run=true"}));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const fs::path run = only_run(lab.folder() / "runs");
+  EXPECT_THAT(outcomes(run), ElementsAre("aborted", "aborted"));
+  EXPECT_THAT(text_of(run / "baxter.txt"), StartsWith("dry run: all 169 places of the area can be reached"));
+  lab.end_robot();
+  EXPECT_EQ(lab.trace().back().at("commands"), "0");
+}
+
+}  // namespace
+}  // namespace palpate::test
