@@ -41,20 +41,25 @@ Bag::~Bag() {
 
 void Bag::open(const std::string& file) {
   if (writer_.joinable()) throw Error(file, "there is a bag being recorded already", {}, Error::Kind::run);
-  auto bag = std::make_unique<rosbag::Bag>();
+  bag_ = std::make_unique<rosbag::Bag>();
   try {
-    bag->open(file, rosbag::bagmode::Write);
-    bag->setCompression(rosbag::compression::LZ4);
+    bag_->open(file, rosbag::bagmode::Write);
+    bag_->setCompression(rosbag::compression::LZ4);
   } catch (const std::exception& exception) {
+    abandon_file();
     throw Error(file, std::string("cannot be recorded to: ") + exception.what(), "or set bag: false", Error::Kind::run);
   }
   file_ = file;
-  bag_ = std::move(bag);
   {
     const std::lock_guard lock(mutex_);
     recording_ = true;
   }
   writer_ = std::thread([this] { run(); });
+}
+
+void Bag::abandon_file() {
+  // Lost on purpose: its destructor would try once more to write, and throw.
+  static_cast<void>(bag_.release());
 }
 
 void Bag::add(Job job) {
@@ -86,7 +91,7 @@ void Bag::run() {
     }
     bag_->close();
   } catch (const std::exception& exception) {
-    bag_.release();  // lost on purpose: its destructor would try once more to write, and throw
+    abandon_file();
     const std::lock_guard lock(mutex_);
     give_up(exception.what());
   }

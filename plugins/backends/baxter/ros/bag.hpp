@@ -45,6 +45,7 @@ class Bag {
   using Job = std::function<void(rosbag::Bag&)>;
   void add(Job job);
   void run();
+  void abandon_file();
   void give_up(const char* reason);  ///< with mutex_ held
 
   std::string file_;

@@ -16,11 +16,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Of the promised five seconds, from the beginning of connect():
+// Of the promised five seconds, from the beginning of connect(). What is left at the end is for taking leave.
 constexpr milliseconds kReach(2500);   ///< until the master has answered
-constexpr milliseconds kListed(3300);  ///< until everything is listed at the master that is needed
-constexpr milliseconds kHeard(4200);   ///< until it has been heard
-constexpr milliseconds kTold(4600);    ///< until it is known why not
+constexpr milliseconds kListed(3000);  ///< until everything is listed at the master that is needed
+constexpr milliseconds kHeard(3800);   ///< until it has been heard
+constexpr milliseconds kTold(4200);    ///< until it is known why not
 
 constexpr milliseconds kLookUp(1000);       ///< for the name of a robot's host
 constexpr milliseconds kOnePublisher(300);  ///< for what it has to say of itself
@@ -107,8 +107,9 @@ class Visit {
   /// roscpp looks names up while it subscribes, for as long as that takes; so it is done here before.
   void expect_hosts_found() const {
     const Graph graph = network_.master.graph(until(kTold));
-    std::vector<std::string> topics = {"/clock", kCollisionTopic};
+    std::vector<std::string> topics;
     for (const Stream& stream : Link::needed()) topics.emplace_back(stream.topic);
+    topics.insert(topics.end(), {kCollisionTopic, "/clock"});
     std::set<std::string> found;
     for (const std::string& topic : topics) {
       for (const std::string& node : Graph::of(graph.publishers, topic)) {
@@ -177,7 +178,7 @@ class Visit {
         why = unreachable(stream.topic, node, *place, reason);
       }
     }
-    if (!malformed.empty()) return trouble(stream.topic, malformed, "is it a Baxter?");
+    if (!malformed.empty()) return trouble(network_.where(), malformed, "is it a Baxter?");
     if (mute.empty() && why) return *why;
     return trouble(stream.topic, joined(mute) + " publishes it, but nothing that is needed has come",
                    "look at it with rostopic echo; the robot may be starting");

@@ -132,6 +132,8 @@ class Node {
 /// The process' node, for those who may not start it.
 const Node* running = nullptr;
 
+void point_roscpp_at(const std::string& master) { ros::master::init({{"__master", master}}); }
+
 }  // namespace
 
 Network find_network(Deadline deadline) {
@@ -177,6 +179,7 @@ void start_node(const Network& network) {
   if (!ros::ok()) {
     throw trouble(network.where(), "this process' node has been told to shut down", "start it again");
   }
+  point_roscpp_at(network.uri);  // an earlier connection may have left it for gone
 }
 
 void forget_silent_master() {
@@ -184,7 +187,7 @@ void forget_silent_master() {
   try {
     Master(running->address()).greet(Steady::now() + kFarewell);
   } catch (const Unreached&) {
-    ros::master::init({{"__master", "http://127.0.0.1:9"}});  // discard: nobody listens there
+    point_roscpp_at("http://127.0.0.1:9");  // discard: nobody listens there
   }
 }
 

@@ -34,6 +34,8 @@ constexpr seconds kStandstill(2);
 constexpr microseconds kSimulatedNap(150);
 /// The longest sleep in real time, lest a clock that is set back be slept through.
 constexpr milliseconds kLongestNap(50);
+/// A simulated clock goes in steps, and who waits for the next must not miss it by the rounding of sums, seconds.
+constexpr double kRounding = 1e-6;
 /// For an answer of the robot's inverse kinematics, with room in the promised second.
 constexpr milliseconds kSolve(900);
 
@@ -118,7 +120,7 @@ class RosRobot final : public Link {
   bool wait_until(double time) override {
     double last = ros::Time::now().toSec();
     auto moved = Steady::now();
-    for (double now = last; now < time; now = ros::Time::now().toSec()) {
+    for (double now = last; now < time - kRounding; now = ros::Time::now().toSec()) {
       if (now != last) {
         last = now;
         moved = Steady::now();
@@ -136,6 +138,7 @@ class RosRobot final : public Link {
   }
 
   void command(const Joints& target) override {
+    if (!command_publisher_) return;  // not wished for
     std::copy(target.begin(), target.end(), command_.command.begin());
     command_publisher_.publish(command_);
     bag_->write_own(kCommandTopic, command_, false);

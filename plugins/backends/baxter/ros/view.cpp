@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/bag.hpp"
 #include "baxter/ros/connect.hpp"
+#include "baxter/ros/node.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,8 @@ class RosView final : public View {
     taps_publisher_ = handle_.advertise<MarkerArray>(kTaps, 1, true);
     show_taps();
   }
+
+  ~RosView() override { forget_silent_master(); }
 
   void target(const Target& place) override {
     next_ = place;
