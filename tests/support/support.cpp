@@ -66,7 +66,9 @@ Child::~Child() {
   ::waitpid(pid_, nullptr, 0);
 }
 
-void Child::signal(int number) const { ::kill(pid_, number); }
+void Child::signal(int number) const {
+  if (pid_ > 0) ::kill(pid_, number);  // -1, when it has ended, would be every process of the machine
+}
 
 bool Child::running() const {
   siginfo_t info{};

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+// The way to a Baxter over a real ROS network: what is missing is told in one line within five seconds, and nothing is
+// left behind.
+#include "baxter/ros/connect.hpp"
+
+#include "elsewhere.hpp"
+#include "robot_lab.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace palpate::test {
+namespace {
+
+using baxter::connect;
+using baxter::Robot;
+using baxter::Snapshot;
+using baxter::Wishes;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr double kPromised = 5.0;  // s
+const std::vector<std::string> kNoRos = {"ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_IPV6"};
+
+std::vector<std::string> with(std::vector<std::string> environment, const std::vector<std::string>& more) {
+  environment.insert(environment.end(), more.begin(), more.end());
+  return environment;
+}
+
+/// What connect() has to say where it must not succeed, and that it says it in time.
+std::string refusal(const std::vector<std::string>& environment, const Wishes& wishes = {}) {
+  const Elsewhere result = elsewhere(environment, [&] {
+    connect(wishes);
+    return std::string("connected");
+  });
+  EXPECT_LE(result.seconds, kPromised) << result.printed;
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.printed.find('\n'), std::string::npos) << result.printed;
+  return result.printed;
+}
+
+std::string refusal_of(const std::string& master, const std::vector<std::string>& more = {"ROS_IP=127.0.0.1"}) {
+  return refusal(with(with(kNoRos, {"ROS_MASTER_URI=" + master}), more));
+}
+
+/// A TCP port of this machine at which somebody listens who is no ROS master.
+class Stranger {
+ public:
+  explicit Stranger(int backlog) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    address_.sin_family = AF_INET;
+    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address_;
+    auto* address = reinterpret_cast<sockaddr*>(&address_);
+    if (bind(socket_, address, size) != 0 || listen(socket_, backlog) != 0 ||
+        getsockname(socket_, address, &size) != 0) {
+      throw std::runtime_error("no port");
+    }
+  }
+  ~Stranger() {
+    close(socket_);
+    for (const int guest : guests_) close(guest);
+  }
+  Stranger(const Stranger&) = delete;
+  Stranger& operator=(const Stranger&) = delete;
+
+  /// Connects so often that the next packet is dropped.
+  void fill() {
+    for (int i = 0; i < 4; ++i) {
+      guests_.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+      ::connect(guests_.back(), reinterpret_cast<const sockaddr*>(&address_), sizeof address_);
+    }
+  }
+
+  std::string uri() const { return "http://127.0.0.1:" + std::to_string(ntohs(address_.sin_port)); }
+
+ private:
+  int socket_;
+  sockaddr_in address_{};
+  std::vector<int> guests_;
+};
+
+/// To one process, and never to the many that a number below 1 stands for.
+void send(int signal, int pid) {
+  if (pid > 1) kill(pid, signal);
+}
+
+std::size_t threads() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
+}
+
+std::vector<std::string> robot_words(const std::vector<std::string>& more = {}) {
+  return with({(source_folder() / "configs/paper/object_i.yaml").string(), "backend=fake_baxter", "scene=object_i_arm"},
+              more);
+}
+
+TEST(Connect, WithoutAnEnvironmentOfRosItSaysWhatToSet) {
+  EXPECT_EQ(refusal(kNoRos),
+            "ROS_MASTER_URI: is not set, set it to the robot's master, http://<the robot's name>.local:11311");
+  for (const std::string uri : {"localhost:11311", "http://localhost", "http://:11311", "http://localhost:99999",
+                                "https://localhost:11311", "http://localhost:11311/x"}) {
+    EXPECT_EQ(refusal_of(uri),
+              "ROS_MASTER_URI=" + uri + ": is not of the form http://host:port, as in http://011305P0001.local:11311");
+  }
+}
+
+TEST(Connect, AnAddressThatIsNotThisMachinesIsNamedBeforeAnythingIsAsked) {
+  const std::string master = "http://127.0.0.1:1";
+  EXPECT_EQ(
+      refusal_of(master, {"ROS_IP=192.0.2.1"}),
+      "ROS_IP=192.0.2.1: is no address of this machine, so the robot could not reach it, set it to the address of "
+      "the interface on the robot's network (ip -brief address)");
+  EXPECT_THAT(refusal_of(master, {"ROS_IP=the_desk"}), StartsWith("ROS_IP=the_desk: is no address of this machine"));
+  EXPECT_EQ(refusal_of(master, {"ROS_IP=127.0.0.1", "ROS_HOSTNAME=localhost"}),
+            "ROS_IP=127.0.0.1: is set beside ROS_HOSTNAME=localhost, unset one of them");
+  EXPECT_THAT(refusal_of(master, {"ROS_HOSTNAME=no.such.host.invalid"}),
+              AllOf(StartsWith("ROS_HOSTNAME=no.such.host.invalid: does not resolve ("),
+                    EndsWith("), set ROS_IP to this machine's address instead")));
+}
+
+TEST(Connect, WhereNoMasterIsItSaysHowItLookedForOne) {
+  EXPECT_EQ(
+      refusal_of("http://127.0.0.1:1"),
+      "ROS_MASTER_URI=http://127.0.0.1:1: no master at 127.0.0.1:1 (Connection refused), start the robot, or mend "
+      "the variable");
+  EXPECT_THAT(refusal_of("http://011305P0001.invalid:11311"),
+              AllOf(StartsWith("ROS_MASTER_URI=http://011305P0001.invalid:11311: the name 011305P0001.invalid does not "
+                               "resolve ("),
+                    EndsWith("check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in "
+                             "/etc/hosts")));
+}
+
+TEST(Connect, AMasterThatDoesNotAnswerIsNotWaitedFor) {
+  const Stranger taciturn(5);
+  Stranger swallows(0);
+  swallows.fill();
+  for (const Stranger* stranger : {&taciturn, const_cast<const Stranger*>(&swallows)}) {
+    EXPECT_THAT(refusal_of(stranger->uri()),
+                EndsWith(" does not answer within 2 s, check that the robot is on and that "
+                         "no firewall lies between"));
+  }
+}
+
+TEST(Connect, ANetworkWithoutARobotIsToldByWhatNobodyPublishes) {
+  const RobotLab lab;
+  EXPECT_THAT(
+      refusal(lab.environment()),
+      EndsWith(": nobody publishes /robot/joint_states, /robot/limb/left/endpoint_state and /robot/state, is it "
+               "the master of a Baxter?"));
+  EXPECT_THAT(lab.nodes(), ElementsAre());
+}
+
+TEST(Connect, AnotherMessageOfTheSameNameIsToldByItsMd5Sum) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "old_state"}));
+  EXPECT_EQ(refusal(lab.environment()),
+            "/robot/state: /realtime_loop sends baxter_core_msgs/AssemblyState with md5 sum "
+            "d7ff2b9fa7d5f688665ce44db4ee2af8, this driver knows baxter_core_msgs/AssemblyState with "
+            "356d9dd237ce73b2667da9235f541933, which came with the robot's software 1.2: update the robot");
+}
+
+TEST(Connect, AnotherSoftwareIsToldByItsVersion) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "software=1.1.1.5"}));
+  EXPECT_EQ(refusal(lab.environment()),
+            "/rethink/software_version: the robot's software is 1.1.1.5, this driver knows 1.2: update the robot");
+}
+
+TEST(Connect, AStreamThatIsThereButSilentIsNamedWithItsNode) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "no_data=endpoint"}));
+  EXPECT_EQ(
+      refusal(lab.environment()),
+      "/robot/limb/left/endpoint_state: /realtime_loop publishes it, but nothing that is needed has come, look at "
+      "it with rostopic echo; the robot may be starting");
+}
+
+TEST(Connect, ANodeThatDiedWithoutTakingLeaveIsNamed) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  lab.robot().signal(SIGKILL);
+  lab.robot().wait();
+  EXPECT_THAT(
+      refusal(lab.environment()),
+      AllOf(StartsWith("/robot/"), HasSubstr("(Connection refused), start it again, or remove what is left of it "
+                                             "with rosnode cleanup")));
+}
+
+TEST(Connect, ANodeOnAHostThatDoesNotResolveIsNamedWithThatHost) {
+  RobotLab lab;
+  const Child robot(with({fake_baxter_file().string()}, robot_words()), lab.folder(),
+                    with(lab.environment(), {"ROS_IP", "ROS_HOSTNAME=baxter.invalid"}));
+  EXPECT_THAT(
+      refusal(lab.environment()),
+      AllOf(HasSubstr("its publisher /realtime_loop is on the host baxter.invalid, which does not resolve here ("),
+            EndsWith("), add it to /etc/hosts, or install libnss-mdns for names in .local")));
+}
+
+TEST(Connect, TheRobotsInverseKinematicsIsMissedOnlyByThoseWhoWishForIt) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "ik_absent"}));
+  EXPECT_EQ(refusal(lab.environment(), {true, true}),
+            "/ExternalTools/left/PositionKinematicsNode/IKService: nobody offers this service, set inverse_kinematics: "
+            "own, or start the robot again");
+  EXPECT_EQ(refusal(lab.environment(), {true, false}), "connected");
+}
+
+TEST(Connect, TwiceInOneProcessLeavesNoThreadAndNoNodeAndNotAWord) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::vector<std::string> before = lab.nodes();
+  const Elsewhere result = elsewhere(lab.environment(), [] {
+    const std::string first = connect({})->read().malformed;
+    const std::size_t of_roscpp = threads();
+    auto robot = connect({});
+    const std::size_t connected = threads();
+    robot.reset();
+    return first + std::to_string(connected - of_roscpp) + " " + std::to_string(threads() - of_roscpp);
+  });
+  EXPECT_EQ(result.printed, "1 0");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(lab.nodes(), before);
+}
+
+TEST(Connect, AProcessThatEndsInTheMiddleTakesLeave) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::vector<std::string> before = lab.nodes();
+  const Elsewhere result = elsewhere(lab.environment(), []() -> std::string {
+    const auto robot = connect({});
+    std::exit(3);
+  });
+  EXPECT_EQ(result.printed, "");
+  EXPECT_EQ(result.status, 3);
+  EXPECT_EQ(lab.nodes(), before);
+}
+
+TEST(Connect, AMasterThatGoesAwayIsNeitherMissedNorWaitedFor) {
+  for (const int ending : {SIGKILL, SIGSTOP}) {
+    RobotLab lab;
+    lab.start_robot(robot_words());
+    const Elsewhere result = elsewhere(lab.environment(), [&] {
+      const auto robot = connect({});
+      send(ending, lab.master_pid());
+      const double begin = robot->read().now;
+      robot->wait_until(begin + 0.5);
+      return robot->read().endpoint->received > begin + 0.2 ? "goes on" : "silence";
+    });
+    send(SIGCONT, lab.master_pid());
+    EXPECT_EQ(result.printed, "goes on");
+    EXPECT_EQ(result.status, 0);
+    EXPECT_LE(result.seconds, kPromised);
+  }
+}
+
+TEST(Connect, AClockThatStandsStillEndsAWait) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--rate", "5"}));
+  const Elsewhere result = elsewhere(lab.environment(), [&] {
+    const auto robot = connect({});
+    const double now = robot->read().now;
+    std::string said = robot->wait_until(now + 0.1) ? "goes, " : "stands still, ";
+    send(SIGSTOP, lab.robot().pid());
+    said += robot->wait_until(now + 1000.0) ? "goes" : "stands still";
+    send(SIGCONT, lab.robot().pid());
+    return said;
+  });
+  EXPECT_EQ(result.printed, "goes, stands still");
+}
+
+TEST(Connect, TheRobotsInverseKinematicsIsGivenASecond) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--fault", "ik_slow=60"}));
+  const Elsewhere result = elsewhere(lab.environment(), [] {
+    const auto robot = connect({true, true});
+    const Snapshot snapshot = robot->read();
+    const Robot::Answer answer = robot->solve(snapshot.endpoint->pose, snapshot.joints->position);
+    return answer.joints ? "solved" : answer.trouble;
+  });
+  EXPECT_EQ(result.printed, "/ExternalTools/left/PositionKinematicsNode/IKService: no answer in time");
+  EXPECT_LE(result.seconds, kPromised);
+}
+
+TEST(Connect, TheRobotsInverseKinematicsFindsTheJointsOfWhereTheArmIs) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const Elsewhere result = elsewhere(lab.environment(), [] {
+    const auto robot = connect({true, true});
+    const Snapshot snapshot = robot->read();
+    const Robot::Answer answer = robot->solve(snapshot.endpoint->pose, snapshot.joints->position);
+    if (!answer.joints) return "none: " + answer.trouble;
+    const double gap = (*answer.joints - snapshot.joints->position).cwiseAbs().maxCoeff();
+    return std::string(gap < 0.05 ? "near" : "far");
+  });
+  EXPECT_EQ(result.printed, "near");
+}
+
+TEST(Connect, ABagThatCannotBeWrittenIsAnErrorAtOnce) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const auto record = [&](const std::string& file) {
+    return elsewhere(lab.environment(), [&] {
+      const auto robot = connect({});
+      robot->record(file);
+      robot->wait_until(robot->read().now + 0.3);
+      return std::string("recorded");
+    });
+  };
+  EXPECT_THAT(record("/nonexistent/a.bag").printed,
+              AllOf(StartsWith("/nonexistent/a.bag: cannot be recorded to: "), EndsWith(", or set bag: false")));
+  EXPECT_THAT(record("/dev/full").printed, StartsWith("/dev/full: cannot be recorded to: "));
+  const std::filesystem::path file = lab.folder() / "a.bag";
+  EXPECT_EQ(record(file).printed, "recorded");
+  EXPECT_THAT(text_of(file), AllOf(StartsWith("#ROSBAG V2.0\n"), HasSubstr("/robot/limb/left/endpoint_state"),
+                                   HasSubstr("356d9dd237ce73b2667da9235f541933")));
+}
+
+}  // namespace
+}  // namespace palpate::test
