@@ -5,6 +5,7 @@
 
 #include "elsewhere.hpp"
 #include "robot_lab.hpp"
+#include "support/programs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -202,6 +203,7 @@ TEST(Connect, ANodeOnAHostThatDoesNotResolveIsNamedWithThatHost) {
   RobotLab lab;
   const Child robot(with({fake_baxter_file().string()}, robot_words()), lab.folder(),
                     with(lab.environment(), {"ROS_IP", "ROS_HOSTNAME=baxter.invalid"}));
+  ASSERT_TRUE(eventually([&] { return !lab.nodes().empty(); }));
   EXPECT_THAT(
       refusal(lab.environment()),
       AllOf(HasSubstr("its publisher /realtime_loop is on the host baxter.invalid, which does not resolve here ("),

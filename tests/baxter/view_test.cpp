@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// What RViz is shown.
+#include "baxter/ros/connect.hpp"
+
+#include "elsewhere.hpp"
+#include "robot_lab.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
+#include <visualization_msgs/MarkerArray.h>
+
+namespace palpate::test {
+namespace {
+
+using baxter::View;
+using sensor_msgs::PointCloud2;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+/// The corner at (0.5, 0.1, -0.2) of the robot's base, turned by a right angle: x of the scene is y of the base.
+std::unique_ptr<View> turned_view() {
+  baxter::PlaceOptions place;
+  place.corner[0] = 0.5;
+  place.corner[1] = 0.1;
+  place.height = -0.2;
+  place.rotation = std::acos(0.0);
+  return baxter::make_view(place, {0.3, 0.2}, 0.01);
+}
+
+/// What somebody sees who comes late; "nothing" if a message does not come in 20 s.
+template <class Message>
+std::string seen_late(const std::string& topic, const std::function<std::string(const Message&)>& tell) {
+  ros::CallbackQueue queue;
+  ros::NodeHandle handle;
+  handle.setCallbackQueue(&queue);
+  std::string seen;
+  const boost::function<void(const Message&)> hear = [&](const Message& message) { seen = tell(message); };
+  const ros::Subscriber subscriber = handle.subscribe<const Message&>(topic, 1, hear);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (seen.empty() && std::chrono::steady_clock::now() < end) queue.callAvailable(ros::WallDuration(0.1));
+  return seen.empty() ? "nothing" : seen;
+}
+
+std::string told(const geometry_msgs::Point& point) {
+  return fmt::format("({:.3f} {:.3f} {:.3f})", point.x, point.y, point.z);
+}
+
+std::string told(const MarkerArray& array) {
+  std::string text;
+  for (const Marker& marker : array.markers) {
+    text += fmt::format("{} {} in {} at {}{}:", marker.ns, marker.id, marker.header.frame_id,
+                        marker.header.stamp.toSec(), marker.action == Marker::DELETE ? ", gone" : "");
+    for (const geometry_msgs::Point& point : marker.points) text += " " + told(point);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string told(const PointCloud2& cloud) {
+  std::string text = cloud.header.frame_id + (cloud.is_dense ? "" : ", not dense") + "\n";
+  sensor_msgs::PointCloud2ConstIterator<float> value(cloud, "x");
+  sensor_msgs::PointCloud2ConstIterator<float> intensity(cloud, "intensity");
+  for (; value != value.end(); ++value, ++intensity) {
+    text += fmt::format("{:.3f} {:.3f} {:.3f}: {:.3f}\n", value[0], value[1], value[2], *intensity);
+  }
+  return text;
+}
+
+class Shown : public ::testing::Test {
+ protected:
+  Shown() {
+    lab_.start_robot(
+        {(source_folder() / "configs/paper/object_i.yaml").string(), "backend=fake_baxter", "scene=object_i_arm"});
+  }
+
+  template <class Message>
+  std::string seen(const std::string& topic, const std::function<void(View&)>& show) const {
+    return elsewhere(lab_.environment(),
+                     [&] {
+                       const auto robot = baxter::connect({false, false});
+                       const std::unique_ptr<View> view = turned_view();
+                       show(*view);
+                       return seen_late<Message>(topic, [](const Message& message) { return told(message); });
+                     })
+        .printed;
+  }
+
+  RobotLab lab_;
+};
+
+TEST_F(Shown, TheAreaStandsInTheRobotsFrameBeforeTheFirstTap) {
+  EXPECT_EQ(seen<MarkerArray>("palpate/taps", [](View&) {}),
+            "area 0 in base at 0: (0.500 0.100 -0.190) (0.500 0.400 -0.190) (0.300 0.400 -0.190) (0.300 0.100 -0.190) "
+            "(0.500 0.100 -0.190)\n"
+            "on object 0 in base at 0, gone:\n"
+            "off object 0 in base at 0, gone:\n"
+            "next 0 in base at 0, gone:\n");
+}
+
+TEST_F(Shown, TapsOnAndOffTheObjectAreToldApartAndTheNextStandsAboveTheDesk) {
+  EXPECT_THAT(seen<MarkerArray>("palpate/taps",
+                                [](View& view) {
+                                  view.target({0.1, 0.0});
+                                  view.tapped({0.1, 0.0}, 0.08, true);
+                                  view.target({0.2, 0.0});
+                                  view.tapped({0.2, 0.0}, 0.01, false);
+                                  view.target({0.0, 0.1});
+                                }),
+              HasSubstr("on object 0 in base at 0: (0.500 0.200 -0.120)\n"
+                        "off object 0 in base at 0: (0.500 0.300 -0.190)\n"
+                        "next 0 in base at 0: (0.400 0.100 -0.110) (0.400 0.100 -0.190)\n"));
+}
+
+TEST_F(Shown, TheSurfaceHasItsStandardDeviationForIntensity) {
+  const auto show = [](double second) {
+    return [second](View& view) {
+      Points places(2, 2);
+      places << 0.0, 0.0, 0.1, 0.2;
+      view.surface(places, Eigen::Vector2d(0.05, second), Eigen::Vector2d(0.002, 0.01));
+    };
+  };
+  EXPECT_EQ(seen<PointCloud2>("palpate/surface", show(0.07)),
+            "base\n0.500 0.100 -0.150: 0.002\n0.300 0.200 -0.130: 0.010\n");
+  EXPECT_THAT(seen<PointCloud2>("palpate/surface", show(std::numeric_limits<double>::quiet_NaN())),
+              StartsWith("base, not dense\n"));
+}
+
+}  // namespace
+}  // namespace palpate::test
