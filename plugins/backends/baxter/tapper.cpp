@@ -77,7 +77,8 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
       watch_(workspace_, options.force_stop) {}
 
 void Tapper::check() {
-  check_before_flight(robot_.read(), options_, planner_, workspace_, !options_.dry_run);
+  await_fit(!options_.dry_run);
+  check_before_flight(seen_, options_, planner_, workspace_, !options_.dry_run);
   if (!options_.dry_run) return;
   const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
   const int places =
@@ -146,17 +147,22 @@ void Tapper::calibrate() {
   note_("calibration: the desk lies " + centimetres(off) + " above where the config has it");
 }
 
+/// Reads until the robot is fit; if it is not within a second, what was read last says why.
+void Tapper::await_fit(bool moving) {
+  take(robot_.read());
+  const double begin = seen_.now;
+  for (next_ = begin; next_ < begin + kPatience && Watch::fit(seen_, moving); take(robot_.read())) {
+    next_ += kPeriod;
+    if (!robot_.wait_until(next_)) return;
+  }
+}
+
 /// Takes over the arm where it is: waits for fresh data, commands nothing but the measured joints, and brings the tip
 /// up to the height of travel.
 void Tapper::start() {
   watch_.begin();
   recovering_ = false;
-  const double begin = robot_.read().now;
-  next_ = begin;
-  for (take(robot_.read()); Watch::fit(seen_, true) && seen_.now < begin + kPatience; take(robot_.read())) {
-    next_ += kPeriod;
-    if (!robot_.wait_until(next_)) break;
-  }
+  await_fit(true);
   if (std::optional<Fault> fault = Watch::fit(seen_, true)) throw *fault;
   next_ = seen_.now;
   step(seen_.joints->position);

@@ -42,6 +42,7 @@ class Tapper {
   Contact descend(const TapRequest& request, const Path& column);
   void calibrate();
   void start();
+  void await_fit(bool moving);
   void go_to(const Joints& hover);
   void follow(const Path& path, double speed);
   void settle(const Joints& goal);

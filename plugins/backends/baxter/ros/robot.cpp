@@ -39,6 +39,11 @@ constexpr double kRounding = 1e-6;
 /// For an answer of the robot's inverse kinematics, with room in the promised second.
 constexpr milliseconds kSolve(900);
 
+/// In simulated time the clock may overtake the messages of an instant, on a busy machine by far; so much real time
+/// they are given to catch up, to within so much simulated time.
+constexpr milliseconds kCatchUp(50);
+constexpr double kAlmostNow = 0.03;
+
 constexpr std::size_t kArm = kJointNames.size();
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
@@ -134,6 +139,7 @@ class RosRobot final : public Link {
             std::min<std::chrono::duration<double>>(std::chrono::duration<double>(time - now), kLongestNap));
       }
     }
+    if (ros::Time::isSimTime()) await_messages_of(time);
     return true;
   }
 
@@ -163,6 +169,7 @@ class RosRobot final : public Link {
   template <class Message>
   void subscribe(const char* topic, std::uint32_t queue, void (RosRobot::*take)(const Event<Message>&, Snapshot&)) {
     const boost::function<void(const Event<Message>&)> heard = [this, topic, take](const Event<Message>& event) {
+      if (event.getReceiptTime().isZero()) return;  // before a simulated clock was heard nothing has an age
       bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
       const std::lock_guard lock(mutex_);
       (this->*take)(event, latest_);
@@ -227,6 +234,16 @@ class RosRobot final : public Link {
   void spin() {
     // Woken by every message and by the end; the time-out only matters if that wake-up falls between two waits.
     while (!stop_) queue_.callAvailable(ros::WallDuration(0.05));
+  }
+
+  void await_messages_of(double time) {
+    const auto begin = Steady::now();
+    const auto there = [&] {
+      const std::lock_guard lock(mutex_);
+      return latest_.joints && latest_.joints->received >= time - kAlmostNow && latest_.endpoint &&
+             latest_.endpoint->received >= time - kAlmostNow;
+    };
+    while (!there() && Steady::now() - begin < kCatchUp) std::this_thread::sleep_for(kSimulatedNap);
   }
 
   std::string asked_solver(const std::string& request, Deadline deadline);
