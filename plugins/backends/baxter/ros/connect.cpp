@@ -53,7 +53,7 @@ class Visit {
   std::unique_ptr<Robot> join() {
     try {
       expect_all_listed();
-      expect_hosts_found();
+      expect_one_robot_and_its_hosts();
       start_node(network_);
       std::unique_ptr<Link> link = make_link(network_, wishes_.commands);
       expect_all_heard(*link);
@@ -104,8 +104,16 @@ class Visit {
     }
   }
 
+  /// Of two states one is a lie, perhaps a mock's that somebody forgot; a node that ended without leaving counts, too.
+  static void expect_one_robot(const Graph& graph) {
+    const auto& nodes = Graph::of(graph.publishers, kStateTopic);
+    if (nodes.size() < 2) return;
+    throw trouble(kStateTopic, "comes from more than one node, " + joined(nodes),
+                  "end what is no robot; rosnode cleanup removes what has ended already");
+  }
+
   /// roscpp looks names up while it subscribes, for as long as that takes; so it is done here before.
-  void expect_hosts_found() const {
+  void expect_one_robot_and_its_hosts() const {
     const Graph graph = network_.master.graph(until(kTold));
     std::vector<std::string> topics;
     for (const Stream& stream : Link::needed()) topics.emplace_back(stream.topic);
