@@ -80,9 +80,12 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
   RobotLab lab;
   std::vector<std::string> words = robot_words();
   words.back() = "20";
+  // A driver may lose the processor for a while where other tests run; to be gone it takes longer here.
+  words.insert(words.end(), {"--patience", "1"});
   lab.start_robot(words);
   // 5 ms late each time are 100 ms of the robot's time at this rate, if that did not wait.
   EXPECT_EQ(lab.probe({"drive", "5", "0.005"}).out, "late 0\n");
+  EXPECT_TRUE(eventually([&] { return lab.trace().back().at("mode") == "timed_out"; })) << "nobody drives any more";
   lab.end_robot();
   const std::vector<Cells> trace = lab.trace();
   const auto commands = [&](std::size_t row) { return std::stol(trace[row].at("commands")); };
@@ -98,7 +101,6 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
       EXPECT_GT(commands(row), commands(row - 4)) << row;
     }
   }
-  EXPECT_EQ(trace.back().at("mode"), "timed_out") << "a driver that is gone is noticed";
 }
 
 TEST(FakeRobot, AnswersForItsInverseKinematics) {

@@ -29,6 +29,8 @@ namespace {
 constexpr double kMasterPatience = 5.0;        // s of real time
 constexpr double kGripperPeriod = 1.0 / 38.0;  // s
 constexpr double kLead = 2.0 * Body::kPeriod;  // s that /clock may be ahead of the driver
+constexpr double kSlack = Body::kPeriod / 2;   // of comparisons between periods, s
+constexpr double kShortPatience = 0.02;        // s of real time
 constexpr double kNap = 0.005;                 // s of real time between looks at signals
 constexpr double kBacklog = 0.1;               // s of real time that are caught up
 constexpr const char* kSoftware = "1.2.0.57";
@@ -190,6 +192,7 @@ class Node {
   /// Set-points by name, of some joints or all; other modes than positions are not modelled.
   void command(const baxter_core_msgs::JointCommand& message) {
     heard_at_ = body_.now();
+    allowed_ = std::min(std::max(allowed_, heard_at_) + Body::kPeriod, heard_at_ + kLead);
     gave_up_ = false;
     const bool positions = message.mode == baxter_core_msgs::JointCommand::POSITION_MODE ||
                            message.mode == baxter_core_msgs::JointCommand::RAW_POSITION_MODE;
@@ -203,18 +206,20 @@ class Node {
     body_.command(target);
   }
 
+  /// Every command lets the clock go on by one period, so that a driver that hears of the time late does not fall back
+  /// ever more; one period is held in reserve. A driver that leaves out a period gets it after a short wait, one that
+  /// sends no more after a long one.
   void wait_for_driver(const std::atomic<bool>& stop) {
-    if (options_.rate <= 0.0) return;
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(options_.patience);
-    while (!stop && !gave_up_ && ahead_of_driver()) {
-      if (ros::WallTime::now() >= end) gave_up_ = true;
+    const ros::WallTime begin = ros::WallTime::now();
+    while (options_.rate > 0.0 && !stop && !gave_up_) {
+      const double next = body_.now() + Body::kPeriod;
+      const bool streaming = body_.now() - heard_at_ < body_.command_timeout();
+      if (!streaming || next < allowed_ + kSlack) return;
+      const double waited = (ros::WallTime::now() - begin).toSec();
+      if (next < heard_at_ + kLead + kSlack && waited > kShortPatience) return;
+      gave_up_ = waited > options_.patience;
       queue_.callAvailable(ros::WallDuration(kNap));
     }
-  }
-
-  bool ahead_of_driver() const {
-    const double since = body_.now() - heard_at_;
-    return since < body_.command_timeout() && since > kLead - Body::kPeriod / 2;
   }
 
   void step() {
@@ -268,7 +273,8 @@ class Node {
   std::function<void(const baxter::StateReading&)> publish_state_;
   std::vector<ros::Subscriber> heard_;
   double heard_at_ = -1e9;  ///< when a driver last sent a command, whatever became of it
-  bool gave_up_ = false;    ///< waiting for it
+  double allowed_ = -1e9;   ///< the time to which the clock may go without another command
+  bool gave_up_ = false;    ///< waiting for one
   double gripper_due_ = 0.0;
 };
 

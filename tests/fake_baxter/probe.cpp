@@ -173,8 +173,8 @@ int drive(Probe& probe, double seconds, double stall) {
     // A driver on a busy machine: what the robot must wait for.
     ros::WallDuration(stall).sleep();
     const double now = ros::Time::now().toSec();
-    // Before the robot has heard the first, it cannot wait.
-    if (due > begin + 0.1 && now > due + 0.025) ++late;
+    // Before it has heard the first command, the robot cannot wait.
+    if (due > begin + 0.1 && now > due + 0.035) ++late;
     due = std::max(due, now - 0.005);
   }
   fmt::print("late {}\n", late);
