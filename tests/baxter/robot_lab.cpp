@@ -87,7 +87,7 @@ RobotLab::RobotLab() {
 }
 
 RobotLab::~RobotLab() {
-  if (robot_) end_robot();
+  if (robot_ && robot_->pid() > 0) end_robot();
   kill_master();
 }
 
@@ -151,9 +151,9 @@ void RobotLab::start_robot(const std::vector<std::string>& words) {
 
 Ended RobotLab::end_robot() {
   robot_->signal(SIGTERM);
-  const Ended ended = robot_->wait(kPatience);
-  robot_.reset();
-  return ended;
+  // Moved out first, so that it is gone whatever a test did with it before.
+  const std::unique_ptr<Child> robot = std::move(robot_);
+  return robot->wait(kPatience);
 }
 
 std::vector<Cells> RobotLab::trace() const {

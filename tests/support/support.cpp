@@ -80,6 +80,7 @@ std::string Child::out() const { return text_of(scratch_.path() / "out"); }
 std::string Child::err() const { return text_of(scratch_.path() / "err"); }
 
 Ended Child::wait(double limit) {
+  if (pid_ < 0) throw std::logic_error("a program's end can be waited for once");
   if (limit < 1e8) {
     // Looks again and again: a process cannot be waited for with a limit otherwise, but by threads or signals.
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(limit);

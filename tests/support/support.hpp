@@ -46,7 +46,7 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   void signal(int number) const;
-  /// Waits for its end and collects what it printed. What has not ended after `limit` seconds is killed.
+  /// Waits for its end and collects what it printed; once only. What has not ended after `limit` seconds is killed.
   Ended wait(double limit = 1e9);
 
   int pid() const { return pid_; }
