@@ -141,6 +141,7 @@ class Node {
     const ros::WallDuration period(Body::kPeriod / rate);
     ros::WallTime due = ros::WallTime::now();
     publish();
+    if (second_ != nullptr && body_.active(FaultKind::second_state) != nullptr) second_->wait_until_up();
     std::puts("ready");
     std::fflush(stdout);
     while (!stop) {

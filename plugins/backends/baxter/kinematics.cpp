@@ -12,6 +12,7 @@ namespace {
 constexpr double kHalfPi = 1.57079632679;  // as many digits as the robot's own description has
 constexpr double kAccuracy = 1e-6;
 constexpr int kIterations = 100;
+constexpr double kLever = 0.1;  // m: a turn counts as much as the way of a point so far away
 
 /// Position of a joint in the frame of the one before, metres, and its rotation as roll, pitch and yaw.
 struct Step {
@@ -51,11 +52,15 @@ KDL::JntArray array_of(const Joints& joints) {
   return out;
 }
 
+Eigen::Matrix<double, 6, 1> weights() {
+  return (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished();
+}
+
 }  // namespace
 
 struct Arm::Chain {
   explicit Chain(const Eigen::Vector3d& tip)
-      : arm(left_arm(tip)), forward(arm), tangent(arm), inverse(arm, kAccuracy, kIterations) {}
+      : arm(left_arm(tip)), forward(arm), tangent(arm), inverse(arm, weights(), kAccuracy, kIterations) {}
   KDL::Chain arm;
   KDL::ChainFkSolverPos_recursive forward;
   KDL::ChainJntToJacSolver tangent;

@@ -139,7 +139,7 @@ class RosRobot final : public Link {
             std::min<std::chrono::duration<double>>(std::chrono::duration<double>(time - now), kLongestNap));
       }
     }
-    if (ros::Time::isSimTime()) await_messages_of(time);
+    if (ros::Time::isSimTime()) await_messages();
     return true;
   }
 
@@ -236,12 +236,13 @@ class RosRobot final : public Link {
     while (!stop_) queue_.callAvailable(ros::WallDuration(0.05));
   }
 
-  void await_messages_of(double time) {
+  void await_messages() {
     const auto begin = Steady::now();
     const auto there = [&] {
       const std::lock_guard lock(mutex_);
-      return latest_.joints && latest_.joints->received >= time - kAlmostNow && latest_.endpoint &&
-             latest_.endpoint->received >= time - kAlmostNow;
+      const double enough = ros::Time::now().toSec() - kAlmostNow;
+      return latest_.joints && latest_.joints->received >= enough && latest_.endpoint &&
+             latest_.endpoint->received >= enough && latest_.state && latest_.state->received >= enough;
     };
     while (!there() && Steady::now() - begin < kCatchUp) std::this_thread::sleep_for(kSimulatedNap);
   }
