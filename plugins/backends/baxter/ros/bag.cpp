@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 #include <baxter_core_msgs/AssemblyState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
@@ -22,7 +23,7 @@ namespace {
 /// A minute of everything that a Baxter says.
 constexpr std::size_t kMostWaiting = 30000;
 
-std::mutex current_mutex;
+std::mutex current_mutex;  ///< of what the process shares
 std::weak_ptr<Bag> current;
 
 }  // namespace
@@ -58,8 +59,10 @@ void Bag::open(const std::string& file) {
 }
 
 void Bag::abandon_file() {
-  // Lost on purpose: its destructor would try once more to write, and throw.
-  static_cast<void>(bag_.release());
+  // Its destructor would try once more to write, and throw: so it is kept for ever.
+  static auto* const abandoned = new std::vector<rosbag::Bag*>;
+  const std::lock_guard lock(current_mutex);
+  abandoned->push_back(bag_.release());
 }
 
 void Bag::add(Job job) {
