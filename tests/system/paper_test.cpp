@@ -2,11 +2,13 @@
 // The paper's numbers, over a thousand starts, and what our policies make of its dead starts.
 #include "record/row.hpp"
 #include "support/runs.hpp"
+#include "support/sanitizers.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <map>
 
 namespace palpate {
@@ -15,6 +17,16 @@ namespace {
 using test::TemporaryFolder;
 
 using test::Cells;
+
+/// How many of `all` starts are made here. What is counted comes out alike in every build, and a sanitizer sees in a
+/// few starts what it would see in all.
+int starts(int all, int sanitized) {
+  if (!test::kSanitized) return all;
+  std::cout << "the first " << sanitized << " of " << all << " starts: all take minutes here, release makes them\n";
+  return sanitized;
+}
+
+std::string seeds(int count) { return "seed=range(0," + std::to_string(count) + ")"; }
 
 /// The table of the only sweep that ran in `folder`.
 std::vector<Cells> results_of(const TemporaryFolder& folder) {
@@ -30,8 +42,9 @@ double median(std::vector<double> values) {
 TEST(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertainty) {
   const TemporaryFolder folder;
   const std::string config = (test::source_folder() / "configs/paper/comparison.yaml").string();
+  const int count = starts(1000, 100);
   const test::Ended ended =
-      test::palpate({"sweep", config, "acquisition=uncertainty,weighted", "--quiet"}, folder.path());
+      test::palpate({"sweep", config, "acquisition=uncertainty,weighted", seeds(count), "--quiet"}, folder.path());
   ASSERT_EQ(ended.status, 0) << ended.err;
   std::map<std::string, std::vector<double>> live;
   std::map<std::string, int> runs;
@@ -45,9 +58,10 @@ TEST(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertainty)
     }
   }
   for (const char* acquisition : {"uncertainty", "weighted"}) {
-    EXPECT_EQ(runs[acquisition], 1000) << acquisition;
-    EXPECT_GE(live[acquisition].size(), 380U);
-    EXPECT_LE(live[acquisition].size(), 500U) << "about half of all random starts are dead";
+    EXPECT_EQ(runs[acquisition], count) << acquisition;
+    const double share = static_cast<double>(live[acquisition].size()) / count;
+    EXPECT_GE(share, 0.38);
+    EXPECT_LE(share, 0.5) << "about half of all random starts are dead";
   }
   EXPECT_EQ(median(live["weighted"]), 12.0);
   EXPECT_EQ(median(live["uncertainty"]), 2.0);
@@ -73,7 +87,9 @@ Interval interval_of(const std::vector<double>& differences) {
 TEST(Paper, FittedHyperparametersKnowBetterThanFixedOnesWhatTheyDoNotKnow) {
   const TemporaryFolder folder;
   const std::string config = (test::source_folder() / "configs/sweep/fitting.yaml").string();
-  const test::Ended ended = test::palpate({"sweep", config, "surface=single", "taps=17", "--quiet"}, folder.path());
+  const int count = starts(100, 20);
+  const test::Ended ended =
+      test::palpate({"sweep", config, "surface=single", "taps=17", seeds(count), "--quiet"}, folder.path());
   ASSERT_EQ(ended.status, 0) << ended.err;
   std::map<std::string, std::map<std::string, Cells>> runs;  // by scene and seed, then by fitting
   for (const Cells& row : results_of(folder)) {
@@ -90,7 +106,7 @@ TEST(Paper, FittedHyperparametersKnowBetterThanFixedOnesWhatTheyDoNotKnow) {
       nlpd.push_back(difference("nlpd"));
       rmse.push_back(difference("rmse_m"));
     }
-    ASSERT_EQ(nlpd.size(), 100U) << scene;
+    ASSERT_EQ(nlpd.size(), static_cast<std::size_t>(count)) << scene;
     EXPECT_LT(interval_of(nlpd).high, 0.0) << scene;
     EXPECT_LT(interval_of(rmse).low, 0.0) << scene << "no worse surface for it";
   }
@@ -99,8 +115,9 @@ TEST(Paper, FittedHyperparametersKnowBetterThanFixedOnesWhatTheyDoNotKnow) {
 TEST(Paper, TwoPartSurfaceKnowsTheHeightOfTheObjectToACentimetre) {
   const TemporaryFolder folder;
   const std::string config = (test::source_folder() / "configs/paper/object_i_right.yaml").string();
+  const int count = starts(300, 60);
   const test::Ended ended =
-      test::palpate({"sweep", config, "surface=two_part", "seed=range(0,300)", "--quiet"}, folder.path());
+      test::palpate({"sweep", config, "surface=two_part", seeds(count), "--quiet"}, folder.path());
   ASSERT_EQ(ended.status, 0) << ended.err;
   double sum = 0.0;
   int live = 0;
@@ -110,16 +127,17 @@ TEST(Paper, TwoPartSurfaceKnowsTheHeightOfTheObjectToACentimetre) {
     sum += std::stod(row.at("rmse_height_m"));
     ++live;
   }
-  ASSERT_GE(live, 100);
+  ASSERT_GE(3 * live, count);
   EXPECT_LE(sum / live, 0.01);
 }
 
-/// How many of 1000 starts find the object within the budget, and how many of them stall.
+/// Whether nearly all starts find the object within the budget, and none stalls.
 void expect_found(const std::vector<std::string>& overrides) {
   ResolvedConfig config = test::shipped_config("paper/object_i_right.yaml", overrides);
   int found = 0;
   int stalled = 0;
-  for (int seed = 0; seed < 1000; ++seed) {
+  const int count = starts(1000, 100);
+  for (int seed = 0; seed < count; ++seed) {
     config.options.seed = seed;
     Experiment experiment(config.options, test::shared_host(), nullptr);
     test::Collector collector;
@@ -134,7 +152,7 @@ void expect_found(const std::vector<std::string>& overrides) {
     stalled += std::adjacent_find(places.begin(), places.end()) != places.end() ? 1 : 0;
     found += hit ? 1 : 0;
   }
-  EXPECT_GE(found, 970);
+  EXPECT_GE(found, 0.97 * count);
   EXPECT_EQ(stalled, 0);
   ::testing::Test::RecordProperty("found", found);
 }
