@@ -246,6 +246,8 @@ struct Trouble {
   bool ends_run;
 };
 
+void PrintTo(const Trouble& trouble, std::ostream* out) { *out << trouble.reason; }
+
 class TroubleInATap : public testing::TestWithParam<Trouble> {};
 
 TEST_P(TroubleInATap, LeavesTheArmSafeWithinFiveSeconds) {

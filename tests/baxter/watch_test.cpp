@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <limits>
+#include <ostream>
 
 namespace palpate::baxter {
 namespace {
@@ -33,6 +34,8 @@ struct Wrong {
   const char* reason;
   Then then;
 };
+
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.reason; }
 
 class BrokenRule : public testing::TestWithParam<Wrong> {};
 

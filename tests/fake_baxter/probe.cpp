@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Empty.h>
@@ -207,8 +209,20 @@ int inverse(Probe& probe) {
   return 0;
 }
 
+/// The topics of a rosbag, a line each: topic, type, md5 sum, messages.
+int bag(const std::string& file) {
+  const rosbag::Bag read(file, rosbag::bagmode::Read);
+  std::map<std::string, int> counts;
+  for (const rosbag::MessageInstance& message : rosbag::View(read)) {
+    ++counts[message.getTopic() + " " + message.getDataType() + " " + message.getMD5Sum()];
+  }
+  for (const auto& [topic, count] : counts) fmt::print("{} {}\n", topic, count);
+  return 0;
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.size() == 1 && words[0] == "md5") return md5();
+  if (words.size() == 2 && words[0] == "bag") return bag(words[1]);
   ros::init(ros::M_string(), "probe", ros::init_options::AnonymousName);
   int status = 2;
   {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The plugin in a process of its own, as the program has it: loaded, made, destroyed, made again.
+#include "elsewhere.hpp"
+#include "record/tap_row.hpp"
+#include "robot_lab.hpp"
+#include "robot_words.hpp"
+#include "support/plugins.hpp"
+
+#include <palpate/backend.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace palpate::test {
+namespace {
+
+constexpr const char* kOptions =
+    "{motion: {threshold: 6 N}, tool: {tip: [0 cm, 0 cm, 15 cm]}, "
+    "place: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}}";
+
+long threads() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return std::distance(begin(tasks), end(tasks));
+}
+
+TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const Elsewhere process = elsewhere(lab.environment(), [&] {
+    const PluginHost host({plugin_folder()});
+    std::string told;
+    for (int i = 0; i < 2; ++i) {
+      auto backend = make<Backend>(host, "baxter", kOptions);
+      const long connected = threads();
+      TapRequest request;
+      request.number = i + 1;
+      request.target = {0.04, 0.07};
+      told += outcome_name(backend->tap(request).outcome);
+      const bool listed = lab.nodes().size() == 3;
+      backend.reset();
+      told +=
+          " on the net " + std::to_string(listed) + ", gone with it " + std::to_string(connected - threads()) + "\n";
+    }
+    return told + "left " + std::to_string(threads());
+  });
+  EXPECT_EQ(process.status, 0);
+  // What is left is the test's own thread and roscpp's, which live as long as the process.
+  const Elsewhere roscpp_alone = elsewhere(lab.environment(), [&] {
+    const PluginHost host({plugin_folder()});
+    make<Backend>(host, "baxter", kOptions).reset();
+    return "left " + std::to_string(threads());
+  });
+  EXPECT_EQ(process.printed,
+            "contact on the net 1, gone with it 1\ncontact on the net 1, gone with it 1\n" + roscpp_alone.printed);
+  EXPECT_THAT(lab.nodes(), ::testing::ElementsAre("/end_effector_publisher", "/realtime_loop"));
+}
+
+}  // namespace
+}  // namespace palpate::test
