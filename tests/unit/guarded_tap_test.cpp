@@ -25,8 +25,9 @@ struct Trial {
 
   Trial(
       const MotionOptions& options, const Descent& descent, double surface, double stiffness,
-      const std::function<double(int, double)>& extra = [](int, double) { return 0.0; })
-      : tap(options, descent) {
+      const std::function<double(int, double)>& extra = [](int, double) { return 0.0; },
+      GuardedTap::Arm arm = GuardedTap::Arm::simulated)
+      : tap(options, descent, arm) {
     double position = descent.hover;
     for (int i = 0; !tap.done() && i < 100'000; ++i) {
       const double force = stiffness * std::max(0.0, surface - position) + extra(i, position);
@@ -117,6 +118,43 @@ TEST(GuardedTap, TaresTheZeroOfTheForceAway) {
     EXPECT_EQ(biased.tap.seconds(), plain.tap.seconds()) << yaml;
     EXPECT_NEAR(biased.tap.peak_force(), plain.tap.peak_force(), 1e-9) << yaml;
   }
+}
+
+TEST(GuardedTap, OfARealArmTaresInEveryPauseOfThePaper) {
+  const MotionOptions options = motion("{type: paper, threshold: 10 N}");
+  const Descent descent = plan_descent(options, 0.0, {});
+  // 13.5 N from the height of travel to the desk, 3 N a step.
+  const auto wanders = [&](int, double height) { return 100.0 * (descent.hover - height); };
+  const Trial simulated(options, descent, 0.0, 1500.0, wanders);
+  EXPECT_GT(simulated.tap.height(), 0.02) << "a contact in the air";
+  const Trial real(options, descent, 0.0, 1500.0, wanders, GuardedTap::Arm::real);
+  EXPECT_EQ(real.tap.outcome(), Outcome::contact);
+  EXPECT_LT(real.tap.height(), 0.0);
+  EXPECT_GT(real.tap.height(), -0.01);
+}
+
+TEST(GuardedTap, OfARealArmDoesNotTareAContactAwayThatBeginsInAPause) {
+  const MotionOptions options = motion("{type: paper, threshold: 10 N, step: 3 cm, hover: 13.5 cm}");
+  const Descent descent = plan_descent(options, 0.0, {});
+  // The second step ends at 7.5 cm and presses with 8 N: less than the threshold, more than half of it.
+  const double surface = 0.075 + 8.0 / 1500.0;
+  const Trial real(
+      options, descent, surface, 1500.0, [](int, double) { return 0.0; }, GuardedTap::Arm::real);
+  EXPECT_EQ(real.tap.outcome(), Outcome::contact);
+  EXPECT_LT(real.tap.peak_force(), 10.0 + 4 * 0.024 * kPeriod * 1500.0) << "as if the pause had not been";
+}
+
+TEST(GuardedTap, OfARealArmPutsItsSetPointWhereTheArmIsInThePapersMotionToo) {
+  const MotionOptions options = motion("{type: paper}");
+  GuardedTap tap(options, plan_descent(options, 0.0, {}), GuardedTap::Arm::real);
+  double set_point = options.hover;
+  double measured = options.hover;
+  for (int i = 0; i < 1000 && !(measured < 0.06 && set_point == measured); ++i) {
+    measured = i > 25 ? std::min(measured, set_point + 0.01) : options.hover;  // it trails
+    set_point = tap.next(measured, measured < 0.06 ? 20.0 : 0.0);
+  }
+  EXPECT_EQ(set_point, measured);
+  EXPECT_LT(measured, 0.06);
 }
 
 TEST(GuardedTap, EndsAtItsFloorWithoutAContact) {

@@ -224,7 +224,7 @@ void Tapper::settle(const Joints& goal) {
 
 Contact Tapper::descend(const TapRequest& request, const Path& column) {
   const tapping::Descent plan = tapping::plan_descent(options_.motion, scene_.desk(), request.predicted);
-  GuardedTap tap(options_.motion, plan, GuardedTap::AtContact::hold);
+  GuardedTap tap(options_.motion, plan, GuardedTap::Arm::real);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   const long taring = std::max(1L, std::lround(options_.motion.tare / kPeriod));
   int pulled = 0;

@@ -17,8 +17,8 @@ constexpr double kHeldUp = 2.0;
 
 }  // namespace
 
-GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, AtContact at_contact)
-    : motion_(motion), descent_(descent), at_contact_(at_contact), set_point_(descent.hover) {}
+GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
+    : motion_(motion), descent_(descent), arm_(arm), set_point_(descent.hover) {}
 
 double GuardedTap::next(double height, double force) {
   if (done()) return set_point_;
@@ -57,6 +57,7 @@ double GuardedTap::next(double height, double force) {
       descend(height);
       break;
     case Stage::pause:
+      if (arm_ == Arm::real) tare_in_pause(force);
       if (above_ >= kConsecutive) {
         touched(height);
       } else if (waited(motion_.pause)) {
@@ -100,11 +101,22 @@ void GuardedTap::descend(double height) {
   }
 }
 
+/// The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which must not
+/// be tared away.
+void GuardedTap::tare_in_pause(double force) {
+  if (!waited(motion_.pause - motion_.tare)) return;
+  sum_ += force;
+  ++summed_;
+  const double mean = sum_ / summed_;
+  if (waited(motion_.pause) && std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
+}
+
 void GuardedTap::enter(Stage stage) {
   stage_ = stage;
   entered_ = periods_;
   above_ = 0;
   sum_ = 0.0;
+  summed_ = 0;
   gap_ = std::numeric_limits<double>::infinity();
   switch (stage) {
     case Stage::clear:
@@ -131,7 +143,7 @@ void GuardedTap::enter(Stage stage) {
 void GuardedTap::touched(double height) {
   first_ = height;
   // Wherever the arm trails its set-point, holding that would press on.
-  if (motion_.type != MotionOptions::Type::paper || at_contact_ == AtContact::hold) set_point_ = height;
+  if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
   switch (motion_.type) {
     case MotionOptions::Type::paper:
       return enter(Stage::rest);

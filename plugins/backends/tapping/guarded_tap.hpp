@@ -14,7 +14,7 @@ namespace palpate::tapping {
 ///
 /// Every period the caller tells the measured height and force and commands the set-point that it gets. A contact is
 /// declared when the force has been above its threshold for three periods. What then follows is the motion's:
-/// - paper: the set-point stays (or not: AtContact), the pause passes, and the height is read while the arm still
+/// - paper: the set-point stays (a real arm's does not), the pause passes, and the height is read while the arm still
 /// presses: too low by what
 ///   the contact gives way under the set-point's lead.
 /// - two_stage: the set-point is put where the arm is, backs off until the tip is clear, rests and tares, and comes
@@ -27,11 +27,12 @@ class GuardedTap {
   /// Of the control loop: Baxter's joint states come at 100 Hz.
   static constexpr double kPeriod = 0.01;
 
-  /// What the set-point of `paper` does at a contact: it stays ahead of the arm, as in the paper, or it is put where
-  /// the arm is, as the other motions do and as a robot that stops at 16 N needs.
-  enum class AtContact { press, hold };
+  /// Whose arm it is. The simulated one of `paper` presses on at a contact, as the paper's did: its set-point stays
+  /// ahead. A real one stops at 16 N and its zero wanders: at every contact the set-point is put where the arm is, and
+  /// every pause of `paper` tares anew, unless what it feels there may be a contact that begins.
+  enum class Arm { simulated, real };
 
-  GuardedTap(const MotionOptions& motion, const Descent& descent, AtContact at_contact = AtContact::press);
+  GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
 
   /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m).
   double next(double height, double force);
@@ -51,6 +52,7 @@ class GuardedTap {
 
   void enter(Stage stage);
   void touched(double height);
+  void tare_in_pause(double force);
   void descend(double height);
   bool ramp(double goal, double speed);
   bool arrived(double height);
@@ -60,7 +62,7 @@ class GuardedTap {
 
   MotionOptions motion_;
   Descent descent_;
-  AtContact at_contact_;
+  Arm arm_;
   Stage stage_ = Stage::tare;
   long periods_ = 0;
   long entered_ = 0;  ///< the period in which the stage began
@@ -68,6 +70,7 @@ class GuardedTap {
   double goal_ = 0.0;  ///< of the ramp of this stage
   double zero_ = 0.0;  ///< force of the tare
   double sum_ = 0.0;   ///< of forces while taring
+  int summed_ = 0;     ///< how many, in a pause
   double peak_ = 0.0;
   double first_ = 0.0;         ///< height of the first contact of two_stage
   double gap_ = 0.0;           ///< least distance of arm and set-point in this stage
