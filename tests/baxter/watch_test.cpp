@@ -92,11 +92,89 @@ INSTANTIATE_TEST_SUITE_P(
               "joint_states comes with stamps 0.31 s older", Then::silence},
         Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.16; }, "/robot/joint_states jumped by 9.2 deg",
               Then::silence},
-        Wrong{"JointLimit", [](Snapshot& s) { s.joints->position(3) = 2.62; },
-              "left_e1 is at 150.1 deg, beyond its limit", Then::hold},
+        Wrong{"CommandedByAnother", [](Snapshot& s) { s.commanders = {"/palpate_2"}; },
+              "the arm is commanded by /palpate_2, too", Then::silence},
+        Wrong{"ButtonNotKnown", [](Snapshot& s) { s.state->estop_button = StateReading::Button::unknown; },
+              "does not know whether its emergency stop is pressed", Then::silence},
         Wrong{"Reflex", [](Snapshot& s) { s.collision->collision = true; }, "the arm's own reflex stopped it",
               Then::retreat}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
+
+TEST(AJoint, BeyondItsLimitIsNamed) {
+  Watch watch(kSpace, 14.0);
+  Joints joints = pose();
+  joints(3) = 2.62;
+  const std::optional<Fault> fault = watch.look(sound(1.0, joints), kInside);
+  ASSERT_TRUE(fault);
+  EXPECT_THAT(fault->reason, HasSubstr("left_e1 is at 150.1 deg, beyond its limit"));
+  EXPECT_EQ(fault->then, Then::hold);
+}
+
+TEST(JointsThatAreNotKnown, AreNotHeldWhateverElseIsWrong) {
+  const std::vector<std::function<void(Snapshot&)>> unknown = {
+      [](Snapshot& s) { s.joints->position(3) = kNaN; },
+      [](Snapshot& s) { s.joints->position(2) += 0.16; },
+      [](Snapshot& s) { s.joints->stamp -= 0.31; },
+  };
+  const std::vector<std::function<void(Snapshot&)>> worth_holding = {
+      [](Snapshot& s) { s.endpoint->received -= 0.11; },  [](Snapshot& s) { s.endpoint->force.z() = kNaN; },
+      [](Snapshot& s) { s.endpoint->force.setZero(); },   [](Snapshot& s) { s.endpoint->stamp -= 0.31; },
+      [](Snapshot& s) { s.collision->collision = true; },
+  };
+  for (const auto& spoil_joints : unknown) {
+    for (const auto& spoil_more : worth_holding) {
+      Watch watch(kSpace, 14.0);
+      ASSERT_FALSE(watch.look(sound(1.0, pose()), kInside));
+      Snapshot seen = sound(1.01, pose());
+      spoil_joints(seen);
+      spoil_more(seen);
+      const std::optional<Fault> fault = watch.look(seen, kInside);
+      ASSERT_TRUE(fault);
+      EXPECT_EQ(fault->then, Then::silence) << fault->reason;
+    }
+  }
+}
+
+TEST(AnArmBesideTheArea, IsNotRaisedEvenIfItsReflexStoppedIt) {
+  Watch watch(kSpace, 14.0);
+  Snapshot seen = sound(1.0, pose());
+  seen.collision->collision = true;
+  const std::optional<Fault> fault = watch.look(seen, {0.1, 0.1, -0.05});
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->then, Then::hold);
+}
+
+TEST(ASoundRobot, MayHaveAClockThatGoesALittleFaster) {
+  Watch watch(kSpace, 14.0);
+  for (double now = 1.0; now < 4.0 * 3600.0; now += 1.0) {
+    Snapshot seen = sound(now, pose());
+    seen.joints->stamp = seen.endpoint->stamp = 0.9999 * now;  // 1.4 s in four hours
+    const std::optional<Fault> fault = watch.look(seen, kInside);
+    ASSERT_FALSE(fault) << now << ": " << fault->reason;
+  }
+}
+
+/// Lets the stream of collisions come every `period` seconds and then no more; whether that was noticed in two seconds.
+bool noticed_silence_of_collisions(double period) {
+  Watch watch(kSpace, 14.0);
+  double last = 1.0;
+  for (double now = 1.0; now < 7.0; now += 0.01) {
+    if (now < 5.0 && now - last >= period) last = now;
+    Snapshot seen = sound(now, pose());
+    seen.collision->received = last;
+    if (const std::optional<Fault> fault = watch.look(seen, kInside)) {
+      EXPECT_THAT(fault->reason, HasSubstr("collision_detection_state of the left arm did not come"));
+      EXPECT_EQ(fault->then, Then::hold);
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(AStreamOfCollisions, MustGoOnIfItCameAgainAndAgain) {
+  EXPECT_TRUE(noticed_silence_of_collisions(0.02));
+  EXPECT_FALSE(noticed_silence_of_collisions(1.5)) << "it is sent when it changes";
+}
 
 TEST(ASoundRobot, BreaksNoRule) {
   Watch watch(kSpace, 14.0);
@@ -156,6 +234,21 @@ TEST(AForce, StopsAfterTwoSamplesBeyondTheLimitInAnyDirection) {
     EXPECT_THAT(fault->reason, HasSubstr("more than force_stop allows"));
     EXPECT_EQ(fault->then, Then::retreat);
   }
+}
+
+TEST(AForce, WhoseZeroFollowsStopsWhenItRisesFastAndNotWhenItDrifts) {
+  const auto stopped = [](double rise) {  // N/s
+    Watch watch(kSpace, 14.0);
+    for (int i = 0; i < 300; ++i) {
+      Snapshot seen = sound(1.0 + 0.01 * i, pose());
+      if (i == 0) watch.set_tare(seen.endpoint->force, Watch::Zero::follows);
+      seen.endpoint->force.x() += 0.01 * rise * i;
+      if (watch.look(seen, kInside)) return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(stopped(10.0));
+  EXPECT_TRUE(stopped(50.0));
 }
 
 TEST(AForce, CountsFromTheTareOnly) {

@@ -70,6 +70,7 @@ struct Snapshot {
   std::optional<CollisionReading> collision;
   std::vector<std::string> joint_senders;  ///< the nodes that have sent joints of the left arm
   std::vector<std::string> state_senders;  ///< the nodes that have sent /robot/state
+  std::vector<std::string> commanders;     ///< the nodes other than this one that have sent set-points of the left arm
   std::string malformed;  ///< the first message whose parts do not fit together, told in words; empty if none did
 };
 

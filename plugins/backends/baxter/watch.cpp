@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/watch.hpp"
 
+#include "tapping/guarded_tap.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -10,6 +12,8 @@ namespace {
 
 using Then = Fault::Then;
 using Button = StateReading::Button;
+
+constexpr double kPeriod = tapping::GuardedTap::kPeriod;
 
 std::string number(double value, int digits = 1) {
   std::ostringstream out;
@@ -33,6 +37,10 @@ std::optional<Fault> state_forbids(const StateReading& state, const std::optiona
   }
   if (state.estop_button == Button::released) {
     return Fault{"the emergency stop was pressed and is released: reset the robot and enable it", Then::silence, true};
+  }
+  if (state.estop_button == Button::unknown) {
+    return Fault{"the robot does not know whether its emergency stop is pressed: see that the button is connected",
+                 Then::silence, true};
   }
   if (state.error) {
     return Fault{"the robot reports an error: see its screen, reset it and enable it", Then::silence, true};
@@ -58,12 +66,14 @@ std::optional<Fault> stale(const char* stream, double age, double most) {
                Then::silence, true};
 }
 
-std::optional<Fault> late(const char* stream, const Arrival& arrival, double& least) {
+std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Delay& best) {
   const double delay = arrival.received - arrival.stamp;
   if (!std::isfinite(delay)) return Fault{std::string(stream) + " has a stamp that is no number", Then::silence, true};
-  least = std::min(least, delay);
-  if (delay - least <= Watch::kLate) return std::nullopt;
-  return Fault{std::string(stream) + " comes with stamps " + number(delay - least, 2) +
+  // Two clocks that nobody sets drift apart, by more than kLate within hours.
+  best.least = std::min(delay, best.least + Watch::kDrift * std::max(0.0, arrival.received - best.at));
+  best.at = arrival.received;
+  if (delay - best.least <= Watch::kLate) return std::nullopt;
+  return Fault{std::string(stream) + " comes with stamps " + number(delay - best.least, 2) +
                    " s older than before: its data are stale, see to the network and to the robot's processes",
                Then::silence, true};
 }
@@ -103,6 +113,12 @@ std::optional<Joints> Watch::last_sent() const {
 }
 
 std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
+  if (auto fault = known(seen, moving)) return fault;
+  return feels(seen);
+}
+
+/// Whatever forbids to command even the measured joints.
+std::optional<Fault> Watch::known(const Snapshot& seen, bool moving) {
   if (!seen.malformed.empty()) return Fault{seen.malformed, Then::silence, true};
   if (!seen.state || !seen.joints || !seen.endpoint) {
     return Fault{"not all of joints, endpoint and state were heard", Then::silence, true};
@@ -119,13 +135,21 @@ std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
                      ": one of them is no robot, end it",
                  Then::silence, true};
   }
-  if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh)) return fault;
-  if (auto fault = stale("endpoint_state of the left arm", seen.now - seen.endpoint->received, kFresh)) {
-    fault->then = Then::hold;  // where the arm is, is still known
-    return fault;
+  if (!seen.commanders.empty()) {
+    return Fault{"the arm is commanded by " + names(seen.commanders) + ", too: end that first", Then::silence, true};
   }
+  if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh)) return fault;
   if (!seen.joints->position.allFinite()) {
     return Fault{"/robot/joint_states has a position that is no number: restart the robot", Then::silence, true};
+  }
+  return std::nullopt;
+}
+
+/// Where the arm is, is known: it may be held there.
+std::optional<Fault> Watch::feels(const Snapshot& seen) {
+  if (auto fault = stale("endpoint_state of the left arm", seen.now - seen.endpoint->received, kFresh)) {
+    fault->then = Then::hold;
+    return fault;
   }
   if (!seen.endpoint->force.allFinite() || !seen.endpoint->pose.position.allFinite()) {
     return Fault{"endpoint_state has a force or a place that is no number: restart the robot", Then::hold, true};
@@ -137,33 +161,33 @@ std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
   return std::nullopt;
 }
 
+/// Of several rules that are broken at once that counts which leaves the least to do: so all that ask for silence are
+/// looked at first, and those that allow to retreat last.
 std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& tip) {
-  if (auto fault = fit(seen, true)) return fault;
-  if (auto fault = sound(seen)) return fault;
+  if (auto fault = known(seen, true)) return fault;
+  if (auto fault = joints(seen)) return fault;
+  if (auto fault = feels(seen)) return fault;
+  if (auto fault = endpoint(seen)) return fault;
+  if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
+    return Fault{std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is at " +
+                     degrees(seen.joints->position(joint)) + ", beyond its limit: move the arm by hand",
+                 Then::hold, true};
+  }
+  const std::string breach = workspace_.breach(tip);
+  if (!breach.empty())
+    return Fault{breach + ": see whether place and tool are as the config has them", Then::hold, true};
+  if (auto fault = follows(seen)) return fault;
   if (!collision_expected_ && seen.collision && seen.collision->collision) {
     return Fault{
         "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
         "motion.threshold",
         Then::retreat, true};
   }
-  const std::string breach = workspace_.breach(tip);
-  if (!breach.empty())
-    return Fault{breach + ": see whether place and tool are as the config has them", Then::hold, true};
-  if (auto fault = force(seen)) return fault;
-  return follows(seen);
+  return force(seen);
 }
 
-std::optional<Fault> Watch::sound(const Snapshot& seen) {
+std::optional<Fault> Watch::joints(const Snapshot& seen) {
   if (auto fault = late("/robot/joint_states", *seen.joints, joint_delay_)) return fault;
-  if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_)) {
-    fault->then = Then::hold;
-    return fault;
-  }
-  if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
-    return Fault{std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is at " +
-                     degrees(seen.joints->position(joint)) + ", beyond its limit: move the arm by hand",
-                 Then::hold, true};
-  }
   if (joints_) {
     const double jump = (seen.joints->position - joints_->position).cwiseAbs().maxCoeff();
     if (jump > kJump) {
@@ -172,6 +196,14 @@ std::optional<Fault> Watch::sound(const Snapshot& seen) {
     }
   }
   joints_ = seen.joints;
+  return std::nullopt;
+}
+
+std::optional<Fault> Watch::endpoint(const Snapshot& seen) {
+  if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_)) {
+    fault->then = Then::hold;
+    return fault;
+  }
   const Eigen::Vector3d& now = seen.endpoint->force;
   if (!last_force_ || now != *last_force_) {
     last_force_ = now;
@@ -182,12 +214,28 @@ std::optional<Fault> Watch::sound(const Snapshot& seen) {
                      " s: its sender is frozen, restart the robot",
                  Then::hold, true};
   }
-  return std::nullopt;
+  return collision_silent(seen);
+}
+
+/// A robot that sends it again and again must go on; one that sends it when it changes may be silent.
+std::optional<Fault> Watch::collision_silent(const Snapshot& seen) {
+  if (!seen.collision) return std::nullopt;
+  const double received = seen.collision->received;
+  if (received != collision_received_) {
+    collision_streams_ = received - collision_received_ <= kStateFresh;
+    collision_received_ = received;
+  }
+  if (!collision_streams_) return std::nullopt;
+  auto fault = stale("collision_detection_state of the left arm", seen.now - received, kStateFresh);
+  if (fault) fault->then = Then::hold;
+  return fault;
 }
 
 std::optional<Fault> Watch::force(const Snapshot& seen) {
   if (!tare_) return std::nullopt;
-  const double change = (seen.endpoint->force - *tare_).norm();
+  const Eigen::Vector3d felt = seen.endpoint->force - *tare_;
+  const double change = felt.norm();
+  if (zero_ == Zero::follows) *tare_ += felt * (kPeriod / kZeroFollows);
   too_strong_ = change > force_stop_ ? too_strong_ + 1 : 0;
   if (too_strong_ < kForceSamples) return std::nullopt;
   return Fault{"the force changed by " + number(change) +

@@ -41,22 +41,36 @@ struct Workspace {
 /// commands after 0.2 s, trails its set-point by 0.3 to 0.4 s), else several times what a sound robot shows.
 class Watch {
  public:
-  static constexpr double kFresh = 0.1;       ///< s, greatest age of joints and endpoint, sent every 0.01 s
-  static constexpr double kStateFresh = 0.5;  ///< s, greatest age of /robot/state
-  static constexpr double kLate = 0.3;        ///< s by which a stamp may lie farther back than the best so far
-  static constexpr double kFrozen = 0.5;      ///< s for which a force may be the same to the last digit
-  static constexpr double kJump = 0.15;       ///< rad between two readings
-  static constexpr double kFollowing = 0.2;   ///< rad from the set-point
-  static constexpr double kOffTheWay = 0.06;  ///< rad from every set-point of the last kTrail seconds
-  static constexpr double kTrail = 0.8;       ///< s
-  static constexpr int kForceSamples = 2;     ///< above force_stop: one alone may be noise
+  static constexpr double kFresh = 0.1;        ///< s, greatest age of joints and endpoint, sent every 0.01 s
+  static constexpr double kStateFresh = 0.5;   ///< s, greatest age of /robot/state
+  static constexpr double kLate = 0.3;         ///< s by which a stamp may lie farther back than the best so far
+  static constexpr double kDrift = 1e-3;       ///< s per second by which the robot's clock and ours may drift apart
+  static constexpr double kFrozen = 0.5;       ///< s for which a force may be the same to the last digit
+  static constexpr double kJump = 0.15;        ///< rad between two readings
+  static constexpr double kFollowing = 0.2;    ///< rad from the set-point
+  static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
+  static constexpr double kTrail = 0.8;        ///< s
+  static constexpr double kZeroFollows = 0.5;  ///< s
+  static constexpr int kForceSamples = 2;      ///< above force_stop: one alone may be noise
+
+  /// The least that receipt has come after the stamp, seconds, and when it was last looked at.
+  struct Delay {
+    double least = std::numeric_limits<double>::infinity();
+    double at = 0.0;
+  };
 
   Watch(const Workspace& workspace, double force_stop);
 
   /// Forgets what was commanded and felt: before a motion, after a pause in which nothing was sent.
   void begin();
+  /// Whether the force from which force_stop counts stays, or goes after what is felt as the pose of the arm, and with
+  /// it the bias of the force, changes: then only what rises within kZeroFollows stops.
+  enum class Zero { stays, follows };
   /// The force (N) from which force_stop counts; until it is set no force stops.
-  void set_tare(const std::optional<Eigen::Vector3d>& force) { tare_ = force; }
+  void set_tare(const Eigen::Vector3d& force, Zero zero = Zero::stays) {
+    tare_ = force;
+    zero_ = zero;
+  }
   /// Whether a collision felt by the robot's firmware is a fault; not while one waits for its end.
   void expect_collision(bool expected) { collision_expected_ = expected; }
 
@@ -72,13 +86,18 @@ class Watch {
   static std::optional<Fault> fit(const Snapshot& seen, bool moving);
 
  private:
-  std::optional<Fault> sound(const Snapshot& seen);
+  static std::optional<Fault> known(const Snapshot& seen, bool moving);
+  static std::optional<Fault> feels(const Snapshot& seen);
+  std::optional<Fault> joints(const Snapshot& seen);
+  std::optional<Fault> endpoint(const Snapshot& seen);
+  std::optional<Fault> collision_silent(const Snapshot& seen);
   std::optional<Fault> follows(const Snapshot& seen) const;
   std::optional<Fault> force(const Snapshot& seen);
 
   Workspace workspace_;
   double force_stop_;
   std::optional<Eigen::Vector3d> tare_;
+  Zero zero_ = Zero::stays;
   bool collision_expected_ = false;
   struct Sent {
     double time;
@@ -89,8 +108,10 @@ class Watch {
   std::optional<Eigen::Vector3d> last_force_;
   double force_changed_ = 0.0;  ///< when it last was another
   int too_strong_ = 0;
-  double joint_delay_ = std::numeric_limits<double>::infinity();  ///< least of received - stamp so far
-  double endpoint_delay_ = std::numeric_limits<double>::infinity();
+  double collision_received_ = -std::numeric_limits<double>::infinity();  ///< the latest
+  bool collision_streams_ = false;                                        ///< it came twice within kStateFresh
+  Delay joint_delay_;
+  Delay endpoint_delay_;
 };
 
 }  // namespace palpate::baxter
