@@ -9,7 +9,9 @@ namespace {
 /// The arm's firmware stops at 16 N ("squish"), for two seconds. A threshold must leave room for what the arm presses
 /// on while three samples are taken and it comes to rest.
 constexpr double kGreatestThreshold = 12.0;
-constexpr double kReflex = 16.0;
+constexpr double kGreatestStop = 15.0;
+constexpr double kFastest = 0.1;  ///< m/s, downwards: the arm presses on for a third of a second of it
+constexpr double kDeepest = 0.1;  ///< m below the desk
 
 Field mandatory(Field field) { return available() ? field.needed() : field; }
 
@@ -53,6 +55,16 @@ void BaxterOptions::list(Fields& fields) {
   fields.section(motion, Field("motion", "the tapping motion"));
   fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
                  "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
+  const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
+  fields.require(!two_stage || motion.fine_threshold <= motion.threshold, "motion.fine_threshold",
+                 "must not lie above motion.threshold");
+  fields.require(motion.speed <= kFastest, "motion.speed",
+                 "is too fast for an arm that feels late, take at most 10 cm/s");
+  fields.require(!two_stage || motion.fine_speed <= kFastest, "motion.fine_speed",
+                 "is too fast for an arm that feels late, take at most 10 cm/s");
+  fields.require(!motion.adaptive_hover || motion.adaptive_hover->speed <= kFastest, "motion.adaptive_hover.speed",
+                 "is too fast for an arm that feels late, take at most 10 cm/s");
+  fields.require(motion.overrun <= kDeepest, "motion.overrun", "lets the arm go on below the desk, take at most 10 cm");
   fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
   fields.section(place, Field("place", "where the scene lies before the robot"));
   fields.section(calibration,
@@ -66,7 +78,7 @@ void BaxterOptions::list(Fields& fields) {
                     "change of the force since the tare, in any direction, at which the arm stops whatever it does")
                   .in(Unit::newton)
                   .above(0)
-                  .at_most(kReflex)
+                  .at_most(kGreatestStop)
                   .from("the arm's firmware stops it at 16 N"));
   fields.require(force_stop > motion.threshold, "force_stop", "must lie above motion.threshold");
   fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),

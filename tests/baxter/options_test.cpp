@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Options with which no arm should be started.
+#include "baxter/options.hpp"
+#include "support/filled.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate::baxter {
+namespace {
+
+using testing::HasSubstr;
+
+/// What is said of a motion and more, beside what must be said; "" for nothing.
+std::string refusal(const std::string& motion, const std::string& more = "") {
+  try {
+    palpate::test::filled<BaxterOptions>(
+        "{tool: {tip: [0 cm, 0 cm, 15 cm]}, place: {corner: [50 cm, 7 cm], height: "
+        "-17 cm}, motion: " +
+        motion + more + "}");
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+TEST(BaxterOptions, OfTheShippedMotionsAreTaken) {
+  EXPECT_EQ(refusal("{type: paper}"), "");
+  EXPECT_EQ(refusal("{type: two_stage}"), "");
+  EXPECT_EQ(refusal("{type: continuous, adaptive_hover: {}}"), "");
+}
+
+TEST(BaxterOptions, WithWhichTheFirmwareWouldStopTheArmAreRefused) {
+  EXPECT_THAT(refusal("{type: paper, threshold: 12.5 N}"), HasSubstr("take at most 12 N"));
+  EXPECT_THAT(refusal("{type: two_stage, threshold: 6 N, fine_threshold: 20 N}"),
+              HasSubstr("must not lie above motion.threshold"));
+  EXPECT_THAT(refusal("{type: paper, threshold: 10 N}", ", force_stop: 9 N"),
+              HasSubstr("must lie above motion.threshold"));
+  EXPECT_THAT(refusal("{type: paper}", ", force_stop: 16 N"), HasSubstr("force_stop"));
+}
+
+TEST(BaxterOptions, ThatComeDownTooFastOrTooFarAreRefused) {
+  EXPECT_THAT(refusal("{type: continuous, speed: 20 cm/s}"), HasSubstr("take at most 10 cm/s"));
+  EXPECT_THAT(refusal("{type: two_stage, fine_speed: 20 cm/s}"), HasSubstr("take at most 10 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, adaptive_hover: {speed: 20 cm/s}}"), HasSubstr("take at most 10 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("take at most 10 cm"));
+}
+
+TEST(BaxterOptions, ThatAreNoNumbersAreRefused) {
+  EXPECT_NE(refusal("{type: paper, threshold: nan N}"), "");
+  EXPECT_NE(refusal("{type: paper, speed: inf cm/s}"), "");
+}
+
+}  // namespace
+}  // namespace palpate::baxter
