@@ -8,6 +8,7 @@
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -42,6 +43,23 @@ class Diary {
  private:
   std::string directory_;
   std::string waiting_;
+};
+
+/// The one arm. Two experiments of a process, as the workers of a sweep are, would be one node to the robot, which
+/// could not tell their set-points apart.
+class ArmTaken {
+ public:
+  ArmTaken() {
+    if (taken.exchange(true)) {
+      throw Error("", "another experiment of this process has the arm", "sweep with one worker", Error::Kind::run);
+    }
+  }
+  ~ArmTaken() { taken = false; }
+  ArmTaken(const ArmTaken&) = delete;
+  ArmTaken& operator=(const ArmTaken&) = delete;
+
+ private:
+  static inline std::atomic<bool> taken{false};
 };
 
 }  // namespace
@@ -84,6 +102,7 @@ class Baxter final : public Backend {
   bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
 
  private:
+  ArmTaken taken_;  ///< as long as all that follows
   Options options_;
   const Scene& scene_;
   Diary diary_;

@@ -130,6 +130,7 @@ void Bag::write_own(const std::string& topic, const Message& message, bool latch
 PALPATE_RECORDED(baxter_core_msgs::EndpointState)
 PALPATE_RECORDED(baxter_core_msgs::AssemblyState)
 PALPATE_RECORDED(baxter_core_msgs::CollisionDetectionState)
+PALPATE_RECORDED(baxter_core_msgs::JointCommand)
 PALPATE_RECORDED(sensor_msgs::JointState)
 #undef PALPATE_RECORDED
 template void Bag::write_own(const std::string&, const baxter_core_msgs::JointCommand&, bool);

@@ -117,7 +117,7 @@ class Visit {
     const Graph graph = network_.master.graph(until(kTold));
     std::vector<std::string> topics;
     for (const Stream& stream : Link::needed()) topics.emplace_back(stream.topic);
-    topics.insert(topics.end(), {kCollisionTopic, "/clock"});
+    topics.insert(topics.end(), {kCollisionTopic, kCommandTopic, "/clock"});
     std::set<std::string> found;
     for (const std::string& topic : topics) {
       for (const std::string& node : Graph::of(graph.publishers, topic)) {

@@ -16,6 +16,7 @@
 #include <pthread.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/this_node.h>
 #include <sensor_msgs/JointState.h>
 
 namespace palpate::baxter {
@@ -32,8 +33,6 @@ using std::chrono::seconds;
 constexpr seconds kStandstill(2);
 /// A simulated second may pass in a twentieth of a real one: looked at so often, it is not overslept by 4 ms.
 constexpr microseconds kSimulatedNap(150);
-/// The longest sleep in real time, lest a clock that is set back be slept through.
-constexpr milliseconds kLongestNap(50);
 /// A simulated clock goes in steps, and who waits for the next must not miss it by the rounding of sums, seconds.
 constexpr double kRounding = 1e-6;
 /// For an answer of the robot's inverse kinematics, with room in the promised second.
@@ -49,6 +48,26 @@ constexpr std::size_t kArm = kJointNames.size();
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
+
+/// Protocol time, seconds: the simulated clock, or that of this machine as it was at the beginning, which then goes on
+/// evenly. Who sets the clock meanwhile, by hand or by NTP, neither makes data old nor the arm wait.
+class Clock {
+ public:
+  double now() const {
+    if (ros::Time::isSimTime()) return ros::Time::now().toSec();
+    return begin_ + std::chrono::duration<double>(Steady::now() - steady_begin_).count();
+  }
+
+  /// When a message was received, which roscpp tells by the clock of this machine.
+  double received(const ros::Time& receipt) const {
+    if (ros::Time::isSimTime()) return receipt.toSec();
+    return now() - std::max(0.0, (ros::Time::now() - receipt).toSec());
+  }
+
+ private:
+  double begin_ = ros::WallTime::now().toSec();
+  Steady::time_point steady_begin_ = Steady::now();
+};
 
 /// The arm's joints among named ones: all of them, or none; a message with only some of them is malformed.
 struct ArmPart {
@@ -93,6 +112,7 @@ class RosRobot final : public Link {
     subscribe<msgs::AssemblyState>(kStateTopic, 1, &RosRobot::on_state);
     subscribe<msgs::CollisionDetectionState>(kCollisionTopic, 1, &RosRobot::on_collision);
     if (commands) {
+      subscribe<msgs::JointCommand>(kCommandTopic, 10, &RosRobot::on_command);
       command_publisher_ = handle_.advertise<msgs::JointCommand>(kCommandTopic, 1);
       command_.mode = msgs::JointCommand::POSITION_MODE;
       command_.names.assign(kJointNames.begin(), kJointNames.end());
@@ -118,14 +138,14 @@ class RosRobot final : public Link {
   Snapshot read() override {
     const std::lock_guard lock(mutex_);
     Snapshot snapshot = latest_;
-    snapshot.now = ros::Time::now().toSec();
+    snapshot.now = clock_.now();
     return snapshot;
   }
 
   bool wait_until(double time) override {
-    double last = ros::Time::now().toSec();
+    double last = clock_.now();
     auto moved = Steady::now();
-    for (double now = last; now < time - kRounding; now = ros::Time::now().toSec()) {
+    for (double now = last; now < time - kRounding; now = clock_.now()) {
       if (now != last) {
         last = now;
         moved = Steady::now();
@@ -135,8 +155,7 @@ class RosRobot final : public Link {
       if (ros::Time::isSimTime()) {
         std::this_thread::sleep_for(kSimulatedNap);
       } else {
-        std::this_thread::sleep_for(
-            std::min<std::chrono::duration<double>>(std::chrono::duration<double>(time - now), kLongestNap));
+        std::this_thread::sleep_for(std::chrono::duration<double>(time - now));
       }
     }
     if (ros::Time::isSimTime()) await_messages();
@@ -160,7 +179,8 @@ class RosRobot final : public Link {
   }
 
   bool clock_runs() override { return !ros::Time::now().isZero(); }
-  bool listened_to() override { return command_publisher_.getNumSubscribers() > 0; }
+  /// This program listens, too: see on_command().
+  bool listened_to() override { return command_publisher_.getNumSubscribers() > 1; }
 
  private:
   template <class Message>
@@ -170,6 +190,7 @@ class RosRobot final : public Link {
   void subscribe(const char* topic, std::uint32_t queue, void (RosRobot::*take)(const Event<Message>&, Snapshot&)) {
     const boost::function<void(const Event<Message>&)> heard = [this, topic, take](const Event<Message>& event) {
       if (event.getReceiptTime().isZero()) return;  // before a simulated clock was heard nothing has an age
+      if (event.getPublisherName() == ros::this_node::getName()) return;
       bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
       const std::lock_guard lock(mutex_);
       (this->*take)(event, latest_);
@@ -187,7 +208,8 @@ class RosRobot final : public Link {
                             " of the left arm's seven joints, " + counts(message));
       return;
     }
-    latest.joints = JointReading{{event.getReceiptTime().toSec(), message.header.stamp.toSec()}, part.position};
+    latest.joints =
+        JointReading{{clock_.received(event.getReceiptTime()), message.header.stamp.toSec()}, part.position};
     add_once(latest.joint_senders, event.getPublisherName());
   }
 
@@ -196,7 +218,7 @@ class RosRobot final : public Link {
     const auto& position = message.pose.position;
     const auto& turn = message.pose.orientation;
     const auto& force = message.wrench.force;
-    latest.endpoint = EndpointReading{{event.getReceiptTime().toSec(), message.header.stamp.toSec()},
+    latest.endpoint = EndpointReading{{clock_.received(event.getReceiptTime()), message.header.stamp.toSec()},
                                       {{position.x, position.y, position.z}, {turn.w, turn.x, turn.y, turn.z}},
                                       {force.x, force.y, force.z}};
   }
@@ -211,7 +233,7 @@ class RosRobot final : public Link {
       return;
     }
     StateReading state;
-    state.received = event.getReceiptTime().toSec();
+    state.received = clock_.received(event.getReceiptTime());
     state.ready = message.ready != 0;
     state.enabled = message.enabled != 0;
     state.stopped = message.stopped != 0;
@@ -223,8 +245,13 @@ class RosRobot final : public Link {
 
   void on_collision(const Event<msgs::CollisionDetectionState>& event, Snapshot& latest) {
     const msgs::CollisionDetectionState& message = *event.getConstMessage();
-    latest.collision =
-        CollisionReading{{event.getReceiptTime().toSec(), message.header.stamp.toSec()}, message.collision_state != 0};
+    latest.collision = CollisionReading{{clock_.received(event.getReceiptTime()), message.header.stamp.toSec()},
+                                        message.collision_state != 0};
+  }
+
+  /// Whoever else sends set-points drives the same arm elsewhere.
+  void on_command(const Event<msgs::JointCommand>& event, Snapshot& latest) {
+    add_once(latest.commanders, event.getPublisherName());
   }
 
   static void malformed(Snapshot& latest, const std::string& words) {
@@ -250,6 +277,7 @@ class RosRobot final : public Link {
   std::string asked_solver(const std::string& request, Deadline deadline);
 
   Master master_;
+  Clock clock_;
   std::shared_ptr<Bag> bag_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
