@@ -2,7 +2,7 @@
 // The robot's body in this process, led by hand: what tests of it, and of what drives it, start from.
 #pragma once
 
-#include "fake_baxter/body.hpp"
+#include "baxter/body_robot.hpp"
 #include "scene/scene_options.hpp"
 #include "support/filled.hpp"
 
@@ -20,15 +20,7 @@ constexpr const char* kLikeBaxter =
     "{stiffness: {object: 1500 N/m}, joint_lag: {delay: 350 ms}, force_noise: {deviation: 1.5 N}}";
 
 /// Tool and place of configs/backend/fake_baxter.yaml.
-inline fake_baxter::BodyOptions fake_options() {
-  fake_baxter::BodyOptions out;
-  out.tool.tip[2] = 0.15;
-  out.place.corner[0] = 0.507;
-  out.place.corner[1] = 0.067;
-  out.place.height = -0.17;
-  out.place.rotation = 10.0 * 3.14159265358979323846 / 180.0;
-  return out;
-}
+inline fake_baxter::BodyOptions fake_options() { return baxter::test::body_options(baxter::test::fake_options()); }
 
 class BodyBench {
  public:

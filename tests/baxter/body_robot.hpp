@@ -62,6 +62,7 @@ class BodyRobot final : public Robot {
   std::vector<double> heights;                               ///< of the tip after every period
   std::function<void()> every_period;                        ///< called then
   std::function<Answer(const Pose&, const Joints&)> answer;  ///< instead of what is right
+  std::function<void(Snapshot&)> spoil;                      ///< changes what is heard
   int asked = 0;
 
  private:
@@ -74,6 +75,7 @@ class BodyRobot final : public Robot {
     if (said.collision) heard_.collision = said.collision;
     heard_.joint_senders = heard_.state_senders = {"/realtime_loop"};
     if (body.active(FaultKind::second_state) != nullptr) heard_.state_senders.push_back("/mock_robot");
+    if (spoil) spoil(heard_);
   }
 
   Arm gripper_;

@@ -154,6 +154,20 @@ TEST(RobotRun, InterruptedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
   EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));
 }
 
+TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::unique_ptr<Child> other = lab.start({probe_file().string(), "drive", "1000", "0"});
+  ASSERT_TRUE(eventually([&] {
+    const std::vector<Cells> trace = lab.trace();
+    return !trace.empty() && trace.back().at("mode") == "following";
+  }));
+  const Ended ended = lab.palpate(run_words(1), 60.0);
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, HasSubstr("the arm is commanded by /probe"));
+  EXPECT_FALSE(fs::exists(lab.folder() / "runs"));
+}
+
 TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
   RobotLab lab;
   lab.start_robot(robot_words({"--fault", "estop=1", "--at", "2:8cm"}));

@@ -117,7 +117,7 @@ Path Planner::column(const Target& place, const Target& middle, double hover, do
   }
   if (out.steepest() * speed > kJointSpeed) {
     throw NoPath{"a joint would have to turn faster than 0.4 rad/s on the way down to " +
-                 place_text(pose(place, floor)) + " at the speed of the motion"};
+                 place_text(pose(place, floor)) + " at the speed of the motion: take a lower one"};
   }
   return out;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <tuple>
 
 namespace palpate::baxter {
 namespace {
@@ -53,6 +54,22 @@ Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
   const Area area = scene.area();
   return {area.width, area.depth, scene.desk() - options.motion.overrun - kBelowFloor,
           scene.desk() + options.motion.hover + kAboveTravel};
+}
+
+void check_plan(const BaxterOptions& options, const Scene& scene) {
+  const double highest = scene.highest() - scene.desk();
+  if (highest > options.motion.hover) {
+    refuse("motion.hover",
+           "the scene has objects " + centimetres(highest) + " high, and the arm would travel through them at " +
+               centimetres(options.motion.hover),
+           "take more");
+  }
+  if (!options.calibration) return;
+  const Area area = scene.area();
+  const auto [x, y] = std::tie(options.calibration->at[0], options.calibration->at[1]);
+  if (x < 0.0 || y < 0.0 || x > area.width || y > area.depth) {
+    refuse("calibration.at", "lies outside of the area", "take a bare place within");
+  }
 }
 
 void check_before_flight(const Snapshot& seen, const BaxterOptions& options, const Planner& planner,

@@ -13,6 +13,10 @@ namespace palpate::baxter {
 /// height of travel.
 Workspace workspace_of(const BaxterOptions& options, const Scene& scene);
 
+/// What needs no robot to be wrong. Throws Error (kind `run`): travel through what the scene has, a calibration tap
+/// beside the area.
+void check_plan(const BaxterOptions& options, const Scene& scene);
+
 /// Compares what the robot says with what the config says of it. With `moving` false the robot may be disabled and the
 /// arm anywhere. Throws Error (kind `run`) that names the cause and the remedy: a state in which it must not move, a
 /// second sender, stale or unsound data, a joint beyond its limit, left_gripper not where the config has it, an arm

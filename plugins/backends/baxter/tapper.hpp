@@ -38,25 +38,32 @@ class Tapper {
   void check();
 
  private:
+  static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
+
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const Path& column);
-  void calibrate();
-  void start();
+  void calibrate(const Contact& contact);
+  void try_reach();
   void await_fit(bool moving);
+  void expect_fit();
   void go_to(const Joints& hover);
   void follow(const Path& path, double speed);
   void settle(const Joints& goal);
-  bool clear_of_force(const Path& column);
+  Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
-  void rise();
+  Path way_up() const;
+  void climb(const Path& up);
   void await_height(const Joints& top);
   Path column(const Target& place) const;
+  std::optional<Joints> inverse(const Pose& tip, const Joints& seed);
   std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);
-  void hold(const Joints& joints, double seconds);
+  std::optional<Fault> hold(const Joints& joints);
+  bool interrupted() const;
   void take(Snapshot seen);
   double height() const;
+  double travel_height() const;
   double force() const;
 
   BaxterOptions options_;
@@ -73,7 +80,7 @@ class Tapper {
   double next_ = 0.0;                              ///< when the next period begins
   bool recovering_ = false;
   bool calibrated_ = false;
-  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force before the descent
+  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
 };
 
 }  // namespace palpate::baxter

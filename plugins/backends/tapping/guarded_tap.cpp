@@ -24,9 +24,9 @@ double GuardedTap::next(double height, double force) {
   if (done()) return set_point_;
   ++periods_;
   const double felt = force - zero_;
-  const bool taring = stage_ == Stage::tare || stage_ == Stage::settle;
-  if (!taring) peak_ = std::max(peak_, felt);
-  above_ = !taring && felt > threshold() ? above_ + 1 : 0;
+  const bool tared = !taring();
+  if (tared) peak_ = std::max(peak_, felt);
+  above_ = tared && felt > threshold() ? above_ + 1 : 0;
   const bool coming_down = stage_ == Stage::descend || stage_ == Stage::bottom;
   if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
   if (seconds() > motion_.timeout) {

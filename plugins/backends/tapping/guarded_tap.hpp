@@ -38,6 +38,8 @@ class GuardedTap {
   double next(double height, double force);
 
   bool done() const { return stage_ == Stage::done; }
+  /// Whether the force of the next period belongs to a tare, the first or that of two_stage.
+  bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
   /// When done: `contact`, `no_contact` (the floor was reached) or `timeout`.
   Outcome outcome() const { return outcome_; }
   /// Of the contact, metres.

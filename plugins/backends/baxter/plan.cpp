@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// What Tapper looks at and plans while nothing moves.
+#include "baxter/tapper.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+
+namespace palpate::baxter {
+namespace {
+
+using Then = Fault::Then;
+
+constexpr double kLimitMargin = 0.03;   ///< rad that planned joints keep from their limits
+constexpr double kReachSpacing = 0.02;  ///< m between the places of a dry run
+constexpr double kPoseError = 0.001;    ///< m and
+constexpr double kTurnError = 0.02;     ///< rad by which an answer of the robot's may miss the pose
+constexpr double kPatience = 1.0;       ///< s in which data must be fresh when a tap begins
+constexpr double kListen = 0.3;         ///< s in which another program that commands the arm is heard
+
+/// Of all that GuardedTap does within a column.
+double fastest(const tapping::MotionOptions& motion) {
+  double out = std::max(motion.speed, motion.type == tapping::MotionOptions::Type::two_stage ? motion.fine_speed : 0.0);
+  if (motion.adaptive_hover) out = std::max(out, motion.adaptive_hover->speed);
+  return out;
+}
+
+}  // namespace
+
+void Tapper::check() {
+  check_plan(options_, scene_);
+  take(robot_.read());
+  robot_.wait_until(seen_.now + kListen);
+  await_fit(!options_.dry_run);
+  check_before_flight(seen_, options_, planner_, workspace_, !options_.dry_run);
+  try {
+    if (options_.calibration) column({options_.calibration->at[0], options_.calibration->at[1]});
+    if (options_.dry_run) try_reach();
+  } catch (const NoPath& none) {
+    throw Error("calibration.at", none.reason,
+                "take another place, or move the area: its middle near x = 60 cm, y = 20 cm of base", Error::Kind::run);
+  } catch (const Fault& fault) {
+    throw Error("", fault.reason, {}, Error::Kind::run);
+  }
+}
+
+void Tapper::try_reach() {
+  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
+  const int places =
+      check_reach(planner_, scene_.area(), descent.hover, descent.floor, fastest(options_.motion), kReachSpacing);
+  note_("dry run: all " + std::to_string(places) + " places of the area can be reached, all the way down");
+}
+
+/// Reads until the robot is fit; if it is not within a second, what was read last says why.
+void Tapper::await_fit(bool moving) {
+  take(robot_.read());
+  const double begin = seen_.now;
+  for (next_ = begin; next_ < begin + kPatience && Watch::fit(seen_, moving); take(robot_.read())) {
+    next_ += tapping::GuardedTap::kPeriod;
+    if (!robot_.wait_until(next_)) return;
+  }
+}
+
+Path Tapper::column(const Target& place) const {
+  const Area area = scene_.area();
+  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
+  return planner_.column(place, {0.5 * area.width, 0.5 * area.depth}, descent.hover, descent.floor,
+                         fastest(options_.motion));
+}
+
+/// From where the arm is to the height of travel; no way if it is there.
+Path Tapper::way_up() const {
+  const double missing = travel_height() - height();
+  return planner_.up(seen_.joints->position, missing > kNearTravel ? missing : 0.0);
+}
+
+/// Of a fault one goes up by own kinematics: who knows what else has failed.
+std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
+  const bool asked = options_.inverse_kinematics == BaxterOptions::InverseKinematics::robot && !recovering_;
+  return asked ? ask_robot(tip, seed) : arm_.solve(tip, seed, kLimitMargin);
+}
+
+std::optional<Joints> Tapper::ask_robot(const Pose& tip, const Joints& seed) {
+  const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
+  // Many poses are asked for, and each may take a second.
+  if (interrupted()) throw Fault{"interrupted", Then::silence, false};
+  const Robot::Answer answer = robot_.solve(
+      {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},
+      seed);
+  if (!answer.trouble.empty()) throw Fault{answer.trouble, Then::silence, true};
+  if (!answer.joints || !answer.joints->allFinite() || beyond_limits(*answer.joints, kLimitMargin) >= 0)
+    return std::nullopt;
+  const Pose reached = arm_.tip(*answer.joints);
+  const bool there = (reached.position - tip.position).norm() < kPoseError &&
+                     reached.rotation.angularDistance(tip.rotation) < kTurnError;
+  return there ? answer.joints : std::nullopt;
+}
+
+}  // namespace palpate::baxter

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// What goes wrong in a tap, and in which state that leaves the arm.
+#include "baxter/tapper_bench.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include <limits>
+
+namespace palpate::baxter {
+namespace {
+
+using fake_baxter::Body;
+using fake_baxter::FaultKind;
+using test::fake_options;
+using test::kHover;
+using test::kOnDesk;
+using test::kOnObject;
+using test::wave_scene;
+using Bench = test::TapperBench;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(ATap, InterruptedIsAbortedAndTheArmRaised) {
+  for (const double at : {0.13, 0.12, 0.1095}) {  // on the way down, and pressing
+    Bench bench;
+    bench.robot.every_period = [&] {
+      if (bench.tip() < at) bench.interrupted = true;
+    };
+    const Contact contact = bench.tap(kOnObject);
+    EXPECT_EQ(contact.outcome, Outcome::aborted);
+    EXPECT_EQ(contact.reason, "interrupted; the arm was raised to the height of travel");
+    EXPECT_FALSE(contact.ends_run);
+    EXPECT_NEAR(bench.tip(), kHover, 0.01);
+  }
+}
+
+TEST(ATap, WithTheForceOfTheOtherSignIsStoppedAndSaysWhatToSet) {
+  BaxterOptions options = fake_options();
+  options.force_sign = BaxterOptions::ForceSign::negative;
+  Bench bench(options);
+  const Contact contact = bench.tap(kOnObject);
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_THAT(contact.reason, HasSubstr("force_sign is wrong"));
+  EXPECT_NEAR(bench.tip(), kHover, 0.01);
+}
+
+enum class Arm_ { held, raised };
+
+struct Trouble {
+  FaultKind kind;
+  double amount;
+  const char* reason;
+  Arm_ arm;
+  bool ends_run;
+};
+
+void PrintTo(const Trouble& trouble, std::ostream* out) { *out << trouble.reason; }
+
+class TroubleInATap : public testing::TestWithParam<Trouble> {};
+
+TEST_P(TroubleInATap, LeavesTheArmSafeWithinFiveSeconds) {
+  const Trouble& trouble = GetParam();
+  Bench bench;
+  bench.check();
+  ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
+  bench.robot.body.inject({trouble.kind, trouble.amount, {}}, {1, 0.125});  // on the way down to the object at 11 cm
+  double since = 0.0;
+  double lowest = 1.0;
+  bench.robot.every_period = [&] {
+    if (since == 0.0 && bench.robot.body.faulty()) since = bench.robot.body.now();
+    lowest = std::min(lowest, bench.tip());
+  };
+  const Contact contact = bench.tap(kOnObject);
+  const double took = bench.robot.body.now() - since;
+  ASSERT_GT(since, 0.0) << "it never happened";
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_THAT(contact.reason, HasSubstr(trouble.reason));
+  EXPECT_EQ(contact.ends_run, trouble.ends_run);
+  EXPECT_LT(took, trouble.ends_run ? 5.0 : 10.0);
+  // What the arm does when nobody sends anything any more is the firmware's: nothing.
+  const double left_at = bench.tip();
+  for (int i = 0; i < 300; ++i) bench.robot.body.step();
+  EXPECT_NEAR(bench.tip(), left_at, 0.005) << "it stands";
+  if (trouble.arm == Arm_::raised) {
+    EXPECT_THAT(contact.reason,
+                testing::AnyOf(EndsWith("the arm was raised to the height of travel"), HasSubstr("its zero moved")));
+    EXPECT_NEAR(bench.tip(), kHover, 0.01);
+  } else {
+    EXPECT_THAT(contact.reason, testing::AnyOf(HasSubstr("nothing more is sent"), HasSubstr("the arm holds")));
+    EXPECT_LT(bench.tip(), 0.127);
+  }
+  EXPECT_LT(bench.robot.body.pressing(), Body::kReflex);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OnTheWayDown, TroubleInATap,
+    testing::Values(
+        Trouble{FaultKind::estop, 2, "the emergency stop is pressed", Arm_::held, true},
+        Trouble{FaultKind::error, 0, "the robot reports an error", Arm_::held, true},
+        Trouble{FaultKind::squish, 0, "the arm's own reflex stopped it", Arm_::raised, true},
+        Trouble{FaultKind::freeze_endpoint, 0, "the same force to the last digit", Arm_::held, true},
+        Trouble{FaultKind::kill_endpoint, 0, "endpoint_state of the left arm did not come", Arm_::held, true},
+        Trouble{FaultKind::kill_joints, 0, "joint_states of the left arm did not come", Arm_::held, true},
+        Trouble{FaultKind::kill_state, 0, "/robot/state did not come", Arm_::held, true},
+        Trouble{FaultKind::stale_stamps, 0, "its data are stale", Arm_::held, true},
+        Trouble{FaultKind::second_state, 0, "more than one node", Arm_::held, true},
+        Trouble{FaultKind::nan_wrench, 0, "no number", Arm_::held, true},
+        Trouble{FaultKind::zero_wrench, 0, "exactly zero", Arm_::held, true},
+        Trouble{FaultKind::bias, 8, "its zero moved", Arm_::raised, false},
+        Trouble{FaultKind::bias, 20, "more than force_stop allows", Arm_::raised, true},
+        Trouble{FaultKind::bias, -12, "the force fell by more than the threshold", Arm_::raised, true},
+        Trouble{FaultKind::drop_commands, 5, "the arm does not follow", Arm_::held, true},
+        Trouble{FaultKind::jump_joints, 0.3, "jumped by", Arm_::held, true},
+        Trouble{FaultKind::freeze_clock, 0, "the clock of the robot's network stands still", Arm_::held, true}),
+    [](const auto& trouble) { return "Number" + std::to_string(trouble.index); });
+
+TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
+  Bench bench;
+  bench.robot.body.inject({FaultKind::kill_endpoint, 0.0, {}}, {1, 0.125});
+  double pressed = 0.0;
+  std::size_t sent = 0;
+  bench.robot.every_period = [&] {
+    if (!bench.robot.body.faulty()) return;
+    if (pressed == 0.0) pressed = bench.robot.body.now() + 0.2;  // 0.1 s until it is noticed
+    if (sent == 0 && bench.robot.body.now() >= pressed) {
+      bench.robot.body.inject({FaultKind::estop, 1000.0, {}});
+      sent = bench.robot.commands.size();
+    }
+  };
+  const Contact contact = bench.tap(kOnObject);
+  ASSERT_GT(sent, 0U);
+  EXPECT_LE(bench.robot.commands.size(), sent + 1) << "an arm under an emergency stop is sent nothing";
+  EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not come"));
+  EXPECT_THAT(contact.reason,
+              EndsWith("nothing more is sent, the arm stays where it is: the emergency stop is pressed: "
+                       "release it, reset and enable the robot"));
+}
+
+TEST(AFault, ThatNobodyThoughtOfIsRecordedAndNothingMoreIsSent) {
+  Bench bench;
+  std::size_t sent = 0;
+  bench.robot.every_period = [&] {
+    if (bench.tip() > 0.125 || sent > 0) return;
+    sent = bench.robot.commands.size();
+    throw std::runtime_error("out of memory");
+  };
+  const Contact contact = bench.tap(kOnObject);
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_TRUE(contact.ends_run);
+  EXPECT_EQ(contact.reason, "out of memory; nothing more is sent, the arm stays where it is");
+  EXPECT_EQ(bench.robot.commands.size(), sent);
+}
+
+TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
+  BaxterOptions options = fake_options();
+  options.inverse_kinematics = BaxterOptions::InverseKinematics::robot;
+  Bench bench(options);
+  bench.check();
+  const Arm gripper({0, 0, options.tool.gripper});
+  bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
+    bench.interrupted = true;
+    return Robot::Answer{gripper.solve(pose, seed), {}};
+  };
+  const int before = bench.robot.asked;
+  const Contact contact = bench.tap(kOnObject);
+  EXPECT_EQ(contact.reason, "interrupted; nothing more is sent, the arm stays where it is");
+  EXPECT_FALSE(contact.ends_run);
+  EXPECT_EQ(bench.robot.asked, before + 1);
+  EXPECT_TRUE(bench.robot.commands.empty());
+}
+
+TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
+  BaxterOptions options = fake_options();
+  options.inverse_kinematics = BaxterOptions::InverseKinematics::robot;
+  Bench bench(options);
+  bench.robot.every_period = [&] {
+    if (bench.tip() > 0.12) return;
+    bench.interrupted = true;
+    bench.robot.answer = [](const Pose&, const Joints&) { return Robot::Answer{{}, "IKService did not answer"}; };
+  };
+  const Contact contact = bench.tap(kOnObject);
+  EXPECT_EQ(contact.reason, "interrupted; the arm was raised to the height of travel");
+  EXPECT_NEAR(bench.tip(), kHover, 0.01);
+}
+
+TEST(Travel, StopsWhenItMeetsSomething) {
+  Bench bench;
+  ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
+  double met = 0.0;
+  bench.robot.spoil = [&](Snapshot& seen) {
+    if (bench.tip() < kHover - 0.01 || bench.robot.body.tip().x() < 0.08) return;
+    if (met == 0.0) met = seen.now;
+    seen.endpoint->force.x() += 60.0 * (seen.now - met);
+  };
+  const Contact contact = bench.tap({0.2, 0.2});
+  ASSERT_GT(met, 0.0);
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_THAT(contact.reason, HasSubstr("more than force_stop allows"));
+  EXPECT_TRUE(contact.ends_run);
+  EXPECT_LT(bench.robot.body.tip().x(), 0.19);
+}
+
+TEST(Travel, StopsWhenAnotherProgramCommandsTheArm) {
+  Bench bench;
+  ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
+  std::size_t sent = 0;
+  bench.robot.spoil = [&](Snapshot& seen) {
+    if (bench.robot.body.tip().x() < 0.08) return;
+    if (sent == 0) sent = bench.robot.commands.size();
+    seen.commanders = {"/palpate_2"};
+  };
+  const Contact contact = bench.tap({0.2, 0.2});
+  EXPECT_THAT(contact.reason, StartsWith("the arm is commanded by /palpate_2, too: end that first"));
+  EXPECT_TRUE(contact.ends_run);
+  EXPECT_EQ(bench.robot.commands.size(), sent) << "two that command the arm make it tremble";
+}
+
+}  // namespace
+}  // namespace palpate::baxter
