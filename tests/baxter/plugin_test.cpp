@@ -37,7 +37,8 @@ TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
       TapRequest request;
       request.number = i + 1;
       request.target = {0.04, 0.07};
-      told += outcome_name(backend->tap(request).outcome);
+      const Contact contact = backend->tap(request);
+      told += outcome_name(contact.outcome) + contact.reason;
       const bool listed = lab.nodes().size() == 3;
       backend.reset();
       told +=
