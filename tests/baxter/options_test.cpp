@@ -48,6 +48,14 @@ TEST(BaxterOptions, ThatComeDownTooFastOrTooFarAreRefused) {
   EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("take at most 10 cm"));
 }
 
+TEST(BaxterOptions, WithWhichATapWouldMeanNothingOrNeverEndAreRefused) {
+  EXPECT_THAT(refusal("{type: paper, threshold: 1 N}"), HasSubstr("take at least 3 N"));
+  EXPECT_THAT(refusal("{type: two_stage, fine_threshold: 1 N}"), HasSubstr("take at least 3 N"));
+  EXPECT_THAT(refusal("{type: paper, tare: 0 s}"), HasSubstr("take at least 100 ms"));
+  EXPECT_THAT(refusal("{type: paper, travel_speed: 0.1 mm/s}"), HasSubstr("take at least 1 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, retreat_speed: 0.1 mm/s}"), HasSubstr("take at least 1 cm/s"));
+}
+
 TEST(BaxterOptions, ThatAreNoNumbersAreRefused) {
   EXPECT_NE(refusal("{type: paper, threshold: nan N}"), "");
   EXPECT_NE(refusal("{type: paper, speed: inf cm/s}"), "");

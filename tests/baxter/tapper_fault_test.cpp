@@ -142,6 +142,18 @@ TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
                        "release it, reset and enable the robot"));
 }
 
+TEST(AFault, BetweenTwoTapsSendsNothing) {
+  Bench bench;
+  ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
+  bench.robot.body.inject({FaultKind::kill_endpoint, 0.0, {}});
+  bench.robot.wait_until(bench.robot.body.now() + 1.0);
+  const std::size_t sent = bench.robot.commands.size();
+  const Contact contact = bench.tap(kOnObject);
+  EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not come"));
+  EXPECT_TRUE(contact.ends_run);
+  EXPECT_EQ(bench.robot.commands.size(), sent);
+}
+
 TEST(AFault, ThatNobodyThoughtOfIsRecordedAndNothingMoreIsSent) {
   Bench bench;
   std::size_t sent = 0;

@@ -10,8 +10,12 @@ namespace {
 /// on while three samples are taken and it comes to rest.
 constexpr double kGreatestThreshold = 12.0;
 constexpr double kGreatestStop = 15.0;
-constexpr double kFastest = 0.1;  ///< m/s, downwards: the arm presses on for a third of a second of it
-constexpr double kDeepest = 0.1;  ///< m below the desk
+constexpr double kLeastThreshold =
+    3.0;                               ///< N: twice the noise of the robot of the tests; nobody published a real one's
+constexpr double kShortestTare = 0.1;  ///< s
+constexpr double kSlowest = 0.01;      ///< m/s, for ways that have no time-out
+constexpr double kFastest = 0.1;       ///< m/s, downwards: the arm presses on for a third of a second of it
+constexpr double kDeepest = 0.1;       ///< m below the desk
 
 Field mandatory(Field field) { return available() ? field.needed() : field; }
 
@@ -55,9 +59,16 @@ void BaxterOptions::list(Fields& fields) {
   fields.section(motion, Field("motion", "the tapping motion"));
   fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
                  "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
+  fields.require(motion.threshold >= kLeastThreshold, "motion.threshold",
+                 "is within the noise of the force, take at least 3 N");
+  fields.require(motion.tare >= kShortestTare, "motion.tare", "is too short for a zero, take at least 100 ms");
+  fields.require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "motion.travel_speed",
+                 "and motion.retreat_speed must let the arm get away, take at least 1 cm/s");
   const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
   fields.require(!two_stage || motion.fine_threshold <= motion.threshold, "motion.fine_threshold",
                  "must not lie above motion.threshold");
+  fields.require(!two_stage || motion.fine_threshold >= kLeastThreshold, "motion.fine_threshold",
+                 "is within the noise of the force, take at least 3 N");
   fields.require(motion.speed <= kFastest, "motion.speed",
                  "is too fast for an arm that feels late, take at most 10 cm/s");
   fields.require(!two_stage || motion.fine_speed <= kFastest, "motion.fine_speed",

@@ -291,7 +291,10 @@ std::string Tapper::recover(const Fault& fault) {
 
 void Tapper::expect_fit() {
   await_fit(true);
-  if (std::optional<Fault> fault = Watch::fit(seen_, true)) throw *fault;
+  std::optional<Fault> fault = Watch::fit(seen_, true);
+  if (!fault) return;
+  fault->then = Then::silence;  // the arm stands, and has not been taken over
+  throw *fault;
 }
 
 /// One period: sends the set-point, waits, reads, and looks whether every rule holds. Throws Fault.
