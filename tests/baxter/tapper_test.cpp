@@ -171,15 +171,21 @@ TEST(ATap, OfARobotWhoseForceFallsIsTheSameOnceTheConfigSaysSo) {
 }
 
 TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
-  // With this seed the bias of the force changes by some newtons on the way down.
   BaxterOptions options = fake_options();
   options.motion.type = Type::two_stage;
   Bench bench(options);
-  for (int i = 0; i < 16; ++i) {
-    const int k = i * 7 % 16;
-    const Contact contact = bench.tap({0.23 * (k % 4) / 3.0, 0.23 * (k / 4) / 3.0});
-    EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-  }
+  // The springs have another zero after the first contact: beside the force of the second it would be too much.
+  bool touched = false;
+  bool over = false;
+  bench.robot.spoil = [&](Snapshot& seen) {
+    const double height = bench.robot.body.tip().z();
+    touched = touched || height < -0.003;
+    over = over || (touched && height > 0.005);
+    const double trembles = 0.1 * std::sin(1000.0 * seen.now);  // no sensor says the same twice
+    seen.endpoint->force = {over && height < 0.05 ? 13.0 : 0.0, 0.0, bench.robot.body.pressing() + trembles};
+  };
+  const Contact contact = bench.tap(kOnDesk);
+  EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
 }
 
 TEST(ATap, IsNotBegunWhereTheWayToItCannotBePlanned) {

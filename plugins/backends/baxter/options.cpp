@@ -10,12 +10,11 @@ namespace {
 /// on while three samples are taken and it comes to rest.
 constexpr double kGreatestThreshold = 12.0;
 constexpr double kGreatestStop = 15.0;
-constexpr double kLeastThreshold =
-    3.0;                               ///< N: twice the noise of the robot of the tests; nobody published a real one's
-constexpr double kShortestTare = 0.1;  ///< s
-constexpr double kSlowest = 0.01;      ///< m/s, for ways that have no time-out
-constexpr double kFastest = 0.1;       ///< m/s, downwards: the arm presses on for a third of a second of it
-constexpr double kDeepest = 0.1;       ///< m below the desk
+constexpr double kLeastThreshold = 3.0;  ///< N: twice the noise of the tests' robot; nobody published a real one's
+constexpr double kShortestTare = 0.1;    ///< s
+constexpr double kSlowest = 0.01;        ///< m/s, for ways that have no time-out
+constexpr double kFastest = 0.1;         ///< m/s, downwards: the arm presses on for a third of a second of it
+constexpr double kDeepest = 0.1;         ///< m below the desk
 
 Field mandatory(Field field) { return available() ? field.needed() : field; }
 
