@@ -138,13 +138,6 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
   }
 }
 
-TEST(BeforeFlight, TravelThroughTheObjectsOfTheSceneIsRefused) {
-  BaxterOptions options = fake_options();
-  options.motion.hover = 0.1;
-  Bench bench(options);
-  expect_refused(bench, "motion.hover: the scene has objects 11.00 cm high, and the arm would travel through them");
-}
-
 TEST(BeforeFlight, ACalibrationTapBesideTheAreaIsRefused) {
   BaxterOptions options = fake_options();
   options.calibration.emplace();

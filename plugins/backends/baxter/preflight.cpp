@@ -57,13 +57,6 @@ Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
 }
 
 void check_plan(const BaxterOptions& options, const Scene& scene) {
-  const double highest = scene.highest() - scene.desk();
-  if (highest > options.motion.hover) {
-    refuse("motion.hover",
-           "the scene has objects " + centimetres(highest) + " high, and the arm would travel through them at " +
-               centimetres(options.motion.hover),
-           "take more");
-  }
   if (!options.calibration) return;
   const Area area = scene.area();
   const auto [x, y] = std::tie(options.calibration->at[0], options.calibration->at[1]);

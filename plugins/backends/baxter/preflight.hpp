@@ -13,7 +13,7 @@ namespace palpate::baxter {
 /// height of travel.
 Workspace workspace_of(const BaxterOptions& options, const Scene& scene);
 
-/// What needs no robot to be wrong. Throws Error (kind `run`): travel through what the scene has, a calibration tap
+/// What needs no robot to be wrong. Throws Error (kind `run`): a calibration tap
 /// beside the area.
 void check_plan(const BaxterOptions& options, const Scene& scene);
 

@@ -51,7 +51,7 @@ class Watch {
   static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
   static constexpr double kTrail = 0.8;        ///< s
   static constexpr double kZeroFollows = 0.5;  ///< s
-  static constexpr int kForceSamples = 2;      ///< above force_stop: one alone may be noise
+  static constexpr int kForceSamples = 3;      ///< above force_stop: one or two may be noise
 
   /// The least that receipt has come after the stamp, seconds, and when it was last looked at.
   struct Delay {
