@@ -205,6 +205,28 @@ TEST(RobotRun, RecordsARosbagAndADiaryBesideItsTaps) {
   }
 }
 
+TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::unique_ptr<Child> first = lab.start_palpate(run_words(3));
+  ASSERT_TRUE(logged(lab.folder() / "runs", 1));
+  const Ended second = lab.palpate(run_words(2, {"seed=2"}));
+  EXPECT_EQ(second.status, 1);
+  EXPECT_THAT(second.err, HasSubstr("joint_command: another palpate moves this arm, the node /palpate_"));
+  EXPECT_EQ(lab.palpate(run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"})).status, 0)
+      << "moves nothing";
+  const Ended ended = first->wait();
+  EXPECT_EQ(ended.status, 0) << ended.err;
+}
+
+TEST(RobotSweep, TapsOneJobAfterTheOtherHoweverManyMayRunAtATime) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const Ended ended = lab.palpate(
+      {"sweep", object_i(), "backend=fake_baxter", "taps=2", "initial.count=2", "seed=1,2", "-j", "2", "--quiet"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+}
+
 TEST(RobotRun, AsksTheRobotsInverseKinematicsIfItIsToldTo) {
   RobotLab lab;
   lab.start_robot(robot_words());

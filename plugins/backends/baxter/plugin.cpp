@@ -8,10 +8,11 @@
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
-#include <atomic>
+#include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
 
 namespace palpate::baxter {
 namespace {
@@ -45,21 +46,29 @@ class Diary {
   std::string waiting_;
 };
 
-/// The one arm. Two experiments of a process, as the workers of a sweep are, would be one node to the robot, which
-/// could not tell their set-points apart.
-class ArmTaken {
+/// The only arm that a process has, for the jobs of a sweep that run beside each other: one moves it, the others wait.
+class Turn {
  public:
-  ArmTaken() {
-    if (taken.exchange(true)) {
-      throw Error("", "another experiment of this process has the arm", "sweep with one worker", Error::Kind::run);
-    }
+  explicit Turn(bool wanted) : mine_(wanted) {
+    if (!mine_) return;
+    std::unique_lock lock(mutex_);
+    free_.wait(lock, [] { return !taken_; });
+    taken_ = true;
   }
-  ~ArmTaken() { taken = false; }
-  ArmTaken(const ArmTaken&) = delete;
-  ArmTaken& operator=(const ArmTaken&) = delete;
+  ~Turn() {
+    if (!mine_) return;
+    const std::lock_guard lock(mutex_);
+    taken_ = false;
+    free_.notify_one();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
 
  private:
-  static inline std::atomic<bool> taken{false};
+  static inline std::mutex mutex_;
+  static inline std::condition_variable free_;
+  static inline bool taken_ = false;
+  bool mine_;
 };
 
 }  // namespace
@@ -73,6 +82,7 @@ class Baxter final : public Backend {
       : options_(options),
         scene_(context.scene),
         diary_(context.directory),
+        turn_(!options.dry_run),
         robot_(connect({!options.dry_run, options.inverse_kinematics == Options::InverseKinematics::robot})),
         tapper_(options, context.scene, *robot_, context.interrupted,
                 [this](const std::string& line) { diary_.note(line); }) {
@@ -102,10 +112,11 @@ class Baxter final : public Backend {
   bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
 
  private:
-  ArmTaken taken_;  ///< as long as all that follows
+  
   Options options_;
   const Scene& scene_;
   Diary diary_;
+  Turn turn_;  ///< from before the connection until after its end
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;
   std::unique_ptr<View> view_;  ///< before the robot goes, this goes

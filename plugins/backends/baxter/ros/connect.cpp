@@ -56,6 +56,7 @@ class Visit {
       expect_one_robot_and_its_hosts();
       start_node(network_);
       std::unique_ptr<Link> link = make_link(network_, wishes_.commands);
+      if (wishes_.commands) expect_no_other_driver();
       expect_all_heard(*link);
       return link;
     } catch (const Unreached& reason) {
@@ -143,6 +144,31 @@ class Visit {
                    "its publisher " + node + " is on the host " + place.host + ", which does not resolve here (" +
                        reason.what() + ")",
                    "add it to /etc/hosts, or install libnss-mdns for names in .local");
+  }
+
+  /// Two that command one arm pull it to and fro. Each looks once it has said itself that it sends: of two that come at
+  /// the same time both go.
+  void expect_no_other_driver() const {
+    const Graph graph = network_.master.graph(until(kTold));
+    for (const std::string& node : Graph::of(graph.publishers, kCommandTopic)) {
+      const bool palpate = node.rfind(std::string("/") + kNodeName + "_", 0) == 0;
+      if (!palpate || node == node_name() || !answers(node)) continue;
+      throw trouble(kCommandTopic, "another palpate moves this arm, the node " + node,
+                    "let it end, or interrupt it; rosnode cleanup removes what has ended already");
+    }
+  }
+
+  /// Whether a node is still there: one that was killed stays listed.
+  bool answers(const std::string& node) const {
+    const auto place = place_of(node);
+    if (!place) return false;
+    try {
+      const Deadline deadline = within(kOnePublisher, until(kTold));
+      Wire(look_up(place->host, place->port, deadline), deadline);
+      return true;
+    } catch (const Unreached& reason) {
+      return reason.why() != Unreached::Why::refused;
+    }
   }
 
   void expect_all_heard(Link& link) const {

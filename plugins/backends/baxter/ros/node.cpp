@@ -14,6 +14,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcUtil.h>
 
 namespace ros::master {
@@ -103,7 +104,7 @@ class Node {
     XmlRpc::XmlRpcErrorHandler::setErrorHandler(&nothing);
     ros::master::setRetryTimeout(ros::WallDuration(1.0));
     try {
-      ros::init(ros::M_string(), "palpate",
+      ros::init(ros::M_string(), kNodeName,
                 ros::init_options::NoSigintHandler | ros::init_options::AnonymousName | ros::init_options::NoRosout);
       ros::start();
     } catch (const std::exception& exception) {
@@ -181,6 +182,8 @@ void start_node(const Network& network) {
   }
   point_roscpp_at(network.uri);  // an earlier connection may have left it for gone
 }
+
+std::string node_name() { return ros::this_node::getName(); }
 
 void forget_silent_master() {
   if (running == nullptr) return;

@@ -27,6 +27,11 @@ Network find_network(Deadline deadline);
 /// started with another master, or has been told to go.
 void start_node(const Network& network);
 
+/// Nodes of palpate are called so, with a number after it that tells them apart.
+constexpr const char* kNodeName = "palpate";
+/// This process' node at the master; it must have been started.
+std::string node_name();
+
 /// Before subscribers and publishers go: taking leave of a master that does not answer would wait for minutes, so if it
 /// does not do so within half a second roscpp takes it for gone from now on.
 void forget_silent_master();
