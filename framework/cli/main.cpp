@@ -21,6 +21,9 @@ extern "C" void on_signal(int signal) {
   if (interrupted.exchange(true)) std::_Exit(128 + signal);
 }
 
+/// A terminal that is closed says so more than once, and nobody means to leave a robot's arm where it is by that.
+extern "C" void on_hangup(int) { interrupted = true; }
+
 struct Arguments {
   RunArguments run;
   SweepArguments sweep;
@@ -143,6 +146,7 @@ int run_main(int argc, char** argv) {
   }
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_hangup) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   return perform(action, argc, argv);
 }
 

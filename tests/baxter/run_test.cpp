@@ -168,6 +168,19 @@ TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {
   EXPECT_FALSE(fs::exists(lab.folder() / "runs"));
 }
 
+TEST(RobotRun, RaisesTheArmWhenItsTerminalIsClosedWhichMaySayItTwice) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
+  ASSERT_TRUE(logged(lab.folder() / "runs", 3));
+  ASSERT_TRUE(low(lab, 0.07));
+  program->signal(SIGHUP);
+  program->signal(SIGHUP);
+  EXPECT_EQ(program->wait(60.0).status, 130);
+  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact", "aborted"));
+  EXPECT_NEAR(last_height(lab), 0.135, 0.011);
+}
+
 TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
   RobotLab lab;
   lab.start_robot(robot_words({"--fault", "estop=1", "--at", "2:8cm"}));
