@@ -166,19 +166,5 @@ TEST(TheReachOfTheArea, IsRefusedWithTheFirstPlaceThatLiesBeyond) {
   }
 }
 
-TEST(BeforeFlight, ACalibrationTapOutsideTheAreaIsRefused) {
-  BaxterOptions options = fake_options();
-  options.calibration.emplace();
-  options.calibration->at[0] = 0.3;
-  const PlannerBench bench(options);
-  try {
-    check_before_flight(test::sound(1.0, bench.at(0.1, 0.1, 0.2)), options, bench.planner, {0.23, 0.23, -0.03, 0.435},
-                        true);
-    FAIL() << "nobody has said what lies there";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("calibration.at: (30.00 cm, 0.00 cm) is outside the area"));
-  }
-}
-
 }  // namespace
 }  // namespace palpate::baxter

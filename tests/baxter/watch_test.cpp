@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
               "endpoint_state comes with stamps 0.31 s older", Then::hold},
         Wrong{"JointStampsLag", [](Snapshot& s) { s.joints->stamp -= 0.31; },
               "joint_states comes with stamps 0.31 s older", Then::silence},
-        Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.16; }, "/robot/joint_states jumped by 9.2 deg",
+        Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.07; }, "/robot/joint_states jumped by 4.0 deg",
               Then::silence},
         Wrong{"CommandedByAnother", [](Snapshot& s) { s.commanders = {"/palpate_2"}; },
               "the arm is commanded by /palpate_2, too", Then::silence},

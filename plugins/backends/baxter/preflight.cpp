@@ -67,13 +67,6 @@ void check_plan(const BaxterOptions& options, const Scene& scene) {
 
 void check_before_flight(const Snapshot& seen, const BaxterOptions& options, const Planner& planner,
                          const Workspace& workspace, bool moving) {
-  if (options.calibration) {
-    const double* at = options.calibration->at;
-    if (!(at[0] >= 0.0 && at[0] <= workspace.width && at[1] >= 0.0 && at[1] <= workspace.depth)) {
-      refuse("calibration.at", "(" + centimetres(at[0]) + ", " + centimetres(at[1]) + ") is outside the area",
-             "choose a place in it at which the desk is bare");
-    }
-  }
   if (const std::optional<Fault> fault = Watch::fit(seen, moving)) refuse("", fault->reason, "");
   if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0 && moving) {
     refuse("", std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is beyond its limit",

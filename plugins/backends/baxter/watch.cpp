@@ -180,7 +180,7 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
   if (!collision_expected_ && seen.collision && seen.collision->collision) {
     return Fault{
         "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
-        "motion.threshold",
+        "motion.threshold, or see what the arm met",
         Then::retreat, true};
   }
   return force(seen);

@@ -46,7 +46,7 @@ class Watch {
   static constexpr double kLate = 0.3;         ///< s by which a stamp may lie farther back than the best so far
   static constexpr double kDrift = 1e-3;       ///< s per second by which the robot's clock and ours may drift apart
   static constexpr double kFrozen = 0.5;       ///< s for which a force may be the same to the last digit
-  static constexpr double kJump = 0.15;        ///< rad between two readings
+  static constexpr double kJump = 0.06;        ///< rad between two readings; 4 rad/s of the wrist are 0.04 in a period
   static constexpr double kFollowing = 0.2;    ///< rad from the set-point
   static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
   static constexpr double kTrail = 0.8;        ///< s
