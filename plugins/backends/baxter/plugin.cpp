@@ -112,7 +112,6 @@ class Baxter final : public Backend {
   bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
 
  private:
-  
   Options options_;
   const Scene& scene_;
   Diary diary_;
