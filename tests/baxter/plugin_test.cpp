@@ -17,7 +17,7 @@ namespace palpate::test {
 namespace {
 
 constexpr const char* kOptions =
-    "{motion: {threshold: 6 N}, tool: {tip: [0 cm, 0 cm, 15 cm]}, "
+    "{motion: {type: continuous, speed: 2 cm/s, threshold: 6 N}, tool: {tip: [0 cm, 0 cm, 15 cm]}, "
     "place: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}}";
 
 long threads() {
