@@ -69,7 +69,7 @@ bool comes_up(const Child& child, const Condition& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
   while (child.running() && std::chrono::steady_clock::now() < end) {
     if (holds()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // between two looks, not for an outcome
   }
   return false;
 }

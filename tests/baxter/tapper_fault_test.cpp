@@ -9,8 +9,6 @@
 
 #include <ostream>
 
-#include <limits>
-
 namespace palpate::baxter {
 namespace {
 
@@ -20,7 +18,6 @@ using test::fake_options;
 using test::kHover;
 using test::kOnDesk;
 using test::kOnObject;
-using test::wave_scene;
 using Bench = test::TapperBench;
 using testing::EndsWith;
 using testing::HasSubstr;

@@ -7,20 +7,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 namespace palpate::baxter {
 namespace {
 
 using fake_baxter::Body;
-using fake_baxter::FaultKind;
 using test::fake_options;
 using test::kHover;
 using test::kOnDesk;
 using test::kOnObject;
 using test::wave_scene;
 using Bench = test::TapperBench;
-using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 using Type = tapping::MotionOptions::Type;
