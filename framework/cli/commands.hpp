@@ -50,14 +50,20 @@ struct RunOutput {
 /// Runs `action`, shows its report and judges it by the config. Returns the exit status.
 int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action);
 
+/// Who runs the jobs of a sweep, and how.
+struct LaunchArguments {
+  int workers = 1;   ///< jobs at a time
+  int attempts = 3;  ///< a job is begun at most so often before it stays failed
+  bool quiet = false;
+  std::string junit;
+};
+
 struct SweepArguments {
   std::string config;
   std::vector<std::string> axes;
   std::string runs = "runs";
-  int workers = 1;
   bool list = false;
-  bool quiet = false;
-  std::string junit;
+  LaunchArguments launch;
 };
 int sweep(Program& program, const SweepArguments& arguments);
 
@@ -65,9 +71,8 @@ struct ResumeArguments {
   std::string directory;
   bool retry_failed = false;
   bool force = false;
-  bool quiet = false;
-  int workers = 1;
-  std::string junit;
+  std::string jobs;  ///< of a sweep: "0-7,12"; "" for all
+  LaunchArguments launch;
 };
 int resume(Program& program, const ResumeArguments& arguments);
 

@@ -3,9 +3,12 @@
 #pragma once
 
 #include "record/session.hpp"
+#include "sweep/conduct.hpp"
 #include "sweep/sweep.hpp"
 
+#include <chrono>
 #include <string>
+#include <vector>
 
 namespace palpate::cli {
 
@@ -24,7 +27,11 @@ class TapTable final : public Journal {
   bool header_ = false;
 };
 
-/// Prints a live line of a sweep on a terminal, else a line per tenth, on stderr.
+/// "12 s", "8 min", "3 h 05 min".
+std::string duration_words(double seconds);
+
+/// Prints a live line of a sweep on a terminal, else a line per tenth, on stderr: done, running, failed, rate, time
+/// left.
 class SweepLine {
  public:
   explicit SweepLine(bool quiet);
@@ -34,10 +41,15 @@ class SweepLine {
   bool quiet_;
   bool terminal_;
   int tenth_ = 0;
+  std::chrono::steady_clock::time_point begun_;
+  std::chrono::steady_clock::time_point shown_;
 };
 
 /// The result of a run in a few lines.
 void print_summary(const RunReport& report);
+
+/// A line a failed job with its keys and its reason; of very many, the first.
+void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures);
 
 /// The table, the failures and the place of a sweep.
 void print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps);

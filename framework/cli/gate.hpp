@@ -31,8 +31,4 @@ bool conclude(const std::vector<Expectation>& expectations, const std::vector<Ru
 /// The exit status of a sweep: runs that failed make it fail, unless the config says how many may.
 int sweep_status(const std::vector<Expectation>& expectations, bool all_hold, bool any_failed);
 
-/// Prints the result of a sweep and judges it by the config of any of its jobs. Returns the exit status.
-int conclude_sweep(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
-                   const std::string& junit);
-
 }  // namespace palpate::cli

@@ -54,6 +54,17 @@ void add_run(CLI::App& app, Arguments& a, Action& action) {
   sub->callback([&] { action = [&](Program& program) { return run(program, a.run); }; });
 }
 
+/// What `sweep` and `resume` say alike.
+void add_launch(CLI::App* sub, LaunchArguments& launch) {
+  sub->add_option("-j", launch.workers, "jobs of a sweep at a time; the number of cores if not given")
+      ->check(CLI::Range(1, 1024));
+  sub->add_option("--attempts", launch.attempts, "how often a job may be begun before it stays failed")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  sub->add_flag("--quiet", launch.quiet, "show no progress");
+  sub->add_option("--junit", launch.junit, "write what held and what failed as JUnit XML to this file");
+}
+
 void add_sweep(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("sweep", "Run many experiments: every combination of some values");
   sub->add_option("CONFIG", a.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
@@ -61,11 +72,8 @@ void add_sweep(CLI::App& app, Arguments& a, Action& action) {
                   "what to vary: seed=range(0,10), acquisition=weighted,random, "
                   "kernel.length_scale=log(1cm,5cm,8)");
   sub->add_option("--runs", a.sweep.runs, "where run directories are made")->capture_default_str();
-  sub->add_option("-j", a.sweep.workers, "jobs at a time; the number of cores if not given")
-      ->check(CLI::Range(1, 1024));
   sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
-  sub->add_flag("--quiet", a.sweep.quiet, "show no progress");
-  sub->add_option("--junit", a.sweep.junit, "write what held and what failed as JUnit XML to this file");
+  add_launch(sub, a.sweep.launch);
   sub->callback([&] { action = [&](Program& program) { return sweep(program, a.sweep); }; });
 }
 
@@ -74,9 +82,9 @@ void add_resume(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("DIR", a.resume.directory, "its directory")->required();
   sub->add_flag("--retry-failed", a.resume.retry_failed, "carry on what failed, too");
   sub->add_flag("--force", a.resume.force, "carry on what another build began");
-  sub->add_flag("--quiet", a.resume.quiet, "print nothing but a sweep's table");
-  sub->add_option("-j", a.resume.workers, "jobs of a sweep at a time")->check(CLI::Range(1, 1024));
-  sub->add_option("--junit", a.resume.junit, "write what held and what failed as JUnit XML to this file");
+  sub->add_option("--jobs", a.resume.jobs,
+                  "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
+  add_launch(sub, a.resume.launch);
   sub->callback([&] { action = [&](Program& program) { return resume(program, a.resume); }; });
 }
 
@@ -130,8 +138,8 @@ int run_main(int argc, char** argv) {
   app.set_version_flag("--version", kVersion);
   Arguments arguments;
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  arguments.sweep.workers = cores;
-  arguments.resume.workers = cores;
+  arguments.sweep.launch.workers = cores;
+  arguments.resume.launch.workers = cores;
   Action action;
   add_run(app, arguments, action);
   add_sweep(app, arguments, action);

@@ -1,27 +1,50 @@
 // SPDX-License-Identifier: MIT
+#include "cli/campaign.hpp"
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
 
+#include <palpate/error.hpp>
+
 #include <memory>
 
 namespace palpate::cli {
+namespace {
+
+/// Every job that will run is checked before the first does: config.yaml may have been changed since it was written.
+void check_jobs(const Program& program, const Campaign& campaign) {
+  const std::vector<std::size_t>& only = campaign.only;
+  for (std::size_t i = 0; i < (only.empty() ? campaign.sweep.jobs.size() : only.size()); ++i) {
+    const std::size_t job = only.empty() ? i : only[i];
+    const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
+    if (read_record(directory).state == RunStatus::State::done) continue;
+    const ResolvedConfig config = campaign.config_of(job);
+    if (!campaign.options.force) check_build(program.workshop, config, directory);
+  }
+}
+
+int resume_sweep(Program& program, const ResumeArguments& arguments, const ResumeOptions& options) {
+  const Sweep sweep = read_sweep(arguments.directory);
+  const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
+  Campaign campaign{sweep, config_of, options, arguments.launch, {}};
+  if (!arguments.jobs.empty()) campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
+  check_jobs(program, campaign);
+  return run_campaign(program, campaign);
+}
+
+}  // namespace
 
 int resume(Program& program, const ResumeArguments& arguments) {
-  check_junit(arguments.junit);
+  check_junit(arguments.launch.junit);
   const ResumeOptions options{arguments.retry_failed, arguments.force};
-  if (is_sweep(arguments.directory)) {
-    const Sweep sweep = read_sweep(arguments.directory);
-    SweepLine line(arguments.quiet);
-    const SweepReport report = run_sweep(program.workshop, sweep, nullptr, options, arguments.workers,
-                                         [&](const SweepProgress& progress) { line.show(progress); });
-    return conclude_sweep(sweep, load_run(program.host, job_directory(sweep, sweep.jobs.front())), report,
-                          arguments.junit);
+  if (is_sweep(arguments.directory)) return resume_sweep(program, arguments, options);
+  if (!arguments.jobs.empty()) {
+    throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   std::unique_ptr<Journal> display;
-  if (!arguments.quiet) display = std::make_unique<TapTable>(config.options.taps);
-  return conclude_run(config, {!arguments.quiet, false, arguments.junit},
+  if (!arguments.launch.quiet) display = std::make_unique<TapTable>(config.options.taps);
+  return conclude_run(config, {!arguments.launch.quiet, false, arguments.launch.junit},
                       [&] { return resume_run(program.workshop, arguments.directory, options, display.get()); });
 }
 

@@ -1,39 +1,50 @@
 // SPDX-License-Identifier: MIT
+#include "cli/campaign.hpp"
 #include "cli/commands.hpp"
-#include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "sweep/draft.hpp"
+#include "sweep/plan.hpp"
 
 #include <fmt/format.h>
 
-namespace palpate::cli {
+#include <numeric>
+#include <optional>
 
-int sweep(Program& program, const SweepArguments& arguments) {
-  std::vector<Axis> axes;
-  for (const std::string& text : arguments.axes) axes.push_back(parse_axis(text));
-  const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, axes, arguments.runs);
-  if (arguments.list) {
-    for (const Job& job : plan.sweep.jobs) {
-      fmt::print("{}  {}", job.index, job.id);
-      for (std::size_t i = 0; i < job.values.size(); ++i) fmt::print("  {}={}", plan.sweep.keys[i], job.values[i]);
-      fmt::print("\n");
+namespace palpate::cli {
+namespace {
+
+void print_jobs(const Sweep& sweep) {
+  for (const Job& job : sweep.jobs) {
+    fmt::print("{}  {}", job.index, job.id);
+    for (std::size_t i = 0; i < job.values.size(); ++i) {
+      if (!job.values[i].empty()) fmt::print("  {}={}", sweep.keys[i], job.values[i]);
     }
-    return kDone;
+    fmt::print("\n");
   }
-  check_junit(arguments.junit);
-  prepare_sweep(plan);
-  if (!arguments.quiet) fmt::print(stderr, "{} jobs in {}\n", plan.sweep.jobs.size(), plan.sweep.directory.string());
-  SweepLine line(arguments.quiet);
-  const SweepReport report = run_sweep(program.workshop, plan.sweep, &plan.configs, {}, arguments.workers,
-                                       [&](const SweepProgress& progress) { line.show(progress); });
-  return conclude_sweep(plan.sweep, plan.configs.front(), report, arguments.junit);
 }
 
-int conclude_sweep(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
-                   const std::string& junit) {
-  print_sweep(sweep, report, static_cast<int>(config.options.initial.count));
-  if (report.interrupted) return kInterrupted;
-  const bool all_hold = conclude(config.expectations, outcomes_of(sweep), {config.options.name, junit, true});
-  return sweep_status(config.expectations, all_hold, !report.failures.empty());
+}  // namespace
+
+int sweep(Program& program, const SweepArguments& arguments) {
+  if (arguments.list) {
+    print_jobs(plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs).sweep);
+    return kDone;
+  }
+  check_junit(arguments.launch.junit);
+  std::optional<SweepDraft> draft(arguments.runs);
+  const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
+                                    [&](const Job& job, const ResolvedConfig& config) { draft->add(job, config); });
+  const bool is_new = draft->publish(plan);
+  draft.reset();
+
+  const auto config_of = [&](std::size_t job) { return planned_config(plan, program.composer, program.host, job); };
+  Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}};
+  if (!is_new) check_builds(program, campaign);
+  if (!arguments.launch.quiet) {
+    fmt::print(stderr, "{} jobs in {}{}\n", plan.sweep.jobs.size(), plan.sweep.directory.string(),
+               is_new ? "" : ", which exists: what is missing is run");
+  }
+  return run_campaign(program, campaign);
 }
 
 }  // namespace palpate::cli

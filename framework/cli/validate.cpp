@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
-#include "sweep/sweep.hpp"
+#include "sweep/plan.hpp"
 
 #include <palpate/error.hpp>
 

@@ -22,13 +22,17 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   for (const Tree::Entry& entry : out.tree.entries) {
     if (enters_id(entry.key)) identity.entries.push_back(entry);
   }
-  out.id = hash_of(identity.canonical()).substr(0, 12);
+  out.id = hash_of(identity.canonical()).substr(0, kIdLength);
   return out;
 }
 
 ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
                                const std::vector<Override>& overrides) {
   return resolve_experiment(composer.compose(file, overrides), plugins);
+}
+
+bool begins_with_id(const std::string& folder) {
+  return folder.size() >= kIdLength && folder.find_first_not_of("0123456789abcdef") >= kIdLength;
 }
 
 std::string slug(const std::string& name) {

@@ -28,6 +28,12 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
 ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
                                const std::vector<Override>& overrides);
 
+/// Hex digits of an id.
+inline constexpr std::size_t kIdLength = 12;
+
+/// Whether a folder is named by an id; something may follow it, as in 910071e8f4bb.old-1.
+bool begins_with_id(const std::string& folder);
+
 /// The name of a run's folder: letters, digits, '.', '_' and '-' of `name`, at most 64, never empty or hidden.
 std::string slug(const std::string& name);
 

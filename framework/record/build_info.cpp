@@ -25,11 +25,6 @@ namespace {
 
 Tree text(const std::string& value) { return Tree::scalar(value, true); }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
 Tree libraries() {
   Tree out = Tree::map();
   out.at("Eigen") = text(fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
@@ -71,6 +66,11 @@ int find_build_id(dl_phdr_info* program, std::size_t, void* found) {
 }
 
 }  // namespace
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
 
 Installation find_installation() {
   const fs::path program = fs::read_symlink("/proc/self/exe");

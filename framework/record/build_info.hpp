@@ -22,6 +22,9 @@ struct Installation {
 /// Where this very program lies.
 Installation find_installation();
 
+/// Of this machine, "" if it has none.
+std::string host_name();
+
 extern const char* const kVersion;
 
 /// The plugins of one run, by kind and name.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 namespace palpate {
@@ -30,6 +29,16 @@ void write_all(int descriptor, const std::string& text, const fs::path& file) {
     if (count < 0) fail(file, "cannot be written");
     done += static_cast<std::size_t>(count);
   }
+}
+
+/// A lock of the open file and not of the process: another one of the same process is refused, too, and a lock can be
+/// asked after without taking it.
+const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
+
+int open_lock(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(file, "cannot be opened");
+  return descriptor;
 }
 
 /// Closes on leaving, errors on the way included.
@@ -88,18 +97,25 @@ void AppendFile::append(const std::string& text, bool sync) {
   if (sync && ::fdatasync(descriptor_) != 0) fail(file_, "cannot be synced");
 }
 
-FileLock::FileLock(const fs::path& file) : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail(file, "cannot be opened");
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+FileLock::FileLock(const fs::path& file) : descriptor_(open_lock(file)) {
+  if (::fcntl(descriptor_, F_OFD_SETLK, &kWholeFile) == 0) return;
   const int why = errno;
-  ::close(descriptor_);
-  descriptor_ = -1;
-  if (why == EWOULDBLOCK) {
+  ::close(std::exchange(descriptor_, -1));
+  if (why == EAGAIN || why == EACCES) {
     throw Error(file.parent_path().string(), "another process holds this run", "wait for it, or stop it",
                 Error::Kind::busy);
   }
   errno = why;
   fail(file, "cannot be locked");
+}
+
+FileLock FileLock::wait_for(const fs::path& file) {
+  FileLock lock;
+  lock.descriptor_ = open_lock(file);
+  while (::fcntl(lock.descriptor_, F_OFD_SETLKW, &kWholeFile) != 0) {
+    if (errno != EINTR) fail(file, "cannot be locked");
+  }
+  return lock;
 }
 
 FileLock::~FileLock() {
@@ -114,8 +130,17 @@ FileLock& FileLock::operator=(FileLock&& other) noexcept {
 }
 
 bool FileLock::is_held(const fs::path& file) {
-  const Descriptor in{::open(file.c_str(), O_RDWR | O_CLOEXEC)};
-  return in.value >= 0 && ::flock(in.value, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  struct flock other = kWholeFile;
+  return in.value >= 0 && ::fcntl(in.value, F_OFD_GETLK, &other) == 0 && other.l_type != F_UNLCK;
+}
+
+void check_locks(const fs::path& folder) {
+  const fs::path file = folder / "lock";
+  const FileLock first = FileLock::wait_for(file);
+  if (FileLock::is_held(file)) return;
+  throw Error(folder.string(), "its file system keeps no locks: two processes could do the same work",
+              "put --runs on another one; Lustre keeps them when mounted with 'flock'");
 }
 
 }  // namespace palpate

@@ -33,7 +33,8 @@ class AppendFile {
   int descriptor_ = -1;
 };
 
-/// A lock of the kernel on a file: it ends when the process does, however it ends, and children do not inherit it.
+/// A lock of the kernel on a file: it ends when the process does, however it ends, and children do not inherit it. It
+/// holds between machines where their file system keeps locks (NFS does, Lustre when it is mounted with `flock`).
 class FileLock {
  public:
   FileLock() = default;
@@ -43,11 +44,17 @@ class FileLock {
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
 
-  /// Whether some process holds the lock of `file` now.
+  /// Makes `file` if need be and waits until it can be locked. Throws Error.
+  static FileLock wait_for(const std::filesystem::path& file);
+
+  /// Whether some process holds the lock of `file` now. Asking disturbs nobody who is about to take it.
   static bool is_held(const std::filesystem::path& file);
 
  private:
   int descriptor_ = -1;
 };
+
+/// Throws Error if the file system of `folder`, which exists, keeps no locks: two processes would do the same work.
+void check_locks(const std::filesystem::path& folder);
 
 }  // namespace palpate

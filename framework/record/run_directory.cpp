@@ -42,7 +42,7 @@ const char* state_name(RunStatus::State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-RunStatus read_status(const fs::path& directory) {
+RunStatus read_record(const fs::path& directory) {
   RunStatus out;
   std::error_code none;
   if (fs::exists(directory / kTaps, none)) {
@@ -55,7 +55,14 @@ RunStatus read_status(const fs::path& directory) {
     out.state = text_at(*summary, "status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
     out.stop_reason = text_at(*summary, "stop_reason");
   }
-  if (FileLock::is_held(directory / kLock)) out.state = RunStatus::State::running;
+  return out;
+}
+
+RunStatus read_status(const fs::path& directory) {
+  // Asked first: who ends between the two questions has written what the second one reads.
+  const bool held = FileLock::is_held(directory / kLock);
+  RunStatus out = read_record(directory);
+  if (held && out.state != RunStatus::State::done) out.state = RunStatus::State::running;
   return out;
 }
 

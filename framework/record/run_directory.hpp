@@ -28,7 +28,11 @@ struct RunStatus {
   std::string stop_reason;  ///< of a finished run: why it stopped or failed
 };
 
-/// Reads the state of a run directory. Throws Error for a damaged one.
+/// Reads the state of a run directory; nobody seems to hold it, because it is not asked who does. For who holds the
+/// lock. Throws Error for a damaged one.
+RunStatus read_record(const std::filesystem::path& directory);
+
+/// The same, and whether it is running. Throws Error for a damaged one.
 RunStatus read_status(const std::filesystem::path& directory);
 
 const char* state_name(RunStatus::State state);
@@ -38,6 +42,9 @@ class RunDirectory final : public Journal {
  public:
   /// Makes the directory if need be and locks it. Throws Error of kind `busy` if another process holds it.
   explicit RunDirectory(std::filesystem::path directory);
+
+  /// What it holds so far.
+  RunStatus status() const { return read_record(path_); }
 
   const std::filesystem::path& path() const { return path_; }
 

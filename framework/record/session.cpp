@@ -4,7 +4,6 @@
 #include "config/yaml.hpp"
 #include "experiment/experiment.hpp"
 #include "record/json.hpp"
-#include "record/run_directory.hpp"
 #include "record/summary.hpp"
 
 #include <palpate/error.hpp>
@@ -182,6 +181,11 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
   Experiment experiment = build_experiment(workshop, config, directory);
   if (status.state != RunStatus::State::absent) move_away(directory);
   RunDirectory held(directory);
+  // Another process may have run it, whole or in part, while this one was still building.
+  if (held.status().state != RunStatus::State::absent) {
+    throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
+                Error::Kind::busy);
+  }
   held.write("config.yaml", to_yaml(config.tree));
   held.write("manifest.json", manifest_text(workshop, config));
   return carry_out(config, held, experiment, observer, watch);
@@ -197,8 +201,7 @@ Tree read_run_config(const fs::path& directory) {
 ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   ResolvedConfig config = resolve_experiment(read_run_config(directory), host);
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();
-  const bool is_id = name.size() >= 12 && name.find_first_not_of("0123456789abcdef") >= 12;
-  if (is_id && name.substr(0, 12) != config.id) {
+  if (begins_with_id(name) && name.substr(0, kIdLength) != config.id) {
     throw Error((directory / "config.yaml").string(),
                 fmt::format("the config now has the id {}, its directory is {}", config.id, name),
                 "config.yaml was changed; run it with 'palpate run' instead");
@@ -206,27 +209,37 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   return config;
 }
 
+void check_build(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
+  const std::string build = recorded_build(directory);
+  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins)) return;
+  if (read_record(directory).taps == 0) return;
+  throw Error(directory.string(), "this run was begun by another build of palpate or its plugins",
+              "--force carries on all the same, and the manifest will say so");
+}
+
 RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options,
                      Journal* observer) {
-  const Stopwatch watch;
+  // Read first: what is no run directory is not made one.
   const ResolvedConfig config = load_run(workshop.host, directory);
-  const RunStatus status = read_status(directory);
+  RunDirectory held(directory);
+  return resume_held(workshop, config, held, options, observer);
+}
+
+RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                      const ResumeOptions& options, Journal* observer) {
+  const Stopwatch watch;
+  const fs::path& directory = held.path();
+  const RunStatus status = held.status();
   if (status.state == RunStatus::State::done) return report_done(directory);
   if (status.state == RunStatus::State::failed && !options.retry_failed) {
     throw Error(directory.string(), fmt::format("this run failed: {}", status.stop_reason),
                 "--retry-failed carries on all the same", Error::Kind::run);
   }
-  RunDirectory held(directory);
-  const std::string build = recorded_build(directory);
-  const bool other_build = !build.empty() && build != build_hash(workshop.host, config.notes.plugins);
-  if (other_build && status.taps > 0 && !options.force) {
-    throw Error(directory.string(), "this run was begun by another build of palpate or its plugins",
-                "--force carries on all the same, and the manifest will say so");
-  }
+  if (!options.force) check_build(workshop, config, directory);
   const std::vector<PastTap> past = held.recover();
   Experiment experiment = build_experiment(workshop, config, directory);
   experiment.resume(past);
-  if (build.empty()) {
+  if (recorded_build(directory).empty()) {
     held.write("manifest.json", manifest_text(workshop, config));
   } else {
     note_resume(workshop, config, held, static_cast<int>(past.size()));

@@ -8,6 +8,7 @@
 #include "plugin/host.hpp"
 #include "record/build_info.hpp"
 #include "record/row.hpp"
+#include "record/run_directory.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -52,6 +53,13 @@ struct ResumeOptions {
 /// as done.
 RunReport resume_run(const Workshop& workshop, const std::filesystem::path& directory, const ResumeOptions& options,
                      Journal* observer);
+
+/// The same with `config`, that of the run, in a directory that this process holds.
+RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                      const ResumeOptions& options, Journal* observer);
+
+/// Throws Error if the run in `directory` has taps of another build than this one.
+void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);
 
 /// A number that came out differently in a replay.
 struct Difference {

@@ -3,8 +3,10 @@
 
 #include "config/hash.hpp"
 #include "config/yaml.hpp"
+#include "experiment/resolved.hpp"
+#include "record/files.hpp"
 #include "record/json.hpp"
-#include "record/run_directory.hpp"
+#include "record/session.hpp"
 #include "sweep/statistics.hpp"
 
 #include <palpate/error.hpp>
@@ -12,16 +14,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <map>
-#include <mutex>
-#include <thread>
 
 namespace palpate {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+std::string text_at(const Row& row, const std::string& name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? csv_cell(*value) : std::string();
+}
+
+}  // namespace
 
 Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
   Row row;
@@ -35,108 +40,18 @@ Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
   return row;
 }
 
-std::string text_at(const Row& row, const std::string& name) {
-  const Scalar* value = row.find(name);
-  return value != nullptr ? csv_cell(*value) : std::string();
+std::string sweep_id(const Tree& config, const std::vector<Job>& jobs) {
+  Tree identity = Tree::map();
+  // As it reads back: what is compared later is the file.
+  for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
+    if (enters_id(entry.key)) identity.entries.push_back(std::move(entry));
+  }
+  std::string all = identity.canonical();
+  for (const Job& job : jobs) all += job.id;
+  return hash_of(all).substr(0, kIdLength);
 }
-
-/// A job that failed before its run could begin leaves a summary all the same.
-void write_failure(const fs::path& directory, const std::string& id, const std::string& reason) {
-  Row row;
-  row.add("id", id);
-  row.add("status", "failed");
-  row.add("stop_reason", reason);
-  write_file(directory / "summary.json", to_json_text(row));
-}
-
-/// Whether the swept key is one of `expect:`.
-bool is_expectation(const Axis& axis) { return axis.key == "expect" || axis.key.compare(0, 7, "expect.") == 0; }
-
-}  // namespace
 
 fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
-
-SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<Axis>& axes,
-                     const fs::path& runs) {
-  SweepPlan plan;
-  // What is expected holds for the whole sweep: it is no axis, and it enters no id.
-  std::vector<Override> expectations;
-  for (const Axis& axis : axes) {
-    if (!is_expectation(axis)) continue;
-    if (axis.values.size() != 1) {
-      throw Error(axis.values.front().place.text(), fmt::format("{}: what is expected cannot be swept", axis.key),
-                  "give it one value");
-    }
-    expectations.push_back({axis.key, axis.values.front()});
-  }
-  const Tree base = composer.compose(file, expectations);
-  std::vector<Axis> all;
-  if (const Tree* described = base.find("sweep")) all = config_axes(*described);
-  for (const Axis& axis : axes) {
-    if (is_expectation(axis)) continue;
-    const auto same = std::find_if(all.begin(), all.end(), [&](const Axis& one) { return one.key == axis.key; });
-    if (same != all.end()) {
-      *same = axis;
-    } else {
-      all.push_back(axis);
-    }
-  }
-  if (all.empty()) throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
-  Tree grid = Tree::map();
-  for (const Axis& axis : all) {
-    plan.sweep.keys.push_back(axis.key);
-    Tree& values = grid.at(axis.key);
-    values = Tree::list();
-    values.items = axis.values;
-  }
-
-  std::string identity;
-  std::map<std::string, int> seen;
-  for (const Combination& combination : product(all)) {
-    // The sweep's own record decides whether surfaces are kept: not by default.
-    std::vector<Override> overrides = combination;
-    overrides.insert(overrides.end(), expectations.begin(), expectations.end());
-    if (base.find_path("log.surface") == nullptr) {
-      Tree off = Tree::scalar("false");
-      off.set_layer(kGroupLayer);
-      overrides.push_back({"log.surface", off});
-    }
-    ResolvedConfig config = load_experiment(composer, host, file, overrides);
-    Job job{static_cast<int>(plan.configs.size()), config.id, {}};
-    for (const Override& one : combination) job.values.push_back(value_text(one.value));
-    const auto [twin, is_new] = seen.emplace(job.id, job.index);
-    if (!is_new) {
-      throw Error(file.string(), fmt::format("jobs {} and {} of the sweep are the same run", twin->second, job.index),
-                  "a swept key has no effect in one of them, or a value stands twice");
-    }
-    identity += job.id;
-    plan.sweep.jobs.push_back(std::move(job));
-    plan.configs.push_back(std::move(config));
-  }
-  for (const std::string& key : plan.sweep.keys) identity += key;
-  plan.config = plan.configs.front().tree;
-  plan.config.at("sweep").at("grid") = std::move(grid);
-  plan.sweep.directory = runs / slug(plan.configs.front().options.name) / hash_of(identity).substr(0, 12);
-  return plan;
-}
-
-void prepare_sweep(const SweepPlan& plan) {
-  const fs::path& directory = plan.sweep.directory;
-  if (is_sweep(directory)) {
-    throw Error(directory.string(), "this sweep exists",
-                "'palpate resume' carries on, 'palpate status' tells its state");
-  }
-  fs::create_directories(directory / "jobs");
-  write_file(directory / "config.yaml", to_yaml(plan.config));
-  std::string manifest;
-  for (std::size_t i = 0; i < plan.configs.size(); ++i) {
-    const Job& job = plan.sweep.jobs[i];
-    fs::create_directory(job_directory(plan.sweep, job));
-    write_file(job_directory(plan.sweep, job) / "config.yaml", to_yaml(plan.configs[i].tree));
-    manifest += to_json_line(manifest_row(plan.sweep.keys, job)) + "\n";
-  }
-  write_file(directory / "manifest.jsonl", manifest);
-}
 
 bool is_sweep(const fs::path& directory) {
   std::error_code none;
@@ -158,51 +73,17 @@ Sweep read_sweep(const fs::path& directory) {
     sweep.jobs.push_back(std::move(job));
   }
   if (sweep.jobs.empty()) throw Error((directory / "manifest.jsonl").string(), "lists no job", "the file is damaged");
+  const std::string name = fs::absolute(directory).lexically_normal().filename().string();
+  if (begins_with_id(name) && sweep_id(read_run_config(directory), sweep.jobs) != name.substr(0, kIdLength)) {
+    throw Error(directory.string(), "config.yaml or manifest.jsonl was changed since this sweep began",
+                "put the old one back, or run the changed config with 'palpate sweep'");
+  }
   return sweep;
 }
 
-SweepReport run_sweep(const Workshop& workshop, const Sweep& sweep, const std::vector<ResolvedConfig>* configs,
-                      const ResumeOptions& options, int workers,
-                      const std::function<void(const SweepProgress&)>& progress) {
-  const FileLock lock(sweep.directory / "lock");
-  SweepReport report;
-  report.counts.jobs = static_cast<int>(sweep.jobs.size());
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < sweep.jobs.size(); i = next++) {
-      if (workshop.interrupted != nullptr && workshop.interrupted->load()) return;
-      const Job& job = sweep.jobs[i];
-      const fs::path directory = job_directory(sweep, job);
-      std::string failure;
-      bool broken_off = false;
-      try {
-        broken_off = (configs != nullptr ? start_run(workshop, (*configs)[i], directory, false, nullptr)
-                                         : resume_run(workshop, directory, options, nullptr))
-                         .interrupted;
-      } catch (const Error& trouble) {
-        failure = trouble.what();
-        if (read_status(directory).state == RunStatus::State::absent) write_failure(directory, job.id, failure);
-      }
-      const std::lock_guard guard(mutex);
-      if (broken_off) continue;
-      ++report.counts.done;
-      if (!failure.empty()) {
-        ++report.counts.failed;
-        report.failures.emplace_back(job, failure);
-      }
-      if (progress) progress(report.counts);
-    }
-  };
-  std::vector<std::thread> pool;
-  for (int i = 1; i < workers; ++i) pool.emplace_back(work);
-  work();
-  for (std::thread& one : pool) one.join();
-  std::sort(report.failures.begin(), report.failures.end(),
-            [](const auto& a, const auto& b) { return a.first.index < b.first.index; });
-  report.interrupted = workshop.interrupted != nullptr && workshop.interrupted->load();
+void write_results(const Sweep& sweep) {
+  const FileLock lock = FileLock::wait_for(sweep.directory / "lock");
   write_file(sweep.directory / "results.csv", to_csv(sweep_results(sweep)));
-  return report;
 }
 
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A sweep: every job is checked before the first one starts, each has a run directory of its own, and a table is made
-// from those directories.
+// The directory of a sweep: its jobs as listed when it began, what became of each, and the table made from that.
 #pragma once
 
-#include "record/session.hpp"
-#include "sweep/expand.hpp"
+#include "record/row.hpp"
+#include "record/run_directory.hpp"
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +16,7 @@ namespace palpate {
 struct Job {
   int index = 0;
   std::string id;
-  std::vector<std::string> values;  ///< one for each swept key
+  std::vector<std::string> values;  ///< one for each swept key; "" where the job's plugins have no such option
 };
 
 /// A sweep's directory: config.yaml, manifest.jsonl, jobs/<id>/, results.csv.
@@ -28,46 +26,18 @@ struct Sweep {
   std::vector<Job> jobs;
 };
 
-/// Counts while a sweep runs.
-struct SweepProgress {
-  int jobs = 0;
-  int done = 0;
-  int failed = 0;
-};
+/// A line of manifest.jsonl.
+Row manifest_row(const std::vector<std::string>& keys, const Job& job);
 
-struct SweepReport {
-  SweepProgress counts;
-  bool interrupted = false;
-  std::vector<std::pair<Job, std::string>> failures;  ///< with their reasons
-};
-
-/// A sweep that is planned but not yet on disk: resolved configs, one a job.
-struct SweepPlan {
-  Sweep sweep;
-  Tree config;  ///< the resolved base with its `sweep:`
-  std::vector<ResolvedConfig> configs;
-};
-
-/// Composes, resolves and checks every job of `file` with the axes of its `sweep:` and those in `axes`, which replace
-/// those of the same key. Jobs that resolve to the same run are refused. Throws Error; touches nothing.
-SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const std::filesystem::path& file,
-                     const std::vector<Axis>& axes, const std::filesystem::path& runs);
-
-/// Writes config.yaml, manifest.jsonl and the config of every job. Throws Error if the directory holds a sweep.
-void prepare_sweep(const SweepPlan& plan);
+/// The name of a sweep's directory: a hash of its resolved config, as written, and of its jobs.
+std::string sweep_id(const Tree& config, const std::vector<Job>& jobs);
 
 /// Whether `directory` holds a sweep.
 bool is_sweep(const std::filesystem::path& directory);
 
-/// Reads the manifest of a sweep. Throws Error.
+/// Reads the manifest of a sweep. Throws Error when it is damaged, or when config or manifest are not those that the
+/// directory is named after.
 Sweep read_sweep(const std::filesystem::path& directory);
-
-/// Runs every job that is not done, in `workers` threads, and rebuilds results.csv. A failed job is skipped unless
-/// `options` say otherwise; it never stops the others. `configs` are those of the jobs, or null to read them from the
-/// jobs' directories. `progress` is called after every job, one call at a time.
-SweepReport run_sweep(const Workshop& workshop, const Sweep& sweep, const std::vector<ResolvedConfig>* configs,
-                      const ResumeOptions& options, int workers,
-                      const std::function<void(const SweepProgress&)>& progress);
 
 /// jobs/<id>
 std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
@@ -77,6 +47,9 @@ std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
 /// The rows of results.csv: job, id, the swept keys, then the fields of the summary, for jobs that ended.
 std::vector<Row> sweep_results(const Sweep& sweep);
+
+/// Makes results.csv anew from the jobs. Waits while another process does. Throws Error.
+void write_results(const Sweep& sweep);
 
 /// Median, spread and dead starts by group: all swept keys but the seed. One line a group under a header.
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int initial_taps);

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "cli/campaign.hpp"
+
+#include "cli/display.hpp"
+#include "cli/gate.hpp"
+#include "record/files.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <numeric>
+#include <set>
+
+namespace palpate::cli {
+namespace {
+
+/// Whether no job of the sweep is missing: then its results are complete.
+bool has_ended(const Sweep& sweep) {
+  std::error_code none;
+  return std::all_of(sweep.jobs.begin(), sweep.jobs.end(), [&](const Job& job) {
+    return std::filesystem::exists(job_directory(sweep, job) / "summary.json", none);
+  });
+}
+
+/// Some jobs of many, as a task of a cluster runs them: what is said of the whole is said elsewhere.
+int conclude_part(const Sweep& sweep, const SweepReport& report) {
+  if (has_ended(sweep)) write_results(sweep);
+  print_failures(sweep, report.failures);
+  if (report.interrupted) return kInterrupted;
+  if (!report.failures.empty()) return kFailed;
+  return report.unfinished > 0 ? kBusy : kDone;
+}
+
+int conclude_whole(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
+                   const std::string& junit) {
+  write_results(sweep);
+  print_sweep(sweep, report, static_cast<int>(config.options.initial.count));
+  if (report.interrupted) return kInterrupted;
+  const bool all_hold = conclude(config.expectations, outcomes_of(sweep), {config.options.name, junit, true});
+  return sweep_status(config.expectations, all_hold, !report.failures.empty() || report.unfinished > 0);
+}
+
+}  // namespace
+
+void check_builds(const Program& program, const Campaign& campaign) {
+  for (std::size_t job = 0; job < campaign.sweep.jobs.size(); ++job) {
+    const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
+    std::error_code none;
+    if (!std::filesystem::exists(directory / "manifest.json", none)) continue;
+    check_build(program.workshop, campaign.config_of(job), directory);
+  }
+}
+
+int run_campaign(Program& program, const Campaign& campaign) {
+  const Sweep& sweep = campaign.sweep;
+  const LaunchArguments& launch = campaign.launch;
+  check_locks(sweep.directory);
+  const bool whole = campaign.only.empty();
+  std::vector<std::size_t> jobs = campaign.only;
+  if (whole) {
+    jobs.resize(sweep.jobs.size());
+    std::iota(jobs.begin(), jobs.end(), std::size_t{0});
+  }
+  const Missing missing = find_missing(sweep, jobs, campaign.options.retry_failed, launch.attempts);
+  LocalLauncher launcher(program.workshop, sweep, campaign.config_of,
+                         {launch.workers, campaign.options, launch.attempts, whole});
+  SweepLine line(launch.quiet);
+  conduct(launcher, sweep, missing, program.workshop.interrupted,
+          [&](const SweepProgress& progress) { line.show(progress); });
+  SweepReport report = report_on(sweep, jobs);
+  report.interrupted = program.workshop.interrupted->load();
+  return whole ? conclude_whole(sweep, campaign.config_of(0), report, launch.junit) : conclude_part(sweep, report);
+}
+
+std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
+  const auto refuse = [&] {
+    return Error("command line", fmt::format("--jobs: '{}' is not understood", text),
+                 fmt::format("write 0-7,12, from 0 to {}", count - 1));
+  };
+  std::set<std::size_t> jobs;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto number = [&] {
+    std::size_t out = 0;
+    const auto read = std::from_chars(at, end, out);
+    if (read.ec != std::errc() || out >= count) throw refuse();
+    at = read.ptr;
+    return out;
+  };
+  for (;;) {
+    const std::size_t first = number();
+    std::size_t last = first;
+    if (at < end && *at == '-') {
+      ++at;
+      last = number();
+    }
+    if (last < first) throw refuse();
+    for (std::size_t job = first; job <= last; ++job) jobs.insert(job);
+    if (at == end) return {jobs.begin(), jobs.end()};
+    if (*at++ != ',') throw refuse();
+  }
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Conditions on named values, as they stand in `where`: taps >= 12 and (surface == two_part or not kernel == rbf).
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A condition, read once and asked often.
+///
+/// Comparisons (==, !=, <, <=, >, >=) of a name with a value or with another name, joined by `and`, `or`, `not` and
+/// parentheses. Numbers compare as numbers, with their units (1 cm == 10 mm); all else compares as text, and only by
+/// == and !=. What stands on the left is a name; what stands on the right is a name if one is known, else a value,
+/// which may be quoted.
+class Condition {
+ public:
+  /// The text of a name's value ("2 cm", "rbf"; "" where it has none), or none where there is no such name.
+  using Values = std::function<std::optional<std::string>(const std::string& name)>;
+
+  /// Throws Error, with the place of `text`, for what is no condition.
+  explicit Condition(const Tree& text);
+  ~Condition();
+  Condition(Condition&& other) noexcept;
+  Condition& operator=(Condition&& other) noexcept;
+
+  /// A comparison with a name that has no value does not hold, whatever it compares. Throws Error for a name on the
+  /// left that is not known (`known` is what to suggest from), for an order of texts, and for units that do not go
+  /// together.
+  bool holds(const Values& value_of, const std::vector<std::string>& known) const;
+
+ private:
+  struct Node;
+  std::unique_ptr<const Node> root_;
+};
+
+}  // namespace palpate

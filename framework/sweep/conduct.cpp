@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/conduct.hpp"
+
+#include "sweep/job.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kPollSeconds = 0.5;
+
+RunStatus::State state_of(const Sweep& sweep, std::size_t job) {
+  return read_record(job_directory(sweep, sweep.jobs[job])).state;
+}
+
+}  // namespace
+
+Missing find_missing(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool retry_failed, int most_attempts) {
+  Missing out;
+  for (const std::size_t job : jobs) {
+    const RunStatus::State state = state_of(sweep, job);
+    const bool again = state == RunStatus::State::failed && retry_failed &&
+                       attempts_of(job_directory(sweep, sweep.jobs[job])) < most_attempts;
+    if (state == RunStatus::State::done) {
+      ++out.done;
+    } else if (state == RunStatus::State::failed && !again) {
+      ++out.failed;
+    } else {
+      out.jobs.push_back(job);
+    }
+  }
+  return out;
+}
+
+void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, const std::atomic<bool>* interrupted,
+             const std::function<void(const SweepProgress&)>& progress) {
+  SweepProgress counts;
+  counts.done = missing.done;
+  counts.failed = missing.failed;
+  counts.before = missing.done + missing.failed;
+  counts.jobs = counts.before + static_cast<int>(missing.jobs.size());
+  bool cancelled = false;
+  launcher.submit(missing.jobs);
+  for (Launcher::State state{{}, 0, 1}; !state.idle(); progress(counts)) {
+    if (!cancelled && interrupted != nullptr && interrupted->load()) {
+      launcher.cancel();
+      cancelled = true;
+    }
+    state = launcher.poll(kPollSeconds);
+    counts.running = state.running;
+    for (const std::size_t job : state.returned) {
+      const RunStatus::State now = state_of(sweep, job);
+      counts.done += now == RunStatus::State::done ? 1 : 0;
+      counts.failed += now == RunStatus::State::failed ? 1 : 0;
+    }
+  }
+  counts.last = true;
+  progress(counts);
+}
+
+SweepReport report_on(const Sweep& sweep, const std::vector<std::size_t>& jobs) {
+  SweepReport report;
+  for (const std::size_t job : jobs) {
+    const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
+    const RunStatus status = read_status(directory);
+    if (status.state == RunStatus::State::failed) {
+      report.failures.push_back({job, attempts_of(directory), status.stop_reason});
+    } else if (status.state != RunStatus::State::done) {
+      ++report.unfinished;
+      report.busy += status.state == RunStatus::State::running ? 1 : 0;
+    }
+  }
+  return report;
+}
+
+}  // namespace palpate

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// A sweep's directory while its jobs are still being checked: it is made under another name and appears under its own
+// only when it is complete.
+#pragma once
+
+#include "experiment/resolved.hpp"
+#include "sweep/plan.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace palpate {
+
+class SweepDraft {
+ public:
+  /// Makes a hidden folder in `runs`. Throws Error.
+  explicit SweepDraft(std::filesystem::path runs);
+  /// Removes what did not become a sweep.
+  ~SweepDraft();
+  SweepDraft(const SweepDraft&) = delete;
+  SweepDraft& operator=(const SweepDraft&) = delete;
+
+  /// Writes the config of a job.
+  void add(const Job& job, const ResolvedConfig& config);
+
+  /// Writes config.yaml and manifest.jsonl and gives all of it the name of the sweep. Returns false, and leaves
+  /// what is there alone, when that sweep exists already. Throws Error.
+  bool publish(const SweepPlan& plan);
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// One job of a sweep, run at most once to its end however many processes try. The guarantee is here and needs nobody's
+// good behaviour:
+//
+// 1. the lock of the job's directory is taken, or the job is busy;
+// 2. under it, the record says whether there is anything to do;
+// 3. the attempt is noted, then the run begins or goes on behind its last recorded tap;
+// 4. its result appears by rename. What dies before that leaves an unfinished run, to be carried on.
+#pragma once
+
+#include "record/session.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace palpate {
+
+/// How an attempt at a job ended.
+enum class JobEnd {
+  done,         ///< now or before
+  failed,       ///< now or before; summary.json has the reason
+  busy,         ///< another process has it in hand; nothing was done
+  interrupted,  ///< by the user's wish; it can be carried on
+};
+
+/// Runs the job in `directory` unless it is done, or has failed and is not to be tried again. What goes wrong becomes
+/// the reason of its failure. Throws Error only where nothing could be recorded.
+JobEnd run_job(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory,
+               const ResumeOptions& options);
+
+/// How often the job has been begun: lines of its attempts.jsonl that say so.
+int attempts_of(const std::filesystem::path& directory);
+
+/// Ends the job as failed, unless it has ended or somebody has it in hand: for processes that died over it.
+void record_failure(const std::filesystem::path& directory, const std::string& id, const std::string& reason);
+
+}  // namespace palpate

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/local_launcher.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace palpate {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kBusyPause{200};
+
+/// Exit statuses of a child.
+constexpr std::array<std::pair<JobEnd, int>, 4> kStatuses{
+    {{JobEnd::done, 0}, {JobEnd::failed, 1}, {JobEnd::busy, 75}, {JobEnd::interrupted, 130}}};
+constexpr int kUnrecorded = 2;  ///< not even the failure could be recorded
+
+int status_of(JobEnd end) {
+  return std::find_if(kStatuses.begin(), kStatuses.end(), [end](const auto& one) { return one.first == end; })->second;
+}
+
+/// Signals by which a program breaks down by itself; others come from outside.
+bool is_crash(int signal) {
+  constexpr std::array<int, 7> kCrashes{SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
+  return std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
+}
+
+Error system_error(const char* what) {
+  return Error("", fmt::format("{}: {}", what, std::strerror(errno)), {}, Error::Kind::run);
+}
+
+}  // namespace
+
+LocalLauncher::LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of,
+                             const LocalOptions& options)
+    : workshop_(workshop), sweep_(sweep), config_of_(std::move(config_of)), options_(options), parent_(::getpid()) {}
+
+LocalLauncher::~LocalLauncher() {
+  for (const Child& child : running_) ::kill(child.pid, SIGKILL);
+  for (const Child& child : running_) {
+    ::close(child.pipe);
+    while (::waitpid(child.pid, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+}
+
+void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
+  waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
+}
+
+void LocalLauncher::start(std::size_t job) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("no pipe for a job");
+  std::fflush(nullptr);  // or the child would print it again
+  const pid_t pid = ::fork();
+  if (pid == 0) {
+    ::close(ends[0]);
+    be_child(job);
+  }
+  const int why = errno;
+  ::close(ends[1]);
+  if (pid < 0) {
+    ::close(ends[0]);
+    errno = why;
+    throw system_error("no process for a job");
+  }
+  // A group of its own, made on both sides because either may be first: of the terminal's signals this process hears,
+  // and passes them on once.
+  ::setpgid(pid, pid);
+  running_.push_back({job, pid, ends[0]});
+}
+
+void LocalLauncher::be_child(std::size_t job) {
+  // Between fork and this call the parent may have died already.
+  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent_) ::_exit(kUnrecorded);
+  ::setpgid(0, 0);
+  int status = kUnrecorded;
+  try {
+    status = status_of(run_job(workshop_, config_of_(job), directory_of(job), options_.resume));
+  } catch (const std::exception& trouble) {
+    fmt::print(stderr, "job {}: {}\n", job, trouble.what());
+  } catch (...) {
+    fmt::print(stderr, "job {}: something was thrown that is no exception\n", job);
+  }
+  std::fflush(nullptr);
+  // Not exit(): what the parent made is the parent's to take down.
+  ::_exit(status);
+}
+
+Launcher::State LocalLauncher::poll(double seconds) {
+  while (!later_.empty() && later_.front().when <= Clock::now()) {
+    waiting_.push_back(later_.front().job);
+    later_.pop_front();
+  }
+  while (!waiting_.empty() && static_cast<int>(running_.size()) < options_.workers) {
+    start(waiting_.front());
+    waiting_.pop_front();
+  }
+  std::vector<pollfd> pipes;
+  for (const Child& child : running_) pipes.push_back({child.pipe, POLLIN, 0});
+  if (!later_.empty()) seconds = std::min(seconds, std::chrono::duration<double>(kBusyPause).count());
+  ::poll(pipes.data(), pipes.size(), static_cast<int>(1000.0 * seconds));
+  State state;
+  std::vector<Child> still;
+  for (std::size_t i = 0; i < running_.size(); ++i) {
+    if (pipes[i].revents == 0) {
+      still.push_back(running_[i]);
+    } else {
+      reap(running_[i], state);
+    }
+  }
+  running_ = std::move(still);
+  state.running = static_cast<int>(running_.size());
+  state.waiting = static_cast<int>(waiting_.size() + later_.size());
+  return state;
+}
+
+void LocalLauncher::reap(const Child& child, State& state) {
+  ::close(child.pipe);
+  int status = 0;
+  while (::waitpid(child.pid, &status, 0) < 0) {
+    if (errno != EINTR) throw system_error("a job's process is lost");
+  }
+  conclude(child.job, status, state);
+}
+
+void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
+  if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
+  const int status = WEXITSTATUS(wait_status);
+  if (status == status_of(JobEnd::busy) && options_.wait_for_others && !cancelled_) {
+    later_.push_back({job, Clock::now() + kBusyPause});
+    return;
+  }
+  const bool known =
+      std::any_of(kStatuses.begin(), kStatuses.end(), [status](const auto& one) { return one.second == status; });
+  if (!known && status != kUnrecorded && !cancelled_) {
+    record_failure(directory_of(job), sweep_.jobs[job].id, fmt::format("its process ended with status {}", status));
+  }
+  state.returned.push_back(job);
+}
+
+void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
+  const int attempts = attempts_of(directory_of(job));
+  const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
+  if (is_crash(signal)) {
+    record_failure(directory_of(job), sweep_.jobs[job].id, "crashed: " + name);
+  } else if (cancelled_) {
+    // As wished.
+  } else if (attempts >= options_.most_attempts) {
+    record_failure(directory_of(job), sweep_.jobs[job].id,
+                   fmt::format("was killed by {}{} in attempt {}", name,
+                               signal == SIGKILL ? ", as is done when memory runs out," : "", attempts));
+  } else {
+    waiting_.push_front(job);
+    return;
+  }
+  state.returned.push_back(job);
+}
+
+void LocalLauncher::cancel() {
+  cancelled_ = true;
+  waiting_.clear();
+  later_.clear();
+  for (const Child& child : running_) ::kill(child.pid, SIGTERM);
+}
+
+}  // namespace palpate

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// The launcher of this machine: a child process a job, forked from this one, which has the plugins loaded already. A
+// job that crashes costs that child alone, and children die with this process, however it dies: nothing goes on behind
+// the back of `resume`.
+#pragma once
+
+#include "sweep/job.hpp"
+#include "sweep/launcher.hpp"
+#include "sweep/sweep.hpp"
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+struct LocalOptions {
+  int workers = 1;              ///< jobs at a time
+  ResumeOptions resume;         ///< for every job
+  int most_attempts = 3;        ///< a job that was begun so often and always killed has failed
+  bool wait_for_others = true;  ///< jobs that other processes have in hand are awaited, in case those die
+};
+
+class LocalLauncher final : public Launcher {
+ public:
+  /// `config_of` is called in the child. All must outlive the launcher.
+  using Configs = std::function<ResolvedConfig(std::size_t job)>;
+  LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of, const LocalOptions& options);
+
+  /// Kills what still runs.
+  ~LocalLauncher() override;
+  LocalLauncher(const LocalLauncher&) = delete;
+  LocalLauncher& operator=(const LocalLauncher&) = delete;
+
+  void submit(const std::vector<std::size_t>& jobs) override;
+  State poll(double seconds) override;
+  void cancel() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// A job under way. The pipe says nothing: that it closes is the child's end.
+  struct Child {
+    std::size_t job = 0;
+    int pid = -1;
+    int pipe = -1;
+  };
+  /// A job that somebody else had in hand, to be looked at again.
+  struct Later {
+    std::size_t job = 0;
+    Clock::time_point when;
+  };
+
+  void start(std::size_t job);
+  [[noreturn]] void be_child(std::size_t job);
+  void reap(const Child& child, State& state);
+  void conclude(std::size_t job, int wait_status, State& state);
+  void was_killed(std::size_t job, int signal, State& state);
+  std::filesystem::path directory_of(std::size_t job) const { return job_directory(sweep_, sweep_.jobs[job]); }
+
+  const Workshop& workshop_;
+  const Sweep& sweep_;
+  Configs config_of_;
+  LocalOptions options_;
+  int parent_;
+  std::deque<std::size_t> waiting_;
+  std::deque<Later> later_;
+  std::vector<Child> running_;
+  bool cancelled_ = false;
+};
+
+}  // namespace palpate
