@@ -35,10 +35,11 @@ int conclude_part(const Sweep& sweep, const SweepReport& report) {
 
 int conclude_whole(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
                    const std::string& junit) {
-  write_results(sweep);
-  print_sweep(sweep, report, static_cast<int>(config.options.initial.count));
+  const std::vector<std::optional<Row>> summaries = write_results(sweep);
+  print_sweep(sweep, sweep_results(sweep, summaries), report, static_cast<int>(config.options.initial.count));
   if (report.interrupted) return kInterrupted;
-  const bool all_hold = conclude(config.expectations, outcomes_of(sweep), {config.options.name, junit, true});
+  const bool all_hold =
+      conclude(config.expectations, outcomes_of(sweep, summaries), {config.options.name, junit, true});
   return sweep_status(config.expectations, all_hold, !report.failures.empty() || report.unfinished > 0);
 }
 

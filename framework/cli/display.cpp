@@ -164,8 +164,8 @@ void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failure
   }
 }
 
-void print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps) {
-  fmt::print("{}", sweep_table(sweep, sweep_results(sweep), initial_taps));
+void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report, int initial_taps) {
+  fmt::print("{}", sweep_table(sweep, results, initial_taps));
   print_failures(sweep, report.failures);
   if (!report.failures.empty())
     fmt::print("try them again: palpate resume --retry-failed {}\n", sweep.directory.string());

@@ -52,6 +52,6 @@ void print_summary(const RunReport& report);
 void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures);
 
 /// The table, the failures and the place of a sweep.
-void print_sweep(const Sweep& sweep, const SweepReport& report, int initial_taps);
+void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report, int initial_taps);
 
 }  // namespace palpate::cli

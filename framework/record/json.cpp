@@ -14,27 +14,54 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool flatten(const Json& json, const std::string& prefix, Row& row) {
-  for (const auto& [key, value] : json.items()) {
-    const std::string name = prefix + key;
-    if (value.is_object()) {
-      if (!flatten(value, name + ".", row)) return false;
-    } else if (value.is_string()) {
-      row.add(name, value.get<std::string>());
-    } else if (value.is_boolean()) {
-      row.add(name, value.get<bool>());
-    } else if (value.is_number_integer()) {
-      row.add(name, value.get<std::int64_t>());
-    } else if (value.is_number()) {
-      row.add(name, value.get<double>());
-    } else if (value.is_null()) {
-      row.fields.emplace_back(name, std::monostate{});
-    } else {
-      return false;
-    }
+/// Takes the events of the parser as they come: a tree of all values would cost more than the reading itself. Returns
+/// false for what is no row, which ends the parsing.
+class RowReader final : public nlohmann::json_sax<Json> {
+ public:
+  explicit RowReader(Row& row) : row_(row) {}
+
+  bool null() override { return add(std::monostate{}); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(std::int64_t{value}); }
+  bool number_unsigned(number_unsigned_t value) override { return add(static_cast<std::int64_t>(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }
+  bool start_array(std::size_t) override { return false; }
+  bool end_array() override { return false; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+  bool start_object(std::size_t) override {
+    ends_.push_back(name_.size());
+    if (ends_.size() > 1) name_ += '.';
+    return true;
   }
-  return true;
-}
+  bool key(string_t& key) override {
+    name_.resize(prefix());
+    name_ += key;
+    return true;
+  }
+  bool end_object() override {
+    name_.resize(ends_.back());
+    ends_.pop_back();
+    return true;
+  }
+
+ private:
+  /// The length of what comes before the names in the innermost object: "a." in {"a": {...
+  std::size_t prefix() const { return ends_.back() + (ends_.size() > 1 ? 1 : 0); }
+
+  template <class T>
+  bool add(T value) {
+    if (ends_.empty()) return false;
+    row_.fields.emplace_back(name_, std::move(value));
+    return true;
+  }
+
+  Row& row_;
+  std::string name_;               ///< of the value to come, dotted
+  std::vector<std::size_t> ends_;  ///< lengths of the names of the open objects
+};
 
 void append(std::string& out, const Tree& tree, const std::string& indent) {
   const std::string inner = indent + "  ";
@@ -67,9 +94,9 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
 }  // namespace
 
 std::optional<Row> parse_json_row(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
   Row row;
-  if (!json.is_object() || !flatten(json, "", row)) return std::nullopt;
+  RowReader reader(row);
+  if (!Json::sax_parse(text, &reader)) return std::nullopt;
   return row;
 }
 

@@ -42,18 +42,32 @@ const char* state_name(RunStatus::State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-RunStatus read_record(const fs::path& directory) {
+namespace {
+
+/// State and reason; the taps are not counted.
+RunStatus read_ending(const fs::path& directory) {
   RunStatus out;
   std::error_code none;
-  if (fs::exists(directory / kTaps, none)) {
-    for (const Row& row : read_json_lines(directory / kTaps).rows) out.taps += is_intent(row) ? 0 : 1;
-    out.state = RunStatus::State::unfinished;
-  }
   if (fs::exists(directory / kSummary, none)) {
     const std::optional<Row> summary = parse_json_row(read_file(directory / kSummary));
     if (!summary) throw Error((directory / kSummary).string(), "is not a JSON object", "the file is damaged");
     out.state = text_at(*summary, "status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
     out.stop_reason = text_at(*summary, "stop_reason");
+  } else if (fs::exists(directory / kTaps, none)) {
+    out.state = RunStatus::State::unfinished;
+  }
+  return out;
+}
+
+}  // namespace
+
+RunStatus::State read_state(const fs::path& directory) { return read_ending(directory).state; }
+
+RunStatus read_record(const fs::path& directory) {
+  RunStatus out = read_ending(directory);
+  std::error_code none;
+  if (fs::exists(directory / kTaps, none)) {
+    for (const Row& row : read_json_lines(directory / kTaps).rows) out.taps += is_intent(row) ? 0 : 1;
   }
   return out;
 }

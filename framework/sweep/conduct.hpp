@@ -32,7 +32,6 @@ struct SweepFailure {
 struct SweepReport {
   std::vector<SweepFailure> failures;  ///< of all jobs in question, in their order
   int unfinished = 0;                  ///< jobs that nobody ended
-  int busy = 0;                        ///< of them: in the hands of another process
   bool interrupted = false;
 };
 

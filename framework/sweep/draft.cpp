@@ -48,7 +48,18 @@ SweepDraft::~SweepDraft() {
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
   const fs::path directory = folder_ / "jobs" / job.id;
   make_folder(directory);
-  write_file(directory / "config.yaml", to_yaml(config.tree));
+  std::string text;
+  for (const Tree::Entry& entry : config.tree.entries) {
+    Written& known = written_[entry.key];
+    std::string value = entry.value.canonical();
+    if (known.yaml.empty() || known.value != value) {
+      Tree alone = Tree::map();
+      alone.entries.push_back(entry);
+      known = {std::move(value), to_yaml(alone)};
+    }
+    text += known.yaml;
+  }
+  write_file(directory / "config.yaml", text);
 }
 
 bool SweepDraft::publish(const SweepPlan& plan) {

@@ -7,6 +7,7 @@
 #include "sweep/plan.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 namespace palpate {
@@ -28,7 +29,14 @@ class SweepDraft {
   bool publish(const SweepPlan& plan);
 
  private:
+  /// A top-level key as it was last written, because the jobs of a sweep differ in few.
+  struct Written {
+    std::string value;  ///< canonical
+    std::string yaml;
+  };
+
   std::filesystem::path folder_;
+  std::map<std::string, Written> written_;
 };
 
 }  // namespace palpate

@@ -170,8 +170,7 @@ RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, 
   return {"run " + id, "", failure, summary};
 }
 
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep) {
-  const std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries) {
   std::vector<RunOutcome> runs;
   for (const Job& job : sweep.jobs) {
     RunOutcome run;

@@ -39,7 +39,7 @@ std::string verdict_line(const Verdict& verdict);
 RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure);
 
 /// Every job of a sweep; one without a summary counts as failed.
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep);
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
 
 /// A test case a run and one an expectation. `suite` is the name of the experiment.
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,

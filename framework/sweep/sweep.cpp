@@ -81,9 +81,11 @@ Sweep read_sweep(const fs::path& directory) {
   return sweep;
 }
 
-void write_results(const Sweep& sweep) {
+std::vector<std::optional<Row>> write_results(const Sweep& sweep) {
   const FileLock lock = FileLock::wait_for(sweep.directory / "lock");
-  write_file(sweep.directory / "results.csv", to_csv(sweep_results(sweep)));
+  std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
+  write_file(sweep.directory / "results.csv", to_csv(sweep_results(sweep, summaries)));
+  return summaries;
 }
 
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
@@ -99,9 +101,10 @@ std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
   return summaries;
 }
 
-std::vector<Row> sweep_results(const Sweep& sweep) {
+std::vector<Row> sweep_results(const Sweep& sweep) { return sweep_results(sweep, sweep_summaries(sweep)); }
+
+std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries) {
   std::vector<Row> rows;
-  const std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
   for (const Job& job : sweep.jobs) {
     const std::optional<Row>& summary = summaries[static_cast<std::size_t>(job.index)];
     if (!summary) continue;

@@ -47,9 +47,11 @@ std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
 /// The rows of results.csv: job, id, the swept keys, then the fields of the summary, for jobs that ended.
 std::vector<Row> sweep_results(const Sweep& sweep);
+std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
 
-/// Makes results.csv anew from the jobs. Waits while another process does. Throws Error.
-void write_results(const Sweep& sweep);
+/// Makes results.csv anew from the jobs, as they are once nobody else does the same. Returns their summaries. Throws
+/// Error.
+std::vector<std::optional<Row>> write_results(const Sweep& sweep);
 
 /// Median, spread and dead starts by group: all swept keys but the seed. One line a group under a header.
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int initial_taps);
