@@ -65,8 +65,12 @@ int run_campaign(Program& program, const Campaign& campaign) {
     std::iota(jobs.begin(), jobs.end(), std::size_t{0});
   }
   const Missing missing = find_missing(sweep, jobs, campaign.options.retry_failed, launch.attempts);
+  const int workers = campaign.one_at_a_time ? 1 : launch.workers;
+  if (workers < launch.workers && !launch.quiet) {
+    fmt::print(stderr, "one job at a time: the backend has but one thing to move\n");
+  }
   LocalLauncher launcher(program.workshop, sweep, campaign.config_of,
-                         {launch.workers, campaign.options, launch.attempts, whole});
+                         {workers, campaign.options, launch.attempts, whole});
   SweepLine line(launch.quiet);
   conduct(launcher, sweep, missing, program.workshop.interrupted,
           [&](const SweepProgress& progress) { line.show(progress); });

@@ -19,6 +19,7 @@ struct Campaign {
   ResumeOptions options;
   const LaunchArguments& launch;
   std::vector<std::size_t> only;  ///< these jobs; none for all
+  bool one_at_a_time = false;     ///< a job's backend moves what exists only once
 };
 
 /// Throws Error if a job of the sweep was begun by another build: by its first tap, for none of them.

@@ -12,13 +12,14 @@ namespace palpate::cli {
 namespace {
 
 /// Every job that will run is checked before the first does: config.yaml may have been changed since it was written.
-void check_jobs(const Program& program, const Campaign& campaign) {
+void check_jobs(const Program& program, Campaign& campaign) {
   const std::vector<std::size_t>& only = campaign.only;
   for (std::size_t i = 0; i < (only.empty() ? campaign.sweep.jobs.size() : only.size()); ++i) {
     const std::size_t job = only.empty() ? i : only[i];
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
     if (read_record(directory).state == RunStatus::State::done) continue;
     const ResolvedConfig config = campaign.config_of(job);
+    campaign.one_at_a_time = campaign.one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
     if (!campaign.options.force) check_build(program.workshop, config, directory);
   }
 }
@@ -26,7 +27,7 @@ void check_jobs(const Program& program, const Campaign& campaign) {
 int resume_sweep(Program& program, const ResumeArguments& arguments, const ResumeOptions& options) {
   const Sweep sweep = read_sweep(arguments.directory);
   const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
-  Campaign campaign{sweep, config_of, options, arguments.launch, {}};
+  Campaign campaign{sweep, config_of, options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
   check_jobs(program, campaign);
   return run_campaign(program, campaign);

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "cli/campaign.hpp"
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 #include "cli/gate.hpp"
 #include "sweep/draft.hpp"
+#include "sweep/estimate.hpp"
 #include "sweep/plan.hpp"
 
 #include <fmt/format.h>
 
-#include <numeric>
+#include <algorithm>
 #include <optional>
+#include <string>
 
 namespace palpate::cli {
 namespace {
@@ -23,25 +26,42 @@ void print_jobs(const Sweep& sweep) {
   }
 }
 
+/// "1000 jobs, about 1.2 s of computing with 2 at a time"
+std::string size_words(const Program& program, const Campaign& campaign) {
+  const std::size_t jobs = campaign.sweep.jobs.size();
+  std::string words = fmt::format("{} job{}", jobs, jobs == 1 ? "" : "s");
+  const std::optional<Estimate> estimate = estimate_job(program.host, campaign.config_of, jobs);
+  if (!estimate) return words;
+  const auto workers = static_cast<std::size_t>(campaign.one_at_a_time ? 1 : campaign.launch.workers);
+  const double rounds = static_cast<double>(jobs) / static_cast<double>(std::min(jobs, workers));
+  return words + fmt::format(", {} {} of computing with {} at a time", estimate->at_least ? "at least" : "about",
+                             duration_words(estimate->job_seconds * rounds), std::min(jobs, workers));
+}
+
 }  // namespace
 
 int sweep(Program& program, const SweepArguments& arguments) {
+  check_junit(arguments.launch.junit);
+  bool one_at_a_time = false;
+  std::optional<SweepDraft> draft;
+  if (!arguments.list) draft.emplace(arguments.runs);
+  const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
+                                    [&](const Job& job, const ResolvedConfig& config) {
+                                      if (draft) draft->add(job, config);
+                                      one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
+                                    });
+  const auto config_of = [&](std::size_t job) { return planned_config(plan, program.composer, program.host, job); };
+  const Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
   if (arguments.list) {
-    print_jobs(plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs).sweep);
+    print_jobs(plan.sweep);
+    if (!arguments.launch.quiet) fmt::print(stderr, "{}\n", size_words(program, campaign));
     return kDone;
   }
-  check_junit(arguments.launch.junit);
-  std::optional<SweepDraft> draft(arguments.runs);
-  const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
-                                    [&](const Job& job, const ResolvedConfig& config) { draft->add(job, config); });
   const bool is_new = draft->publish(plan);
   draft.reset();
-
-  const auto config_of = [&](std::size_t job) { return planned_config(plan, program.composer, program.host, job); };
-  Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}};
   if (!is_new) check_builds(program, campaign);
   if (!arguments.launch.quiet) {
-    fmt::print(stderr, "{} jobs in {}{}\n", plan.sweep.jobs.size(), plan.sweep.directory.string(),
+    fmt::print(stderr, "{} in {}{}\n", size_words(program, campaign), plan.sweep.directory.string(),
                is_new ? "" : ", which exists: what is missing is run");
   }
   return run_campaign(program, campaign);

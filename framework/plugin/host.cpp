@@ -204,6 +204,11 @@ std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
   return out;
 }
 
+bool PluginHost::one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const {
+  return std::any_of(plugins.begin(), plugins.end(),
+                     [this](const auto& one) { return library(one.first, one.second)->manifest().one_at_a_time; });
+}
+
 std::vector<std::string> PluginHost::kinds() {
   return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Backend::kKind, Shape::kKind};
 }

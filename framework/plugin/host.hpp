@@ -60,6 +60,9 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// File and hash of the given plugins (kind, name), in their order; loads them if need be. Throws Error.
   std::vector<LoadedPlugin> loaded(const std::set<std::pair<std::string, std::string>>& plugins) const;
 
+  /// Whether one of the given plugins moves something that exists only once; loads them if need be. Throws Error.
+  bool one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const;
+
   /// The kinds that exist.
   static std::vector<std::string> kinds();
 

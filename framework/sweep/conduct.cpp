@@ -40,7 +40,8 @@ void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, con
   counts.jobs = counts.before + static_cast<int>(missing.jobs.size());
   bool cancelled = false;
   launcher.submit(missing.jobs);
-  for (Launcher::State state{{}, 0, 1}; !state.idle(); progress(counts)) {
+  Launcher::State state;
+  do {
     if (!cancelled && interrupted != nullptr && interrupted->load()) {
       launcher.cancel();
       cancelled = true;
@@ -52,9 +53,9 @@ void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, con
       counts.done += now == RunStatus::State::done ? 1 : 0;
       counts.failed += now == RunStatus::State::failed ? 1 : 0;
     }
-  }
-  counts.last = true;
-  progress(counts);
+    counts.last = state.empty_handed();
+    progress(counts);
+  } while (!counts.last);
 }
 
 SweepReport report_on(const Sweep& sweep, const std::vector<std::size_t>& jobs) {

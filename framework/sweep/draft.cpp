@@ -30,19 +30,20 @@ void make_folder(const fs::path& folder) {
 
 }  // namespace
 
-SweepDraft::SweepDraft(fs::path runs) {
-  make_folder(runs);
-  std::string name = (runs / ".sweep-XXXXXX").string();
+SweepDraft::SweepDraft(fs::path runs) : runs_(std::move(runs)), made_runs_(!fs::exists(runs_)) {
+  make_folder(runs_);
+  std::string name = (runs_ / ".sweep-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) throw cannot(name, std::strerror(errno));
   folder_ = name;
   std::error_code none;
-  fs::permissions(folder_, fs::status(runs).permissions(), none);  // mkdtemp keeps others out
+  fs::permissions(folder_, fs::status(runs_).permissions(), none);  // mkdtemp keeps others out
   make_folder(folder_ / "jobs");
 }
 
 SweepDraft::~SweepDraft() {
   std::error_code none;
   fs::remove_all(folder_, none);
+  if (made_runs_) fs::remove(runs_, none);  // only while it is empty
 }
 
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {

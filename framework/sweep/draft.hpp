@@ -35,6 +35,8 @@ class SweepDraft {
     std::string yaml;
   };
 
+  std::filesystem::path runs_;
+  bool made_runs_;  ///< the folder of the runs was not there before
   std::filesystem::path folder_;
   std::map<std::string, Written> written_;
 };

@@ -15,7 +15,7 @@ class Launcher {
     std::vector<std::size_t> returned;  ///< jobs that it let go since the last call, in whatever state
     int running = 0;                    ///< jobs, as far as it knows
     int waiting = 0;                    ///< jobs
-    bool idle() const { return returned.empty() && running == 0 && waiting == 0; }
+    bool empty_handed() const { return running == 0 && waiting == 0; }
   };
 
   virtual ~Launcher() = default;
@@ -24,8 +24,8 @@ class Launcher {
   /// any. Throws Error when none can be taken.
   virtual void submit(const std::vector<std::size_t>& jobs) = 0;
 
-  /// Waits until something happens, but not for more than `seconds`, nor beyond a signal. Throws Error when nothing can
-  /// be known any more.
+  /// Waits until something happens, but not for more than `seconds`, nor beyond a signal, nor with empty hands. Throws
+  /// Error when nothing can be known any more.
   virtual State poll(double seconds) = 0;
 
   /// Asks what runs to stop after the tap under way, and forgets what waits; what is running is still returned.

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -98,9 +99,8 @@ void LocalLauncher::be_child(std::size_t job) {
   } catch (...) {
     fmt::print(stderr, "job {}: something was thrown that is no exception\n", job);
   }
-  std::fflush(nullptr);
-  // Not exit(): what the parent made is the parent's to take down.
-  ::_exit(status);
+  // Not _exit(): plugins have things to take down, such as a robot's node.
+  std::exit(status);
 }
 
 Launcher::State LocalLauncher::poll(double seconds) {
@@ -115,6 +115,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
   std::vector<pollfd> pipes;
   for (const Child& child : running_) pipes.push_back({child.pipe, POLLIN, 0});
   if (!later_.empty()) seconds = std::min(seconds, std::chrono::duration<double>(kBusyPause).count());
+  if (running_.empty() && later_.empty()) seconds = 0.0;
   ::poll(pipes.data(), pipes.size(), static_cast<int>(1000.0 * seconds));
   State state;
   std::vector<Child> still;

@@ -9,6 +9,7 @@ namespace broken {
 class Backend final : public palpate::Backend {
  public:
   using Options = palpate::NoOptions;
+  static constexpr bool kOneAtATime = true;
   Backend(const Options&, const palpate::Context&) {}
 
   palpate::Contact tap(const palpate::TapRequest& request) override {

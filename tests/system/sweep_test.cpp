@@ -89,12 +89,41 @@ TEST(Sweep, CarriesOnWithWhatIsMissing) {
     fs::remove(job / name);
   EXPECT_THAT(test::palpate({"status", directory.string()}, folder.path()).out,
               HasSubstr("4 done, 0 running, 0 failed, 0 unfinished, 1 missing"));
-  const Ended refused = test::palpate({"sweep", paper(), "seed=range(0,5)"}, folder.path());
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("'palpate resume' carries on"));
   EXPECT_EQ(test::palpate({"resume", directory.string()}, folder.path()).status, 0);
   EXPECT_EQ(text_of(job / "taps.csv"), taps);
   EXPECT_EQ(lines(text_of(directory / "results.csv")), lines(before));
+  for (const auto& other : fs::directory_iterator(directory / "jobs")) {
+    EXPECT_EQ(lines(text_of(other.path() / "attempts.jsonl")), other.path() == job ? 4 : 2);
+  }
+}
+
+TEST(Sweep, CalledAgainItRunsWhatIsMissingAndTellsTheSame) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words{"sweep", paper(), "seed=range(0,3)"};
+  const Ended first = test::palpate(words, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  fs::remove_all(fs::directory_iterator(directory / "jobs")->path() / "summary.json");
+  fs::remove(directory / "results.csv");
+  const Ended again = test::palpate(words, folder.path());
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.err, HasSubstr("which exists: what is missing is run"));
+  EXPECT_EQ(again.out, first.out);
+  EXPECT_EQ(only_run(folder.path() / "runs"), directory) << "and leaves nothing beside it";
+  EXPECT_EQ(lines(text_of(directory / "results.csv")), 4);
+}
+
+TEST(Sweep, OfAnotherBuildIsNotMixedWithThisOne) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,2)", "--quiet"}, folder.path()).status, 0);
+  const fs::path job = fs::directory_iterator(only_run(folder.path() / "runs") / "jobs")->path();
+  std::string manifest = text_of(job / "manifest.json");
+  const auto at = manifest.find("\"build\": \"") + 10;
+  manifest[at] = manifest[at] == '0' ? '1' : '0';
+  folder.write(fs::relative(job / "manifest.json", folder.path()).string(), manifest);
+  const Ended ended = test::palpate({"sweep", paper(), "seed=range(0,2)"}, folder.path());
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("by another build"));
+  EXPECT_EQ(lines(ended.err), 1);
 }
 
 TEST(Sweep, AJobThatWasBrokenOffIsCarriedOnThoughOtherJobsUseOtherPlugins) {

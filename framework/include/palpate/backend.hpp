@@ -32,6 +32,10 @@ class Backend {
  public:
   static constexpr const char* kKind = "backend";
 
+  /// Whether there is but one of what the backend moves, as of a robot's arm. A backend that says true, by a constant
+  /// of this name in its own class, has the jobs of a sweep run one after another, however many workers there are.
+  static constexpr bool kOneAtATime = false;
+
   virtual ~Backend() = default;
 
   /// Taps the world and returns when the tool is clear again. A tap that failed says so in its outcome, and if it must

@@ -19,11 +19,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 5;
+constexpr std::uint32_t kPluginAbi = 6;
 
 struct Context;
 
@@ -67,6 +68,7 @@ struct PluginManifest {
   const char* kind;     ///< the folder of the library
   const char* name;     ///< its file name without .so
   const char* summary;  ///< one line, for `palpate plugins`
+  bool one_at_a_time;   ///< what it moves exists once: runs that use it wait for each other (Backend::kOneAtATime)
   /// Lists the fields of a default options struct to `fields`.
   void (*describe)(Fields& fields);
   /// Fills an options struct from `fields` and makes the object: a pointer to the kind's interface.
@@ -106,6 +108,12 @@ void* create(Fields& fields, const Context& context) {
   return static_cast<Interface*>(new Plugin(options, context));
 }
 
+/// Whether `Plugin` says kOneAtATime, which only backends have.
+template <class Plugin, class = void>
+struct OneAtATime : std::false_type {};
+template <class Plugin>
+struct OneAtATime<Plugin, std::enable_if_t<Plugin::kOneAtATime>> : std::true_type {};
+
 template <class Interface>
 void destroy(void* object) {
   delete static_cast<Interface*>(object);
@@ -123,6 +131,7 @@ constexpr PluginManifest manifest_of(const char* name, const char* summary) {
           Interface::kKind,
           name,
           summary,
+          detail::OneAtATime<Plugin>::value,
           &detail::describe<Plugin>,
           &detail::create<Plugin, Interface>,
           &detail::destroy<Interface>};

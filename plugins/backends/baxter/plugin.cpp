@@ -8,11 +8,9 @@
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
-#include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <mutex>
 
 namespace palpate::baxter {
 namespace {
@@ -46,43 +44,19 @@ class Diary {
   std::string waiting_;
 };
 
-/// The only arm that a process has, for the jobs of a sweep that run beside each other: one moves it, the others wait.
-class Turn {
- public:
-  explicit Turn(bool wanted) : mine_(wanted) {
-    if (!mine_) return;
-    std::unique_lock lock(mutex_);
-    free_.wait(lock, [] { return !taken_; });
-    taken_ = true;
-  }
-  ~Turn() {
-    if (!mine_) return;
-    const std::lock_guard lock(mutex_);
-    taken_ = false;
-    free_.notify_one();
-  }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
- private:
-  static inline std::mutex mutex_;
-  static inline std::condition_variable free_;
-  static inline bool taken_ = false;
-  bool mine_;
-};
-
 }  // namespace
 
 class Baxter final : public Backend {
  public:
   using Options = BaxterOptions;
 
+  static constexpr bool kOneAtATime = true;
+
   /// Joins the robot's network and checks all that can be checked before anything moves. Throws Error.
   Baxter(const Options& options, const Context& context)
       : options_(options),
         scene_(context.scene),
         diary_(context.directory),
-        turn_(!options.dry_run),
         robot_(connect({!options.dry_run, options.inverse_kinematics == Options::InverseKinematics::robot})),
         tapper_(options, context.scene, *robot_, context.interrupted,
                 [this](const std::string& line) { diary_.note(line); }) {
@@ -115,7 +89,6 @@ class Baxter final : public Backend {
   Options options_;
   const Scene& scene_;
   Diary diary_;
-  Turn turn_;  ///< from before the connection until after its end
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;
   std::unique_ptr<View> view_;  ///< before the robot goes, this goes

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// What a sweep survives: jobs that crash, are killed or fail, launchers that are killed, several at once, changed
+// files.
+#include "record/json.hpp"
+#include "support/programs.hpp"
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <set>
+
+namespace palpate {
+namespace {
+
+using test::Ended;
+using test::eventually;
+using test::lines;
+using test::only_run;
+using test::paper;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+class Recovery : public testing::Test {
+ protected:
+  fs::path directory() const { return only_run(folder_.path() / "runs"); }
+  fs::path job(int index) const {
+    const std::vector<Row> rows = read_json_lines(directory() / "manifest.jsonl").rows;
+    return directory() / "jobs" / std::get<std::string>(*rows.at(static_cast<std::size_t>(index)).find("id"));
+  }
+  Ended palpate(const std::vector<std::string>& words) const {
+    return test::palpate(words, folder_.path(), {plugins_});
+  }
+  Ended resume(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"resume", directory().string(), "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return palpate(words);
+  }
+  std::string status() const { return palpate({"status", directory().string()}).out; }
+
+  /// How often a job was begun.
+  int attempts(int index) const {
+    if (!fs::exists(job(index) / "attempts.jsonl")) return 0;
+    int count = 0;
+    for (const Row& row : read_json_lines(job(index) / "attempts.jsonl").rows) count += row.find("pid") != nullptr;
+    return count;
+  }
+
+  /// A sweep over ways in which the process of a job ends in its fifth tap.
+  std::vector<std::string> dying(const std::string& ways) const {
+    return {"sweep", paper(), "backend=dies", "backend.way=" + ways, "--quiet"};
+  }
+
+  /// Jobs that take about a second each.
+  static std::vector<std::string> slow(int jobs) {
+    return {"sweep", paper(), "seed=range(0," + std::to_string(jobs) + ")", "backend.pace=0.006", "-j", "2", "--quiet"};
+  }
+  /// Begins such a sweep and waits until its first job has a tap.
+  std::unique_ptr<test::Child> begun(int jobs) const {
+    std::vector<std::string> words = slow(jobs);
+    words.insert(words.begin(), test::program_file().string());
+    auto child = std::make_unique<test::Child>(words, folder_.path());
+    EXPECT_TRUE(eventually([&] { return pids().size() == 2 && fs::exists(job(0) / "taps.jsonl"); })) << child->err();
+    return child;
+  }
+  /// Of the processes that began jobs.
+  std::set<long> pids() const {
+    std::set<long> out;
+    std::error_code none;
+    // Step by step, because folders get other names meanwhile.
+    for (fs::recursive_directory_iterator at(folder_.path(), none), end; at != end; at.increment(none)) {
+      if (at->path().filename() != "attempts.jsonl") continue;
+      for (const Row& row : read_json_lines(at->path()).rows) {
+        if (const Scalar* pid = row.find("pid")) out.insert(static_cast<long>(std::get<std::int64_t>(*pid)));
+      }
+    }
+    return out;
+  }
+  /// Every job done, and no tap twice.
+  void expect_done(int jobs) const {
+    EXPECT_THAT(status(), StartsWith(std::to_string(jobs) + " jobs, " + std::to_string(jobs) + " done"));
+    EXPECT_EQ(lines(text_of(directory() / "results.csv")), jobs + 1);
+    for (int i = 0; i < jobs; ++i) EXPECT_EQ(lines(text_of(job(i) / "taps.jsonl")), 17);
+  }
+  /// The same, with the bytes of an unbroken sweep.
+  void expect_whole(int jobs) const {
+    expect_done(jobs);
+    const TemporaryFolder unbroken;
+    ASSERT_EQ(
+        test::palpate({"sweep", paper(), "seed=range(0," + std::to_string(jobs) + ")", "--quiet"}, unbroken.path())
+            .status,
+        0);
+    const std::vector<Row> rows = read_json_lines(only_run(unbroken.path() / "runs") / "manifest.jsonl").rows;
+    for (int i = 0; i < jobs; ++i) {
+      const std::string id = std::get<std::string>(*rows.at(static_cast<std::size_t>(i)).find("id"));
+      const fs::path other = only_run(unbroken.path() / "runs") / "jobs" / id;
+      EXPECT_TRUE(text_of(job(i) / "taps.csv") == text_of(other / "taps.csv")) << "job " << i;
+    }
+  }
+
+  TemporaryFolder folder_;
+  std::string plugins_ = "PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("dies").string();
+};
+
+TEST_F(Recovery, AJobThatCrashesCostsItselfAlone) {
+  const Ended ended = palpate(dying("none,crash,exit,fail"));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("failed: job 1"), HasSubstr("crashed: signal 11 (Segmentation fault)"),
+                    HasSubstr("failed: job 2"), HasSubstr("its process ended with status 3"),
+                    HasSubstr("failed: job 3"), HasSubstr("backend.way=fail"), HasSubstr("its arm has fallen off")));
+  EXPECT_THAT(ended.out, HasSubstr("palpate resume --retry-failed"));
+  EXPECT_THAT(status(), StartsWith("4 jobs, 1 done, 0 running, 3 failed"));
+  EXPECT_EQ(lines(text_of(directory() / "results.csv")), 5) << "failed jobs are in the table, too";
+  EXPECT_EQ(attempts(1), 1) << "it would crash again";
+}
+
+TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
+  const Ended ended = palpate(dying("none,kill"));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("was killed by signal 9 (Killed), as is done when memory runs out, in attempt 3"));
+  EXPECT_EQ(attempts(0), 1);
+  EXPECT_EQ(attempts(1), 3);
+  EXPECT_EQ(lines(text_of(job(1) / "taps.jsonl")), 4) << "what was tapped before is kept, and not tapped again";
+  EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  EXPECT_EQ(attempts(1), 3) << "the limit holds for retries, too";
+  EXPECT_EQ(resume({"--retry-failed", "--attempts", "5"}).status, 1);
+  EXPECT_EQ(attempts(1), 5);
+}
+
+TEST_F(Recovery, WhatFailedKeepsItsReasonAndIsTriedAgainOnRequestOnly) {
+  ASSERT_EQ(palpate(dying("none,fail")).status, 1);
+  const Ended again = resume();
+  EXPECT_EQ(again.status, 1) << "a failure is not forgotten";
+  EXPECT_THAT(again.out, HasSubstr("its arm has fallen off"));
+  EXPECT_EQ(attempts(1), 1);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  EXPECT_EQ(attempts(0), 1);
+  EXPECT_EQ(attempts(1), 3) << "not more often than --attempts says";
+}
+
+TEST_F(Recovery, AKilledLauncherTakesItsJobsAlongAndResumeDoesTheRest) {
+  const std::unique_ptr<test::Child> child = begun(5);
+  child->signal(SIGKILL);
+  child->wait();
+  for (const long pid : pids()) EXPECT_TRUE(eventually([&] { return !test::running(pid); })) << pid;
+  EXPECT_THAT(status(), HasSubstr("0 running"));
+  ASSERT_EQ(resume().status, 0);
+  expect_whole(5);
+  int begun = 0;
+  for (int i = 0; i < 5; ++i) begun += attempts(i);
+  EXPECT_EQ(begun, 7) << "two were carried on, three begun once";
+}
+
+TEST_F(Recovery, AKilledJobIsCarriedOnAtOnce) {
+  const std::unique_ptr<test::Child> child = begun(3);
+  for (const long pid : pids()) ::kill(static_cast<pid_t>(pid), SIGKILL);
+  EXPECT_EQ(child->wait().status, 0);
+  expect_whole(3);
+  EXPECT_EQ(attempts(0) + attempts(1) + attempts(2), 5);
+}
+
+TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
+  const std::unique_ptr<test::Child> child = begun(5);
+  child->signal(SIGINT);
+  const Ended ended = child->wait();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
+  EXPECT_THAT(status(), StartsWith("5 jobs, 0 done, 0 running, 0 failed, 2 unfinished, 3 missing"));
+  EXPECT_THAT(text_of(job(0) / "attempts.jsonl"), HasSubstr("\"end\": \"interrupted\""));
+  ASSERT_EQ(resume().status, 0);
+  expect_done(5);
+}
+
+TEST_F(Recovery, TwoLaunchersShareTheWorkAndRunNoJobTwice) {
+  const std::unique_ptr<test::Child> first = begun(6);
+  std::vector<std::string> words = slow(6);
+  words.insert(words.begin(), test::program_file().string());
+  test::Child second(words, folder_.path());
+  EXPECT_EQ(second.wait().status, 0) << "it waits for the jobs of the other";
+  EXPECT_EQ(first->wait().status, 0);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(attempts(i), 1);
+  expect_whole(6);
+}
+
+TEST_F(Recovery, AChangedConfigIsRefusedBeforeAnythingRuns) {
+  ASSERT_EQ(palpate(dying("none,fail")).status, 1);
+  fs::remove(job(0) / "summary.json");
+  const std::string config = text_of(job(1) / "config.yaml");
+  std::string changed = config;
+  changed.replace(changed.find("taps: 17"), 8, "taps: 18");
+  const auto write = [&](const fs::path& file, const std::string& text) {
+    folder_.write(fs::relative(file, folder_.path()).string(), text);
+  };
+  write(job(1) / "config.yaml", changed);
+  const Ended of_job = resume({"--retry-failed"});
+  EXPECT_EQ(of_job.status, 2);
+  EXPECT_THAT(of_job.err, HasSubstr("config.yaml was changed"));
+  EXPECT_EQ(attempts(0), 1);
+  write(job(1) / "config.yaml", config);
+
+  const fs::path file = directory() / "config.yaml";
+  std::string of_all = text_of(file);
+  of_all.replace(of_all.find("taps: 17"), 8, "taps: 18");
+  write(file, of_all);
+  const Ended of_sweep = resume();
+  EXPECT_EQ(of_sweep.status, 2);
+  EXPECT_THAT(of_sweep.err, HasSubstr("was changed since this sweep began"));
+  EXPECT_EQ(lines(of_sweep.err), 1);
+  EXPECT_EQ(attempts(0), 1);
+}
+
+TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
+  const std::unique_ptr<test::Child> child = begun(4);
+  EXPECT_EQ(resume({"--jobs", "0"}).status, 75) << "another has it in hand, and nobody waits for it";
+  child->signal(SIGKILL);
+  child->wait();
+  const Ended ended = resume({"--jobs", "1,3-3"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(attempts(2), 0);
+  EXPECT_EQ(attempts(3), 1);
+  EXPECT_THAT(status(), HasSubstr("2 done"));
+  EXPECT_FALSE(fs::exists(directory() / "results.csv")) << "some are still missing";
+  EXPECT_EQ(resume({"--jobs", "0-2"}).status, 0);
+  expect_whole(4);
+  for (const char* wrong : {"4", "1-", "2-1", "a", "1,,2", "-1", "1 2"}) {
+    const Ended refused = resume({std::string("--jobs=") + wrong});
+    EXPECT_EQ(refused.status, 2) << wrong;
+    EXPECT_THAT(refused.err, HasSubstr("--jobs: ")) << wrong;
+  }
+}
+
+TEST_F(Recovery, HalfALineInTheListOfAttemptsDoesNoHarm) {
+  ASSERT_EQ(palpate(dying("none,fail")).status, 1);
+  const std::string whole = text_of(job(1) / "attempts.jsonl");
+  folder_.write(fs::relative(job(1) / "attempts.jsonl", folder_.path()).string(), whole + "{\"attem");
+  EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  EXPECT_EQ(attempts(1), 2);
+  EXPECT_THAT(text_of(job(1) / "attempts.jsonl"), AllOf(StartsWith(whole), Not(HasSubstr("{\"attem{"))));
+}
+
+TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
+  plugins_ = "PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("cannot_go_on").string();
+  const Ended ended = palpate({"sweep", paper(), "backend=cannot_go_on", "taps=4", "seed=range(0,3)", "-j", "2"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("one job at a time"), Not(HasSubstr("2 running"))));
+}
+
+TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
+  EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+  folder_.write("runs/mine.txt", "kept");
+  EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
+  EXPECT_EQ(fs::directory_iterator(folder_.path() / "runs")->path().filename(), "mine.txt");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path() / "runs"), {}), 1);
+}
+
+}  // namespace
+}  // namespace palpate
