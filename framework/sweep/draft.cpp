@@ -2,11 +2,11 @@
 #include "sweep/draft.hpp"
 
 #include "config/yaml.hpp"
-#include "record/files.hpp"
 
 #include <palpate/error.hpp>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
@@ -28,16 +28,34 @@ void make_folder(const fs::path& folder) {
   if (trouble) throw cannot(folder, trouble.message());
 }
 
+constexpr const char* kPrefix = ".sweep-";
+
+/// A draft is abandoned when nobody holds its lock. Young ones are left alone: theirs may not be taken yet.
+void remove_abandoned(const fs::path& runs) {
+  constexpr auto kYoung = std::chrono::minutes(1);
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(runs, none)) {
+    if (entry.path().filename().string().rfind(kPrefix, 0) != 0) continue;
+    const fs::path lock = entry.path() / "lock";
+    const auto made = fs::last_write_time(lock, none);
+    if (!none && fs::file_time_type::clock::now() - made > kYoung && !FileLock::is_held(lock)) {
+      fs::remove_all(entry.path(), none);
+    }
+  }
+}
+
 }  // namespace
 
 SweepDraft::SweepDraft(fs::path runs) : runs_(std::move(runs)), made_runs_(!fs::exists(runs_)) {
   make_folder(runs_);
-  std::string name = (runs_ / ".sweep-XXXXXX").string();
+  remove_abandoned(runs_);
+  std::string name = (runs_ / kPrefix).string() + "XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) throw cannot(name, std::strerror(errno));
   folder_ = name;
   std::error_code none;
   fs::permissions(folder_, fs::status(runs_).permissions(), none);  // mkdtemp keeps others out
   make_folder(folder_ / "jobs");
+  lock_ = FileLock(folder_ / "lock");
 }
 
 SweepDraft::~SweepDraft() {

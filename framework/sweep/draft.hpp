@@ -4,6 +4,7 @@
 #pragma once
 
 #include "experiment/resolved.hpp"
+#include "record/files.hpp"
 #include "sweep/plan.hpp"
 
 #include <filesystem>
@@ -14,7 +15,7 @@ namespace palpate {
 
 class SweepDraft {
  public:
-  /// Makes a hidden folder in `runs`. Throws Error.
+  /// Makes a hidden folder in `runs`, and removes those of processes that were killed over theirs. Throws Error.
   explicit SweepDraft(std::filesystem::path runs);
   /// Removes what did not become a sweep.
   ~SweepDraft();
@@ -38,6 +39,7 @@ class SweepDraft {
   std::filesystem::path runs_;
   bool made_runs_;  ///< the folder of the runs was not there before
   std::filesystem::path folder_;
+  FileLock lock_;
   std::map<std::string, Written> written_;
 };
 
