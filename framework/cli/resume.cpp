@@ -17,7 +17,7 @@ void check_jobs(const Program& program, Campaign& campaign) {
   for (std::size_t i = 0; i < (only.empty() ? campaign.sweep.jobs.size() : only.size()); ++i) {
     const std::size_t job = only.empty() ? i : only[i];
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
-    if (read_record(directory).state == RunStatus::State::done) continue;
+    if (read_ending(directory).state == RunStatus::State::done) continue;
     const ResolvedConfig config = campaign.config_of(job);
     campaign.one_at_a_time = campaign.one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
     if (!campaign.options.force) check_build(program.workshop, config, directory);

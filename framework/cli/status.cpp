@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 #include "record/run_directory.hpp"
+#include "sweep/job.hpp"
 #include "sweep/sweep.hpp"
 
 #include <palpate/error.hpp>
@@ -25,14 +27,17 @@ void print_run(const std::filesystem::path& directory) {
              reason);
 }
 
+/// From the jobs' directories alone: whoever runs them, a scheduler or a process that has died, is not asked.
 void print_sweep_status(const Sweep& sweep) {
   std::map<RunStatus::State, int> counts;
-  std::string failures;
-  for (const Job& job : sweep.jobs) {
-    const RunStatus status = read_status(job_directory(sweep, job));
-    ++counts[status.state];
-    if (status.state == RunStatus::State::failed) {
-      failures += fmt::format("failed: job {} ({}): {}\n", job.index, job.id, status.stop_reason);
+  std::vector<SweepFailure> failures;
+  for (std::size_t i = 0; i < sweep.jobs.size(); ++i) {
+    const std::filesystem::path directory = job_directory(sweep, sweep.jobs[i]);
+    const RunStatus status = read_ending(directory);
+    const bool held = status.state != RunStatus::State::done && is_running(directory);
+    ++counts[held ? RunStatus::State::running : status.state];
+    if (!held && status.state == RunStatus::State::failed) {
+      failures.push_back({i, attempts_of(directory), status.stop_reason});
     }
   }
   fmt::print("{} jobs", sweep.jobs.size());
@@ -40,7 +45,8 @@ void print_sweep_status(const Sweep& sweep) {
                            RunStatus::State::unfinished, RunStatus::State::absent}) {
     fmt::print(", {} {}", counts[state], state_name(state));
   }
-  fmt::print("\n{}", failures);
+  fmt::print("\n");
+  print_failures(sweep, failures);
 }
 
 }  // namespace

@@ -42,9 +42,6 @@ const char* state_name(RunStatus::State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-namespace {
-
-/// State and reason; the taps are not counted.
 RunStatus read_ending(const fs::path& directory) {
   RunStatus out;
   std::error_code none;
@@ -59,9 +56,7 @@ RunStatus read_ending(const fs::path& directory) {
   return out;
 }
 
-}  // namespace
-
-RunStatus::State read_state(const fs::path& directory) { return read_ending(directory).state; }
+bool is_running(const fs::path& directory) { return FileLock::is_held(directory / kLock); }
 
 RunStatus read_record(const fs::path& directory) {
   RunStatus out = read_ending(directory);
@@ -74,7 +69,7 @@ RunStatus read_record(const fs::path& directory) {
 
 RunStatus read_status(const fs::path& directory) {
   // Asked first: who ends between the two questions has written what the second one reads.
-  const bool held = FileLock::is_held(directory / kLock);
+  const bool held = is_running(directory);
   RunStatus out = read_record(directory);
   if (held && out.state != RunStatus::State::done) out.state = RunStatus::State::running;
   return out;

@@ -28,9 +28,12 @@ struct RunStatus {
   std::string stop_reason;  ///< of a finished run: why it stopped or failed
 };
 
-/// The state of a run directory, as cheaply as it can be told; who holds it is not asked. Throws Error for a damaged
-/// one.
-RunStatus::State read_state(const std::filesystem::path& directory);
+/// State and reason of a run directory, as cheaply as they can be told: the taps are not counted, and it is not asked
+/// who holds it. Throws Error for a damaged one.
+RunStatus read_ending(const std::filesystem::path& directory);
+
+/// Whether a living process holds it.
+bool is_running(const std::filesystem::path& directory);
 
 /// Reads the state of a run directory; nobody seems to hold it, because it is not asked who does. For who holds the
 /// lock. Throws Error for a damaged one.

@@ -9,7 +9,7 @@ namespace {
 constexpr double kPollSeconds = 0.5;
 
 RunStatus::State state_of(const Sweep& sweep, std::size_t job) {
-  return read_state(job_directory(sweep, sweep.jobs[job]));
+  return read_ending(job_directory(sweep, sweep.jobs[job])).state;
 }
 
 }  // namespace
@@ -62,10 +62,10 @@ SweepReport report_on(const Sweep& sweep, const std::vector<std::size_t>& jobs) 
   SweepReport report;
   for (const std::size_t job : jobs) {
     const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-    const RunStatus::State state = read_state(directory);
-    if (state == RunStatus::State::failed) {
-      report.failures.push_back({job, attempts_of(directory), read_record(directory).stop_reason});
-    } else if (state != RunStatus::State::done) {
+    const RunStatus status = read_ending(directory);
+    if (status.state == RunStatus::State::failed) {
+      report.failures.push_back({job, attempts_of(directory), status.stop_reason});
+    } else if (status.state != RunStatus::State::done) {
       ++report.unfinished;
     }
   }
