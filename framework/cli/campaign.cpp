@@ -12,6 +12,7 @@
 #include <charconv>
 #include <numeric>
 #include <set>
+#include <thread>
 
 namespace palpate::cli {
 namespace {
@@ -45,6 +46,12 @@ int conclude_whole(const Sweep& sweep, const ResolvedConfig& config, const Sweep
 
 }  // namespace
 
+void conduct_shown(const Program& program, const Campaign& campaign, Launcher& launcher, const Missing& missing) {
+  SweepLine line(campaign.launch.quiet);
+  conduct(launcher, campaign.sweep, missing, program.workshop.interrupted,
+          [&](const SweepProgress& progress) { line.show(progress); });
+}
+
 void check_builds(const Program& program, const Campaign& campaign) {
   for (std::size_t job = 0; job < campaign.sweep.jobs.size(); ++job) {
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
@@ -65,15 +72,17 @@ int run_campaign(Program& program, const Campaign& campaign) {
     std::iota(jobs.begin(), jobs.end(), std::size_t{0});
   }
   const Missing missing = find_missing(sweep, jobs, campaign.options.retry_failed, launch.attempts);
-  const int workers = campaign.one_at_a_time ? 1 : launch.workers;
-  if (workers < launch.workers && !launch.quiet) {
-    fmt::print(stderr, "one job at a time: the backend has but one thing to move\n");
+  if (launch.launcher == kSlurm) {
+    if (!missing.jobs.empty() && !run_on_slurm(program, campaign, missing)) return kDone;
+  } else {
+    const int workers = workers_of(campaign);
+    if (workers < launch.workers.value_or(1) && !launch.quiet) {
+      fmt::print(stderr, "one job at a time: the backend has but one thing to move\n");
+    }
+    LocalLauncher launcher(program.workshop, sweep, campaign.config_of,
+                           {workers, campaign.options, launch.attempts, whole});
+    conduct_shown(program, campaign, launcher, missing);
   }
-  LocalLauncher launcher(program.workshop, sweep, campaign.config_of,
-                         {workers, campaign.options, launch.attempts, whole});
-  SweepLine line(launch.quiet);
-  conduct(launcher, sweep, missing, program.workshop.interrupted,
-          [&](const SweepProgress& progress) { line.show(progress); });
   SweepReport report = report_on(sweep, jobs);
   report.interrupted = program.workshop.interrupted->load();
   return whole ? conclude_whole(sweep, campaign.config_of(0), report, launch.junit) : conclude_part(sweep, report);

@@ -13,6 +13,9 @@
 
 namespace palpate::cli {
 
+/// A launcher that is not this machine.
+constexpr const char* kSlurm = "slurm";
+
 struct Campaign {
   const Sweep& sweep;
   LocalLauncher::Configs config_of;  ///< of a job
@@ -24,6 +27,16 @@ struct Campaign {
 
 /// Throws Error if a job of the sweep was begun by another build: by its first tap, for none of them.
 void check_builds(const Program& program, const Campaign& campaign);
+
+/// Throws Error for options that do not go together.
+void check_launch(const LaunchArguments& launch);
+
+/// conduct(), with a line of progress.
+void conduct_shown(const Program& program, const Campaign& campaign, Launcher& launcher, const Missing& missing);
+
+/// Submits what is `missing` to Slurm. Then it says how to go on and returns false or, with --wait, waits for the end
+/// and returns true.
+bool run_on_slurm(const Program& program, const Campaign& campaign, const Missing& missing);
 
 /// Runs what is missing, prints the result and judges it. Returns the exit status.
 int run_campaign(Program& program, const Campaign& campaign);

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,10 +53,16 @@ int conclude_run(const ResolvedConfig& config, const RunOutput& output, const st
 
 /// Who runs the jobs of a sweep, and how.
 struct LaunchArguments {
-  int workers = 1;   ///< jobs at a time
-  int attempts = 3;  ///< a job is begun at most so often before it stays failed
+  std::string launcher = "local";
+  std::optional<int> workers;  ///< jobs at a time, of one task where there are several
+  int attempts = 3;            ///< a job is begun at most so often before it stays failed
   bool quiet = false;
   std::string junit;
+  // Only with the launcher slurm:
+  std::string partition, time, account;
+  std::vector<std::string> sbatch;
+  std::optional<int> jobs_per_task;
+  bool wait = false;
 };
 
 struct SweepArguments {

@@ -9,20 +9,20 @@
 
 #include <csignal>
 #include <cstdio>
-#include <thread>
 
 namespace palpate::cli {
 namespace {
 
 std::atomic<bool> interrupted{false};
 
-/// The first signal asks the run to stop after the tap under way, the second ends the program.
-extern "C" void on_signal(int signal) {
+/// The first Ctrl-C asks the run to stop after the tap under way, the second ends the program.
+extern "C" void on_key(int signal) {
   if (interrupted.exchange(true)) std::_Exit(128 + signal);
 }
 
-/// A terminal that is closed says so more than once, and nobody means to leave a robot's arm where it is by that.
-extern "C" void on_hangup(int) { interrupted = true; }
+/// A terminal that is closed says so more than once; so does a scheduler that ends a job, to each process of it, which
+/// also hears it from the one that started it. Nobody means to leave a robot's arm where it is by that.
+extern "C" void on_request(int) { interrupted = true; }
 
 struct Arguments {
   RunArguments run;
@@ -56,13 +56,28 @@ void add_run(CLI::App& app, Arguments& a, Action& action) {
 
 /// What `sweep` and `resume` say alike.
 void add_launch(CLI::App* sub, LaunchArguments& launch) {
-  sub->add_option("-j", launch.workers, "jobs of a sweep at a time; the number of cores if not given")
+  sub->add_option("-j", launch.workers,
+                  "jobs of a sweep at a time; if not given, the number of cores, in a task of Slurm 1")
       ->check(CLI::Range(1, 1024));
   sub->add_option("--attempts", launch.attempts, "how often a job may be begun before it stays failed")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   sub->add_flag("--quiet", launch.quiet, "show no progress");
   sub->add_option("--junit", launch.junit, "write what held and what failed as JUnit XML to this file");
+  sub->add_option("--launcher", launch.launcher, "who runs the jobs: this machine, or a cluster under Slurm")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  const char* group = "With --launcher slurm";
+  sub->add_option("--partition", launch.partition, "of the cluster; its default one if not given")->group(group);
+  sub->add_option("--time", launch.time, "a task may take: as sbatch takes it, 1:30:00")->group(group);
+  sub->add_option("--account", launch.account, "that pays for it")->group(group);
+  sub->add_option("--sbatch", launch.sbatch, "any other option of sbatch, with its dashes: --sbatch=--mem=4G")
+      ->allow_extra_args(false)
+      ->group(group);
+  sub->add_option("--jobs-per-task", launch.jobs_per_task, "jobs that a task runs, -j at a time; 1 if not given")
+      ->check(CLI::Range(1, 1000000))
+      ->group(group);
+  sub->add_flag("--wait", launch.wait, "stay until all have ended; Ctrl-C cancels them")->group(group);
 }
 
 void add_sweep(CLI::App& app, Arguments& a, Action& action) {
@@ -137,9 +152,6 @@ int run_main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", kVersion);
   Arguments arguments;
-  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  arguments.sweep.launch.workers = cores;
-  arguments.resume.launch.workers = cores;
   Action action;
   add_run(app, arguments, action);
   add_sweep(app, arguments, action);
@@ -152,9 +164,9 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::Error& trouble) {
     return usage_error(trouble);
   }
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_hangup) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  std::signal(SIGINT, on_key);
+  std::signal(SIGTERM, on_request);
+  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   return perform(action, argc, argv);
 }
 

@@ -29,6 +29,10 @@ int resume_sweep(Program& program, const ResumeArguments& arguments, const Resum
   const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
   Campaign campaign{sweep, config_of, options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
+  if (!arguments.jobs.empty() && arguments.launch.jobs_per_task.value_or(1) > 1) {
+    throw Error("command line", "--jobs and --jobs-per-task do not go together: a task carries on all of its jobs",
+                "leave one of them out");
+  }
   check_jobs(program, campaign);
   return run_campaign(program, campaign);
 }
@@ -36,11 +40,15 @@ int resume_sweep(Program& program, const ResumeArguments& arguments, const Resum
 }  // namespace
 
 int resume(Program& program, const ResumeArguments& arguments) {
+  check_launch(arguments.launch);
   check_junit(arguments.launch.junit);
   const ResumeOptions options{arguments.retry_failed, arguments.force};
   if (is_sweep(arguments.directory)) return resume_sweep(program, arguments, options);
   if (!arguments.jobs.empty()) {
     throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");
+  }
+  if (arguments.launch.launcher == kSlurm) {
+    throw Error("command line", "--launcher slurm: " + arguments.directory + " is no sweep", "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   std::unique_ptr<Journal> display;

@@ -41,6 +41,7 @@ std::string size_words(const Program& program, const Campaign& campaign) {
 }  // namespace
 
 int sweep(Program& program, const SweepArguments& arguments) {
+  check_launch(arguments.launch);
   check_junit(arguments.launch.junit);
   bool one_at_a_time = false;
   std::optional<SweepDraft> draft;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "cli/campaign.hpp"
+#include "sweep/slurm_launcher.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+
+namespace palpate::cli {
+namespace {
+
+/// A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
+void leave_jobs_at_hangup() {
+  if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
+
+std::string counted(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
+void print_array(const SlurmArray& array) {
+  fmt::print("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
+             array.logs.string());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void check_launch(const LaunchArguments& launch) {
+  const bool on_slurm = launch.launcher == kSlurm;
+  const std::pair<const char*, bool> given[]{{"--partition", !launch.partition.empty()},
+                                             {"--time", !launch.time.empty()},
+                                             {"--account", !launch.account.empty()},
+                                             {"--sbatch", !launch.sbatch.empty()},
+                                             {"--jobs-per-task", launch.jobs_per_task.has_value()},
+                                             {"--wait", launch.wait}};
+  for (const auto& [name, is_given] : given) {
+    if (!is_given || on_slurm) continue;
+    throw Error("command line", fmt::format("{} is for a cluster, and the launcher is '{}'", name, launch.launcher),
+                "add --launcher slurm, or leave it out");
+  }
+  if (on_slurm && !launch.junit.empty() && !launch.wait) {
+    throw Error("command line", "--junit: there is no result before the jobs have ended",
+                "add --wait, or give it to 'palpate resume' afterwards");
+  }
+  check_sbatch_words(launch.sbatch);
+}
+
+bool run_on_slurm(const Program& program, const Campaign& campaign, const Missing& missing) {
+  const LaunchArguments& launch = campaign.launch;
+  SlurmOptions options;
+  options.partition = launch.partition;
+  options.time = launch.time;
+  options.account = launch.account;
+  options.more = launch.sbatch;
+  options.jobs_per_task = launch.jobs_per_task.value_or(1);
+  options.workers = launch.workers.value_or(1);
+  options.most_attempts = launch.attempts;
+  options.resume = campaign.options;
+  std::string ids;
+  SlurmLauncher launcher(program.installation.program, campaign.sweep, options, [&](const SlurmArray& array) {
+    print_array(array);
+    ids += fmt::format(" {}", array.id);
+  });
+  if (program.workshop.interrupted->load()) return true;  // before anything was submitted
+  if (launch.wait) {
+    leave_jobs_at_hangup();
+    conduct_shown(program, campaign, launcher, missing);
+    return true;
+  }
+  launcher.submit(missing.jobs);
+  const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
+  fmt::print("look: palpate status {}\n", directory);
+  fmt::print("carry on what is missing then: palpate resume {} --launcher slurm\n", directory);
+  fmt::print("stop: scancel{}\n", ids);
+  return false;
+}
+
+}  // namespace palpate::cli

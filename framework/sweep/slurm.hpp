@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// The only door to Slurm: its commands sbatch, squeue, scontrol, sinfo and scancel, and what they print. Nothing here
+// knows of jobs; a task is one index of an array.
+#pragma once
+
+#include "sweep/command.hpp"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::slurm {
+
+/// What the controller takes as one array.
+struct Limits {
+  int indices = 0;  ///< an index is smaller than this
+  int tasks = 0;    ///< in one array
+};
+
+/// From what `scontrol show config` prints. Throws Error when it says nothing of arrays, or takes none.
+Limits parse_limits(const std::string& config);
+
+/// The nodes of a partition that are alike.
+struct Nodes {
+  std::string partition;
+  bool is_default = false;  ///< of the cluster: where jobs go that name none
+  int cpus = 0;             ///< each has
+};
+/// From lines "PARTITION*|CPUS"; other lines are skipped.
+std::vector<Nodes> parse_nodes(const std::string& lines);
+
+/// A task in the queue: it waits, runs, or is about to be gone.
+struct Task {
+  int array = 0;
+  int index = 0;
+  bool waiting = false;
+};
+/// From lines "ARRAY|INDEX|STATE" with the short names of states; other lines, and jobs that are no arrays, are
+/// skipped.
+std::vector<Task> parse_queue(const std::string& lines);
+
+/// The array's id in what `sbatch --parsable` printed, warnings around it or not.
+std::optional<int> parse_array_id(const std::string& output);
+
+/// "0-3,7,9-12" from ascending indices.
+std::string index_list(const std::vector<int>& indices);
+
+/// Tasks that go into one array: task `offset + index` for each index.
+struct Part {
+  int offset = 0;
+  std::vector<int> indices;
+};
+/// Distributes ascending task numbers to as few arrays as the limits and a command line of sane length allow.
+std::vector<Part> split(const std::vector<int>& tasks, const Limits& limits);
+
+/// What a program of Slurm said, in one line without its name before each.
+std::string words_of(const std::string& output);
+
+/// Asks the controller. Throws Error when Slurm is not installed or does not answer.
+Limits limits();
+
+/// The most CPUs that a node has in `partition`, or in the cluster's default one for "": 0 when that is not known.
+/// Throws Error as limits() does.
+int most_cpus(const std::string& partition);
+
+/// Submits by `sbatch` with `words` behind it and returns the array's id. Throws Error in sbatch's words.
+int submit(const std::vector<std::string>& words);
+
+/// Takes these arrays out of the queue; what runs is told to end. Throws Error.
+void cancel(const std::vector<int>& arrays);
+
+/// Looks at the queue now and then, without waiting for an answer.
+class Watch {
+ public:
+  /// Waits until squeue has answered or `seconds` are over, but not beyond a signal; asks at most once a second.
+  /// Returns this user's tasks when it has answered, none when it has not yet, or with trouble().
+  std::optional<std::vector<Task>> look(double seconds);
+
+  /// Seconds since it last answered, or since the watch began.
+  double silence() const;
+  /// What it said when it last failed; "" when it did not.
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::unique_ptr<Command> query_;
+  Clock::time_point next_ = Clock::now();  ///< question
+  Clock::time_point answered_ = Clock::now();
+  std::string trouble_;
+};
+
+}  // namespace palpate::slurm

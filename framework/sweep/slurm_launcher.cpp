@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/slurm_launcher.hpp"
+
+#include "record/files.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <set>
+#include <utility>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kScript = "task.sh";
+constexpr double kMostSilence = 600.0;  ///< s
+
+/// What palpate says to sbatch, and how a user has a say in it.
+struct OwnWord {
+  const char* name;
+  const char* letter;
+  const char* hint;
+};
+constexpr const char* kOwnOption = "palpate has an option of that name";
+constexpr std::array<OwnWord, 10> kOwnWords{{{"--partition", "-p", kOwnOption},
+                                             {"--time", "-t", kOwnOption},
+                                             {"--account", "-A", kOwnOption},
+                                             {"--wait", "-W", kOwnOption},
+                                             {"--cpus-per-task", "-c", "-j says how many cores a task has"},
+                                             {"--array", "-a", "which jobs are missing is palpate's to say"},
+                                             {"--output", "-o", "logs are in the sweep's directory"},
+                                             {"--clusters", "-M", "submit on that cluster's own login node"},
+                                             {"--wrap", "--wrap", "what a task runs is palpate's to say"},
+                                             {"--parsable", "--parsable", "leave it out"}}};
+
+/// Every folder of a search path absolute: a task may begin elsewhere.
+std::string absolute_path_list(const std::string& list) {
+  std::string out;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(':', begin), list.size());
+    if (end > begin) out += (out.empty() ? "" : ":") + fs::absolute(list.substr(begin, end - begin)).string();
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::optional<std::string> own_plugin_path() {
+  const char* value = std::getenv("PALPATE_PLUGIN_PATH");
+  if (value == nullptr) return std::nullopt;
+  return absolute_path_list(value);
+}
+
+/// Without a slash at its end, whose last part would be empty.
+fs::path absolute_folder(const fs::path& folder) {
+  const fs::path out = fs::absolute(folder).lexically_normal();
+  return out.has_filename() ? out : out.parent_path();
+}
+
+/// `folder` in a name with Slurm's placeholders: a percent sign begins one.
+std::string without_placeholders(const fs::path& folder) {
+  std::string out;
+  for (const char c : folder.string()) out += c == '%' ? "%%" : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+void check_sbatch_words(const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (word.size() < 2 || word.front() != '-' || word == "--") {
+      throw Error("command line", fmt::format("--sbatch: '{}' is no option of sbatch", word),
+                  "as in --sbatch=--mem=4G");
+    }
+    const bool is_long = word.compare(0, 2, "--") == 0;
+    const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
+    for (const OwnWord& own : kOwnWords) {
+      if (name != own.name && name != own.letter) continue;
+      throw Error("command line", fmt::format("--sbatch: {} cannot be said there", name), own.hint);
+    }
+  }
+}
+
+std::string task_script(const fs::path& program, const fs::path& directory, std::size_t count,
+                        const SlurmOptions& options, const std::optional<std::string>& plugin_path) {
+  std::string out = fmt::format(
+      "#!/bin/sh\n"
+      "# A task of a Slurm array carries on {} of the sweep's jobs: those from {} times (the first argument, 0 if "
+      "there\n"
+      "# is none, plus the array's index) on. Jobs that are done or in other hands are left alone.\n",
+      options.jobs_per_task, options.jobs_per_task);
+  out += plugin_path ? fmt::format("export PALPATE_PLUGIN_PATH={}\n", shell_word(*plugin_path))
+                     : "unset PALPATE_PLUGIN_PATH\n";
+  out += fmt::format("first=$(((${{1:-0}} + SLURM_ARRAY_TASK_ID) * {}))\n", options.jobs_per_task);
+  out += fmt::format("last=$((first + {}))\n", options.jobs_per_task - 1);
+  out += fmt::format("[ \"$last\" -lt {0} ] || last={1}\n", count, count - 1);
+  out +=
+      fmt::format("exec {} resume {} --jobs \"$first-$last\" -j {} --attempts {} --quiet{}{}\n",
+                  shell_word(program.string()), shell_word(directory.string()), options.workers, options.most_attempts,
+                  options.resume.retry_failed ? " --retry-failed" : "", options.resume.force ? " --force" : "");
+  return out;
+}
+
+SlurmLauncher::SlurmLauncher(fs::path program, const Sweep& sweep, SlurmOptions options,
+                             std::function<void(const SlurmArray&)> submitted)
+    : program_(std::move(program)),
+      sweep_(sweep),
+      directory_(absolute_folder(sweep.directory)),
+      options_(std::move(options)),
+      submitted_(std::move(submitted)) {}
+
+void SlurmLauncher::check_cores() const {
+  const char* elsewhere = std::getenv("SBATCH_PARTITION");
+  const std::string partition =
+      !options_.partition.empty() || elsewhere == nullptr ? options_.partition : std::string(elsewhere);
+  const int most = slurm::most_cpus(partition);
+  if (most == 0 || options_.workers <= most) return;
+  throw Error(
+      "command line",
+      fmt::format("-j {}: no node of {} has more than {} CPUs, and the task would wait for ever", options_.workers,
+                  partition.empty() ? "the default partition" : "partition " + partition, most),
+      fmt::format("give at most -j {}, or another --partition", most));
+}
+
+fs::path SlurmLauncher::make_folder() const {
+  const fs::path all = directory_ / "slurm";
+  if (all.string().find_first_of("\\\n") != std::string::npos) {
+    throw Error(all.string(), "Slurm cannot write logs below a folder with a backslash or a line end in its name",
+                "rename it");
+  }
+  std::error_code trouble;
+  fs::create_directories(all, trouble);
+  // Another submission may be looking for its number, too: who makes the folder has it.
+  for (int number = 1; !trouble; ++number) {
+    const fs::path folder = all / std::to_string(number);
+    if (fs::create_directory(folder, trouble)) return folder;
+  }
+  throw Error(all.string(), "cannot be made: " + trouble.message());
+}
+
+std::vector<std::string> SlurmLauncher::words_for(const slurm::Part& part, const fs::path& folder) const {
+  // Behind the user's words, so that one of those without its value takes nothing away unnoticed.
+  std::vector<std::string> words = options_.more;
+  const std::string beside = options_.tasks_at_once > 0 ? fmt::format("%{}", options_.tasks_at_once) : "";
+  words.push_back(fmt::format("--array={}{}", slurm::index_list(part.indices), beside));
+  words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
+  words.push_back(fmt::format("--output={}/%A_%a.log", without_placeholders(folder)));
+  words.push_back(fmt::format("--cpus-per-task={}", options_.workers));
+  if (!options_.partition.empty()) words.push_back("--partition=" + options_.partition);
+  if (!options_.time.empty()) words.push_back("--time=" + options_.time);
+  if (!options_.account.empty()) words.push_back("--account=" + options_.account);
+  // The limit is each array's own: one begins when the other has ended.
+  if (options_.tasks_at_once > 0 && !arrays_.empty())
+    words.push_back(fmt::format("--dependency=afterany:{}", arrays_.back()));
+  words.push_back((folder / kScript).string());
+  words.push_back(std::to_string(part.offset));
+  return words;
+}
+
+void SlurmLauncher::submit(const std::vector<std::size_t>& jobs) {
+  if (jobs.empty()) return;
+  const slurm::Limits limits = slurm::limits();
+  check_cores();
+  const fs::path folder = make_folder();
+  write_file(folder / kScript, task_script(program_, directory_, sweep_.jobs.size(), options_, own_plugin_path()));
+  std::map<int, std::vector<std::size_t>> jobs_of;
+  for (const std::size_t job : jobs) jobs_of[static_cast<int>(job) / options_.jobs_per_task].push_back(job);
+  std::vector<int> tasks;
+  for (const auto& task : jobs_of) tasks.push_back(task.first);
+  for (const slurm::Part& part : slurm::split(tasks, limits)) {
+    SlurmArray array{slurm::submit(words_for(part, folder)), static_cast<int>(part.indices.size()), 0, folder};
+    arrays_.push_back(array.id);
+    for (const int index : part.indices) {
+      const std::vector<std::size_t>& own = jobs_of[part.offset + index];
+      array.jobs += static_cast<int>(own.size());
+      tasks_[{array.id, index}] = {own, true};
+    }
+    submitted_(array);
+  }
+}
+
+bool SlurmLauncher::has_ended(std::size_t job) const {
+  // A failed job that is tried again has its old result until it begins: only the queue tells.
+  if (options_.resume.retry_failed) return false;
+  std::error_code none;
+  return fs::exists(job_directory(sweep_, sweep_.jobs[job]) / "summary.json", none);
+}
+
+Launcher::State SlurmLauncher::poll(double seconds) {
+  State state;
+  const std::optional<std::vector<slurm::Task>> queue = tasks_.empty() ? std::nullopt : watch_.look(seconds);
+  if (watch_.silence() > kMostSilence) {
+    throw Error("squeue", fmt::format("says nothing for ten minutes: {}", watch_.trouble()),
+                "the jobs go on; 'palpate status' shows them", Error::Kind::run);
+  }
+  if (queue) {
+    std::map<Place, bool> present;
+    for (const slurm::Task& task : *queue) present[{task.array, task.index}] = task.waiting;
+    for (auto at = tasks_.begin(); at != tasks_.end();) {
+      TaskState& task = at->second;
+      const auto found = present.find(at->first);
+      const bool gone = found == present.end();
+      task.waiting = !gone && found->second;
+      const auto still = std::stable_partition(task.jobs.begin(), task.jobs.end(), [&](std::size_t job) {
+        return !gone && (task.waiting || !has_ended(job));
+      });
+      state.returned.insert(state.returned.end(), still, task.jobs.end());
+      task.jobs.erase(still, task.jobs.end());
+      at = gone || task.jobs.empty() ? tasks_.erase(at) : std::next(at);
+    }
+  }
+  for (const auto& [place, task] : tasks_) {
+    const int jobs = static_cast<int>(task.jobs.size());
+    const int running = task.waiting ? 0 : std::min(jobs, options_.workers);
+    state.running += running;
+    state.waiting += jobs - running;
+  }
+  return state;
+}
+
+void SlurmLauncher::cancel() {
+  std::set<int> arrays;
+  for (const auto& [place, task] : tasks_) arrays.insert(place.first);
+  if (!arrays.empty()) slurm::cancel({arrays.begin(), arrays.end()});
+}
+
+}  // namespace palpate

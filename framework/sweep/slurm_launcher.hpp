@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The launcher of clusters under Slurm: arrays whose tasks each carry on a few jobs of the sweep with `palpate resume
+// DIR --jobs`. What a task does is decided when it runs, from the directory: jobs that are done or in other hands are
+// left alone, so nothing runs twice however often it is submitted, and what Slurm says is only ever a hint.
+#pragma once
+
+#include "record/session.hpp"
+#include "sweep/launcher.hpp"
+#include "sweep/slurm.hpp"
+#include "sweep/sweep.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+struct SlurmOptions {
+  std::string partition, time, account;  ///< passed on as given; "" for the cluster's own choice
+  std::vector<std::string> more;         ///< words for sbatch, each with its dashes
+  int jobs_per_task = 1;
+  int workers = 1;        ///< jobs of a task at a time, each with a core of its own
+  int tasks_at_once = 0;  ///< of all arrays together; 0 for as many as the cluster gives
+  int most_attempts = 3;
+  ResumeOptions resume;  ///< for every job
+};
+
+/// An array in the queue.
+struct SlurmArray {
+  int id = 0;
+  int tasks = 0;
+  int jobs = 0;  ///< that are missing
+  std::filesystem::path logs;
+};
+
+/// Throws Error for words to sbatch that palpate says itself, or that are no options.
+void check_sbatch_words(const std::vector<std::string>& words);
+
+/// The script of the tasks. Task t, which is the array's index plus the script's first argument, carries on the jobs
+/// from t * jobs_per_task on, of `count`. `program` and `directory` are absolute; `plugin_path` is what
+/// PALPATE_PLUGIN_PATH is to be, none for unset.
+std::string task_script(const std::filesystem::path& program, const std::filesystem::path& directory, std::size_t count,
+                        const SlurmOptions& options, const std::optional<std::string>& plugin_path);
+
+class SlurmLauncher final : public Launcher {
+ public:
+  /// `submitted` hears of every array as soon as Slurm has taken it. `program` is palpate, on a file system that the
+  /// nodes share, as the sweep is. The sweep must outlive the launcher; what was submitted does not end with it.
+  SlurmLauncher(std::filesystem::path program, const Sweep& sweep, SlurmOptions options,
+                std::function<void(const SlurmArray&)> submitted);
+
+  /// Writes the script to slurm/N in the sweep's directory, where the logs will be, and submits it; tasks have all of
+  /// their missing jobs among `jobs`. Throws Error when Slurm cannot be asked, when no node has as many cores as a
+  /// task is to have, or when an array is refused; those that `submitted` heard of stay.
+  void submit(const std::vector<std::size_t>& jobs) override;
+
+  /// A job has returned when its result is there or its task has left the queue. Throws Error when Slurm has said
+  /// nothing for ten minutes.
+  State poll(double seconds) override;
+
+  void cancel() override;
+
+ private:
+  using Place = std::pair<int, int>;  ///< array and index
+  struct TaskState {
+    std::vector<std::size_t> jobs;  ///< that have not returned
+    bool waiting = true;
+  };
+
+  void check_cores() const;
+  std::filesystem::path make_folder() const;
+  std::vector<std::string> words_for(const slurm::Part& part, const std::filesystem::path& folder) const;
+  bool has_ended(std::size_t job) const;
+
+  std::filesystem::path program_;
+  const Sweep& sweep_;
+  std::filesystem::path directory_;  ///< of the sweep, absolute
+  SlurmOptions options_;
+  std::function<void(const SlurmArray&)> submitted_;
+  std::vector<int> arrays_;
+  std::map<Place, TaskState> tasks_;
+  slurm::Watch watch_;
+};
+
+}  // namespace palpate
