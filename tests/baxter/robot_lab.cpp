@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "robot_lab.hpp"
 
+#include "support/ports.hpp"
 #include "support/programs.hpp"
 
 #include <algorithm>
@@ -10,8 +11,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -22,28 +21,6 @@ namespace {
 constexpr int kAttempts = 5;
 constexpr double kPatience = 20.0;  // s for a program to come up or to end, on a busy machine
 constexpr const char* kTrace = "trace.csv";
-
-sockaddr_in address_of(int port) {
-  sockaddr_in out{};
-  out.sin_family = AF_INET;
-  out.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  out.sin_port = htons(static_cast<std::uint16_t>(port));
-  return out;
-}
-
-/// A port that nobody had a moment ago.
-int free_port() {
-  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address = address_of(0);
-  socklen_t size = sizeof address;
-  int port = 0;
-  if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
-      ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) == 0) {
-    port = ntohs(address.sin_port);
-  }
-  ::close(socket);
-  return port;
-}
 
 /// Sends `text` to a port of this machine and returns all that comes back; "" if nobody listens.
 std::string ask(int port, const std::string& text) {

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: MIT
+// Sweeps on a cluster, as a user runs them: what is submitted, what runs, and that nothing runs twice.
+#include "slurm_lab.hpp"
+
+#include "record/json.hpp"
+#include "support/programs.hpp"
+#include "sweep/job.hpp"
+#include "sweep/sweep.hpp"
+#include "system/shipped.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <numeric>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace palpate {
+namespace {
+
+using test::Ended;
+using test::eventually;
+using test::lines;
+using test::only_run;
+using test::paper;
+using test::SlurmLab;
+using test::text_of;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+// 85 s of robot time, and with them a job, take about two seconds.
+constexpr const char* kPace = "backend.pace=0.02";
+// And here half an hour: nobody waits for its end.
+constexpr const char* kForEver = "backend.pace=20";
+
+class Slurm : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = SlurmLab::missing(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+};
+
+Sweep sweep_in(const fs::path& folder) { return read_sweep(only_run(folder / "runs")); }
+
+fs::path job_at(const Sweep& sweep, std::size_t job) { return job_directory(sweep, sweep.jobs[job]); }
+
+std::vector<int> attempts_in(const Sweep& sweep) {
+  std::vector<int> out;
+  for (const Job& job : sweep.jobs) out.push_back(attempts_of(job_directory(sweep, job)));
+  return out;
+}
+
+std::int64_t number_at(const Row& row, const char* name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr && std::holds_alternative<std::int64_t>(*value) ? std::get<std::int64_t>(*value) : -1;
+}
+
+/// The numbers of the recorded taps, in their order.
+std::vector<std::int64_t> taps_of(const fs::path& job) {
+  std::vector<std::int64_t> out;
+  for (const Row& row : read_json_lines(job / "taps.jsonl").rows) out.push_back(number_at(row, "tap"));
+  return out;
+}
+
+std::vector<std::int64_t> one_to(int last) {
+  std::vector<std::int64_t> out(static_cast<std::size_t>(last));
+  std::iota(out.begin(), out.end(), 1);
+  return out;
+}
+
+std::vector<int> zero_to(int last) {
+  std::vector<int> out(static_cast<std::size_t>(last) + 1);
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
+
+int recorded(const fs::path& job) { return fs::exists(job / "taps.jsonl") ? lines(text_of(job / "taps.jsonl")) : 0; }
+
+/// The arrays that were submitted, as palpate says.
+std::vector<int> arrays_in(const std::string& out) {
+  std::vector<int> ids;
+  const std::string word = "array ";
+  for (std::size_t at = out.find(word); at != std::string::npos; at = out.find(word, at + 1))
+    ids.push_back(std::stoi(out.substr(at + word.size())));
+  return ids;
+}
+
+/// The parent of a process: of a job, the task that runs it.
+int parent_of(int pid) {
+  const std::string text = text_of("/proc/" + std::to_string(pid) + "/stat");
+  return std::stoi(text.substr(text.find_last_of(')') + 4));
+}
+
+/// The words with which README sends a sweep to a cluster, and `more`.
+std::vector<std::string> on_slurm(std::vector<std::string> words, const std::vector<std::string>& more = {}) {
+  words.insert(words.end(), {"--launcher", "slurm"});
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
+  const SlurmLab lab;
+  const Ended submitted = lab.palpate(on_slurm({"sweep", paper(), kPace, "scene.placement=random",
+                                                "scene.objects.0.length=7cm,8cm,9cm,10cm,11cm,12cm,13cm,40cm"}));
+  ASSERT_EQ(submitted.status, 0) << submitted.err;
+  const Sweep sweep = sweep_in(lab.folder());
+  const std::string directory = sweep.directory.string();
+  EXPECT_THAT(submitted.out,
+              AllOf(StartsWith("array 1: 8 tasks, 8 jobs, logs in " + directory + "/slurm/1\n"),
+                    HasSubstr("palpate status " + directory + "\n"),
+                    HasSubstr("palpate resume " + directory + " --launcher slurm\n"), HasSubstr("scancel 1\n")));
+  constexpr std::size_t kVictim = 2;
+  const fs::path victim = job_at(sweep, kVictim);
+  ASSERT_TRUE(eventually([&] { return recorded(victim) >= 3; })) << text_of(sweep.directory / "slurm/1/1_2.log");
+  const auto begun = read_json_lines(victim / "attempts.jsonl").rows;
+  ASSERT_EQ(begun.size(), 1U);
+  ASSERT_EQ(::kill(parent_of(static_cast<int>(number_at(begun.front(), "pid"))), SIGKILL), 0);
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_EQ(lab.indices(1), zero_to(7));
+  EXPECT_THAT(lab.palpate({"status", directory}).out,
+              AllOf(StartsWith("8 jobs, 6 done, 0 running, 1 failed, 1 unfinished, 0 missing\n"),
+                    HasSubstr("failed: job 7"), HasSubstr("does not fit into the area")));
+  EXPECT_EQ(attempts_in(sweep), std::vector<int>(8, 1));
+  EXPECT_FALSE(fs::exists(sweep.directory / "results.csv")) << "before all have ended";
+  const std::string taps = text_of(victim / "taps.jsonl");
+  const std::string before = taps.substr(0, taps.rfind('\n') + 1);
+
+  const Ended resumed = lab.palpate(on_slurm({"resume", directory}));
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(resumed.out, HasSubstr(": 1 task, 1 job, logs in " + directory + "/slurm/2\n"));
+  ASSERT_EQ(arrays_in(resumed.out).size(), 1U);
+  // At the same time all of it by hand: those tasks find jobs that are done, failed or in other hands.
+  const std::string script = (sweep.directory / "slurm/1/task.sh").string();
+  const Ended twin = lab.run({"sbatch", "--parsable", "--array=0-7", "--output=/dev/null", script});
+  ASSERT_EQ(twin.status, 0) << twin.err;
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_THAT(lab.indices(arrays_in(resumed.out).front()), ElementsAre(static_cast<int>(kVictim)));
+  EXPECT_EQ(lab.indices(std::stoi(twin.out)), zero_to(7));
+  EXPECT_EQ(attempts_in(sweep), (std::vector<int>{1, 1, 2, 1, 1, 1, 1, 1}));
+  for (std::size_t job = 0; job < 7; ++job) EXPECT_EQ(taps_of(job_at(sweep, job)), one_to(17)) << job;
+  EXPECT_EQ(text_of(victim / "taps.jsonl").substr(0, before.size()), before);
+  const auto attempts = read_json_lines(victim / "attempts.jsonl").rows;
+  ASSERT_EQ(attempts.size(), 3U);  // begun, begun, ended
+  EXPECT_EQ(number_at(attempts[1], "after_tap"), lines(before));
+  EXPECT_THAT(lab.palpate({"status", directory}).out, StartsWith("8 jobs, 7 done, 0 running, 1 failed, 0 unfinished"));
+  EXPECT_EQ(lines(text_of(sweep.directory / "results.csv")), 1 + 8) << "left by the task that ended last";
+
+  const Ended retried = lab.palpate(on_slurm({"resume", directory, "--retry-failed"}));
+  ASSERT_EQ(arrays_in(retried.out).size(), 1U) << retried.err;
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_THAT(lab.indices(arrays_in(retried.out).front()), ElementsAre(7));
+  EXPECT_EQ(attempts_in(sweep), (std::vector<int>{1, 1, 2, 1, 1, 1, 1, 2}));
+  const Ended nothing = lab.palpate(on_slurm({"resume", directory}));
+  EXPECT_EQ(nothing.status, 1) << "the failed job stays failed";
+  EXPECT_THAT(nothing.out, HasSubstr("failed: job 7"));
+  EXPECT_TRUE(arrays_in(nothing.out).empty());
+}
+
+TEST_F(Slurm, TasksRunSeveralJobsEachAndAnArrayIsSplitWhereTheClusterTakesNoMoreIndices) {
+  test::SlurmSettings settings;
+  settings.max_array_size = 4;
+  const SlurmLab lab(settings);
+  const Ended submitted = lab.palpate(
+      on_slurm({"sweep", paper(), "seed=range(0,41)"}, {"--jobs-per-task", "4", "-j", "2", "--sbatch=--nice=3"}));
+  ASSERT_EQ(submitted.status, 0) << submitted.err;
+  const std::vector<int> arrays = arrays_in(submitted.out);
+  ASSERT_EQ(arrays.size(), 3U) << submitted.out;
+  const auto line = [&](std::size_t i, const char* counts) { return fmt::format("array {}: {},", arrays[i], counts); };
+  EXPECT_THAT(submitted.out, AllOf(HasSubstr(line(0, "4 tasks, 16 jobs")), HasSubstr(line(1, "4 tasks, 16 jobs")),
+                                   HasSubstr(line(2, "3 tasks, 9 jobs")),
+                                   HasSubstr(fmt::format("scancel {}\n", fmt::join(arrays, " ")))));
+  EXPECT_THAT(lab.run({"scontrol", "show", "job", std::to_string(arrays[2]), "-o"}).out,
+              AllOf(HasSubstr("CPUs/Task=2"), HasSubstr("Nice=3"), HasSubstr("JobName=object_i ")));
+  ASSERT_TRUE(lab.becomes_idle());
+  EXPECT_EQ(lab.indices(arrays[0]), zero_to(3));
+  EXPECT_EQ(lab.indices(arrays[1]), zero_to(3));
+  EXPECT_EQ(lab.indices(arrays[2]), zero_to(2));
+  for (const SlurmLab::Task& task : lab.tasks()) EXPECT_EQ(task.state, "COMPLETED") << task.array << "_" << task.index;
+  const Sweep sweep = sweep_in(lab.folder());
+  EXPECT_EQ(attempts_in(sweep), std::vector<int>(41, 1));
+  EXPECT_EQ(lines(text_of(sweep.directory / "results.csv")), 1 + 41);
+
+  // Of a chunk that is done but for one job, only that one runs.
+  fs::remove(job_at(sweep, 22) / "summary.json");
+  EXPECT_THAT(lab.palpate(on_slurm({"resume", sweep.directory.string()}, {"--jobs-per-task", "4"})).out,
+              HasSubstr(": 1 task, 1 job,"));
+  ASSERT_TRUE(lab.becomes_idle());
+  const std::vector<int> attempts = attempts_in(sweep);
+  EXPECT_EQ(attempts[22], 2);
+  EXPECT_EQ(std::accumulate(attempts.begin(), attempts.end(), 0), 42);
+}
+
+TEST_F(Slurm, WaitingItEndsAsASweepOnThisMachineDoes) {
+  const SlurmLab lab;
+  const std::vector<std::string> words{"sweep", paper(), "scene.placement=random",
+                                       "scene.objects.0.length=10cm,16cm,40cm"};
+  const Ended ended = lab.palpate(on_slurm(words, {"--wait", "--junit", "result.xml"}));
+  EXPECT_EQ(ended.status, 1);
+  std::vector<std::string> local = words;
+  local.insert(local.end(), {"--runs", "local"});
+  const Ended here = lab.palpate(local);
+  EXPECT_EQ(here.status, 1);
+  const auto table = [](const std::string& text) {
+    const std::size_t begin = text.find("group ");
+    return text.substr(begin, text.find("failed: job") - begin);
+  };
+  EXPECT_EQ(table(ended.out), table(here.out));
+  EXPECT_THAT(ended.out, HasSubstr("failed: job 2"));
+  EXPECT_THAT(text_of(lab.folder() / "result.xml"), HasSubstr("does not fit into the area"));
+
+  const std::vector<std::string> good = on_slurm({"sweep", paper(), "seed=range(0,3)", "name=good"}, {"--wait"});
+  const Ended fine = lab.palpate(good);
+  EXPECT_EQ(fine.status, 0) << fine.err;
+  EXPECT_THAT(fine.err, HasSubstr("3 of 3 jobs done"));
+  const Ended again = lab.palpate(good);
+  EXPECT_EQ(again.status, 0);
+  EXPECT_EQ(again.out.find("array"), std::string::npos) << "nothing was missing";
+}
+
+TEST_F(Slurm, AJobThatFailedBeforeIsAwaitedUntilItHasBeenTriedAgain) {
+  const SlurmLab lab;
+  ASSERT_EQ(lab.palpate({"sweep", paper(), kPace, "seed=range(0,2)", "--quiet"}).status, 0);
+  const Sweep sweep = sweep_in(lab.folder());
+  std::ofstream(job_at(sweep, 1) / "summary.json") << R"({"status": "failed", "stop_reason": "the arm was unplugged"})";
+  const std::string taps = text_of(job_at(sweep, 1) / "taps.jsonl");
+  std::ofstream(job_at(sweep, 1) / "taps.jsonl") << taps.substr(0, taps.find('\n') + 1);
+  const Ended ended = lab.palpate(on_slurm({"resume", sweep.directory.string(), "--retry-failed"}, {"--wait"}));
+  EXPECT_EQ(ended.status, 0) << ended.out;
+  EXPECT_THAT(lab.indices(1), ElementsAre(1));
+  EXPECT_EQ(taps_of(job_at(sweep, 1)), one_to(17));
+}
+
+TEST_F(Slurm, CtrlCCancelsWhatIsWaitedFor) {
+  test::SlurmSettings settings;
+  settings.cpus = 2;
+  const SlurmLab lab(settings);
+  const auto waiting = lab.start_palpate(on_slurm({"sweep", paper(), kPace, "seed=range(0,8)"}, {"--wait"}));
+  ASSERT_TRUE(eventually([&] { return fs::exists(lab.folder() / "runs/object_i"); }));
+  const Sweep sweep = sweep_in(lab.folder());
+  ASSERT_TRUE(eventually([&] { return recorded(job_at(sweep, 0)) >= 1 && recorded(job_at(sweep, 1)) >= 1; }));
+  waiting->signal(SIGINT);
+  const Ended ended = waiting->wait(60);
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
+  EXPECT_TRUE(lab.becomes_idle());
+  const std::vector<int> attempts = attempts_in(sweep);
+  EXPECT_EQ(std::accumulate(attempts.begin() + 2, attempts.end(), 0), 0) << "what waited did not begin";
+  EXPECT_EQ(lines(text_of(job_at(sweep, 0) / "taps.jsonl")), static_cast<int>(taps_of(job_at(sweep, 0)).size()));
+  EXPECT_THAT(text_of(job_at(sweep, 0) / "attempts.jsonl"), HasSubstr("\"end\": \"interrupted\"")) << "after its tap";
+}
+
+TEST_F(Slurm, ATerminalThatIsClosedEndsTheWaitingAndNotTheJobs) {
+  const SlurmLab lab;
+  const auto waiting = lab.start_palpate(on_slurm({"sweep", paper(), kPace, "seed=range(0,3)"}, {"--wait"}));
+  ASSERT_TRUE(eventually([&] { return waiting->out().find("array 1") != std::string::npos; }));
+  waiting->signal(SIGHUP);
+  EXPECT_EQ(waiting->wait(60).status, 128 + SIGHUP);
+  ASSERT_TRUE(lab.becomes_idle());
+  const Sweep sweep = sweep_in(lab.folder());
+  EXPECT_EQ(attempts_in(sweep), std::vector<int>(3, 1));
+  EXPECT_EQ(lines(text_of(sweep.directory / "results.csv")), 1 + 3);
+}
+
+TEST_F(Slurm, FoldersMayHaveBlanksQuotesAndWhatShellsAndSlurmThinkSpecial) {
+  const SlurmLab lab;
+  const std::string name = R"(it's "my"  50%A $HOME; `a` & #1)";
+  fs::create_directories(lab.folder() / name / "plugins");
+  const Ended submitted =
+      lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--runs", name}, {"--wait", "--sbatch=--export=NONE"}),
+                  {"PALPATE_PLUGIN_PATH=" + name + "/plugins"});
+  EXPECT_EQ(submitted.status, 0) << submitted.err << submitted.out;
+  const Sweep sweep = read_sweep(only_run(lab.folder() / name));
+  EXPECT_EQ(attempts_in(sweep), std::vector<int>(2, 1));
+  EXPECT_TRUE(fs::exists(sweep.directory / "slurm/1/1_0.log"));
+  EXPECT_EQ(text_of(sweep.directory / "slurm/1/1_1.log"), "");
+  EXPECT_THAT(text_of(sweep.directory / "slurm/1/task.sh"), HasSubstr("/plugins'\n"));
+
+  const Ended refused = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--runs", "back\\slash"}));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("Slurm cannot write logs below a folder with a backslash"));
+}
+
+TEST_F(Slurm, ItWorksForAnOrdinaryUser) {
+  if (::geteuid() != 0) GTEST_SKIP() << "all of these tests do: they run as one";
+  test::SlurmSettings settings;
+  settings.user = 65534;
+  const SlurmLab lab(settings);
+  if (lab.palpate({"--version"}).status != 0) GTEST_SKIP() << "this build lies where no ordinary user may look";
+  const Ended ended = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,3)"}, {"--wait"}));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(attempts_in(sweep_in(lab.folder())), std::vector<int>(3, 1));
+  EXPECT_THAT(lab.run({"squeue", "--noheader", "--states=all", "--format=%u"}).out, StartsWith("nobody\n"));
+}
+
+TEST_F(Slurm, WhatCannotBeSubmittedIsSaidInOneLineAndNothingIsLeftInTheQueue) {
+  const SlurmLab lab;
+  const auto refused = [&](const std::vector<std::string>& more) {
+    const Ended ended = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}, more));
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_EQ(lines(ended.err), 1);
+    return ended.err;
+  };
+  EXPECT_THAT(refused({"--partition", "nope"}), StartsWith("sbatch: invalid partition specified: nope; "));
+  EXPECT_THAT(refused({"-j", "9"}), StartsWith("command line: -j 9: no node of the default partition has more than 8 "
+                                               "CPUs"));
+  EXPECT_THAT(refused({"-j", "9", "--partition", "lab"}), HasSubstr("no node of partition lab has more than 8 CPUs"));
+  EXPECT_THAT(refused({"--time", "soon"}), StartsWith("sbatch: "));
+  EXPECT_THAT(refused({"--sbatch=--no-such-option"}), HasSubstr("--no-such-option"));
+  EXPECT_THAT(refused({"--sbatch=--mem"}), StartsWith("sbatch: "));
+  EXPECT_TRUE(lab.tasks().empty());
+  EXPECT_EQ(attempts_in(sweep_in(lab.folder())), std::vector<int>(2, 0));
+
+  const Ended gone = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}), {"PATH=/nonexistent"});
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_THAT(gone.err, AllOf(StartsWith("scontrol: is not installed, or not on PATH, "), HasSubstr("login node")));
+}
+
+TEST_F(Slurm, AControllerThatDoesNotAnswerIsSaidInOneLine) {
+  const SlurmLab lab;
+  // The same cluster behind a port where nobody listens, asked for a second only.
+  std::string config = text_of(lab.folder() / "cluster/slurm.conf");
+  config += "\nMessageTimeout=1\n";
+  const std::size_t at = config.find("SlurmctldPort=");
+  config.replace(at, config.find('\n', at) - at, "SlurmctldPort=1");
+  std::ofstream(lab.folder() / "silent.conf") << config;
+  const Ended silent = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}),
+                                   {"SLURM_CONF=" + (lab.folder() / "silent.conf").string()});
+  EXPECT_EQ(silent.status, 2);
+  EXPECT_THAT(silent.err, AllOf(StartsWith("scontrol: "), HasSubstr("Unable to contact slurm controller")));
+  EXPECT_EQ(lines(silent.err), 1);
+}
+
+/// Starts a cluster with a job that does not end, and returns its processes.
+std::vector<int> occupy(const SlurmLab& lab) {
+  EXPECT_EQ(lab.palpate(on_slurm({"sweep", paper(), kForEver, "seed=range(0,2)"})).status, 0);
+  const Sweep sweep = sweep_in(lab.folder());
+  EXPECT_TRUE(eventually([&] { return attempts_of(job_at(sweep, 1)) == 1 && attempts_of(job_at(sweep, 0)) == 1; }));
+  return lab.processes();
+}
+
+bool any_runs(const std::vector<int>& processes) {
+  return std::any_of(processes.begin(), processes.end(), [](int pid) { return test::running(pid); });
+}
+
+TEST_F(Slurm, TheClusterOfATestLeavesNothingBehind) {
+  std::vector<int> processes;
+  fs::path folder;
+  {
+    const SlurmLab lab;
+    processes = occupy(lab);
+    folder = lab.folder();
+    // Three daemons, and of each job a slurmstepd, the task and the job's own process.
+    EXPECT_GE(processes.size(), 3U + 2U * 3U);
+  }
+  EXPECT_FALSE(any_runs(processes));
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST_F(Slurm, TheClusterOfATestThatIsKilledEndsToo) {
+  const test::TemporaryFolder folder;
+  const fs::path list = folder.path() / "processes";
+  const int test = ::fork();
+  if (test == 0) {
+    ::setenv("TMPDIR", folder.path().c_str(), 1);
+    const SlurmLab lab;
+    std::string text;
+    for (const int pid : occupy(lab)) text += std::to_string(pid) + "\n";
+    std::ofstream(list.string() + ".tmp") << text;
+    fs::rename(list.string() + ".tmp", list);
+    for (;;) ::pause();
+  }
+  const bool up = eventually([&] { return fs::exists(list); });
+  ::kill(test, SIGKILL);
+  ::waitpid(test, nullptr, 0);
+  ASSERT_TRUE(up);
+  std::vector<int> processes;
+  std::ifstream in(list);
+  for (int pid = 0; in >> pid;) processes.push_back(pid);
+  EXPECT_GE(processes.size(), 9U);
+  EXPECT_TRUE(eventually([&] { return !any_runs(processes); }));
+}
+
+}  // namespace
+}  // namespace palpate
