@@ -76,8 +76,8 @@ std::unique_ptr<Command> start(const std::vector<std::string>& words) {
   }
 }
 
-/// Runs a program that only asks, to its end.
-std::string ask(const std::vector<std::string>& words) {
+/// Runs a program to its end that may be cut off.
+std::string ask(const std::vector<std::string>& words, const std::string& hint = kAskedElsewhere) {
   const std::unique_ptr<Command> command = start(words);
   const auto begun = std::chrono::steady_clock::now();
   const auto left = [&] {
@@ -85,10 +85,10 @@ std::string ask(const std::vector<std::string>& words) {
   };
   while (!command->wait(left())) {
     if (left() <= 0.0) {
-      throw Error(words.front(), fmt::format("has not answered for {:.0f} s", kPatience), kAskedElsewhere);
+      throw Error(words.front(), fmt::format("has not answered for {:.0f} s", kPatience), hint);
     }
   }
-  if (command->status() != 0) throw Error(words.front(), words_of(command->output()), kAskedElsewhere);
+  if (command->status() != 0) throw Error(words.front(), words_of(command->output()), hint);
   return command->output();
 }
 
@@ -208,7 +208,7 @@ int submit(const std::vector<std::string>& words) {
 void cancel(const std::vector<int>& arrays) {
   std::vector<std::string> words{"scancel"};
   for (const int array : arrays) words.push_back(std::to_string(array));
-  ask(words);
+  ask(words, fmt::format("the jobs may go on; say it again by hand: {}", fmt::join(words, " ")));
 }
 
 std::optional<std::vector<Task>> Watch::look(double seconds) {

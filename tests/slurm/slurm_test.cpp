@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Sweeps on a cluster, as a user runs them: what is submitted, what runs, and that nothing runs twice.
 #include "slurm_lab.hpp"
+#include "slurm_words.hpp"
 
 #include "record/json.hpp"
 #include "support/programs.hpp"
 #include "sweep/job.hpp"
-#include "sweep/sweep.hpp"
-#include "system/shipped.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,7 +15,6 @@
 #include <fstream>
 #include <numeric>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace palpate {
@@ -24,10 +22,14 @@ namespace {
 
 using test::Ended;
 using test::eventually;
+using test::job_at;
 using test::lines;
+using test::on_slurm;
 using test::only_run;
 using test::paper;
+using test::Slurm;
 using test::SlurmLab;
+using test::sweep_in;
 using test::text_of;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -38,19 +40,6 @@ namespace fs = std::filesystem;
 
 // 85 s of robot time, and with them a job, take about two seconds.
 constexpr const char* kPace = "backend.pace=0.02";
-// And here half an hour: nobody waits for its end.
-constexpr const char* kForEver = "backend.pace=20";
-
-class Slurm : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (const std::string missing = SlurmLab::missing(); !missing.empty()) GTEST_SKIP() << missing;
-  }
-};
-
-Sweep sweep_in(const fs::path& folder) { return read_sweep(only_run(folder / "runs")); }
-
-fs::path job_at(const Sweep& sweep, std::size_t job) { return job_directory(sweep, sweep.jobs[job]); }
 
 std::vector<int> attempts_in(const Sweep& sweep) {
   std::vector<int> out;
@@ -97,13 +86,6 @@ std::vector<int> arrays_in(const std::string& out) {
 int parent_of(int pid) {
   const std::string text = text_of("/proc/" + std::to_string(pid) + "/stat");
   return std::stoi(text.substr(text.find_last_of(')') + 4));
-}
-
-/// The words with which README sends a sweep to a cluster, and `more`.
-std::vector<std::string> on_slurm(std::vector<std::string> words, const std::vector<std::string>& more = {}) {
-  words.insert(words.end(), {"--launcher", "slurm"});
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
 }
 
 TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
@@ -337,56 +319,6 @@ TEST_F(Slurm, AControllerThatDoesNotAnswerIsSaidInOneLine) {
   EXPECT_EQ(silent.status, 2);
   EXPECT_THAT(silent.err, AllOf(StartsWith("scontrol: "), HasSubstr("Unable to contact slurm controller")));
   EXPECT_EQ(lines(silent.err), 1);
-}
-
-/// Starts a cluster with a job that does not end, and returns its processes.
-std::vector<int> occupy(const SlurmLab& lab) {
-  EXPECT_EQ(lab.palpate(on_slurm({"sweep", paper(), kForEver, "seed=range(0,2)"})).status, 0);
-  const Sweep sweep = sweep_in(lab.folder());
-  EXPECT_TRUE(eventually([&] { return attempts_of(job_at(sweep, 1)) == 1 && attempts_of(job_at(sweep, 0)) == 1; }));
-  return lab.processes();
-}
-
-bool any_runs(const std::vector<int>& processes) {
-  return std::any_of(processes.begin(), processes.end(), [](int pid) { return test::running(pid); });
-}
-
-TEST_F(Slurm, TheClusterOfATestLeavesNothingBehind) {
-  std::vector<int> processes;
-  fs::path folder;
-  {
-    const SlurmLab lab;
-    processes = occupy(lab);
-    folder = lab.folder();
-    // Three daemons, and of each job a slurmstepd, the task and the job's own process.
-    EXPECT_GE(processes.size(), 3U + 2U * 3U);
-  }
-  EXPECT_FALSE(any_runs(processes));
-  EXPECT_FALSE(fs::exists(folder));
-}
-
-TEST_F(Slurm, TheClusterOfATestThatIsKilledEndsToo) {
-  const test::TemporaryFolder folder;
-  const fs::path list = folder.path() / "processes";
-  const int test = ::fork();
-  if (test == 0) {
-    ::setenv("TMPDIR", folder.path().c_str(), 1);
-    const SlurmLab lab;
-    std::string text;
-    for (const int pid : occupy(lab)) text += std::to_string(pid) + "\n";
-    std::ofstream(list.string() + ".tmp") << text;
-    fs::rename(list.string() + ".tmp", list);
-    for (;;) ::pause();
-  }
-  const bool up = eventually([&] { return fs::exists(list); });
-  ::kill(test, SIGKILL);
-  ::waitpid(test, nullptr, 0);
-  ASSERT_TRUE(up);
-  std::vector<int> processes;
-  std::ifstream in(list);
-  for (int pid = 0; in >> pid;) processes.push_back(pid);
-  EXPECT_GE(processes.size(), 9U);
-  EXPECT_TRUE(eventually([&] { return !any_runs(processes); }));
 }
 
 }  // namespace

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+// What the launcher of clusters says to Slurm and makes of its answers, without Slurm.
+#include "sweep/slurm_launcher.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <sstream>
+
+namespace palpate {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+namespace fs = std::filesystem;
+
+TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
+  check_sbatch_words({"--mem=4G", "-Cfast", "--constraint=intel", "--nice", "--timeout=3", "--partitions=x"});
+  for (const char* word : {"--array=0-3", "-a0-3", "--partition=x", "-px", "--time", "-t1", "--wait", "-W", "-c4",
+                           "--cpus-per-task=4", "--output=x", "--wrap=ls", "script.sh", "", "-", "--", "mem=4G"}) {
+    EXPECT_THROW(check_sbatch_words({"--mem=4G", word}), Error) << word;
+  }
+  try {
+    check_sbatch_words({"--time=5"});
+    ADD_FAILURE();
+  } catch (const Error& trouble) {
+    EXPECT_STREQ(trouble.what(),
+                 "command line: --sbatch: --time cannot be said there, palpate has an option of that name");
+  }
+}
+
+/// Runs the script of a sweep of `count` jobs as Slurm would and returns the words that its program was called with.
+class Script : public ::testing::Test {
+ protected:
+  std::vector<std::string> words_of(std::size_t count, const SlurmOptions& options, const std::string& index,
+                                    const std::vector<std::string>& arguments = {},
+                                    const std::vector<std::string>& environment = {}) {
+    const fs::path script = folder_.write("task.sh", task_script(program_, directory_, count, options, plugin_path_));
+    std::vector<std::string> words{"sh", script.string()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> all{"SLURM_ARRAY_TASK_ID=" + index};
+    all.insert(all.end(), environment.begin(), environment.end());
+    const test::Ended ended = test::run_program(words, folder_.path(), all);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    std::vector<std::string> out;
+    std::istringstream lines(ended.out);
+    for (std::string line; std::getline(lines, line);) out.push_back(line);
+    return out;
+  }
+
+  test::TemporaryFolder folder_;
+  fs::path directory_ = R"(/runs/it's "my"  $HOME; `a` & \n)";
+  fs::path program_ = make_program();
+  std::optional<std::string> plugin_path_;
+
+ private:
+  /// Prints PALPATE_PLUGIN_PATH and then its words, a line each.
+  fs::path make_program() {
+    const fs::path file = folder_.write(
+        "bin of 'me'/palpate",
+        "#!/bin/sh\necho \"${PALPATE_PLUGIN_PATH-unset}\"\nfor word; do printf '%s\\n' \"$word\"; done\n");
+    fs::permissions(file, fs::perms::owner_all);
+    return file;
+  }
+};
+
+TEST_F(Script, CarriesOnOneJobATask) {
+  EXPECT_THAT(words_of(8, {}, "3"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "3-3", "-j", "1",
+                                                "--attempts", "3", "--quiet"));
+}
+
+TEST_F(Script, CarriesOnAChunkClippedToTheSweepFromItsOffset) {
+  SlurmOptions options;
+  options.jobs_per_task = 4;
+  options.workers = 2;
+  options.most_attempts = 5;
+  options.resume = {true, true};
+  EXPECT_THAT(words_of(10, options, "1"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "4-7", "-j",
+                                                      "2", "--attempts", "5", "--quiet", "--retry-failed", "--force"));
+  EXPECT_EQ(words_of(10, options, "2")[4], "8-9");
+  EXPECT_EQ(words_of(100000, options, "24", {"1000"})[4], "4096-4099");
+}
+
+TEST_F(Script, SetsTheSearchPathOfPluginsWhateverTheEnvironmentSays) {
+  EXPECT_EQ(words_of(1, {}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "unset");
+  plugin_path_ = "/a b:/it's";
+  EXPECT_EQ(words_of(1, {}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "/a b:/it's");
+}
+
+/// Programs by the names of Slurm's, which note how they were called and answer what the test says.
+class FakeSlurm : public ::testing::Test {
+ protected:
+  FakeSlurm() {
+    answer("scontrol", "echo 'MaxArraySize = 10'");
+    answer("sinfo", "echo 'main*|4'");
+    answer("sbatch", "echo $(($(wc -l <calls.sbatch) * 100))");
+    answer("squeue", "cat queue 2>/dev/null");
+    answer("scancel", ":");
+    for (int index = 0; index < 25; ++index) sweep_.jobs.push_back({index, fmt::format("job{}", index), {}});
+    const char* path = std::getenv("PATH");
+    path_ = path != nullptr ? path : "";
+    ::setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1);
+  }
+  ~FakeSlurm() override { ::setenv("PATH", path_.c_str(), 1); }
+
+  void answer(const std::string& name, const std::string& commands) const {
+    const fs::path file = folder_.write(name, fmt::format("#!/bin/sh\ncd {}\necho \"$*\" >>calls.{}\n{}\n",
+                                                          shell_word(folder_.path().string()), name, commands));
+    fs::permissions(file, fs::perms::owner_all);
+  }
+  std::vector<std::string> calls(const std::string& name) const {
+    std::vector<std::string> out;
+    std::istringstream lines(test::text_of(folder_.path() / ("calls." + name)));
+    for (std::string line; std::getline(lines, line);) out.push_back(line);
+    return out;
+  }
+  SlurmLauncher launcher(const SlurmOptions& options = {}) {
+    return SlurmLauncher("/bin/palpate", sweep_, options, [this](const SlurmArray& array) { heard_.push_back(array); });
+  }
+  /// Asks until jobs return, which they must.
+  static std::vector<std::size_t> returned(SlurmLauncher& launcher) {
+    for (;;) {
+      const Launcher::State state = launcher.poll(0.1);
+      if (!state.returned.empty() || state.idle()) return state.returned;
+    }
+  }
+
+  test::TemporaryFolder folder_;
+  Sweep sweep_{folder_.path() / "runs/name/id", {}, {}};
+  std::vector<SlurmArray> heard_;
+
+ private:
+  std::string path_;
+};
+
+TEST_F(FakeSlurm, HearsOptionsOnlyIfTheyAreGivenAndUsersWordsBeforeThem) {
+  launcher().submit({3});
+  SlurmOptions options;
+  options.partition = "long";
+  options.time = "1:00";
+  options.account = "me";
+  options.workers = 2;
+  options.more = {"--mem=4G", "--nice"};
+  answer("sinfo", "echo 'long|4'");
+  launcher(options).submit({3, 4, 12});
+  const std::string logs = (sweep_.directory / "slurm").string();
+  EXPECT_THAT(calls("sbatch"),
+              ElementsAre(fmt::format("--parsable --array=3 --job-name=name --output={0}/1/%A_%a.log --cpus-per-task=1 "
+                                      "{0}/1/task.sh 0",
+                                      logs),
+                          fmt::format("--parsable --mem=4G --nice --array=3-4 --job-name=name "
+                                      "--output={0}/2/%A_%a.log --cpus-per-task=2 --partition=long --time=1:00 "
+                                      "--account=me {0}/2/task.sh 0",
+                                      logs),
+                          fmt::format("--parsable --mem=4G --nice --array=2 --job-name=name "
+                                      "--output={0}/2/%A_%a.log --cpus-per-task=2 --partition=long --time=1:00 "
+                                      "--account=me {0}/2/task.sh 10",
+                                      logs)));
+}
+
+TEST_F(FakeSlurm, LetsTasksRunOneAtATimeThoughTheArrayIsSplit) {
+  SlurmOptions options;
+  options.tasks_at_once = 1;
+  launcher(options).submit({8, 9, 10, 11, 24});
+  const std::vector<std::string> words = calls("sbatch");
+  ASSERT_EQ(words.size(), 3U);
+  EXPECT_THAT(words[0], HasSubstr("--array=8-9%1 "));
+  EXPECT_THAT(words[0], ::testing::Not(HasSubstr("--dependency")));
+  EXPECT_THAT(words[1], HasSubstr("--array=0-1%1 "));
+  EXPECT_THAT(words[1], HasSubstr("--dependency=afterany:100 "));
+  EXPECT_THAT(words[2], HasSubstr("--dependency=afterany:200 "));
+}
+
+TEST_F(FakeSlurm, TellsOfArraysThatWereTakenBeforeOneIsRefused) {
+  answer("sbatch", "[ $(wc -l <calls.sbatch) = 1 ] && echo 7 || { echo 'sbatch: error: too many jobs' >&2; exit 1; }");
+  SlurmLauncher one = launcher();
+  try {
+    one.submit({1, 2, 11});
+    ADD_FAILURE();
+  } catch (const Error& trouble) {
+    EXPECT_THAT(trouble.what(), ::testing::StartsWith("sbatch: too many jobs, "));
+  }
+  ASSERT_EQ(heard_.size(), 1U);
+  EXPECT_EQ(heard_[0].id, 7);
+  EXPECT_EQ(heard_[0].tasks, 2);
+  EXPECT_EQ(heard_[0].jobs, 2);
+}
+
+TEST_F(FakeSlurm, AsksNothingWhenThereIsNothingToSubmit) {
+  SlurmLauncher one = launcher();
+  one.submit({});
+  one.cancel();
+  EXPECT_TRUE(one.poll(10.0).idle());
+  for (const char* name : {"scontrol", "sinfo", "sbatch", "squeue", "scancel"}) EXPECT_THAT(calls(name), IsEmpty());
+  EXPECT_FALSE(fs::exists(sweep_.directory / "slurm"));
+}
+
+TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
+  SlurmOptions options;
+  options.jobs_per_task = 4;
+  options.workers = 2;
+  SlurmLauncher one = launcher(options);
+  one.submit({0, 1, 2, 3, 4, 5, 8});
+  EXPECT_EQ(heard_[0].tasks, 3);
+  EXPECT_EQ(heard_[0].jobs, 7);
+  folder_.write("runs/name/id/jobs/job1/summary.json", "{}");
+  folder_.write("runs/name/id/jobs/job4/summary.json", "{}");
+  // Task 2 is gone; 1 waits, and what it will find is not looked at; somebody else's task has the same index.
+  folder_.write("queue", "100|0|R\n100|1|PD\n55|2|R\n");
+  Launcher::State state;
+  while (state.returned.empty()) state = one.poll(0.1);
+  EXPECT_THAT(state.returned, ElementsAre(1, 8));
+  EXPECT_EQ(state.running, 2);
+  EXPECT_EQ(state.waiting, 3);
+  folder_.write("queue", "");
+  EXPECT_THAT(returned(one), ElementsAre(0, 2, 3, 4, 5));
+  EXPECT_TRUE(one.poll(0.1).idle());
+}
+
+TEST_F(FakeSlurm, ASilentQueueReturnsNothing) {
+  SlurmLauncher one = launcher();
+  one.submit({0, 1});
+  answer("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller'; exit 1");
+  while (calls("squeue").size() < 2) {
+    const Launcher::State state = one.poll(0.1);
+    EXPECT_THAT(state.returned, IsEmpty());
+    EXPECT_EQ(state.running + state.waiting, 2);
+  }
+  answer("squeue", ":");
+  EXPECT_THAT(returned(one), ElementsAre(0, 1));
+}
+
+TEST_F(FakeSlurm, CancelsTheArraysThatHaveTasksLeft) {
+  SlurmLauncher one = launcher();
+  one.submit({0, 10, 20});
+  folder_.write("queue", "100|0|R\n300|0|PD\n");
+  EXPECT_THAT(returned(one), ElementsAre(10));
+  one.cancel();
+  EXPECT_THAT(calls("scancel"), ElementsAre("100 300"));
+}
+
+TEST_F(FakeSlurm, ThatSaysNothingUsefulIsRefused) {
+  const auto refusal = [&] {
+    try {
+      launcher().submit({0});
+    } catch (const Error& trouble) {
+      return std::string(trouble.what());
+    }
+    return std::string();
+  };
+  answer("sbatch", "echo hello");
+  EXPECT_THAT(refusal(), HasSubstr("sbatch: hello"));
+  answer("scontrol", "echo hello");
+  EXPECT_THAT(refusal(), HasSubstr("scontrol: does not say MaxArraySize"));
+  answer("scontrol", "kill -9 $$");
+  EXPECT_THAT(refusal(), HasSubstr("scontrol: failed and says nothing"));
+  EXPECT_THAT(heard_, IsEmpty());
+}
+
+}  // namespace
+}  // namespace palpate
