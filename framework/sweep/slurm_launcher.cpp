@@ -138,7 +138,7 @@ fs::path SlurmLauncher::make_folder() const {
   fs::create_directories(all, trouble);
   // Another submission may be looking for its number, too: who makes the folder has it.
   for (int number = 1; !trouble; ++number) {
-    const fs::path folder = all / std::to_string(number);
+    fs::path folder = all / std::to_string(number);
     if (fs::create_directory(folder, trouble)) return folder;
   }
   throw Error(all.string(), "cannot be made: " + trouble.message());
