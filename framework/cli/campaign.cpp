@@ -52,6 +52,12 @@ void conduct_shown(const Program& program, const Campaign& campaign, Launcher& l
           [&](const SweepProgress& progress) { line.show(progress); });
 }
 
+int workers_of(const Campaign& campaign) {
+  if (campaign.one_at_a_time) return 1;
+  if (campaign.launch.launcher == kSlurm) return campaign.launch.workers.value_or(1);
+  return campaign.launch.workers.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+}
+
 void check_builds(const Program& program, const Campaign& campaign) {
   for (std::size_t job = 0; job < campaign.sweep.jobs.size(); ++job) {
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
@@ -72,15 +78,14 @@ int run_campaign(Program& program, const Campaign& campaign) {
     std::iota(jobs.begin(), jobs.end(), std::size_t{0});
   }
   const Missing missing = find_missing(sweep, jobs, campaign.options.retry_failed, launch.attempts);
+  if (campaign.one_at_a_time && missing.jobs.size() > 1 && !launch.quiet) {
+    fmt::print(stderr, "one job at a time: the backend has but one thing to move\n");
+  }
   if (launch.launcher == kSlurm) {
     if (!missing.jobs.empty() && !run_on_slurm(program, campaign, missing)) return kDone;
   } else {
-    const int workers = workers_of(campaign);
-    if (workers < launch.workers.value_or(1) && !launch.quiet) {
-      fmt::print(stderr, "one job at a time: the backend has but one thing to move\n");
-    }
     LocalLauncher launcher(program.workshop, sweep, campaign.config_of,
-                           {workers, campaign.options, launch.attempts, whole});
+                           {workers_of(campaign), campaign.options, launch.attempts, whole});
     conduct_shown(program, campaign, launcher, missing);
   }
   SweepReport report = report_on(sweep, jobs);

@@ -25,6 +25,9 @@ struct Campaign {
   bool one_at_a_time = false;     ///< a job's backend moves what exists only once
 };
 
+/// Jobs at a time on this machine or, on a cluster, in a task: one where only one can be.
+int workers_of(const Campaign& campaign);
+
 /// Throws Error if a job of the sweep was begun by another build: by its first tap, for none of them.
 void check_builds(const Program& program, const Campaign& campaign);
 

@@ -55,7 +55,8 @@ bool run_on_slurm(const Program& program, const Campaign& campaign, const Missin
   options.account = launch.account;
   options.more = launch.sbatch;
   options.jobs_per_task = launch.jobs_per_task.value_or(1);
-  options.workers = launch.workers.value_or(1);
+  options.workers = workers_of(campaign);
+  options.tasks_at_once = campaign.one_at_a_time ? 1 : 0;
   options.most_attempts = launch.attempts;
   options.resume = campaign.options;
   std::string ids;

@@ -32,10 +32,13 @@ std::string size_words(const Program& program, const Campaign& campaign) {
   std::string words = fmt::format("{} job{}", jobs, jobs == 1 ? "" : "s");
   const std::optional<Estimate> estimate = estimate_job(program.host, campaign.config_of, jobs);
   if (!estimate) return words;
-  const auto workers = static_cast<std::size_t>(campaign.one_at_a_time ? 1 : campaign.launch.workers);
-  const double rounds = static_cast<double>(jobs) / static_cast<double>(std::min(jobs, workers));
-  return words + fmt::format(", {} {} of computing with {} at a time", estimate->at_least ? "at least" : "about",
-                             duration_words(estimate->job_seconds * rounds), std::min(jobs, workers));
+  const char* const about = estimate->at_least ? "at least" : "about";
+  const double all = estimate->job_seconds * static_cast<double>(jobs);
+  if (campaign.launch.launcher == kSlurm)
+    return words + fmt::format(", {} {} of computing", about, duration_words(all));
+  const std::size_t together = std::min(jobs, static_cast<std::size_t>(workers_of(campaign)));
+  return words + fmt::format(", {} {} of computing with {} at a time", about,
+                             duration_words(all / static_cast<double>(together)), together);
 }
 
 }  // namespace
