@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -200,6 +201,25 @@ double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   }
   throw Error(tree.place.text(), fmt::format("{}: unknown unit '{}'", name, symbol),
               suggestion(symbol, unit_names(unit)));
+}
+
+std::optional<AnyQuantity> any_quantity(const std::string& text) {
+  const std::size_t length = decimal_length(text);
+  if (length == 0) return std::nullopt;
+  const auto symbol = text.find_first_not_of(" \t", length);
+  Unit unit = Unit::none;
+  if (symbol != std::string::npos) {
+    const auto known = std::find_if(kUnits.begin(), kUnits.end(), [&](const UnitName& one) {
+      return one.name == std::string_view(text).substr(symbol);
+    });
+    if (known == kUnits.end()) return std::nullopt;
+    unit = known->unit;
+  }
+  try {
+    return AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit};
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 std::int64_t read_integer(const Tree& tree, const std::string& name) {

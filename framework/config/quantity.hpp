@@ -7,6 +7,7 @@
 #include <palpate/options.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace palpate {
@@ -15,6 +16,15 @@ namespace palpate {
 /// `0.017 m` are the same bits. Throws Error at the tree's place for anything but a finite decimal with a unit of the
 /// dimension: a bare number, another dimension, an octal or hexadecimal look, NaN, infinity.
 double read_quantity(const Tree& tree, const std::string& name, Unit unit);
+
+/// A number with whatever unit it has, in SI.
+struct AnyQuantity {
+  double value;
+  Unit unit;
+};
+
+/// The same as read_quantity() where the dimension is not known beforehand; none for what is no quantity.
+std::optional<AnyQuantity> any_quantity(const std::string& text);
 
 /// Reads a whole number; same strictness.
 std::int64_t read_integer(const Tree& tree, const std::string& name);

@@ -12,12 +12,14 @@
 
 namespace palpate {
 
+struct ConditionNode;
+
 /// A condition, read once and asked often.
 ///
-/// Comparisons (==, !=, <, <=, >, >=) of a name with a value or with another name, joined by `and`, `or`, `not` and
-/// parentheses. Numbers compare as numbers, with their units (1 cm == 10 mm); all else compares as text, and only by
-/// == and !=. What stands on the left is a name; what stands on the right is a name if one is known, else a value,
-/// which may be quoted.
+/// Comparisons (==, !=, <, <=, >, >=) of a name with a value or with another name, joined by `and`, `or` (which binds
+/// less than `and`), `not` and parentheses. Numbers compare as numbers, with their units (1 cm == 10 mm); all else
+/// compares as text, and only by == and !=. What stands on the left is a name; what stands on the right is a name if
+/// one is known, else a value. A value in quotes is always a text, and may hold any character.
 class Condition {
  public:
   /// The text of a name's value ("2 cm", "rbf"; "" where it has none), or none where there is no such name.
@@ -29,14 +31,15 @@ class Condition {
   Condition(Condition&& other) noexcept;
   Condition& operator=(Condition&& other) noexcept;
 
-  /// A comparison with a name that has no value does not hold, whatever it compares. Throws Error for a name on the
-  /// left that is not known (`known` is what to suggest from), for an order of texts, and for units that do not go
-  /// together.
+  /// A comparison with a name that has no value does not hold, whatever it compares. `and` and `or` look no further
+  /// than they need to, so `spacing != none and spacing > 2 mm` is fine. Throws Error, with the place of the condition,
+  /// for any name on the left that is not known (`known` is what to suggest from), for an order of texts, and for units
+  /// that do not go together.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
  private:
-  struct Node;
-  std::unique_ptr<const Node> root_;
+  std::string place_;
+  std::unique_ptr<const ConditionNode> root_;
 };
 
 }  // namespace palpate

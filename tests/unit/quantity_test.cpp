@@ -201,6 +201,26 @@ TEST(WrittenQuantity, IsTheShortestTextWithItsUnit) {
   EXPECT_EQ(write_quantity(0.1, Unit::metre_per_second), "0.1 m/s");
 }
 
+TEST(AnyQuantity, HasTheDimensionOfItsUnit) {
+  const auto expect = [](const char* text, double value, Unit unit) {
+    const auto found = any_quantity(text);
+    ASSERT_TRUE(found) << text;
+    EXPECT_EQ(found->value, value) << text;
+    EXPECT_EQ(found->unit, unit) << text;
+  };
+  expect("17", 17.0, Unit::none);
+  expect("-1e3", -1000.0, Unit::none);
+  expect("1.7 cm", 0.017, Unit::metre);
+  expect("500ms", 0.5, Unit::second);
+  expect("2 kN/m", 2000.0, Unit::newton_per_metre);
+}
+
+TEST(AnyQuantity, IsNoneOfWhatIsNoQuantity) {
+  for (const char* text : {"", "rbf", "cm", "1 parsec", "1,5 cm", "017", "1e999", "12ab", "two 2", " 3"}) {
+    EXPECT_FALSE(any_quantity(text)) << text;
+  }
+}
+
 TEST(WrittenQuantity, ReadsBackAsTheSameBits) {
   constexpr Unit kUnits[] = {Unit::none, Unit::metre, Unit::second, Unit::newton, Unit::radian, Unit::metre_per_second};
   std::mt19937_64 random(20210601);

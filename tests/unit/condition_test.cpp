@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/condition.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace palpate {
+namespace {
+
+Tree text_at(const std::string& text) {
+  Tree tree = Tree::scalar(text);
+  tree.place = {std::make_shared<const std::string>("c.yaml"), 3, 5};
+  return tree;
+}
+
+const std::map<std::string, std::string> kValues{
+    {"taps", "17"},       {"seed", "3"},      {"surface", "two_part"}, {"height.noise", "0.1 mm"},
+    {"kernel", "rbf"},    {"reach", "10 mm"}, {"clearance", "1cm"},    {"acquisition.beta", ""},
+    {"name", "object i"}, {"spacing", "none"}};
+
+bool holds(const std::string& text) {
+  std::vector<std::string> known;
+  for (const auto& one : kValues) known.push_back(one.first);
+  const auto value_of = [](const std::string& name) -> std::optional<std::string> {
+    const auto found = kValues.find(name);
+    return found != kValues.end() ? std::optional(found->second) : std::nullopt;
+  };
+  return Condition(text_at(text)).holds(value_of, known);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    holds(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Condition, ComparesNumbersAsNumbers) {
+  EXPECT_TRUE(holds("taps == 17"));
+  EXPECT_TRUE(holds("taps == 17.0"));
+  EXPECT_TRUE(holds("taps == 1.7e1"));
+  EXPECT_FALSE(holds("taps != 17.0"));
+  EXPECT_TRUE(holds("taps > 9")) << "as text, 9 comes after 17";
+  EXPECT_FALSE(holds("taps < 9"));
+  EXPECT_TRUE(holds("taps >= 17"));
+  EXPECT_TRUE(holds("taps <= 17"));
+  EXPECT_FALSE(holds("taps > 17"));
+  EXPECT_FALSE(holds("taps < 17"));
+  EXPECT_TRUE(holds("taps > -17"));
+}
+
+TEST(Condition, ComparesQuantitiesWithTheirUnits) {
+  EXPECT_TRUE(holds("reach == 1 cm"));
+  EXPECT_TRUE(holds("reach == 1cm"));
+  EXPECT_TRUE(holds("reach==0.01m"));
+  EXPECT_TRUE(holds("reach < 11 mm and reach > 0.9 cm"));
+  EXPECT_TRUE(holds("height.noise <= 100 um"));
+}
+
+TEST(Condition, ComparesTextsAsTheyStand) {
+  EXPECT_TRUE(holds("surface == two_part"));
+  EXPECT_FALSE(holds("surface == single"));
+  EXPECT_TRUE(holds("surface != single"));
+  EXPECT_TRUE(holds("name == object i"));
+  EXPECT_TRUE(holds("name == 'object i'"));
+  EXPECT_TRUE(holds("surface != 17"));
+  EXPECT_FALSE(holds("taps == many"));
+}
+
+TEST(Condition, TakesTheRightForANameWhereOneIsKnown) {
+  EXPECT_TRUE(holds("reach == clearance"));
+  EXPECT_TRUE(holds("seed < taps"));
+  EXPECT_TRUE(holds("kernel != surface"));
+}
+
+TEST(Condition, TakesWhatIsInQuotesForAText) {
+  EXPECT_FALSE(holds("kernel == 'kernel'"));
+  EXPECT_TRUE(holds("taps == \"17\""));
+  EXPECT_FALSE(holds("taps == '17.0'"));
+  EXPECT_TRUE(holds("name != ') and ('"));
+}
+
+TEST(Condition, BindsNotBeforeAndBeforeOr) {
+  EXPECT_TRUE(holds("taps == 17 or taps == 17 and taps == 1")) << "not (a or a) and b";
+  EXPECT_FALSE(holds("(taps == 17 or taps == 17) and taps == 1"));
+  EXPECT_FALSE(holds("not taps == 17 and taps == 1")) << "(not a) and b, not not (a and b)";
+  EXPECT_TRUE(holds("not (taps == 17 and taps == 1)"));
+  EXPECT_TRUE(holds("not not taps == 17"));
+  EXPECT_TRUE(holds("taps >= 12 and (surface == single or not kernel == matern52)"));
+}
+
+TEST(Condition, AgreesWithATruthTable) {
+  // seed == 3 is true, seed == 4 is false: every way to join three of them, against C++'s own operators.
+  for (int bits = 0; bits < 8; ++bits) {
+    const auto word = [&](int bit) { return (bits >> bit & 1) != 0 ? std::string("seed == 3") : "seed == 4"; };
+    const bool a = (bits & 1) != 0, b = (bits & 2) != 0, c = (bits & 4) != 0;
+    const std::string x = word(0), y = word(1), z = word(2);
+    EXPECT_EQ(holds(x + " and " + y + " or " + z), (a && b) || c) << bits;
+    EXPECT_EQ(holds(x + " or " + y + " and " + z), a || (b && c)) << bits;
+    EXPECT_EQ(holds(x + " and (" + y + " or not " + z + ")"), a && (b || !c)) << bits;
+    EXPECT_EQ(holds("not " + x + " or " + y + " or " + z), !a || b || c) << bits;
+    EXPECT_EQ(holds("not (" + x + " and " + y + " and " + z + ")"), !(a && b && c)) << bits;
+  }
+}
+
+TEST(Condition, DoesNotHoldOfANameWithoutValue) {
+  for (const char* sign : {"==", "!=", "<", "<=", ">", ">="}) {
+    EXPECT_FALSE(holds(std::string("acquisition.beta ") + sign + " 2"));
+    EXPECT_FALSE(holds(std::string("taps ") + sign + " acquisition.beta"));
+  }
+  EXPECT_TRUE(holds("not acquisition.beta == 2"));
+}
+
+TEST(Condition, LooksNoFurtherThanItNeedsTo) {
+  EXPECT_FALSE(holds("spacing != none and spacing > 2 mm"));
+  EXPECT_TRUE(holds("spacing == none or spacing > 2 mm"));
+}
+
+TEST(Condition, RefusesANameThatIsNotKnownWhereverItStands) {
+  EXPECT_EQ(refusal("taps == 1 and surfac == single"),
+            "c.yaml:3:5: in the condition 'surfac == single' the name 'surfac' is not known, did you mean 'surface'?");
+  EXPECT_EQ(refusal("taps == 17 or not (tap == 3)"),
+            "c.yaml:3:5: in the condition 'tap == 3' the name 'tap' is not known, did you mean 'taps'?");
+}
+
+TEST(Condition, RefusesAnOrderOfTexts) {
+  EXPECT_EQ(refusal("surface < single"),
+            "c.yaml:3:5: the condition 'surface < single' orders texts: 'two_part' and 'single', texts compare by == "
+            "and != alone");
+  EXPECT_EQ(refusal("spacing > 2 mm"),
+            "c.yaml:3:5: the condition 'spacing > 2 mm' orders texts: 'none' and '2 mm', texts compare by == and != "
+            "alone");
+}
+
+TEST(Condition, RefusesUnitsThatDoNotGoTogether) {
+  EXPECT_EQ(refusal("reach > 2 s"),
+            "c.yaml:3:5: the condition 'reach > 2 s' compares a length ('10 mm') with a time ('2 s'), give both the "
+            "same dimension");
+  EXPECT_EQ(refusal("reach == 2"),
+            "c.yaml:3:5: the condition 'reach == 2' compares a length ('10 mm') with a number ('2'), give both the "
+            "same dimension");
+}
+
+TEST(Condition, RefusesWhatIsNoCondition) {
+  const std::string how_to = ", write it like taps >= 12 and not surface == two_part";
+  const auto expect = [](const std::string& text, const std::string& rest) {
+    EXPECT_EQ(refusal(text), "c.yaml:3:5: the condition '" + text + "': " + rest);
+  };
+  expect("", "it is empty" + how_to);
+  expect("  ", "it is empty" + how_to);
+  expect("taps", "behind 'taps' a comparison is missing" + how_to);
+  expect("taps count > 3", "behind 'taps' a comparison is missing" + how_to);
+  expect("taps >", "behind 'taps >' a value is missing" + how_to);
+  expect("taps > and seed > 1", "behind 'taps >' a value is missing" + how_to);
+  expect("taps > 3 and", "a comparison is missing" + how_to);
+  expect("not", "a comparison is missing" + how_to);
+  expect("or taps > 3", "a comparison is missing" + how_to);
+  expect("taps > 3 not seed > 3", "'not' is not expected there" + how_to);
+  expect("(taps > 3", "a '(' is not closed, close it");
+  expect("taps > 3)", "a ')' without '('" + how_to);
+  expect("()", "a comparison is missing" + how_to);
+  expect("name == 'object", "a quote is not closed, close it");
+}
+
+TEST(Condition, SaysHowToWriteWhatOtherLanguagesWrite) {
+  const auto hint = [](const std::string& text) {
+    const std::string line = refusal(text);
+    return line.substr(line.rfind(": ") + 2);
+  };
+  EXPECT_EQ(hint("taps = 3"), "'=' is no comparison, write '=='");
+  EXPECT_EQ(hint("taps <> 3"), "'<>' is no comparison, write '!='");
+  EXPECT_EQ(hint("taps => 3"), "'=>' is no comparison, write '>='");
+  EXPECT_EQ(hint("taps > 3 && seed > 1"), "'&&' is not expected there, write 'and'");
+  EXPECT_EQ(hint("taps > 3 || seed > 1"), "'||' is not expected there, write 'or'");
+  EXPECT_EQ(hint("!(taps > 3)"), "'!' is not expected there, write 'not'");
+  EXPECT_EQ(hint("1 < taps < 5"), "taps >= 12") << "'1' is no name, write the name first: taps >= 12";
+  EXPECT_EQ(hint("taps > 1 < 5"), "'<' is not expected there, join two comparisons by 'and'");
+}
+
+TEST(Condition, RefusesWhatIsNestedTooDeeply) {
+  const std::string deep = std::string(50000, '(') + "taps > 3" + std::string(50000, ')');
+  EXPECT_NE(refusal(deep).find("nested too deeply, at most 100 levels"), std::string::npos);
+  std::string nots;
+  for (int i = 0; i < 50000; ++i) nots += "not ";
+  EXPECT_NE(refusal(nots + "taps > 3").find("nested too deeply"), std::string::npos);
+}
+
+TEST(Condition, RefusesWhatIsNoText) {
+  Tree list = Tree::list();
+  list.place = text_at("").place;
+  try {
+    const Condition condition(list);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "c.yaml:3:5: a condition is a text, write it like taps >= 12 and not surface == two_part");
+  }
+}
+
+}  // namespace
+}  // namespace palpate
