@@ -3,59 +3,29 @@
 
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
-#include "experiment/summary_fields.hpp"
+#include "sweep/column.hpp"
+#include "sweep/readable.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
-#include <set>
 
 namespace palpate {
 namespace {
 
 constexpr const char* kCommandLine = "command line";
 
-std::vector<std::string> columns_of(const std::vector<Row>& results) {
-  std::vector<std::string> names;
-  std::set<std::string> seen;
-  for (const Row& row : results) {
-    for (const auto& field : row.fields) {
-      if (seen.insert(field.first).second) names.push_back(field.first);
-    }
-  }
-  return names;
-}
-
-/// The number in a cell: flags are 0 and 1, and what was swept is text. None for null. Throws Error for other text.
-std::optional<double> number_in(const Row& row, const std::string& column, const char* option) {
-  const Scalar* value = row.find(column);
-  const std::string text = value != nullptr ? csv_cell(*value) : std::string();
-  if (text.empty()) return {};
-  if (text == "true" || text == "false") return text == "true" ? 1.0 : 0.0;
-  double number = 0.0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (result.ec == std::errc() && result.ptr == text.data() + text.size()) return number;
-  throw Error(kCommandLine, fmt::format("{}: the column '{}' holds {}, not numbers", option, column, text),
-              "name one that can be averaged");
-}
-
 ParetoKey make_key(const std::string& name, const std::vector<std::string>& columns, const char* option) {
-  if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
-    throw Error(kCommandLine, fmt::format("{}: results.csv has no column '{}'", option, name),
-                suggestion(name, columns));
-  }
-  const SummaryField* field = find_summary_field(name);
-  const bool more = field != nullptr && field->better == SummaryField::Better::more;
+  const Column column = find_column(name, columns, option);
   if (name == "coverage_95") {
     throw Error(kCommandLine, fmt::format("{}: coverage_95 is best at 0.95, neither small nor large", option),
                 "nlpd judges heights and intervals together");
   }
-  return {name, unit_of_column(name), more};
+  return {name, column.unit, column.better == SummaryField::Better::more};
 }
 
 /// Collects what belongs to one setting while the jobs are gone through.
@@ -64,11 +34,6 @@ struct Collected {
   std::vector<double> cost;
   std::vector<double> error;
 };
-
-bool is_done(const Row& row) {
-  const Scalar* status = row.find("status");
-  return status != nullptr && *status == Scalar{std::string("done")};
-}
 
 void add_job(Collected& one, const Row* row, const ParetoKey& cost, const ParetoKey& error) {
   ++one.setting.jobs;
@@ -95,10 +60,7 @@ std::string name_of(const std::vector<std::string>& keys, const std::vector<bool
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (differs[i]) name += (name.empty() ? "" : ", ") + keys[i] + "=" + values[i];
   }
-  for (char& c : name) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return name.empty() ? "the only setting" : name;
+  return name.empty() ? "the only setting" : one_line(name);
 }
 
 /// As a quantity of which less is better.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/pareto_report.hpp"
 
-#include "config/quantity.hpp"
 #include "sweep/gnuplot.hpp"
+#include "sweep/readable.hpp"
 
 #include <fmt/format.h>
 
@@ -13,45 +13,16 @@
 namespace palpate {
 namespace {
 
-/// In what unit, and with how many decimals, the values of a column are read best.
-struct Scale {
-  std::string unit;  ///< "" for none
-  double factor = 1.0;
-  int decimals = 0;
-
-  std::string number(double value) const { return fmt::format("{:.{}f}", value / factor, decimals); }
-  std::string with_unit(double value) const { return number(value) + (unit.empty() ? "" : " " + unit); }
-};
-
 using Pick = std::function<const MeanEstimate&(const Setting&)>;
 const MeanEstimate& cost_of(const Setting& setting) { return setting.cost; }
 const MeanEstimate& error_of(const Setting& setting) { return setting.error; }
 
 Scale scale_of(const Pareto& pareto, const ParetoKey& key, const Pick& pick) {
-  double largest = 0.0;
-  double least = 0.0;
+  std::vector<double> means;
   for (const Setting& setting : pareto.settings) {
-    const double size = std::abs(pick(setting).mean);
-    if (pick(setting).count == 0 || size == 0.0) continue;
-    largest = std::max(largest, size);
-    least = least == 0.0 ? size : std::min(least, size);
+    if (pick(setting).count > 0) means.push_back(pick(setting).mean);
   }
-  Scale scale{unit_symbol(key.unit), 1.0, 0};
-  if (key.unit == Unit::metre && largest < 1.0) scale = {"mm", 1e-3, 0};
-  if (key.unit == Unit::second && largest < 1.0) scale = {"ms", 1e-3, 0};
-  // Three digits of the smallest, but no more decimals than anyone reads.
-  if (least > 0.0)
-    scale.decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(least / scale.factor))), 0, 4);
-  return scale;
-}
-
-std::string title_of(const ParetoKey& key, const Scale& scale) {
-  return key.name + (scale.unit.empty() ? "" : " [" + scale.unit + "]");
-}
-
-std::string interval_text(const MeanEstimate& estimate, const Scale& scale) {
-  if (!estimate.interval) return "[-]";
-  return fmt::format("[{}, {}]", scale.number(estimate.interval->low), scale.number(estimate.interval->high));
+  return readable_scale(key.unit, means);
 }
 
 std::string note_of(const Setting& setting) {
@@ -74,7 +45,7 @@ std::string cost_text(const Setting& setting, const Scale& scale) {
 
 std::string error_text(const Setting& setting, const Scale& scale) {
   if (setting.error.count == 0) return "-";
-  return fmt::format("{} {}", scale.number(setting.error.mean), interval_text(setting.error, scale));
+  return fmt::format("{} {}", scale.number(setting.error.mean), scale.interval(setting.error.interval));
 }
 
 }  // namespace
@@ -83,24 +54,12 @@ std::string pareto_table(const Pareto& pareto) {
   const Scale cost = scale_of(pareto, pareto.cost, cost_of);
   const Scale error = scale_of(pareto, pareto.error, error_of);
   std::vector<std::vector<std::string>> lines{
-      {"front", "setting", "jobs", title_of(pareto.cost, cost), title_of(pareto.error, error), ""}};
+      {"front", "setting", "jobs", cost.title(pareto.cost.name), error.title(pareto.error.name), ""}};
   for (const Setting& one : pareto.settings) {
     lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, std::to_string(one.jobs),
                      cost_text(one, cost), error_text(one, error), note_of(one)});
   }
-  std::vector<std::size_t> widths(lines.front().size(), 0);
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  }
-  std::string out;
-  for (const auto& line : lines) {
-    std::string text;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const bool words = i == 1 || i == 5;
-      text += words ? fmt::format("{:<{}}  ", line[i], widths[i]) : fmt::format("{:>{}}  ", line[i], widths[i]);
-    }
-    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
-  }
+  std::string out = aligned(lines, "rlrrrl");
   out += fmt::format(
       "mean over the seeds, with its 95 % interval; {} of {} is better; numbered: no other setting is at "
       "least as good in both\n",
@@ -302,9 +261,9 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
     out += fmt::format("${} << END\n{}END\n", name, lines);
   };
   out += fmt::format("set title {} font ',14'\n", gnuplot_text(title));
-  out += fmt::format(
-      "set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + title_of(pareto.cost, cost)),
-      gnuplot_text("mean " + title_of(pareto.error, error) + (pareto.error.more_is_better ? " (more is better)" : "")));
+  out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + cost.title(pareto.cost.name)),
+                     gnuplot_text("mean " + error.title(pareto.error.name) +
+                                  (pareto.error.more_is_better ? " (more is better)" : "")));
   if (x.logarithmic) out += "set logscale x\n";
   if (y.logarithmic) out += "set logscale y\n";
   out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);

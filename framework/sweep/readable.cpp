@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/readable.hpp"
+
+#include "config/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+std::string Scale::number(double value) const { return fmt::format("{:.{}f}", value / factor, decimals); }
+
+std::string Scale::difference(double value) const {
+  const std::string text = fmt::format("{:+.{}f}", value / factor, decimals);
+  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
+}
+
+std::string Scale::interval(const std::optional<MeanInterval>& ends) const {
+  return ends ? fmt::format("[{}, {}]", number(ends->low), number(ends->high)) : "[-]";
+}
+
+std::string Scale::title(const std::string& name) const { return name + (unit.empty() ? "" : " [" + unit + "]"); }
+
+Scale readable_scale(Unit unit, const std::vector<double>& values, int digits) {
+  double largest = 0.0;
+  double least = 0.0;
+  for (const double value : values) {
+    const double size = std::abs(value);
+    if (size == 0.0) continue;
+    largest = std::max(largest, size);
+    least = least == 0.0 ? size : std::min(least, size);
+  }
+  Scale scale{unit_symbol(unit), 1.0, 0};
+  if (unit == Unit::metre && largest < 1.0) scale = {"mm", 1e-3, 0};
+  if (unit == Unit::second && largest < 1.0) scale = {"ms", 1e-3, 0};
+  if (least > 0.0)
+    scale.decimals = std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(least / scale.factor))), 0, 4);
+  return scale;
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides) {
+  std::vector<std::size_t> widths(sides.size(), 0);
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  std::string out;
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (widths[i] == 0) continue;
+      const char* const cell = sides[i] == 'l' ? "{:<{}}  " : "{:>{}}  ";
+      text += fmt::format(fmt::runtime(cell), line[i], widths[i]);
+    }
+    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+  }
+  return out;
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Numbers and tables for people: units in which values are short, columns that stand under each other.
+#pragma once
+
+#include "sweep/statistics.hpp"
+
+#include <palpate/options.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// In what unit, and with how many decimals, some values are read best.
+struct Scale {
+  std::string unit;  ///< "" for none
+  double factor = 1.0;
+  int decimals = 0;
+
+  std::string number(double value) const;
+  /// With its sign: "+0.3". What rounds to 0 has none.
+  std::string difference(double value) const;
+  /// "[3.02, 3.40]", "[-]" where there is none.
+  std::string interval(const std::optional<MeanInterval>& ends) const;
+  /// "rmse_m [mm]"
+  std::string title(const std::string& name) const;
+};
+
+/// For values of these sizes: millimetres and milliseconds if all are below one, and `digits` digits of the smallest
+/// that is not 0, but at most four decimals.
+Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3);
+
+/// Lines of as many cells each, under each other and two blanks apart; `sides` has an l or r for each column. A
+/// column that is empty in all lines takes no room.
+std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides);
+
+/// The text with blanks for control characters: one line, whatever stood in a config.
+std::string one_line(std::string text);
+
+}  // namespace palpate
