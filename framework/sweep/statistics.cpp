@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/statistics.hpp"
 
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
@@ -32,6 +33,10 @@ MeanEstimate estimate_mean(const std::vector<double>& values) {
   const double half = student_factor(values.size() - 1) * std::sqrt(squares / (n - 1.0) / n);
   out.interval = MeanInterval{out.mean - half, out.mean + half};
   return out;
+}
+
+double normal_quantile(double share) {
+  return boost::math::quantile(boost::math::normal_distribution<double>(), share);
 }
 
 double quantile(const std::vector<double>& sorted, double share) {

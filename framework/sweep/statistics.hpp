@@ -29,6 +29,9 @@ MeanEstimate estimate_mean(const std::vector<double>& values);
 /// `degrees` >= 1.
 double student_factor(std::size_t degrees);
 
+/// The place that a standard normal variable stays below with this probability, which is between 0 and 1.
+double normal_quantile(double share);
+
 /// Linear interpolation between order statistics; `share` 0 is the least value, 0.5 the median, 1 the largest. `sorted`
 /// holds at least one value; infinite ones are allowed, and what lies between a finite value and one of them is
 /// infinite.

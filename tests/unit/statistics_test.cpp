@@ -68,6 +68,13 @@ TEST(MeanEstimate, OfCloseNumbersFarFromZeroKeepsItsSpread) {
   EXPECT_NEAR(estimate.interval->high - estimate.mean, 4.302652730 / std::sqrt(3.0), 1e-6);
 }
 
+TEST(NormalQuantile, IsThatOfThePrintedTablesAndFarOutOfScipys) {
+  EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-12);
+  EXPECT_EQ(normal_quantile(0.5), 0.0);
+  // python3 -c "from scipy.stats import norm; print(norm.ppf(1e-10))"
+  EXPECT_NEAR(normal_quantile(1e-10), -6.361340902404056, 1e-10);
+}
+
 TEST(Quantile, InterpolatesBetweenOrderStatistics) {
   EXPECT_EQ(quantile({1.0, 2.0, 3.0}, 0.5), 2.0);
   EXPECT_EQ(quantile({1.0, 2.0, 3.0, 4.0}, 0.5), 2.5);

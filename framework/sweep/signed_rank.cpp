@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/signed_rank.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+struct Difference {
+  double size = 0.0;
+  bool higher = false;
+  double rounding = 0.0;         ///< as much of the size is not to be trusted
+  std::size_t doubled_rank = 0;  ///< whole even where equal sizes share their mean rank
+};
+
+/// Gives the differences, sorted by size, their ranks. Returns the sum of t^3 - t over the sets of t equal ones.
+double rank(std::vector<Difference>& sorted) {
+  double ties = 0.0;
+  for (std::size_t begin = 0; begin < sorted.size();) {
+    std::size_t end = begin + 1;
+    while (end < sorted.size() &&
+           sorted[end].size - sorted[end - 1].size <= std::max(sorted[end].rounding, sorted[end - 1].rounding)) {
+      ++end;
+    }
+    for (std::size_t i = begin; i < end; ++i) sorted[i].doubled_rank = begin + 1 + end;
+    const auto t = static_cast<double>(end - begin);
+    ties += t * t * t - t;
+    begin = end;
+  }
+  return ties;
+}
+
+/// The probability that a rank sum, were every sign a fair coin, is at most `doubled_sum` / 2: the distribution grows
+/// rank by rank.
+double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_sum) {
+  std::vector<double> share(doubled_sum + 1, 0.0);
+  share[0] = 1.0;
+  for (const Difference& one : ranked) {
+    for (std::size_t sum = doubled_sum + 1; sum-- > 0;) {
+      share[sum] = 0.5 * (share[sum] + (sum >= one.doubled_rank ? share[sum - one.doubled_rank] : 0.0));
+    }
+  }
+  return std::accumulate(share.begin(), share.end(), 0.0);
+}
+
+}  // namespace
+
+SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<double>& second) {
+  constexpr double kRounding = 1e-12;
+  SignedRank out;
+  std::vector<Difference> ranked;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const double difference = first[i] - second[i];
+    const double rounding = kRounding * std::max(std::abs(first[i]), std::abs(second[i]));
+    if (std::abs(difference) <= rounding) {
+      ++out.equal;
+      continue;
+    }
+    ++(difference > 0.0 ? out.higher : out.lower);
+    ranked.push_back({std::abs(difference), difference > 0.0, rounding, 0});
+  }
+  if (!first.empty()) out.p = 1.0;
+  if (ranked.empty()) return out;
+  std::sort(ranked.begin(), ranked.end(), [](const Difference& a, const Difference& b) { return a.size < b.size; });
+  const double ties = rank(ranked);
+  std::size_t higher = 0;
+  std::size_t lower = 0;
+  for (const Difference& one : ranked) (one.higher ? higher : lower) += one.doubled_rank;
+  out.rank_sum_higher = static_cast<double>(higher) / 2.0;
+  out.rank_sum_lower = static_cast<double>(lower) / 2.0;
+  const double sum = out.rank_sum_higher + out.rank_sum_lower;
+  out.effect = (out.rank_sum_higher - out.rank_sum_lower) / sum;
+  out.exact = ranked.size() <= kExactSignedRanks;
+  if (out.exact) {
+    // The distribution is symmetric: both tails are equal, and of a sum in the middle they overlap.
+    out.p = std::min(1.0, 2.0 * share_at_most(ranked, std::min(higher, lower)));
+    return out;
+  }
+  const auto n = static_cast<double>(ranked.size());
+  const double variance = n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ties / 48.0;
+  const double z = (out.rank_sum_higher - sum / 2.0) / std::sqrt(variance);
+  out.p = std::erfc(std::abs(z) / std::sqrt(2.0));
+  return out;
+}
+
+std::vector<double> holm_adjusted(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> adjusted(p.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(p.size() - i) * p[order[i]]));
+    adjusted[order[i]] = largest;
+  }
+  return adjusted;
+}
+
+}  // namespace palpate

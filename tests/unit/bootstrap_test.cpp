@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Intervals of the bootstrap against scipy's, against Student's where that is right, and against what they promise.
+#include "sweep/bootstrap.hpp"
+
+#include <palpate/random.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+double width(const MeanInterval& interval) { return interval.high - interval.low; }
+
+/// Ends scatter by about 1 % of the width from stream to stream; three times that, and a little for scipy's.
+constexpr double kScatter = 0.035;
+
+/// 200 numbers between 0 and 1, most of them small.
+std::vector<double> skewed_values() {
+  std::vector<double> values;
+  for (int i = 1; i <= 200; ++i) values.push_back(std::pow((i * i * 7919 % 1009) / 1009.0, 3));
+  return values;
+}
+
+// Both intervals come from, with the values as x:
+//   n = len(x); z = stats.t.ppf(.975, n - 1) * np.sqrt(n / (n - 1)); c = 1 - 2 * stats.norm.sf(z)
+//   stats.bootstrap((x,), np.mean, confidence_level=c, method='BCa', n_resamples=400000, random_state=1)
+TEST(BootstrapMean, OfFewSkewedValuesIsTheWidenedBcaIntervalOfScipy) {
+  const MeanEstimate mean = bootstrap_mean({0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7, 5.1, 7.9, 16.0});
+  EXPECT_NEAR(mean.mean, 41.0 / 12.0, 1e-12);
+  EXPECT_EQ(mean.count, 12U);
+  ASSERT_TRUE(mean.interval);
+  const MeanInterval scipy{1.5, 8.316666666666668};
+  EXPECT_NEAR(mean.interval->low, scipy.low, kScatter * width(scipy));
+  EXPECT_NEAR(mean.interval->high, scipy.high, kScatter * width(scipy));
+}
+
+TEST(BootstrapMean, OfManySkewedValuesIsTheWidenedBcaIntervalOfScipy) {
+  const MeanEstimate mean = bootstrap_mean(skewed_values());
+  const MeanInterval scipy{0.1890972855115677, 0.264400389511537};
+  ASSERT_TRUE(mean.interval);
+  EXPECT_NEAR(mean.interval->low, scipy.low, kScatter * width(scipy));
+  EXPECT_NEAR(mean.interval->high, scipy.high, kScatter * width(scipy));
+}
+
+TEST(BootstrapMean, OfNormalValuesIsStudentsInterval) {
+  std::vector<double> values;
+  for (int i = 1; i < 400; ++i) values.push_back(5.0 + 2.0 * normal_quantile(i / 400.0));
+  const MeanEstimate mean = bootstrap_mean(values);
+  const MeanInterval student = *estimate_mean(values).interval;
+  ASSERT_TRUE(mean.interval);
+  EXPECT_NEAR(mean.interval->low, student.low, kScatter * width(student));
+  EXPECT_NEAR(mean.interval->high, student.high, kScatter * width(student));
+}
+
+/// How many of 300 samples of `count` values have 1 in their interval; `draw` has the mean 1.
+template <class Draw>
+int covered(std::size_t count, const Draw& draw) {
+  int hits = 0;
+  for (std::uint64_t sample = 0; sample < 300; ++sample) {
+    Random random(sample, "coverage");
+    std::vector<double> values(count);
+    for (double& value : values) value = draw(random);
+    const auto interval = bootstrap_mean(values).interval;
+    hits += interval && interval->low <= 1.0 && 1.0 <= interval->high ? 1 : 0;
+  }
+  return hits;
+}
+
+// Of 300, 285 have a standard deviation of 4.
+TEST(BootstrapMean, CoversTheMeanOfTenNormalValuesInNineteenOfTwentyCases) {
+  const int hits = covered(10, [](Random& random) { return 1.0 + normal_quantile(random.uniform() + 0x1.0p-54); });
+  EXPECT_GE(hits, 273);
+  EXPECT_LE(hits, 296);
+}
+
+TEST(BootstrapMean, CoversTheMeanOfTwentySkewedValuesNearlyAsOften) {
+  const int hits = covered(20, [](Random& random) { return -std::log1p(-random.uniform()); });
+  EXPECT_GE(hits, 267);
+  EXPECT_LE(hits, 294);
+}
+
+TEST(BootstrapMean, LeansWithTheValues) {
+  const MeanEstimate mean = bootstrap_mean({0, 0, 0, 0, 0, 0, 1, 1, 2, 9});
+  ASSERT_TRUE(mean.interval);
+  EXPECT_GT(mean.interval->high - mean.mean, 1.3 * (mean.mean - mean.interval->low));
+  EXPECT_GE(mean.interval->low, 0.0) << "what was drawn from the values stays within them";
+}
+
+TEST(BootstrapMean, DoesNotDependOnTheOrderOfTheValues) {
+  std::vector<double> values = skewed_values();
+  const MeanInterval before = *bootstrap_mean(values).interval;
+  std::reverse(values.begin(), values.end());
+  std::rotate(values.begin(), values.begin() + 37, values.end());
+  // The mean is a sum, whose rounding knows the order.
+  EXPECT_NEAR(bootstrap_mean(values).interval->low, before.low, 1e-14);
+  EXPECT_NEAR(bootstrap_mean(values).interval->high, before.high, 1e-14);
+}
+
+TEST(BootstrapMean, OfTheNegativesIsTheNegativeInterval) {
+  std::vector<double> values = skewed_values();
+  const MeanInterval before = *bootstrap_mean(values).interval;
+  for (double& value : values) value = -value;
+  const MeanInterval after = *bootstrap_mean(values).interval;
+  EXPECT_EQ(after.low, -before.high);
+  EXPECT_EQ(after.high, -before.low);
+}
+
+TEST(BootstrapMean, MovesAndStretchesWithTheValues) {
+  std::vector<double> values = skewed_values();
+  const MeanInterval before = *bootstrap_mean(values).interval;
+  for (double& value : values) value = 100.0 + 1000.0 * value;
+  const MeanInterval after = *bootstrap_mean(values).interval;
+  EXPECT_NEAR(after.low, 100.0 + 1000.0 * before.low, 1e-9);
+  EXPECT_NEAR(after.high, 100.0 + 1000.0 * before.high, 1e-9);
+}
+
+TEST(BootstrapMean, OfFewOrEqualValuesHasNoInterval) {
+  EXPECT_FALSE(bootstrap_mean({}).interval);
+  EXPECT_FALSE(bootstrap_mean({1.0, 2.0, 3.0, 4.0}).interval);
+  EXPECT_TRUE(bootstrap_mean({1.0, 2.0, 3.0, 4.0, 5.0}).interval);
+  EXPECT_FALSE(bootstrap_mean({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}).interval);
+  EXPECT_EQ(bootstrap_mean({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}).mean, 0.1);
+}
+
+TEST(BootstrapMean, OfOneValueThatDiffersStaysWithinTheValues) {
+  std::vector<double> values(1000, 0.0);
+  values.back() = 1.0;
+  const MeanInterval interval = *bootstrap_mean(values).interval;
+  EXPECT_GE(interval.low, 0.0);
+  EXPECT_GT(interval.high, 0.002);
+  EXPECT_LT(interval.high, 0.01);
+}
+
+}  // namespace
+}  // namespace palpate
