@@ -97,4 +97,13 @@ struct ParetoArguments {
 };
 int pareto(Program& program, const ParetoArguments& arguments);
 
+struct CompareArguments {
+  std::string directory;
+  std::vector<std::string> by;
+  std::vector<std::string> metrics;
+  std::optional<std::string> where;
+  std::optional<std::string> baseline;
+};
+int compare(const CompareArguments& arguments);
+
 }  // namespace palpate::cli

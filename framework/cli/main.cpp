@@ -29,6 +29,7 @@ struct Arguments {
   SweepArguments sweep;
   ResumeArguments resume;
   ParetoArguments pareto;
+  CompareArguments compare;
   std::string directory;
   std::vector<std::string> configs;
   std::string plugin;
@@ -133,6 +134,19 @@ void add_rest(CLI::App& app, Arguments& a, Action& action) {
   sub->callback([&] { action = [&](Program& program) { return schema(program); }; });
 }
 
+void add_compare(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("compare", "Groups of a sweep's jobs, with intervals and paired tests");
+  sub->add_option("DIR", a.compare.directory, "the sweep's directory")->required();
+  const auto list = [&](const char* name, std::vector<std::string>& values, const char* help) {
+    sub->add_option(name, values, help)->required()->delimiter(',')->allow_extra_args(false);
+  };
+  list("--by", a.compare.by, "the swept keys that make the groups: acquisition or acquisition,kernel");
+  list("--metric", a.compare.metrics, "the columns of results.csv to compare: on_surface_taps,rmse_m");
+  sub->add_option("--where", a.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
+  sub->add_option("--baseline", a.compare.baseline, "compare all groups with this one only: uncertainty");
+  sub->callback([&] { action = [&](Program&) { return compare(a.compare); }; });
+}
+
 /// CLI11's own words, on one line.
 int usage_error(const CLI::Error& trouble) { throw Error("", trouble.what(), "see palpate --help"); }
 
@@ -157,6 +171,7 @@ int run_main(int argc, char** argv) {
   add_sweep(app, arguments, action);
   add_resume(app, arguments, action);
   add_rest(app, arguments, action);
+  add_compare(app, arguments, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/compare.hpp"
+
+#include "config/quantity.hpp"
+#include "sweep/bootstrap.hpp"
+#include "sweep/readable.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+namespace palpate {
+namespace {
+
+constexpr const char* kCommandLine = "command line";
+
+using Values = std::vector<std::string>;
+
+enum class Fate { counted, left_out, unfinished, failed, without_value };
+
+struct Outcome {
+  Fate fate = Fate::counted;
+  double value = 0.0;
+};
+
+/// The jobs of a group by the values that make pairs. Sorted: the order of the jobs decides nothing.
+using Outcomes = std::map<Values, Outcome>;
+
+struct Collected {
+  Values values;
+  Outcomes outcomes;
+};
+
+bool contains(const Values& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// All but those in `without`.
+Values others(const Values& names, const Values& without) {
+  Values out;
+  for (const std::string& name : names) {
+    if (!contains(without, name)) out.push_back(name);
+  }
+  return out;
+}
+
+void check_keys(const Sweep& sweep, const CompareQuery& query) {
+  for (auto key = query.by.begin(); key != query.by.end(); ++key) {
+    if (*key == "seed") {
+      throw Error(kCommandLine, "--by: the seed repeats a job, it makes no groups", "name another swept key");
+    }
+    if (!contains(sweep.keys, *key)) {
+      throw Error(kCommandLine, fmt::format("--by: this sweep does not vary '{}'", *key),
+                  suggestion(*key, others(sweep.keys, {"seed"})));
+    }
+    if (std::find(query.by.begin(), key, *key) != key) {
+      throw Error(kCommandLine, fmt::format("--by: '{}' is named twice", *key), "name it once");
+    }
+  }
+  if (contains(sweep.keys, query.metric)) {
+    throw Error(kCommandLine, fmt::format("--metric: '{}' is swept, so it was set and did not come out", query.metric),
+                query.metric == "seed" ? "name a field of the summary" : "give it to --by");
+  }
+}
+
+/// Which jobs the condition keeps.
+class Filter {
+ public:
+  Filter(const Sweep& sweep, const Values& columns, const Condition* where)
+      : sweep_(sweep), columns_(columns), where_(where) {
+    for (const std::string& key : sweep.keys) {
+      if (!contains(columns_, key)) columns_.push_back(key);
+    }
+  }
+
+  bool keeps(const Job& job, const Row* row) const {
+    if (where_ == nullptr) return true;
+    return where_->holds(
+        [&](const std::string& name) -> std::optional<std::string> {
+          if (!contains(columns_, name)) return {};
+          const auto key = std::find(sweep_.keys.begin(), sweep_.keys.end(), name);
+          if (key != sweep_.keys.end()) return job.values[static_cast<std::size_t>(key - sweep_.keys.begin())];
+          const Scalar* value = row != nullptr ? row->find(name) : nullptr;
+          return value != nullptr ? text_of(name, *value) : std::string();
+        },
+        columns_);
+  }
+
+ private:
+  /// As it would be written in a config, with its unit: conditions know no other lengths.
+  static std::string text_of(const std::string& name, const Scalar& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* number = std::get_if<double>(&value)) return write_quantity(*number, unit_of_column(name));
+    return csv_cell(value);
+  }
+
+  const Sweep& sweep_;
+  Values columns_;
+  const Condition* where_;
+};
+
+Outcome outcome_of(const Row* row, const std::string& metric) {
+  if (row == nullptr) return {Fate::unfinished};
+  if (!is_done(*row)) return {Fate::failed};
+  const std::optional<double> value = number_in(*row, metric, "--metric");
+  return value ? Outcome{Fate::counted, *value} : Outcome{Fate::without_value};
+}
+
+/// A list may hold the same job more than once: each is the counterpart of its like.
+void insert(Outcomes& outcomes, Values pairing, const Outcome& outcome) {
+  pairing.emplace_back();
+  for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat) pairing.back() = std::to_string(repeat);
+}
+
+/// Sorts the jobs into groups and counts those that are left out.
+std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
+                               const CompareQuery& query, Comparison& out) {
+  std::map<std::int64_t, const Row*> rows;
+  for (const Row& row : results) rows[std::get<std::int64_t>(*row.find("job"))] = &row;
+  const Filter filter(sweep, columns, query.where);
+  std::vector<Collected> groups;
+  std::map<Values, std::size_t> found;
+  for (const Job& job : sweep.jobs) {
+    Values group(query.by.size());
+    Values pairing;
+    for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
+      const auto by = std::find(query.by.begin(), query.by.end(), sweep.keys[i]);
+      if (by != query.by.end()) {
+        group[static_cast<std::size_t>(by - query.by.begin())] = job.values[i];
+      } else {
+        pairing.push_back(job.values[i]);
+      }
+    }
+    const auto [at, is_new] = found.emplace(group, groups.size());
+    if (is_new) groups.push_back({group, {}});
+    const auto row = rows.find(job.index);
+    Outcome outcome = outcome_of(row != rows.end() ? row->second : nullptr, query.metric);
+    if (!filter.keeps(job, row != rows.end() ? row->second : nullptr)) {
+      ++out.left_out;
+      out.left_out_failed += outcome.fate == Fate::failed ? 1 : 0;
+      out.left_out_unfinished += outcome.fate == Fate::unfinished ? 1 : 0;
+      outcome = {Fate::left_out};
+    }
+    insert(groups[at->second].outcomes, std::move(pairing), outcome);
+  }
+  return groups;
+}
+
+ComparedGroup summarise(const Collected& collected) {
+  ComparedGroup out;
+  out.name = one_line(fmt::format("{}", fmt::join(collected.values, ", ")));
+  std::vector<double> values;
+  for (const auto& [pairing, outcome] : collected.outcomes) {
+    ++out.counts.jobs;
+    switch (outcome.fate) {
+      case Fate::counted:
+        values.push_back(outcome.value);
+        break;
+      case Fate::left_out:
+        ++out.counts.left_out;
+        break;
+      case Fate::unfinished:
+        ++out.counts.unfinished;
+        break;
+      case Fate::failed:
+        ++out.counts.failed;
+        break;
+      case Fate::without_value:
+        ++out.counts.without_value;
+        break;
+    }
+  }
+  out.mean = bootstrap_mean(values);
+  if (values.empty()) return out;
+  std::sort(values.begin(), values.end());
+  out.median = quantile(values, 0.5);
+  out.low_10 = quantile(values, 0.1);
+  out.high_90 = quantile(values, 0.9);
+  return out;
+}
+
+/// Counts a pair that is not complete; null is a job that the group does not have.
+void count_lost(LostPairs& lost, const Outcome* a, const Outcome* b) {
+  const auto either = [&](Fate fate) { return (a != nullptr && a->fate == fate) || (b != nullptr && b->fate == fate); };
+  if (either(Fate::left_out)) {
+    if (a != nullptr && b != nullptr && a->fate != b->fate) ++lost.left_out;
+  } else if (a == nullptr || b == nullptr) {
+    ++lost.without_partner;
+  } else if (either(Fate::unfinished)) {
+    ++lost.unfinished;
+  } else if (either(Fate::failed)) {
+    ++lost.failed;
+  } else {
+    ++lost.without_value;
+  }
+}
+
+ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second) {
+  ComparedPair out;
+  out.first = first;
+  out.second = second;
+  const Outcomes& a = groups[first].outcomes;
+  const Outcomes& b = groups[second].outcomes;
+  std::vector<double> values_a;
+  std::vector<double> values_b;
+  std::vector<double> differences;
+  for (const auto& [pairing, outcome] : a) {
+    const auto partner = b.find(pairing);
+    const Outcome* other = partner != b.end() ? &partner->second : nullptr;
+    if (other == nullptr || outcome.fate != Fate::counted || other->fate != Fate::counted) {
+      count_lost(out.lost, &outcome, other);
+      continue;
+    }
+    values_a.push_back(outcome.value);
+    values_b.push_back(other->value);
+    differences.push_back(outcome.value - other->value);
+  }
+  for (const auto& [pairing, outcome] : b) {
+    if (a.find(pairing) == a.end()) count_lost(out.lost, nullptr, &outcome);
+  }
+  out.difference = bootstrap_mean(differences);
+  out.test = signed_rank_test(values_a, values_b);
+  return out;
+}
+
+void adjust(std::vector<ComparedPair>& pairs) {
+  std::vector<double> p;
+  for (const ComparedPair& pair : pairs) {
+    if (pair.test.p) p.push_back(*pair.test.p);
+  }
+  if (p.size() < 2) return;
+  const std::vector<double> adjusted = holm_adjusted(p);
+  auto next = adjusted.begin();
+  for (ComparedPair& pair : pairs) {
+    if (pair.test.p) pair.p_holm = *next++;
+  }
+}
+
+/// "weighted,rbf" names the group "weighted, rbf", too.
+std::string without_blanks(std::string name) {
+  name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+  return name;
+}
+
+std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::string& name) {
+  Values names;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (without_blanks(groups[i].name) == without_blanks(name)) return i;
+    names.push_back(groups[i].name);
+  }
+  throw Error(kCommandLine, fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
+}
+
+/// Throws Error if nothing is left to compare, with the reason.
+void check_values(const Comparison& made, const Sweep& sweep) {
+  JobCounts all;
+  std::size_t values = 0;
+  for (const ComparedGroup& group : made.groups) {
+    all.without_value += group.counts.without_value;
+    values += group.mean.count;
+  }
+  if (values > 0) return;
+  if (made.left_out == made.jobs) {
+    throw Error(kCommandLine, fmt::format("--where: leaves none of the {} jobs", made.jobs),
+                "results.csv has the values it is compared with");
+  }
+  if (all.without_value == 0) {
+    throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");
+  }
+  const SummaryField* field = find_summary_field(made.metric.name);
+  throw Error(kCommandLine, fmt::format("--metric: no job has a value of '{}'", made.metric.name),
+              field != nullptr ? field->when_null : "");
+}
+
+}  // namespace
+
+Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query) {
+  if (results.empty()) {
+    throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
+  }
+  check_keys(sweep, query);
+  const Values columns = columns_of(results);
+  Comparison out;
+  out.metric = find_column(query.metric, columns, "--metric");
+  out.by = query.by;
+  out.jobs = static_cast<int>(sweep.jobs.size());
+  out.pairing = others(sweep.keys, query.by);
+  const std::vector<Collected> groups = collect(sweep, results, columns, query, out);
+  for (const Collected& group : groups) out.groups.push_back(summarise(group));
+  check_values(out, sweep);
+  const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : 0;
+  out.one_baseline = query.baseline || groups.size() > kMostGroupsInPairs;
+  for (std::size_t second = 0; second < groups.size(); ++second) {
+    if (out.one_baseline && second != baseline) continue;
+    for (std::size_t first = out.one_baseline ? 0 : second + 1; first < groups.size(); ++first) {
+      if (first != second) out.pairs.push_back(compare_pair(groups, first, second));
+    }
+  }
+  adjust(out.pairs);
+  return out;
+}
+
+}  // namespace palpate

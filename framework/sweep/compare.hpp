@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Groups of a sweep's jobs side by side: each with its mean and spread, every two of them compared on the jobs that
+// are equal in all but what makes the groups. sweep/compare_report.hpp shows it.
+#pragma once
+
+#include "sweep/column.hpp"
+#include "sweep/condition.hpp"
+#include "sweep/signed_rank.hpp"
+#include "sweep/statistics.hpp"
+#include "sweep/sweep.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What is asked.
+struct CompareQuery {
+  std::vector<std::string> by;          ///< swept keys; jobs that have the same values of them are a group
+  std::string metric;                   ///< a column of results.csv
+  const Condition* where = nullptr;     ///< on the columns of results.csv: other jobs are left out; null for none
+  std::optional<std::string> baseline;  ///< the group that all others are compared with: "weighted, rbf"
+};
+
+/// The jobs of a group. What is left out counts as that alone, however it ended.
+struct JobCounts {
+  int jobs = 0;
+  int left_out = 0;  ///< by the condition, which fails where it asks for what a job has not
+  int failed = 0;
+  int unfinished = 0;
+  int without_value = 0;  ///< done, but the metric is null
+};
+
+struct ComparedGroup {
+  std::string name;  ///< its values, in the order of the keys: "weighted, rbf"
+  JobCounts counts;
+  MeanEstimate mean;  ///< over the jobs that have a value; interval by the bootstrap
+  double median = 0.0;
+  double low_10 = 0.0;  ///< the values that 10 % and 90 % of the jobs stay below
+  double high_90 = 0.0;
+};
+
+/// Why a job of one group has no counterpart with a value in the other. Where several reasons apply the first counts.
+struct LostPairs {
+  int left_out = 0;         ///< one of the two, by the condition; pairs that it leaves out whole are not counted
+  int without_partner = 0;  ///< the other group has no such job
+  int unfinished = 0;
+  int failed = 0;
+  int without_value = 0;
+
+  int all() const { return left_out + without_partner + unfinished + failed + without_value; }
+};
+
+/// What `first` has more than `second`, over the pairs of jobs in which both have a value.
+struct ComparedPair {
+  std::size_t first = 0;  ///< indices in Comparison::groups
+  std::size_t second = 0;
+  LostPairs lost;
+  MeanEstimate difference;
+  SignedRank test;
+  std::optional<double> p_holm;  ///< adjusted for all pairs of this comparison; none if there is but one
+};
+
+struct Comparison {
+  Column metric;
+  std::vector<std::string> by;
+  std::vector<std::string> pairing;   ///< the other swept keys: they are equal within a pair
+  std::vector<ComparedGroup> groups;  ///< in the order of the sweep
+  std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
+  bool one_baseline = false;
+  int jobs = 0;                 ///< of the sweep
+  int left_out = 0;             ///< of them, by the condition
+  int left_out_failed = 0;      ///< of those
+  int left_out_unfinished = 0;  ///< of those
+};
+
+/// Of more groups only those pairs are compared that have the first one in them, unless a baseline is named.
+inline constexpr std::size_t kMostGroupsInPairs = 8;
+
+/// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error, of the command line, for keys
+/// that are not swept, a metric that is swept, does not exist, holds no numbers or has no value in any job, a baseline
+/// that is no group, and a condition that asks for unknown columns or leaves nothing.
+Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query);
+
+}  // namespace palpate

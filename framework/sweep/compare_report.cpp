@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/compare_report.hpp"
+
+#include "sweep/bootstrap.hpp"
+#include "sweep/readable.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using Better = SummaryField::Better;
+using Lines = std::vector<std::vector<std::string>>;
+
+Scale scale_of(const Comparison& comparison) {
+  std::vector<double> means;
+  for (const ComparedGroup& group : comparison.groups) {
+    if (group.mean.count > 0) means.push_back(group.mean.mean);
+  }
+  return readable_scale(comparison.metric.unit, means);
+}
+
+/// In the unit of the groups, but fine enough for two digits of the narrowest interval.
+Scale difference_scale(const Comparison& comparison, const Scale& groups) {
+  std::vector<double> widths;
+  for (const ComparedPair& pair : comparison.pairs) {
+    const auto& ends = pair.difference.interval;
+    if (ends) widths.push_back((ends->high - ends->low) / 2.0 / groups.factor);
+  }
+  Scale scale = groups;
+  scale.decimals = std::max(scale.decimals, readable_scale(Unit::none, widths, 2).decimals);
+  return scale;
+}
+
+/// Of quantiles, which are mostly values themselves: whole numbers stay whole.
+std::string short_number(const Scale& scale, double value) {
+  const double shown = value / scale.factor;
+  return shown == std::round(shown) && std::abs(shown) < 1e6 ? fmt::format("{:.0f}", shown) : scale.number(value);
+}
+
+/// Long names would make lines too long to read where two stand side by side: numbers stand for them then.
+bool numbered(const Comparison& comparison) {
+  constexpr std::size_t kLongest = 16;
+  return std::any_of(comparison.groups.begin(), comparison.groups.end(),
+                     [](const ComparedGroup& group) { return group.name.size() > kLongest; });
+}
+
+std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
+  if (numbered(comparison)) return fmt::format("{} - {}", pair.first + 1, pair.second + 1);
+  return fmt::format("{} - {}", comparison.groups[pair.first].name, comparison.groups[pair.second].name);
+}
+
+std::string group_table(const Comparison& comparison, const Scale& scale) {
+  const bool numbers = numbered(comparison);
+  Lines lines{{numbers ? "#" : "", one_line(fmt::format("{}", fmt::join(comparison.by, ", "))), "jobs",
+               comparison.left_out > 0 ? "left out" : "", "failed", "unfinished", "no value", "n",
+               "mean [95 % interval]", "median", "10 % to 90 %"}};
+  for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
+    const ComparedGroup& one = comparison.groups[i];
+    const bool any = one.mean.count > 0;
+    lines.push_back(
+        {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.jobs),
+         comparison.left_out > 0 ? std::to_string(one.counts.left_out) : "", std::to_string(one.counts.failed),
+         std::to_string(one.counts.unfinished), std::to_string(one.counts.without_value),
+         std::to_string(one.mean.count),
+         any ? fmt::format("{} {}", scale.number(one.mean.mean), scale.interval(one.mean.interval)) : "-",
+         any ? short_number(scale, one.median) : "-",
+         any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
+  }
+  return aligned(lines, "rlrrrrrrrrr");
+}
+
+std::string p_text(const std::optional<double>& p) {
+  if (!p) return "-";
+  if (*p < 1e-15) return "<1e-15";
+  return *p < 1e-3 ? fmt::format("{:.0e}", *p) : fmt::format("{:.3f}", *p);
+}
+
+/// What a difference is called, of a metric of which it is known which way is better or of another.
+struct Words {
+  const char* up;
+  const char* down;
+};
+
+Words words_of(const Column& metric) {
+  return metric.better == Better::neither ? Words{"higher", "lower"} : Words{"better", "worse"};
+}
+
+/// The pairs in which the first has the better, or else the higher, value, and those in which it has the other.
+std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const SignedRank& test) {
+  if (comparison.metric.better == Better::less) return {test.lower, test.higher};
+  return {test.higher, test.lower};
+}
+
+std::string pair_table(const Comparison& comparison, const Scale& scale) {
+  const bool many = comparison.pairs.size() > 1;
+  const Words words = words_of(comparison.metric);
+  Lines lines{{"difference", "pairs", "lost", "mean [95 % interval]", fmt::format("{}/equal/{}", words.up, words.down),
+               "p", many ? "p (Holm)" : "", "effect"}};
+  for (const ComparedPair& pair : comparison.pairs) {
+    const auto [up, down] = sides(comparison, pair.test);
+    const auto& ends = pair.difference.interval;
+    const std::string interval =
+        ends ? fmt::format("[{}, {}]", scale.difference(ends->low), scale.difference(ends->high)) : "[-]";
+    lines.push_back(
+        {pair_name(comparison, pair), std::to_string(pair.difference.count), std::to_string(pair.lost.all()),
+         pair.difference.count > 0 ? fmt::format("{} {}", scale.difference(pair.difference.mean), interval) : "-",
+         fmt::format("{}/{}/{}", up, pair.test.equal, down), p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
+         pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
+  }
+  return aligned(lines, "lrrrrrrr");
+}
+
+std::string keys_text(const std::vector<std::string>& keys) {
+  return one_line(fmt::format("{}", fmt::join(keys, ", ")));
+}
+
+/// Where the mean and the majority of the pairs point in different directions, neither is the answer.
+std::string contrary_note(const Comparison& comparison, const ComparedPair& pair) {
+  const auto& ends = pair.difference.interval;
+  if (!ends || (ends->low <= 0.0 && ends->high >= 0.0)) return {};
+  const double gain = comparison.metric.better == Better::less ? -pair.difference.mean : pair.difference.mean;
+  const auto [up, down] = sides(comparison, pair.test);
+  if (up == down || (gain > 0.0) == (up > down)) return {};
+  const Words words = words_of(comparison.metric);
+  return fmt::format("{}: {} on average, and yet {} in most pairs: {} of {}\n", pair_name(comparison, pair),
+                     gain > 0.0 ? words.up : words.down, gain > 0.0 ? words.down : words.up, std::max(up, down),
+                     pair.difference.count);
+}
+
+std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
+  std::vector<std::string> reasons;
+  const auto add = [&](int count, const char* why) {
+    if (count > 0) reasons.push_back(fmt::format("{} {}", count, why));
+  };
+  add(pair.lost.left_out, "with one job that --where leaves out");
+  add(pair.lost.without_partner, "without a counterpart");
+  add(pair.lost.unfinished, "unfinished");
+  add(pair.lost.failed, "failed");
+  add(pair.lost.without_value, "without a value");
+  if (reasons.empty()) return {};
+  return fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), fmt::join(reasons, ", "));
+}
+
+std::string remarks(const Comparison& comparison) {
+  std::string out;
+  const std::size_t groups = comparison.groups.size();
+  if (comparison.left_out > 0) {
+    out += fmt::format("--where leaves out {} of {} jobs", comparison.left_out, comparison.jobs);
+    std::vector<std::string> ends;
+    if (comparison.left_out_failed > 0) ends.push_back(fmt::format("{} failed", comparison.left_out_failed));
+    if (comparison.left_out_unfinished > 0)
+      ends.push_back(fmt::format("{} unfinished", comparison.left_out_unfinished));
+    if (!ends.empty()) out += fmt::format(", of which {}", fmt::join(ends, ", "));
+    out += "\n";
+  }
+  if (groups < 2) out += "one group: there is nothing to compare it with\n";
+  if (comparison.pairs.size() < groups * (groups - 1) / 2) {
+    out += fmt::format("{} groups: each is compared with {} alone\n", groups,
+                       comparison.groups[comparison.pairs.front().second].name);
+  }
+  for (const ComparedPair& pair : comparison.pairs)
+    out += lost_note(comparison, pair) + contrary_note(comparison, pair);
+  return out;
+}
+
+}  // namespace
+
+std::string compare_tables(const Comparison& comparison) {
+  const Scale scale = scale_of(comparison);
+  const char* const direction = comparison.metric.better == Better::more   ? "; more is better"
+                                : comparison.metric.better == Better::less ? "; less is better"
+                                                                           : "";
+  std::string out =
+      fmt::format("{} by {}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by), direction);
+  out += group_table(comparison, scale);
+  if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale));
+  const std::string notes = remarks(comparison);
+  return out + (notes.empty() ? "" : "\n" + notes);
+}
+
+std::string compare_legend(const std::vector<Comparison>& comparisons) {
+  bool holm = false;
+  bool paired = false;
+  for (const Comparison& one : comparisons) {
+    holm = holm || one.pairs.size() > 1;
+    paired = paired || !one.pairs.empty();
+  }
+  std::string out = fmt::format(
+      "interval: of sweeps like this one with other seeds, 95 of 100 have the true mean in theirs (bootstrap, BCa); "
+      "[-]: "
+      "fewer\nthan {} values, or all equal.",
+      kLeastForInterval);
+  if (!paired) return out + "\n";
+  const std::vector<std::string>& pairing = comparisons.front().pairing;
+  out += pairing.empty() ? " A pair is one job of each group."
+                         : fmt::format(" A pair: two jobs that are equal in {}.", keys_text(pairing));
+  out += fmt::format(
+      "\np: how often, were it chance which of a pair is the larger, the signed ranks of the differences would lie as "
+      "far\n"
+      "to one side (Wilcoxon, two-sided, equal pairs dropped; counted out up to {} differences, else normal).{}\n"
+      "effect: by ranks (matched-pairs rank-biserial), +1: the first is always higher, -1: always lower, 0: neither.\n",
+      kExactSignedRanks, holm ? " Holm:\nadjusted for all p of the table." : "");
+  return out;
+}
+
+std::vector<Row> compare_rows(const Comparison& comparison, const std::string& where) {
+  std::vector<Row> rows;
+  const auto begin = [&](const char* kind) -> Row& {
+    Row row;
+    row.add("kind", kind);
+    row.add("by", fmt::format("{}", fmt::join(comparison.by, ",")));
+    row.add("metric", comparison.metric.name);
+    row.add("where", where.empty() ? std::nullopt : std::optional(where));
+    rows.push_back(std::move(row));
+    return rows.back();
+  };
+  const auto add_mean = [](Row& row, const MeanEstimate& mean) {
+    row.add("n", static_cast<std::int64_t>(mean.count));
+    row.add("mean", mean.count > 0 ? std::optional(mean.mean) : std::nullopt);
+    row.add("low_95", mean.interval ? std::optional(mean.interval->low) : std::nullopt);
+    row.add("high_95", mean.interval ? std::optional(mean.interval->high) : std::nullopt);
+  };
+  for (const ComparedGroup& one : comparison.groups) {
+    Row& row = begin("group");
+    const auto known = [&](double value) { return one.mean.count > 0 ? std::optional(value) : std::nullopt; };
+    row.add("group", one.name);
+    row.add("jobs", one.counts.jobs);
+    row.add("left_out", one.counts.left_out);
+    row.add("failed", one.counts.failed);
+    row.add("unfinished", one.counts.unfinished);
+    row.add("without_value", one.counts.without_value);
+    add_mean(row, one.mean);
+    row.add("median", known(one.median));
+    row.add("p10", known(one.low_10));
+    row.add("p90", known(one.high_90));
+  }
+  for (const ComparedPair& one : comparison.pairs) {
+    Row& row = begin("pair");
+    row.add("group", comparison.groups[one.first].name);
+    row.add("minus", comparison.groups[one.second].name);
+    add_mean(row, one.difference);
+    row.add("lost_left_out", one.lost.left_out);
+    row.add("lost_without_partner", one.lost.without_partner);
+    row.add("lost_unfinished", one.lost.unfinished);
+    row.add("lost_failed", one.lost.failed);
+    row.add("lost_without_value", one.lost.without_value);
+    row.add("higher", static_cast<std::int64_t>(one.test.higher));
+    row.add("equal", static_cast<std::int64_t>(one.test.equal));
+    row.add("lower", static_cast<std::int64_t>(one.test.lower));
+    row.add("rank_sum_higher", one.test.rank_sum_higher);
+    row.add("rank_sum_lower", one.test.rank_sum_lower);
+    row.add("p", one.test.p);
+    row.add("p_exact", one.test.p ? std::optional(one.test.exact) : std::nullopt);
+    row.add("p_holm", one.p_holm);
+    row.add("rank_biserial", one.test.effect);
+  }
+  return rows;
+}
+
+}  // namespace palpate

@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: MIT
+// Which jobs make groups and pairs, what is counted, and how a comparison reads.
+#include "sweep/compare_report.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A job of a made-up sweep over strategy, kernel and seed: its value, or how it failed.
+struct MadeJob {
+  std::string strategy;
+  std::string kernel;
+  int seed;
+  std::optional<double> rmse;
+  std::string status = "done";  ///< "absent" has no row
+};
+
+struct MadeSweep {
+  Sweep sweep{"runs/x/0123456789ab", {"acquisition", "kernel", "seed"}, {}};
+  std::vector<Row> results;
+
+  explicit MadeSweep(const std::vector<MadeJob>& jobs) {
+    for (const MadeJob& one : jobs) {
+      const int index = static_cast<int>(sweep.jobs.size());
+      sweep.jobs.push_back({index, "id", {one.strategy, one.kernel, std::to_string(one.seed)}});
+      if (one.status == "absent") continue;
+      Row row;
+      row.add("job", index);
+      row.add("acquisition", one.strategy);
+      row.add("kernel", one.kernel);
+      row.add("seed", std::to_string(one.seed));
+      row.add("status", one.status);
+      row.add("rmse_m", one.rmse);
+      row.add("footprint_iou", one.rmse ? std::optional(1.0 - *one.rmse) : std::nullopt);
+      row.add("coverage_95", 0.9);
+      row.add("nlpd", std::optional<double>());
+      row.add("found", one.rmse && *one.rmse < 0.5);
+      results.push_back(std::move(row));
+    }
+  }
+
+  Comparison by(const std::vector<std::string>& keys, const std::string& metric = "rmse_m",
+                const std::optional<std::string>& baseline = {}, const std::string& where = "") const {
+    if (where.empty()) return compare(sweep, results, {keys, metric, nullptr, baseline});
+    const Condition condition(Tree::scalar(where, true));
+    return compare(sweep, results, {keys, metric, &condition, baseline});
+  }
+
+  std::string refusal(const std::vector<std::string>& keys, const std::string& metric = "rmse_m",
+                      const std::optional<std::string>& baseline = {}, const std::string& where = "") const {
+    try {
+      by(keys, metric, baseline, where);
+    } catch (const Error& trouble) {
+      return trouble.what();
+    }
+    return "accepted";
+  }
+};
+
+/// Two strategies with two kernels and `seeds` seeds; b is higher by 0.1 and seed / 1000 with rbf, by 0.2 with matern.
+std::vector<MadeJob> two_by_two(int seeds) {
+  std::vector<MadeJob> jobs;
+  for (const char* kernel : {"rbf", "matern"}) {
+    for (int seed = 0; seed < seeds; ++seed) {
+      const double base = 0.1 + 0.01 * (seed * 7 % 5);
+      const double gap = kernel == std::string("rbf") ? 0.1 + seed / 1000.0 : 0.2;
+      jobs.push_back({"a", kernel, seed, base});
+      jobs.push_back({"b", kernel, seed, base + gap});
+    }
+  }
+  return jobs;
+}
+
+TEST(Compare, PairsJobsThatAreEqualInAllButTheKeyThatMakesTheGroups) {
+  const Comparison made = MadeSweep(two_by_two(4)).by({"acquisition"});
+  ASSERT_EQ(made.groups.size(), 2U);
+  EXPECT_EQ(made.pairing, (std::vector<std::string>{"kernel", "seed"}));
+  ASSERT_EQ(made.pairs.size(), 1U);
+  EXPECT_EQ(made.groups[made.pairs[0].first].name, "b");
+  EXPECT_EQ(made.groups[made.pairs[0].second].name, "a");
+  EXPECT_EQ(made.pairs[0].difference.count, 8U);
+  // 0.1 + (0 + 1 + 2 + 3) / 4000 of rbf, 0.2 of matern.
+  EXPECT_NEAR(made.pairs[0].difference.mean, (0.1015 + 0.2) / 2.0, 1e-12);
+  EXPECT_EQ(made.pairs[0].test.higher, 8U);
+  EXPECT_NEAR(*made.pairs[0].test.p, 2.0 / 256.0, 1e-15);
+  EXPECT_FALSE(made.pairs[0].p_holm) << "one pair needs no adjustment";
+}
+
+TEST(Compare, MakesGroupsOfSeveralKeysAndAdjustsForAllPairs) {
+  const Comparison made = MadeSweep(two_by_two(5)).by({"kernel", "acquisition"});
+  ASSERT_EQ(made.groups.size(), 4U);
+  EXPECT_EQ(made.groups[0].name, "rbf, a");
+  EXPECT_EQ(made.groups[3].name, "matern, b");
+  EXPECT_EQ(made.pairing, std::vector<std::string>{"seed"});
+  ASSERT_EQ(made.pairs.size(), 6U);
+  std::vector<double> p;
+  for (const ComparedPair& pair : made.pairs) p.push_back(*pair.test.p);
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(*made.pairs[i].p_holm, adjusted[i]);
+}
+
+TEST(Compare, TheMeanDifferenceOfCompletePairsIsTheDifferenceOfTheMeans) {
+  const Comparison made = MadeSweep(two_by_two(30)).by({"acquisition"});
+  EXPECT_NEAR(made.pairs[0].difference.mean, made.groups[1].mean.mean - made.groups[0].mean.mean, 1e-12);
+  EXPECT_LT(made.pairs[0].difference.interval->low, made.pairs[0].difference.mean);
+  EXPECT_GT(made.pairs[0].difference.interval->high, made.pairs[0].difference.mean);
+  EXPECT_NEAR(made.groups[0].median, 0.12, 1e-12);
+}
+
+TEST(Compare, CountsFailedUnfinishedAndValuelessJobsAndLeavesThemOutOfTheMean) {
+  const Comparison made = MadeSweep({{"a", "k", 1, 0.1},
+                                     {"a", "k", 2, 9.0, "failed"},
+                                     {"a", "k", 3, 9.0, "absent"},
+                                     {"a", "k", 4, {}},
+                                     {"a", "k", 5, 0.3},
+                                     {"b", "k", 1, 0.2},
+                                     {"b", "k", 2, 0.2},
+                                     {"b", "k", 3, 0.2},
+                                     {"b", "k", 4, 0.2},
+                                     {"b", "k", 6, 0.2}})
+                              .by({"acquisition"});
+  EXPECT_EQ(made.groups[0].counts.jobs, 5);
+  EXPECT_EQ(made.groups[0].counts.failed, 1);
+  EXPECT_EQ(made.groups[0].counts.unfinished, 1);
+  EXPECT_EQ(made.groups[0].counts.without_value, 1);
+  EXPECT_EQ(made.groups[0].mean.count, 2U);
+  EXPECT_DOUBLE_EQ(made.groups[0].mean.mean, 0.2);
+  EXPECT_EQ(made.groups[1].mean.count, 5U);
+  const ComparedPair& pair = made.pairs[0];
+  EXPECT_EQ(pair.difference.count, 1U);
+  EXPECT_EQ(pair.lost.failed, 1);
+  EXPECT_EQ(pair.lost.unfinished, 1);
+  EXPECT_EQ(pair.lost.without_value, 1);
+  EXPECT_EQ(pair.lost.without_partner, 2) << "seeds 5 and 6";
+  EXPECT_THAT(compare_tables(made),
+              HasSubstr("b - a: pairs lost: 2 without a counterpart, 1 unfinished, 1 failed, 1 without a value\n"));
+}
+
+TEST(Compare, NeitherOrderOfJobsNorOfGroupsChangesWhatIsFound) {
+  std::vector<MadeJob> jobs = two_by_two(20);
+  const Comparison before = MadeSweep(jobs).by({"acquisition"});
+  // Now b comes first.
+  std::reverse(jobs.begin(), jobs.end());
+  const Comparison after = MadeSweep(jobs).by({"acquisition"});
+  ASSERT_EQ(after.groups[0].name, "b");
+  EXPECT_EQ(after.groups[0].mean.mean, before.groups[1].mean.mean);
+  EXPECT_EQ(after.groups[0].mean.interval->low, before.groups[1].mean.interval->low);
+  const ComparedPair& one = before.pairs[0];
+  const ComparedPair& other = after.pairs[0];
+  EXPECT_EQ(other.difference.mean, -one.difference.mean);
+  EXPECT_EQ(other.difference.interval->low, -one.difference.interval->high);
+  EXPECT_EQ(other.difference.interval->high, -one.difference.interval->low);
+  EXPECT_EQ(*other.test.p, *one.test.p);
+  EXPECT_EQ(*other.test.effect, -*one.test.effect);
+}
+
+TEST(Compare, WithABaselineComparesEveryGroupWithItAlone) {
+  const Comparison made = MadeSweep(two_by_two(5)).by({"kernel", "acquisition"}, "rmse_m", "matern,a");
+  EXPECT_TRUE(made.one_baseline);
+  ASSERT_EQ(made.pairs.size(), 3U);
+  for (const ComparedPair& pair : made.pairs) EXPECT_EQ(made.groups[pair.second].name, "matern, a");
+  EXPECT_THAT(compare_tables(made), HasSubstr("4 groups: each is compared with matern, a alone\n"));
+  EXPECT_EQ(MadeSweep(two_by_two(5)).refusal({"acquisition"}, "rmse_m", "A"),
+            "command line: --baseline: there is no group 'A', did you mean 'a'?");
+}
+
+TEST(Compare, ManyGroupsAreComparedWithTheFirstAloneAndItSaysSo) {
+  std::vector<MadeJob> jobs;
+  for (int group = 0; group < 9; ++group) {
+    for (int seed = 0; seed < 5; ++seed) jobs.push_back({"g" + std::to_string(group), "k", seed, 0.1 * group + seed});
+  }
+  const Comparison nine = MadeSweep(jobs).by({"acquisition"});
+  EXPECT_EQ(nine.pairs.size(), 8U);
+  EXPECT_THAT(compare_tables(nine), HasSubstr("9 groups: each is compared with g0 alone\n"));
+  jobs.resize(40);
+  const Comparison eight = MadeSweep(jobs).by({"acquisition"});
+  EXPECT_EQ(eight.pairs.size(), 28U);
+  EXPECT_THAT(compare_tables(eight), Not(HasSubstr("alone")));
+}
+
+TEST(Compare, OneGroupIsShownAloneWithANote) {
+  const Comparison made = MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}}).by({"acquisition"});
+  EXPECT_TRUE(made.pairs.empty());
+  EXPECT_THAT(compare_tables(made), HasSubstr("one group: there is nothing to compare it with\n"));
+  EXPECT_THAT(compare_legend({made}), Not(HasSubstr("Wilcoxon")));
+}
+
+TEST(Compare, GroupsWithoutACommonJobHaveNoPairAndNoP) {
+  const Comparison made = MadeSweep({{"a", "k", 1, 0.1}, {"b", "m", 1, 0.2}}).by({"acquisition"});
+  EXPECT_EQ(made.pairs[0].difference.count, 0U);
+  EXPECT_FALSE(made.pairs[0].test.p);
+  EXPECT_EQ(made.pairs[0].lost.without_partner, 2);
+  EXPECT_THAT(compare_tables(made), HasSubstr("b - a           0     2                     -               0/0/0  -"));
+}
+
+TEST(Compare, AJobThatASweepHoldsTwiceIsPairedWithItsLike) {
+  const Comparison made =
+      MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 1, 0.1}, {"b", "k", 1, 0.3}, {"b", "k", 1, 0.3}}).by({"acquisition"});
+  EXPECT_EQ(made.groups[0].counts.jobs, 2);
+  EXPECT_EQ(made.pairs[0].difference.count, 2U);
+}
+
+TEST(CompareWhere, LeavesJobsOutAndCountsThemAndThePairsThatItBreaks) {
+  std::vector<MadeJob> jobs{{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}, {"a", "k", 3, 0.4}, {"a", "k", 4, {}, "failed"},
+                            {"b", "k", 1, 0.1}, {"b", "k", 2, 0.4}, {"b", "k", 3, 0.4}, {"b", "k", 4, {}, "absent"}};
+  const Comparison made = MadeSweep(jobs).by({"acquisition"}, "rmse_m", {}, "rmse_m <= 30 cm");
+  EXPECT_EQ(made.left_out, 5);
+  EXPECT_EQ(made.groups[0].counts.left_out, 2);
+  EXPECT_EQ(made.groups[0].counts.failed, 0);
+  EXPECT_EQ(made.groups[1].counts.left_out, 3);
+  EXPECT_EQ(made.groups[1].mean.count, 1U);
+  EXPECT_EQ(made.pairs[0].difference.count, 1U);
+  EXPECT_EQ(made.pairs[0].lost.left_out, 1) << "seed 2; seeds 3 and 4 are left out whole";
+  EXPECT_EQ(made.pairs[0].lost.all(), 1);
+  const std::string tables = compare_tables(made);
+  EXPECT_THAT(tables, HasSubstr("--where leaves out 5 of 8 jobs, of which 1 failed, 1 unfinished\n"));
+  EXPECT_THAT(tables, HasSubstr("b - a: pairs lost: 1 with one job that --where leaves out\n"));
+}
+
+TEST(CompareWhere, OnASweptKeyKnowsJobsThatHaveNotEnded) {
+  const Comparison made =
+      MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 9.0, "absent"}, {"a", "m", 1, 0.3}, {"b", "k", 1, 0.2}})
+          .by({"acquisition"}, "rmse_m", {}, "kernel == k");
+  EXPECT_EQ(made.left_out, 1);
+  EXPECT_EQ(made.groups[0].counts.unfinished, 1);
+}
+
+TEST(CompareWhere, RefusesUnknownNamesOtherUnitsAndWhatLeavesNothing) {
+  const MadeSweep made(two_by_two(2));
+  EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse <= 1 m"), HasSubstr("did you mean 'rmse_m'?"));
+  EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m <= 1 s"), HasSubstr("compares a length"));
+  EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m > 1 m"),
+            "command line: --where: leaves none of the 8 jobs, results.csv has the values it is compared with");
+  EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "found == true"), "accepted");
+}
+
+TEST(Compare, RefusesWhatCannotBeCompared) {
+  const MadeSweep made(two_by_two(2));
+  EXPECT_EQ(made.refusal({"acquisitio"}),
+            "command line: --by: this sweep does not vary 'acquisitio', did you mean 'acquisition'?");
+  EXPECT_EQ(made.refusal({"taps"}), "command line: --by: this sweep does not vary 'taps', known: acquisition, kernel");
+  EXPECT_EQ(made.refusal({"seed"}),
+            "command line: --by: the seed repeats a job, it makes no groups, name another swept key");
+  EXPECT_EQ(made.refusal({"kernel", "kernel"}), "command line: --by: 'kernel' is named twice, name it once");
+  EXPECT_EQ(made.refusal({"acquisition"}, "kernel"),
+            "command line: --metric: 'kernel' is swept, so it was set and did not come out, give it to --by");
+  EXPECT_EQ(made.refusal({"acquisition"}, "rmse"),
+            "command line: --metric: results.csv has no column 'rmse', did you mean 'rmse_m'?");
+  EXPECT_EQ(made.refusal({"acquisition"}, "status"),
+            "command line: --metric: the column 'status' holds done, not numbers, name one that can be averaged");
+  EXPECT_EQ(
+      made.refusal({"acquisition"}, "nlpd"),
+      "command line: --metric: no job has a value of 'nlpd', no truth is known, or no cell of the object was left "
+      "untapped");
+  EXPECT_EQ(MadeSweep({{"a", "k", 1, 0.1, "absent"}}).refusal({"acquisition"}),
+            "runs/x/0123456789ab: no job of this sweep has ended, 'palpate resume' carries on");
+  EXPECT_EQ(MadeSweep({{"a", "k", 1, 0.1, "failed"}}).refusal({"acquisition"}),
+            "runs/x/0123456789ab: none of the jobs to compare ended well, 'palpate status' says why");
+}
+
+TEST(CompareTables, SayBetterOnlyWhereItIsKnown) {
+  const MadeSweep made(two_by_two(3));
+  const std::string less = compare_tables(made.by({"acquisition"}));
+  EXPECT_THAT(less, HasSubstr("rmse_m [mm] by acquisition; less is better\n"));
+  EXPECT_THAT(less, HasSubstr("better/equal/worse"));
+  EXPECT_THAT(less, HasSubstr(" 0/0/6 "));
+  const std::string more = compare_tables(made.by({"acquisition"}, "footprint_iou"));
+  EXPECT_THAT(more, HasSubstr("footprint_iou by acquisition; more is better\n"));
+  EXPECT_THAT(more, HasSubstr(" 0/0/6 "));
+  const std::string neither = compare_tables(made.by({"acquisition"}, "coverage_95"));
+  EXPECT_THAT(neither, HasSubstr("coverage_95 by acquisition\n"));
+  EXPECT_THAT(neither, HasSubstr("higher/equal/lower"));
+  EXPECT_THAT(neither, Not(HasSubstr("better")));
+  EXPECT_THAT(neither, HasSubstr(" 0/6/0 "));
+}
+
+TEST(CompareTables, AreTheseLetterByLetter) {
+  const std::string tables = compare_tables(MadeSweep(two_by_two(6)).by({"acquisition"}));
+  EXPECT_EQ(tables,
+            "rmse_m [mm] by acquisition; less is better\n"
+            "acquisition  jobs  failed  unfinished  no value   n  mean [95 % interval]  median  10 % to 90 %\n"
+            "a              12       0           0         0  12        117 [108, 127]     115    100 to 139\n"
+            "b              12       0           0         0  12        268 [235, 301]     271    206 to 329\n"
+            "\n"
+            "difference  pairs  lost  mean [95 % interval]  better/equal/worse      p  effect\n"
+            "b - a          12     0     +151 [+119, +184]              0/0/12  5e-04   +1.00\n");
+}
+
+TEST(CompareTables, NoteWhereTheMeanAndMostPairsDisagree) {
+  std::vector<MadeJob> jobs;
+  for (int seed = 0; seed < 10; ++seed) {
+    jobs.push_back({"a", "k", seed, 0.2});
+    jobs.push_back({"b", "k", seed, seed < 4 ? 5.0 + seed : 0.1});
+  }
+  const std::string tables = compare_tables(MadeSweep(jobs).by({"acquisition"}));
+  EXPECT_THAT(tables, HasSubstr("b - a: worse on average, and yet better in most pairs: 6 of 10\n"));
+}
+
+TEST(CompareTables, KeepToTheWidthOfAScreenThoughNamesAreLong) {
+  std::vector<MadeJob> jobs = two_by_two(6);
+  for (MadeJob& job : jobs) job.strategy += "_with_the_longest_name";
+  const Comparison made = MadeSweep(jobs).by({"acquisition", "kernel"});
+  const std::string tables = compare_tables(made) + compare_legend({made});
+  EXPECT_THAT(tables, HasSubstr("#  acquisition, kernel"));
+  EXPECT_THAT(tables, HasSubstr("\n2 - 1 "));
+  std::istringstream lines(tables);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120U) << line;
+}
+
+TEST(CompareTables, AreOneLineAJobWhateverIsInANames) {
+  std::vector<MadeJob> jobs = two_by_two(2);
+  for (MadeJob& job : jobs) job.strategy += "\n\x1b[2Jx";
+  const std::string tables = compare_tables(MadeSweep(jobs).by({"acquisition"}));
+  EXPECT_EQ(tables.find('\x1b'), std::string::npos);
+  EXPECT_THAT(tables, HasSubstr("a  [2Jx"));
+}
+
+TEST(CompareRows, HoldTheNumbersOfGroupsAndPairsInSi) {
+  const Comparison made = MadeSweep(two_by_two(6)).by({"acquisition"});
+  const std::string csv = to_csv(compare_rows(made, "seed < 9"));
+  EXPECT_THAT(csv, testing::StartsWith("kind,by,metric,where,group,"));
+  const std::vector<Row> rows = compare_rows(made, "");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(*rows[0].find("group"), Scalar{std::string("a")});
+  EXPECT_EQ(*rows[0].find("mean"), Scalar{made.groups[0].mean.mean});
+  EXPECT_EQ(*rows[2].find("kind"), Scalar{std::string("pair")});
+  EXPECT_EQ(*rows[2].find("low_95"), Scalar{made.pairs[0].difference.interval->low});
+  EXPECT_EQ(*rows[2].find("p"), Scalar{*made.pairs[0].test.p});
+  EXPECT_EQ(*rows[2].find("p_holm"), Scalar{});
+}
+
+}  // namespace
+}  // namespace palpate
