@@ -249,10 +249,24 @@ std::string without_blanks(std::string name) {
 std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::string& name) {
   Values names;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (without_blanks(groups[i].name) == without_blanks(name)) return i;
+    if (without_blanks(groups[i].name) == without_blanks(name)) {
+      if (groups[i].counts.left_out < groups[i].counts.jobs) return i;
+      throw Error(kCommandLine, fmt::format("--baseline: --where leaves out all of '{}'", name), "name another group");
+    }
     names.push_back(groups[i].name);
   }
   throw Error(kCommandLine, fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
+}
+
+/// Those of `keys` that have more than one value in the sweep.
+Values varying(const Sweep& sweep, const Values& keys) {
+  Values out;
+  for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
+    const bool varies = std::any_of(sweep.jobs.begin(), sweep.jobs.end(),
+                                    [&](const Job& job) { return job.values[i] != sweep.jobs.front().values[i]; });
+    if (varies && contains(keys, sweep.keys[i])) out.push_back(sweep.keys[i]);
+  }
+  return out;
 }
 
 /// Throws Error if nothing is left to compare, with the reason.
@@ -288,16 +302,21 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.metric = find_column(query.metric, columns, "--metric");
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());
-  out.pairing = others(sweep.keys, query.by);
+  out.pairing = varying(sweep, others(sweep.keys, query.by));
   const std::vector<Collected> groups = collect(sweep, results, columns, query, out);
   for (const Collected& group : groups) out.groups.push_back(summarise(group));
   check_values(out, sweep);
-  const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : 0;
-  out.one_baseline = query.baseline || groups.size() > kMostGroupsInPairs;
-  for (std::size_t second = 0; second < groups.size(); ++second) {
-    if (out.one_baseline && second != baseline) continue;
-    for (std::size_t first = out.one_baseline ? 0 : second + 1; first < groups.size(); ++first) {
-      if (first != second) out.pairs.push_back(compare_pair(groups, first, second));
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (out.groups[i].counts.left_out < out.groups[i].counts.jobs) kept.push_back(i);
+  }
+  const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : kept.front();
+  out.compared = kept.size();
+  out.one_baseline = query.baseline || kept.size() > kMostGroupsInPairs;
+  for (auto second = kept.begin(); second != kept.end(); ++second) {
+    if (out.one_baseline && *second != baseline) continue;
+    for (auto first = out.one_baseline ? kept.begin() : second + 1; first != kept.end(); ++first) {
+      if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second));
     }
   }
   adjust(out.pairs);

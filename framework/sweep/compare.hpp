@@ -66,9 +66,10 @@ struct ComparedPair {
 struct Comparison {
   Column metric;
   std::vector<std::string> by;
-  std::vector<std::string> pairing;   ///< the other swept keys: they are equal within a pair
+  std::vector<std::string> pairing;   ///< the other swept keys, if they vary: they are equal within a pair
   std::vector<ComparedGroup> groups;  ///< in the order of the sweep
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
+  std::size_t compared = 0;           ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
   int jobs = 0;                 ///< of the sweep
   int left_out = 0;             ///< of them, by the condition

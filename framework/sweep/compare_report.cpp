@@ -148,7 +148,7 @@ std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
 
 std::string remarks(const Comparison& comparison) {
   std::string out;
-  const std::size_t groups = comparison.groups.size();
+  const std::size_t groups = comparison.compared;
   if (comparison.left_out > 0) {
     out += fmt::format("--where leaves out {} of {} jobs", comparison.left_out, comparison.jobs);
     std::vector<std::string> ends;
@@ -199,6 +199,7 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
   const std::vector<std::string>& pairing = comparisons.front().pairing;
   out += pairing.empty() ? " A pair is one job of each group."
                          : fmt::format(" A pair: two jobs that are equal in {}.", keys_text(pairing));
+  if (pairing.size() > 1) out += " Those that share one of them are taken as independent all the same.";
   out += fmt::format(
       "\np: how often, were it chance which of a pair is the larger, the signed ranks of the differences would lie as "
       "far\n"

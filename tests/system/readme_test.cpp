@@ -81,11 +81,19 @@ void expect_front(const std::string& readme, const std::string& printed) {
   EXPECT_THAT(readme, HasSubstr("```\n" + front + "```\n"));
 }
 
+/// The tables that `palpate compare` printed stand in README, and so do the words on how to read them.
+void expect_comparison(const std::string& readme, const std::string& printed) {
+  const auto legend = printed.find("\ninterval:");
+  ASSERT_NE(legend, std::string::npos);
+  EXPECT_THAT(readme, HasSubstr("```\n" + printed.substr(0, legend)));
+  EXPECT_THAT(readme, HasSubstr(printed.substr(legend) + "```\n"));
+}
+
 /// Commands whose work is the same in every build, and minutes long under the sanitizers.
 bool only_in_release(const std::string& command) {
 #ifdef __SANITIZE_ADDRESS__
-  for (const char* begin :
-       {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ", "./palpate pareto "}) {
+  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ",
+                            "./palpate pareto ", "./palpate compare "}) {
     if (command.rfind(begin, 0) == 0) return true;
   }
   return false;
@@ -115,9 +123,12 @@ TEST(Readme, EveryCommandThatItShowsRunsAndTheTablesAreWhatTheyPrint) {
     } else if (command == "./palpate pareto runs/trade_motion/* --cost robot_seconds --error rmse_m") {
       ++tables;
       expect_front(readme, ended.out);
+    } else if (command.rfind("./palpate compare ", 0) == 0) {
+      ++tables;
+      expect_comparison(readme, ended.out);
     }
   }
-  EXPECT_EQ(tables, only_in_release("sh tests/benchmark/fitting.sh") ? 0 : 4);
+  EXPECT_EQ(tables, only_in_release("sh tests/benchmark/fitting.sh") ? 0 : 6);
 }
 
 TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {

@@ -234,6 +234,21 @@ TEST(CompareWhere, OnASweptKeyKnowsJobsThatHaveNotEnded) {
   EXPECT_EQ(made.groups[0].counts.unfinished, 1);
 }
 
+TEST(CompareWhere, AGroupThatItLeavesOutWholeIsCountedAndComparedWithNone) {
+  const MadeSweep made(two_by_two(5));
+  const Comparison three = made.by({"acquisition", "kernel"}, "rmse_m", {}, "acquisition != a or kernel != rbf");
+  EXPECT_EQ(three.groups.size(), 4U);
+  EXPECT_EQ(three.groups[0].counts.left_out, 5);
+  ASSERT_EQ(three.pairs.size(), 3U);
+  for (const ComparedPair& pair : three.pairs) {
+    EXPECT_NE(pair.second, 0U);
+    EXPECT_EQ(pair.difference.count, 5U);
+  }
+  EXPECT_THAT(compare_tables(made.by({"acquisition"}, "rmse_m", {}, "acquisition == b")), HasSubstr("one group: "));
+  EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", "a", "acquisition == b"),
+            "command line: --baseline: --where leaves out all of 'a', name another group");
+}
+
 TEST(CompareWhere, RefusesUnknownNamesOtherUnitsAndWhatLeavesNothing) {
   const MadeSweep made(two_by_two(2));
   EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse <= 1 m"), HasSubstr("did you mean 'rmse_m'?"));
