@@ -191,17 +191,17 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
     paired = paired || !one.pairs.empty();
   }
   std::string out = fmt::format(
-      "interval: of sweeps like this one with other seeds, 95 of 100 have the true mean in theirs (bootstrap, BCa); "
-      "[-]: "
-      "fewer\nthan {} values, or all equal.",
+      "interval: 95 % of the mean (bootstrap, BCa): of 100 sweeps like this one with other seeds, 95 have the true "
+      "mean in\n"
+      "theirs; [-]: fewer than {} values, or all equal.\n",
       kLeastForInterval);
-  if (!paired) return out + "\n";
+  if (!paired) return out;
   const std::vector<std::string>& pairing = comparisons.front().pairing;
-  out += pairing.empty() ? " A pair is one job of each group."
-                         : fmt::format(" A pair: two jobs that are equal in {}.", keys_text(pairing));
-  if (pairing.size() > 1) out += " Those that share one of them are taken as independent all the same.";
+  out += pairing.empty() ? "pair: one job of each group.\n"
+                         : fmt::format("pair: two jobs that are equal in {}.\n", keys_text(pairing));
+  if (pairing.size() > 1) out += "Pairs that share one of these are taken as independent all the same.\n";
   out += fmt::format(
-      "\np: how often, were it chance which of a pair is the larger, the signed ranks of the differences would lie as "
+      "p: how often, were it chance which of a pair is the larger, the signed ranks of the differences would lie as "
       "far\n"
       "to one side (Wilcoxon, two-sided, equal pairs dropped; counted out up to {} differences, else normal).{}\n"
       "effect: by ranks (matched-pairs rank-biserial), +1: the first is always higher, -1: always lower, 0: neither.\n",

@@ -44,7 +44,7 @@ TEST(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, StartsWith("on_surface_taps by acquisition; more is better\nacquisition  jobs "));
   EXPECT_THAT(ended.out, HasSubstr("\nweighted - uncertainty     12 "));
-  EXPECT_THAT(ended.out, HasSubstr("A pair: two jobs that are equal in taps, seed. "));
+  EXPECT_THAT(ended.out, HasSubstr("\npair: two jobs that are equal in taps, seed.\nPairs that share "));
   const fs::path file = directory / "compare_acquisition_on_surface_taps.csv";
   EXPECT_EQ(ended.err, "table: " + file.string() + "\n");
 
