@@ -21,7 +21,7 @@ inline constexpr std::size_t kLeastForInterval = 5;
 /// The mean of finite values and its two-sided 95 % interval by the bootstrap: bias-corrected and accelerated (BCa;
 /// DiCiccio and Efron 1996, Bootstrap confidence intervals, Statistical Science 11, section 2), with the levels
 /// widened for small samples as Student's t is against the normal distribution (Hesterberg 2015, What teachers should
-/// know about the bootstrap, The American Statistician 69, section 3.2). Of 5 to 20 normal or exponential values it
+/// know about the bootstrap, The American Statistician 69). Of 5 to 20 normal or exponential values it
 /// covers the mean in 88 to 95 of 100 cases, where the plain percentile interval does in 78 to 93.
 ///
 /// No interval of fewer than kLeastForInterval values, nor of equal ones, which do not say how far the next may lie.
