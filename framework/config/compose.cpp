@@ -12,9 +12,10 @@
 #include <set>
 
 namespace palpate {
-namespace {
 
 namespace fs = std::filesystem;
+
+namespace {
 
 constexpr std::array<std::string_view, 6> kGroups{"kernel", "acquisition", "fitting", "backend", "scene", "expect"};
 
@@ -23,9 +24,13 @@ bool is_plain(const std::string& group) { return group == "scene" || group == "e
 
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
+}  // namespace
+
 bool is_group(const std::string& path) {
   return std::find(kGroups.begin(), kGroups.end(), last_key(path)) != kGroups.end();
 }
+
+namespace {
 
 /// Whether `path` leads into a group, as kernel.kernels.0.kernel does: to a plugin inside another.
 bool is_inner(const std::string& path) {
@@ -62,16 +67,19 @@ void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
 
 }  // namespace
 
+void check_path(const std::string& path, const std::string& place) {
+  const bool has_gap =
+      path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos;
+  if (has_gap) throw Error(place, fmt::format("'{}' is not a dotted path", path), "write it like kernel.length_scale");
+}
+
 Override parse_override(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw Error("command line", fmt::format("'{}' is not KEY=VALUE", text), "for example kernel.length_scale=2cm");
   }
   Override out{text.substr(0, equals), parse_value(text.substr(equals + 1), "command line")};
-  if (out.path.front() == '.' || out.path.back() == '.' || out.path.find("..") != std::string::npos) {
-    throw Error("command line", fmt::format("'{}' is not a dotted path", out.path),
-                "write it like kernel.length_scale");
-  }
+  check_path(out.path, "command line");
   out.value.set_layer(kCommandLineLayer);
   return out;
 }
@@ -98,12 +106,16 @@ std::vector<fs::path> Composer::roots(const fs::path& beside) const {
 }
 
 fs::path Composer::find_group(const std::string& group, const std::string& name, const fs::path& beside) const {
+  const auto [place, is_new] = found_.try_emplace({group, name, beside.string()});
+  if (!is_new) return place->second;
   for (const fs::path& root : roots(beside)) {
     std::error_code ignored;
-    fs::path file = root / group / (name + ".yaml");
-    if (fs::exists(file, ignored)) return shown(file);
+    const fs::path file = root / group / (name + ".yaml");
+    if (!fs::exists(file, ignored)) continue;
+    place->second = shown(file);
+    break;
   }
-  return {};
+  return place->second;
 }
 
 std::vector<std::string> Composer::group_names(const std::string& group, const fs::path& beside) const {

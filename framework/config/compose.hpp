@@ -5,6 +5,7 @@
 
 #include "config/tree.hpp"
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -20,6 +21,12 @@ struct Override {
 
 /// Splits and reads `KEY=VALUE` as typed. Throws Error for a missing '=' or an empty key.
 Override parse_override(const std::string& text);
+
+/// Throws Error, with `place`, for what is no dotted path.
+void check_path(const std::string& path, const std::string& place);
+
+/// Whether a dotted path ends in the name of a group: see Composer.
+bool is_group(const std::string& path);
 
 /// Reads config files, once each, and composes them.
 ///
@@ -63,6 +70,8 @@ class Composer {
 
   std::filesystem::path shipped_;
   std::map<std::filesystem::path, Tree> files_;
+  /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.
+  mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
 };
 
 /// Fills `height.kernel`, `weight.fitting` and their like, where present, from the shared ones, so that they may name

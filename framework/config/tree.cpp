@@ -154,23 +154,40 @@ void Tree::merge(const Tree& upper) {
 }
 
 std::string Tree::canonical() const {
+  std::string out;
+  append_canonical(out);
+  return out;
+}
+
+void Tree::append_canonical(std::string& out) const {
   switch (kind) {
     case Kind::null:
-      return "~";
+      out += '~';
+      break;
     case Kind::scalar:
-      return fmt::format("{}:{}", text.size(), text);
-    case Kind::list: {
-      std::string out = "[";
-      for (const Tree& item : items) out += item.canonical() + ",";
-      return out + "]";
-    }
-    case Kind::map: {
-      std::string out = "{";
-      for (const Entry& entry : entries) out += fmt::format("{}={},", entry.key, entry.value.canonical());
-      return out + "}";
-    }
+      out += std::to_string(text.size());
+      out += ':';
+      out += text;
+      break;
+    case Kind::list:
+      out += '[';
+      for (const Tree& item : items) {
+        item.append_canonical(out);
+        out += ',';
+      }
+      out += ']';
+      break;
+    case Kind::map:
+      out += '{';
+      for (const Entry& entry : entries) {
+        out += entry.key;
+        out += '=';
+        entry.value.append_canonical(out);
+        out += ',';
+      }
+      out += '}';
+      break;
   }
-  return {};
 }
 
 namespace {

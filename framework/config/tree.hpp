@@ -74,6 +74,8 @@ struct Tree {
 
   /// One line that is equal for equal values, whatever their places: input of the hash that names a run.
   std::string canonical() const;
+  /// The same, behind what `out` holds already.
+  void append_canonical(std::string& out) const;
 };
 
 struct Tree::Entry {

@@ -101,7 +101,7 @@ void LogOptions::list(Fields& fields) {
 
 void ExperimentOptions::list(Fields& fields) {
   fields.text(name, Field("name", "of the experiment; the folder of its runs is a slug of it"));
-  fields.integer(seed, Field("seed", "fixes everything that is drawn").at_least(0));
+  fields.integer(seed, seed_field());
   fields.integer(taps, Field("taps", "budget of taps, the initial ones included").at_least(1).at_most(100000));
   fields.section(initial, Field("initial", "the first taps, drawn from the candidates without replacement"));
   fields.section(candidates,
@@ -161,6 +161,8 @@ void ExperimentOptions::list(Fields& fields) {
                  fmt::format("{} taps, but there are only {} candidates, take fewer first taps or more candidates",
                              initial.count, columns * rows));
 }
+
+Field seed_field() { return Field("seed", "fixes everything that is drawn").at_least(0); }
 
 bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads" && key != "expect"; }
 

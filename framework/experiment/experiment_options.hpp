@@ -103,6 +103,9 @@ struct ExperimentOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// The option `seed`: alone, because a sweep gives many seeds to one config.
+Field seed_field();
+
 /// Top-level keys that do not change what a run computes: they stay out of its id.
 bool enters_id(const std::string& key);
 

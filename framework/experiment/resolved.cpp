@@ -7,6 +7,26 @@
 #include <cctype>
 
 namespace palpate {
+namespace {
+
+/// A hash of all in a resolved tree that decides what a run computes.
+std::string id_of(const Tree& resolved) {
+  std::string identity = "{";
+  for (const Tree::Entry& entry : resolved.entries) {
+    if (!enters_id(entry.key)) continue;
+    identity += entry.key + "=";
+    entry.value.append_canonical(identity);
+    identity += ',';
+  }
+  return hash_of(identity + "}").substr(0, kIdLength);
+}
+
+struct SeedOptions : Options {
+  std::int64_t seed = 0;
+  void list(Fields& fields) override { fields.integer(seed, seed_field()); }
+};
+
+}  // namespace
 
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
   Tree input = composed;
@@ -18,17 +38,27 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
     out.expectations = read_expectations(expect);
     if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
   }
-  Tree identity = Tree::map();
-  for (const Tree::Entry& entry : out.tree.entries) {
-    if (enters_id(entry.key)) identity.entries.push_back(entry);
-  }
-  out.id = hash_of(identity.canonical()).substr(0, kIdLength);
+  out.id = id_of(out.tree);
   return out;
 }
 
 ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
                                const std::vector<Override>& overrides) {
   return resolve_experiment(composer.compose(file, overrides), plugins);
+}
+
+void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins) {
+  Tree input = Tree::map();
+  input.at("seed") = seed;
+  SeedOptions options;
+  ResolveNotes notes;
+  const Tree resolved = resolve(options, input, plugins, notes);
+  config.options.seed = options.seed;
+  config.tree.at("seed") = *resolved.find("seed");
+  for (ResolveNotes::Origin& origin : config.notes.origins) {
+    if (origin.path == "seed") origin = notes.origins.front();
+  }
+  config.id = id_of(config.tree);
 }
 
 bool begins_with_id(const std::string& folder) {

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxJobs = 1'000'000;
+constexpr std::size_t kMaxValues = 1'000'000;
 constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
 
 /// Splits at commas that stand in no bracket and no quotes.
@@ -45,25 +45,13 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-struct Quantity {
-  double value;
-  std::string unit;
-};
-
-Quantity parse_quantity(const std::string& text, const Tree& tree, const std::string& key) {
-  Quantity out{0.0, {}};
+Bound parse_bound(const std::string& text, const Tree& tree, const std::string& key, const std::string& how_to) {
+  Bound out{0.0, {}};
   const auto result = std::from_chars(text.data(), text.data() + text.size(), out.value);
   if (result.ec != std::errc() || !std::isfinite(out.value)) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text), kHowTo);
+    throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text), how_to);
   }
   out.unit = trimmed(std::string(result.ptr, text.data() + text.size()));
-  return out;
-}
-
-Tree number(double value, const std::string& unit, const Tree& like) {
-  Tree out = like;
-  out.quoted = false;
-  out.text = fmt::format("{}", value) + (unit.empty() ? "" : " " + unit);
   return out;
 }
 
@@ -77,7 +65,7 @@ double as_decimal(double value) {
   return out;
 }
 
-std::vector<Tree> expand_range(const std::vector<Quantity>& from, const Tree& tree, const std::string& key) {
+std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key) {
   const double step = from.size() == 3 ? from[2].value : 1.0;
   // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
@@ -85,7 +73,7 @@ std::vector<Tree> expand_range(const std::vector<Quantity>& from, const Tree& tr
     throw Error(tree.place.text(), fmt::format("{}: '{}' has no value", key, tree.text),
                 "the end must lie beyond the start");
   }
-  if (count > static_cast<double>(kMaxJobs)) {
+  if (count > static_cast<double>(kMaxValues)) {
     throw Error(tree.place.text(), fmt::format("{}: '{}' has more than a million values", key, tree.text),
                 "take a wider step");
   }
@@ -96,7 +84,7 @@ std::vector<Tree> expand_range(const std::vector<Quantity>& from, const Tree& tr
   return out;
 }
 
-std::vector<Tree> expand_log(const std::vector<Quantity>& from, const Tree& tree, const std::string& key) {
+std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, const std::string& key) {
   const double first = from[0].value;
   const double last = from[1].value;
   const double count = from[2].value;
@@ -116,6 +104,25 @@ std::vector<Tree> expand_log(const std::vector<Quantity>& from, const Tree& tree
 
 }  // namespace
 
+std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
+                               const std::string& how_to) {
+  const auto open = value.text.find('(');
+  if (!value.is_scalar() || open == std::string::npos || value.text.back() != ')') return std::nullopt;
+  Call call{value.text.substr(0, open), {}};
+  if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
+  for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
+    call.bounds.push_back(parse_bound(trimmed(part), value, key, how_to));
+  }
+  return call;
+}
+
+Tree number(double value, const std::string& unit, const Tree& like) {
+  Tree out = like;
+  out.quoted = false;
+  out.text = fmt::format("{}", value) + (unit.empty() ? "" : " " + unit);
+  return out;
+}
+
 std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
   if (value.kind == Tree::Kind::list) {
     if (value.items.empty())
@@ -124,15 +131,10 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
   }
   if (value.kind == Tree::Kind::null)
     throw Error(value.place.text(), fmt::format("{}: has no value", key), "write [value, value]");
-  if (!value.is_scalar()) return {value};
-  const auto open = value.text.find('(');
-  const std::string name = value.text.substr(0, std::min(open, value.text.size()));
-  if (open == std::string::npos || value.text.back() != ')' || (name != "range" && name != "log")) return {value};
-  std::vector<Quantity> parts;
-  for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
-    parts.push_back(parse_quantity(trimmed(part), value, key));
-  }
-  const bool is_range = name == "range";
+  const std::optional<Call> call = parse_call(value, key, {"range", "log"}, kHowTo);
+  if (!call) return {value};
+  const std::vector<Bound>& parts = call->bounds;
+  const bool is_range = call->name == "range";
   const bool right_count = is_range ? parts.size() == 2 || parts.size() == 3 : parts.size() == 3;
   const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
                          (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
@@ -142,30 +144,12 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
   return is_range ? expand_range(parts, value, key) : expand_log(parts, value, key);
 }
 
-std::vector<Axis> config_axes(const Tree& sweep) {
-  std::vector<Axis> axes;
-  if (!sweep.is_map()) throw Error(sweep.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
-  for (const Tree::Entry& part : sweep.entries) {
-    if (part.key != "grid") {
-      throw Error(part.place.text(), fmt::format("unknown option '{}' of sweep", part.key),
-                  suggestion(part.key, {"grid"}));
-    }
-    if (!part.value.is_map()) {
-      throw Error(part.place.text(), "sweep.grid: expects a map of keys to values",
-                  "write seed: range(0,10), a key a line");
-    }
-    for (const Tree::Entry& entry : part.value.entries)
-      axes.push_back({entry.key, expand_values(entry.value, entry.key)});
-  }
-  return axes;
-}
-
 Axis parse_axis(const std::string& text) {
   Override whole = parse_override(text);
   const std::string value = text.substr(text.find('=') + 1);
   const std::vector<std::string> parts = split_top(value);
-  if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path)};
-  Axis axis{whole.path, {}};
+  if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path), whole.value};
+  Axis axis{whole.path, {}, Tree::list()};
   for (const std::string& part : parts) {
     const Override one = parse_override(whole.path + "=" + trimmed(part));
     // Beside other values a list is one value: at=[1cm,1cm],[2cm,2cm].
@@ -175,31 +159,9 @@ Axis parse_axis(const std::string& text) {
     }
     for (Tree& tree : expand_values(one.value, whole.path)) axis.values.push_back(std::move(tree));
   }
+  axis.written.items = axis.values;
+  axis.written.place = axis.values.front().place;
   return axis;
-}
-
-std::vector<Combination> product(const std::vector<Axis>& axes) {
-  std::size_t count = 1;
-  for (const Axis& axis : axes) {
-    count *= axis.values.size();
-    if (count > kMaxJobs) {
-      throw Error(axis.values.front().place.text(), fmt::format("{}: the sweep has more than a million jobs", axis.key),
-                  "take fewer values");
-    }
-  }
-  std::vector<Combination> out(count);
-  for (std::size_t job = 0; job < count; ++job) {
-    std::size_t rest = job;
-    std::size_t block = count;
-    for (const Axis& axis : axes) {
-      block /= axis.values.size();
-      Override one{axis.key, axis.values[rest / block]};
-      one.value.set_layer(std::max(one.value.layer, kSweepLayer));
-      out[job].push_back(std::move(one));
-      rest %= block;
-    }
-  }
-  return out;
 }
 
 std::string value_text(const Tree& value) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Many runs from one config: which values each key takes, and every combination of them.
+// The values that a swept key takes, from the texts that name them.
 #pragma once
 
 #include "config/compose.hpp"
 #include "config/tree.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,25 +15,37 @@ namespace palpate {
 struct Axis {
   std::string key;  ///< dotted path
   std::vector<Tree> values;
+  Tree written;  ///< what they were read from, and can be read from again
 };
 
-/// One combination: a value for each axis, in the order of the axes.
-using Combination = std::vector<Override>;
+/// A number of a range, with its unit as written.
+struct Bound {
+  double value;
+  std::string unit;  ///< "" for none
+};
+
+/// `name(1cm, 5cm)` taken apart.
+struct Call {
+  std::string name;
+  std::vector<Bound> bounds;
+};
+
+/// None unless `value` is the text `name(...)` for one of `names`. Throws Error, with `how_to` as its hint, where what
+/// stands in the parentheses are no numbers.
+std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
+                               const std::string& how_to);
+
+/// A number as people write it, with its unit, at the place of `like`.
+Tree number(double value, const std::string& unit, const Tree& like);
 
 /// The values of a list, of `range(first, end)`, `range(first, end, step)` (end excluded) or of
 /// `log(first, last, count)` (both included, evenly spaced in the logarithm; both with the same unit); any other value
 /// is the only one. Throws Error.
 std::vector<Tree> expand_values(const Tree& value, const std::string& key);
 
-/// The axes of `sweep: {grid: {...}}`. Throws Error for anything else in it.
-std::vector<Axis> config_axes(const Tree& sweep);
-
 /// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=log(1cm,5cm,8)`: as typed behind `palpate sweep`. A list among
 /// several values is one value.
 Axis parse_axis(const std::string& text);
-
-/// The product of the axes; the last axis runs fastest. Throws Error beyond a million combinations.
-std::vector<Combination> product(const std::vector<Axis>& axes);
 
 /// The text of a swept value as it stands in results.csv.
 std::string value_text(const Tree& value);

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/plan.hpp"
 
-#include "sweep/expand.hpp"
+#include "sweep/written_config.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <optional>
+#include <set>
+#include <unordered_map>
 
 namespace palpate {
 
@@ -16,8 +18,194 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether the swept key is one of `expect:`.
-bool is_expectation(const Axis& axis) { return axis.key == "expect" || axis.key.compare(0, 7, "expect.") == 0; }
+/// As many configs are kept: enough for a sweep whose seeds run slowest over the settings of a usual one.
+constexpr std::size_t kMostKept = 64;
+
+/// The seed that a combination sets, if its other settings can be had without it.
+const SweptValue* find_seed(const Combination& combination) {
+  const auto found = std::find_if(combination.begin(), combination.end(),
+                                  [](const SweptValue& one) { return one.axis->key == "seed" && one.stride > 0; });
+  return found != combination.end() ? &*found : nullptr;
+}
+
+/// The number of the combination that has the first seed instead.
+std::size_t number_without_seed(std::size_t number, const SweptValue* seed) {
+  return seed != nullptr ? number - seed->digit * seed->stride : number;
+}
+
+std::vector<Override> job_overrides(const SweepPlan& plan, const Combination& combination) {
+  std::vector<Override> overrides = overrides_of(combination);
+  overrides.insert(overrides.end(), plan.shared.begin(), plan.shared.end());
+  return overrides;
+}
+
+/// What the config says of names that no combination sets, for `where`.
+class BaseValues {
+ public:
+  BaseValues(const Tree& base, const PluginSource& plugins) : base_(base), plugins_(plugins) {}
+
+  std::optional<std::string> operator()(const std::string& name) {
+    if (is_of_sweep(name)) return std::nullopt;
+    if (const Tree* said = base_.find_path(name)) return condition_text(*said);
+    if (!defaults_) {
+      defaults_.emplace();
+      try {
+        *defaults_ = resolve_experiment(base_, plugins_).tree;
+      } catch (const Error&) {  // what it lacks is swept: then it has no defaults either
+      }
+    }
+    const Tree* found = defaults_->find_path(name);
+    return found != nullptr ? std::optional(condition_text(*found)) : std::nullopt;
+  }
+
+ private:
+  static bool is_of_sweep(const std::string& name) { return name == "sweep" || name.compare(0, 6, "sweep.") == 0; }
+
+  const Tree& base_;
+  const PluginSource& plugins_;
+  std::optional<Tree> defaults_;
+};
+
+/// A combination but for its seed, resolved: the config, and what each key came to in it.
+struct Resolved {
+  std::shared_ptr<ResolvedConfig> config;
+  std::vector<std::string> values;  ///< one a key
+};
+
+/// Makes the jobs one by one.
+class Planner {
+ public:
+  Planner(SweepPlan& plan, Composer& composer, const PluginHost& host)
+      : plan_(plan), composer_(composer), host_(host), keys_(plan.description.keys()) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) key_numbers_.emplace(keys_[i], i);
+    takes_part_.resize(keys_.size());
+    siblings_.resize(keys_.size());
+    asker_.resize(keys_.size(), nullptr);
+  }
+
+  void add(std::size_t number, const Combination& combination, const JobSink& sink) {
+    const SweptValue* seed = find_seed(combination);
+    const Resolved& resolved = resolve(number, combination, seed);
+    ResolvedConfig& config = *resolved.config;
+    Job job{static_cast<int>(plan_.sweep.jobs.size()), {}, resolved.values};
+    if (seed != nullptr) {
+      set_seed(config, seed->value(), host_);
+      job.values[key_numbers_.at("seed")] = value_text(seed->value());
+    }
+    job.id = config.id;
+    const auto [twin, is_new] = seen_.emplace(job.id, job.index);
+    if (!is_new) {
+      if (differs_by_what_is_left_out(static_cast<std::size_t>(twin->second), job, combination)) return;
+      throw Error(plan_.file.string(),
+                  fmt::format("jobs {} and {} of the sweep are the same run", twin->second, job.index),
+                  "a swept key has no effect in one of them, or a value stands twice");
+    }
+    if (sink) sink(job, config);
+    plan_.sweep.jobs.push_back(std::move(job));
+    plan_.combinations.push_back(number);
+  }
+
+  /// Throws Error for a key that no job has.
+  void finish() {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (takes_part_[i] || asker_[i] == nullptr) continue;
+      const std::string scope = keys_[i].substr(0, keys_[i].rfind('.') + 1);
+      const std::string hint = suggestion(keys_[i].substr(scope.size()), {siblings_[i].begin(), siblings_[i].end()});
+      throw Error(asker_[i]->values.front().place.text(),
+                  fmt::format("no job of the sweep has an option '{}'", keys_[i]),
+                  hint.empty() ? "take it away" : hint);
+    }
+    for (auto& [number, resolved] : resolved_) plan_.kept.emplace(number, std::move(resolved.config));
+  }
+
+ private:
+  const Resolved& resolve(std::size_t number, const Combination& combination, const SweptValue* seed) {
+    const std::size_t first = number_without_seed(number, seed);
+    const auto known = resolved_.find(first);
+    if (known != resolved_.end()) return known->second;
+    if (resolved_.size() == kMostKept) resolved_.clear();
+    const Tree composed = composer_.compose(plan_.file, job_overrides(plan_, combination));
+    Resolved out{std::make_shared<ResolvedConfig>(resolve_experiment(composed, host_)), {}};
+    out.values.resize(keys_.size());
+    std::vector<bool> said(keys_.size());
+    for (const SweptValue& setting : combination) {
+      const std::size_t key = key_numbers_.at(setting.axis->key);
+      said[key] = true;
+      asker_[key] = setting.axis;
+      if (is_left_out(setting.axis->key, composed, out.config->notes)) {
+        note_siblings(key, out.config->notes);
+        continue;
+      }
+      takes_part_[key] = true;
+      out.values[key] = value_text(setting.value());
+    }
+    // Where other combinations set a key and this one does not, the table says what this one has there.
+    for (std::size_t key = 0; key < keys_.size(); ++key) {
+      if (!said[key]) out.values[key] = unswept_text(keys_[key], composed, out.config->tree);
+    }
+    return resolved_.emplace(first, std::move(out)).first->second;
+  }
+
+  /// Whether plugins chosen later do not have the option, neither where it stands nor where it is inherited.
+  static bool is_left_out(const std::string& key, const Tree& composed, const ResolveNotes& notes) {
+    const auto dropped = [&](const std::string& path) {
+      return std::any_of(notes.dropped.begin(), notes.dropped.end(), [&](const ResolveNotes::Origin& one) {
+        return path == one.path || path.compare(0, one.path.size() + 1, one.path + ".") == 0;
+      });
+    };
+    if (!dropped(key)) return false;
+    for (const char* process : {"height.", "weight."}) {
+      if (composed.find_path(process + key) != nullptr && !dropped(process + key)) return false;
+    }
+    return true;
+  }
+
+  void note_siblings(std::size_t key, const ResolveNotes& notes) {
+    const std::string scope = keys_[key].substr(0, keys_[key].rfind('.') + 1);
+    for (const ResolveNotes::Origin& one : notes.origins) {
+      const std::string rest = one.path.compare(0, scope.size(), scope) == 0 ? one.path.substr(scope.size()) : "";
+      if (!rest.empty() && rest != "type" && rest.find('.') == std::string::npos) siblings_[key].insert(rest);
+    }
+  }
+
+  static std::string unswept_text(const std::string& key, const Tree& composed, const Tree& resolved) {
+    const Tree* has = resolved.find_path(key);
+    if (has == nullptr) return {};
+    const Tree* said = composed.find_path(key);
+    return condition_text(said != nullptr ? *said : *has);
+  }
+
+  /// Whether two jobs that are the same run are so because of options that were left out, and for no other reason.
+  bool differs_by_what_is_left_out(std::size_t twin, const Job& job, const Combination& combination) const {
+    if (plan_.sweep.jobs[twin].values != job.values) return false;
+    bool any = false;
+    const Combination other = plan_.description.at(plan_.combinations[twin]);
+    for (const Combination* one : {&combination, &other}) {
+      for (const SweptValue& setting : *one) {
+        const bool left_out =
+            job.values[key_numbers_.at(setting.axis->key)].empty() && !value_text(setting.value()).empty();
+        any = any || left_out;
+        if (left_out || one == &other) continue;
+        // The same value of another place in one list is a value that stands twice.
+        for (const SweptValue& same : other) {
+          if (same.axis == setting.axis && same.digit != setting.digit) return false;
+        }
+      }
+    }
+    return any;
+  }
+
+  SweepPlan& plan_;
+  Composer& composer_;
+  const PluginHost& host_;
+  const std::vector<std::string>& keys_;
+  std::unordered_map<std::string, std::size_t> key_numbers_;
+  std::unordered_map<std::string, int> seen_;
+  std::map<std::size_t, Resolved> resolved_;
+  std::vector<bool> takes_part_;
+  std::vector<const Axis*> asker_;               ///< of each key, once a job sets it
+  std::vector<std::set<std::string>> siblings_;  ///< options that stand where the key would
+};
 
 }  // namespace
 
@@ -25,72 +213,54 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
                      const std::vector<std::string>& words, const fs::path& runs, const JobSink& sink) {
   SweepPlan plan;
   plan.file = file;
-  std::vector<Axis> axes;
-  for (const std::string& text : words) axes.push_back(parse_axis(text));
-  // What is expected holds for the whole sweep: it is no axis, and it enters no id.
-  std::vector<Override> expectations;
-  for (const Axis& axis : axes) {
-    if (!is_expectation(axis)) continue;
-    if (axis.values.size() != 1) {
-      throw Error(axis.values.front().place.text(), fmt::format("{}: what is expected cannot be swept", axis.key),
-                  "give it one value");
-    }
-    expectations.push_back({axis.key, axis.values.front()});
+  const SweepWords read = parse_sweep_words(words);
+  plan.shared = read.expectations;
+  const Tree base = composer.compose(file, read.expectations);
+  plan.description = SweepDescription(base.find("sweep"), read);
+  const SweepDescription& description = plan.description;
+  if (description.keys().empty()) {
+    throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
   }
-  const Tree base = composer.compose(file, expectations);
-  std::vector<Axis> all;
-  if (const Tree* described = base.find("sweep")) all = config_axes(*described);
-  for (const Axis& axis : axes) {
-    if (is_expectation(axis)) continue;
-    const auto same = std::find_if(all.begin(), all.end(), [&](const Axis& one) { return one.key == axis.key; });
-    if (same != all.end()) {
-      *same = axis;
-    } else {
-      all.push_back(axis);
-    }
-  }
-  if (all.empty()) throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
-  Tree grid = Tree::map();
-  for (const Axis& axis : all) {
-    plan.sweep.keys.push_back(axis.key);
-    Tree& values = grid.at(axis.key);
-    values = Tree::list();
-    values.items = axis.values;
+  plan.sweep.keys = description.keys();
+  if (base.find_path("log.surface") == nullptr) {
+    // The sweep's own record decides whether surfaces are kept: not by default.
+    plan.shared.push_back({"log.surface", Tree::scalar("false")});
+    plan.shared.back().value.set_layer(kGroupLayer);
   }
 
-  std::map<std::string, int> seen;
-  for (const Combination& combination : product(all)) {
-    // The sweep's own record decides whether surfaces are kept: not by default.
-    std::vector<Override> overrides = combination;
-    overrides.insert(overrides.end(), expectations.begin(), expectations.end());
-    if (base.find_path("log.surface") == nullptr) {
-      Tree off = Tree::scalar("false");
-      off.set_layer(kGroupLayer);
-      overrides.push_back({"log.surface", off});
-    }
-    ResolvedConfig config = load_experiment(composer, host, file, overrides);
-    Job job{static_cast<int>(plan.sweep.jobs.size()), config.id, {}};
-    for (const Override& one : combination) job.values.push_back(value_text(one.value));
-    const auto [twin, is_new] = seen.emplace(job.id, job.index);
-    if (!is_new) {
-      throw Error(file.string(), fmt::format("jobs {} and {} of the sweep are the same run", twin->second, job.index),
-                  "a swept key has no effect in one of them, or a value stands twice");
-    }
-    if (sink) sink(job, config);
-    if (plan.sweep.jobs.empty()) {
-      plan.name = config.options.name;
-      plan.config = std::move(config.tree);
-    }
-    plan.sweep.jobs.push_back(std::move(job));
-    plan.overrides.push_back(std::move(overrides));
+  BaseValues base_values(base, host);
+  const Condition::Values base_value = [&](const std::string& name) { return base_values(name); };
+  std::shared_ptr<const ResolvedConfig> first;
+  Planner planner(plan, composer, host);
+  for (std::size_t number = 0; number < description.size(); ++number) {
+    const Combination combination = description.at(number);
+    if (!description.wanted(combination, base_value)) continue;
+    planner.add(number, combination, [&](const Job& job, const ResolvedConfig& config) {
+      if (first == nullptr) first = std::make_shared<const ResolvedConfig>(config);
+      if (sink) sink(job, config);
+    });
   }
-  plan.config.at("sweep").at("grid") = std::move(grid);
+  if (first == nullptr) {
+    throw Error(description.where_place(),
+                fmt::format("sweep.where: it holds for none of the {} combinations", description.size()),
+                "ask for less, or sweep other values");
+  }
+  planner.finish();
+  plan.name = first->options.name;
+  plan.config = written_config(file, base, description, *first, host);
   plan.sweep.directory = runs / slug(plan.name) / sweep_id(plan.config, plan.sweep.jobs);
   return plan;
 }
 
 ResolvedConfig planned_config(const SweepPlan& plan, Composer& composer, const PluginHost& host, std::size_t index) {
-  return load_experiment(composer, host, plan.file, plan.overrides[index]);
+  const std::size_t number = plan.combinations[index];
+  const Combination combination = plan.description.at(number);
+  const SweptValue* seed = find_seed(combination);
+  const auto kept = plan.kept.find(number_without_seed(number, seed));
+  if (kept == plan.kept.end()) return load_experiment(composer, host, plan.file, job_overrides(plan, combination));
+  ResolvedConfig config = *kept->second;
+  if (seed != nullptr) set_seed(config, seed->value(), host);
+  return config;
 }
 
 }  // namespace palpate

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/description.hpp"
+
+#include "sweep/sobol.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMaxCombinations = 1'000'000;
+/// Of a group or a type that is swept: above the options that are swept beside it.
+constexpr Layer kChoiceLayer = kSweepLayer + 1;
+
+const std::vector<std::string>& block_names() {
+  static const std::vector<std::string> names{"grid", "zip", "list", "sobol", "where"};
+  return names;
+}
+
+bool begins_with(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+/// Whether `key` is that group, or lies in it.
+bool is_below(const std::string& key, const std::string& group) {
+  return key == group || begins_with(key, group + ".");
+}
+
+Place place_of(const Axis& axis) { return axis.values.front().place; }
+
+void check_block(const std::string& name, const Place& place) {
+  const std::vector<std::string>& names = block_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  throw Error(place.text(), fmt::format("unknown option '{}' of sweep", name), suggestion(name, names));
+}
+
+bool is_empty(const Tree& block) {
+  return (block.is_map() && block.entries.empty()) || (block.kind == Tree::Kind::list && block.items.empty());
+}
+
+/// Every key of a map with its values.
+std::vector<Axis> read_axes(const Tree& described, const std::string& name, const char* hint) {
+  if (!described.is_map()) {
+    throw Error(described.place.text(), fmt::format("{}: expects a map of keys to values", name), hint);
+  }
+  std::vector<Axis> axes;
+  for (const Tree::Entry& entry : described.entries) {
+    axes.push_back({entry.key, expand_values(entry.value, entry.key), entry.value});
+  }
+  return axes;
+}
+
+void check_key(const Axis& axis) {
+  const std::string place = place_of(axis).text();
+  check_path(axis.key, place);
+  if (is_below(axis.key, "expect")) {
+    throw Error(place, fmt::format("{}: what is expected cannot be swept", axis.key),
+                "it holds for the whole sweep: write it under 'expect:'");
+  }
+  if (is_below(axis.key, "sweep") || axis.key == "defaults") {
+    throw Error(place, fmt::format("'{}' cannot be swept", axis.key),
+                "name what it chooses, as in kernel: [rbf, matern52]");
+  }
+}
+
+/// All that a part says, to tell equal parts.
+std::string text_of_axes(const std::vector<Axis>& axes) {
+  std::string out;
+  for (const Axis& axis : axes) out += fmt::format("{}={},", axis.key, axis.written.canonical());
+  return out;
+}
+
+}  // namespace
+
+SweepWords parse_sweep_words(const std::vector<std::string>& words) {
+  SweepWords out;
+  for (const std::string& word : words) {
+    const std::string path = word.substr(0, word.find('='));
+    if (is_below(path, "sweep")) {
+      Override block = parse_override(word);
+      if (path == "sweep") {
+        throw Error("command line", "'sweep' is given as a whole", "give its blocks: \"sweep.where=taps > 12\"");
+      }
+      const std::string name = path.substr(std::string("sweep.").size());
+      check_block(name, block.value.place);
+      out.blocks.emplace_back(name, std::move(block.value));
+      continue;
+    }
+    Axis axis = parse_axis(word);
+    if (!is_below(path, "expect")) {
+      out.axes.push_back(std::move(axis));
+      continue;
+    }
+    if (axis.values.size() != 1) {
+      throw Error(place_of(axis).text(), fmt::format("{}: what is expected cannot be swept", axis.key),
+                  "give it one value");
+    }
+    out.expectations.push_back({axis.key, axis.values.front()});
+  }
+  return out;
+}
+
+std::size_t SweepDescription::Part::size() const {
+  if (together && !axes.empty()) return axes.front().values.size();
+  std::size_t product = 1;
+  for (const Axis& axis : axes) product *= axis.values.size();
+  return product;
+}
+
+SweepDescription::Block SweepDescription::read_block(const std::string& name, const Tree& described) {
+  const std::string full = "sweep." + name;
+  Block block{name, {}, {}};
+  if (name == "list") {
+    const char* const hint = "write [{key: value}, {key: value, other: [value, value]}]";
+    if (described.kind != Tree::Kind::list) {
+      throw Error(described.place.text(), full + ": expects a list of settings", hint);
+    }
+    for (const Tree& item : described.items) block.parts.push_back({read_axes(item, full, hint), false});
+  } else if (name == "sobol") {
+    block.parts.push_back({sobol_axes(described), true});
+  } else {
+    block.parts.push_back({read_axes(described, full, "write seed: range(0,10), a key a line"), name == "zip"});
+  }
+  if (name == "zip") {
+    const std::vector<Axis>& axes = block.parts.front().axes;
+    for (const Axis& axis : axes) {
+      if (axis.values.size() == axes.front().values.size()) continue;
+      throw Error(place_of(axis).text(),
+                  fmt::format("sweep.zip: '{}' has {} values, '{}' has {}", axis.key, axis.values.size(),
+                              axes.front().key, axes.front().values.size()),
+                  "give every key as many, or multiply them in 'grid'");
+    }
+  }
+  return block;
+}
+
+void SweepDescription::add_where(const Tree& described) {
+  where_tree_ = described;
+  const std::vector<Tree> all = described.kind == Tree::Kind::list ? described.items : std::vector<Tree>{described};
+  for (const Tree& one : all) where_.push_back({Condition(one), one.place.text()});
+}
+
+SweepDescription::SweepDescription(const Tree* config, const SweepWords& words) {
+  Tree all = config != nullptr ? *config : Tree::map();
+  if (!all.is_map()) throw Error(all.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
+  for (const Tree::Entry& entry : all.entries) check_block(entry.key, entry.place);
+  for (const auto& [name, value] : words.blocks) all.at(name) = value;
+  for (const Tree::Entry& entry : all.entries) {
+    if (is_empty(entry.value)) continue;
+    if (entry.key == "where") {
+      add_where(entry.value);
+    } else {
+      blocks_.push_back(read_block(entry.key, entry.value));
+    }
+  }
+  check_keys();
+  for (const Axis& axis : words.axes) take_over(axis);
+  count();
+}
+
+void SweepDescription::check_keys() const {
+  std::map<std::string, std::pair<const Axis*, const Block*>> seen;
+  for (const Block& block : blocks_) {
+    for (const Part& part : block.parts) {
+      for (const Axis& axis : part.axes) {
+        check_key(axis);
+        const auto [twin, is_new] = seen.try_emplace(axis.key, &axis, &block);
+        if (is_new || twin->second.second == &block) continue;
+        throw Error(place_of(axis).text(),
+                    fmt::format("'{}' stands in sweep.{} and, at {}, in sweep.{}", axis.key, block.name,
+                                place_of(*twin->second.first).text(), twin->second.second->name),
+                    "a key may stand in one block only");
+      }
+    }
+  }
+}
+
+/// A key of the command line goes to the grid and leaves all else.
+void SweepDescription::take_over(const Axis& axis) {
+  check_key(axis);
+  Block* grid = nullptr;
+  for (Block& block : blocks_) {
+    if (block.name == "grid") {
+      grid = &block;
+    } else {
+      leave(block, axis.key);
+    }
+  }
+  const auto says_nothing = [](const Block& block) {
+    return std::all_of(block.parts.begin(), block.parts.end(), [](const Part& part) { return part.axes.empty(); });
+  };
+  if (grid == nullptr) {
+    blocks_.push_back({"grid", {Part{}}, {}});
+    grid = &blocks_.back();
+  }
+  std::vector<Axis>& axes = grid->parts.front().axes;
+  const auto same = std::find_if(axes.begin(), axes.end(), [&](const Axis& one) { return one.key == axis.key; });
+  if (same != axes.end()) {
+    *same = axis;
+  } else {
+    axes.push_back(axis);
+  }
+  blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), says_nothing), blocks_.end());
+}
+
+void SweepDescription::leave(Block& block, const std::string& key) const {
+  std::set<std::string> kept;
+  std::vector<Part> parts;
+  bool left = false;
+  for (Part& part : block.parts) {
+    const auto end =
+        std::remove_if(part.axes.begin(), part.axes.end(), [&](const Axis& one) { return one.key == key; });
+    left = left || end != part.axes.end();
+    part.axes.erase(end, part.axes.end());
+  }
+  if (!left) return;
+  // Items that differed by this key alone are one now.
+  for (Part& part : block.parts) {
+    if (kept.insert(text_of_axes(part.axes)).second) parts.push_back(std::move(part));
+  }
+  block.parts = std::move(parts);
+}
+
+void SweepDescription::count() {
+  std::size_t all = 1;
+  std::set<std::string> known;
+  const auto check = [&](std::size_t combinations, const Axis& axis) {
+    if (combinations * all <= kMaxCombinations) return;
+    throw Error(place_of(axis).text(), fmt::format("{}: the sweep has more than a million jobs", axis.key),
+                "take fewer values");
+  };
+  for (Block& block : blocks_) {
+    std::size_t end = 0;
+    for (const Part& part : block.parts) {
+      std::size_t product = 1;
+      for (const Axis& axis : part.axes) {
+        if (known.insert(axis.key).second) keys_.push_back(axis.key);
+        product = part.together ? axis.values.size() : product * axis.values.size();
+        check(end + product, axis);
+      }
+      end += product;
+      block.ends.push_back(end);
+    }
+    all *= end;
+  }
+}
+
+std::size_t SweepDescription::size() const {
+  std::size_t all = 1;
+  for (const Block& block : blocks_) all *= block.size();
+  return all;
+}
+
+Combination SweepDescription::at(std::size_t number) const {
+  Combination out;
+  std::size_t slower = size();
+  for (const Block& block : blocks_) {
+    const std::size_t faster = slower / block.size();  // combinations of the blocks behind this one
+    const std::size_t index = number % slower / faster;
+    slower = faster;
+    const auto end = std::upper_bound(block.ends.begin(), block.ends.end(), index);
+    const Part& part = block.parts[static_cast<std::size_t>(end - block.ends.begin())];
+    const std::size_t within = index - (*end - part.size());
+    std::size_t stride = part.size();
+    for (const Axis& axis : part.axes) {
+      if (part.together) {
+        out.push_back({&axis, within, 0});
+        continue;
+      }
+      const std::size_t outer = stride;
+      stride /= axis.values.size();
+      out.push_back({&axis, within % outer / stride, stride * faster});
+    }
+  }
+  return out;
+}
+
+/// Whether what `name` stands for is decided by a choice: kernel.alpha by kernel, scene.objects.0.length by its type.
+bool SweepDescription::depends(const std::string& name, const std::string& choice) const {
+  if (!is_choice(choice)) return false;
+  const std::string scope = is_group(choice) ? choice : choice.substr(0, choice.rfind('.'));
+  return name != choice && is_below(name, scope);
+}
+
+bool SweepDescription::wanted(const Combination& combination, const Condition::Values& base) const {
+  if (where_.empty()) return true;
+  const std::string* place = nullptr;
+  const Condition::Values value_of = [&](const std::string& name) -> std::optional<std::string> {
+    const auto said = std::find_if(combination.begin(), combination.end(),
+                                   [&](const SweptValue& one) { return one.axis->key == name; });
+    if (said != combination.end()) return condition_text(said->value());
+    const bool swept = std::find(keys_.begin(), keys_.end(), name) != keys_.end();
+    for (const std::string& choice : keys_) {
+      if (!depends(name, choice)) continue;
+      if (swept) return "";  // another item of the list has it
+      throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
+                  fmt::format("sweep it too, or compare '{}'", choice));
+    }
+    std::optional<std::string> text = base(name);
+    return text || !swept ? text : "";
+  };
+  return std::all_of(where_.begin(), where_.end(), [&](const Where& where) {
+    place = &where.place;
+    return where.condition.holds(value_of, keys_);
+  });
+}
+
+std::string SweepDescription::where_place() const { return where_.empty() ? std::string() : where_.front().place; }
+
+Tree SweepDescription::written() const {
+  Tree out = Tree::map();
+  for (const Block& block : blocks_) {
+    Tree all = Tree::list();
+    for (const Part& part : block.parts) {
+      Tree keys = Tree::map();
+      for (const Axis& axis : part.axes) keys.at(axis.key) = axis.written;
+      all.items.push_back(std::move(keys));
+    }
+    Tree& described = out.at(block.name);
+    if (block.name == "list") {
+      described = std::move(all);
+    } else if (block.name == "sobol") {
+      described.at("samples") = Tree::scalar(std::to_string(block.size()));
+      described.at("keys") = std::move(all.items.front());
+    } else {
+      described = std::move(all.items.front());
+    }
+  }
+  if (!where_.empty()) out.at("where") = where_tree_;
+  return out;
+}
+
+std::vector<Override> overrides_of(const Combination& combination) {
+  std::vector<Override> out;
+  for (const SweptValue& setting : combination) {
+    out.push_back({setting.axis->key, setting.value()});
+    out.back().value.set_layer(is_choice(setting.axis->key) ? kChoiceLayer : kSweepLayer);
+  }
+  return out;
+}
+
+std::string condition_text(const Tree& value) {
+  const Tree* type = value.is_map() ? value.find("type") : nullptr;
+  return type != nullptr && type->is_scalar() ? type->text : value_text(value);
+}
+
+bool is_choice(const std::string& key) { return is_group(key) || key.substr(key.rfind('.') + 1) == "type"; }
+
+}  // namespace palpate

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/written_config.hpp"
+
+#include "config/yaml.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace palpate {
+namespace {
+
+std::string head(const std::string& key) { return key.substr(0, key.find('.')); }
+
+/// Top-level keys, in the order in which a resolved config has them.
+std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
+  std::vector<std::string> out;
+  for (const Tree* tree : {&resolved, &base}) {
+    for (const Tree::Entry& entry : tree->entries) {
+      if (base.find(entry.key) == nullptr || entry.key == "name" || entry.key == "sweep") continue;
+      if (std::find(out.begin(), out.end(), entry.key) == out.end()) out.push_back(entry.key);
+    }
+  }
+  return out;
+}
+
+/// Whether what stands below the top-level key depends on what is chosen in a combination.
+bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
+  return std::any_of(swept.begin(), swept.end(), [&](const std::string& key) {
+    const std::string other = head(key);
+    if (top == "height" || top == "weight") {
+      if (other == "kernel" || other == "fitting") return true;  // they take over what they do not say themselves
+    }
+    return other == top && is_choice(key);
+  });
+}
+
+void erase_path(Tree& tree, const std::string& path) {
+  const auto dot = path.rfind('.');
+  Tree* parent = dot == std::string::npos ? &tree : const_cast<Tree*>(tree.find_path(path.substr(0, dot)));
+  if (parent != nullptr) parent->erase(path.substr(dot == std::string::npos ? 0 : dot + 1));
+}
+
+/// `base` without the options that its own plugins leave out; none if it is no whole config, as when all that it lacks
+/// is swept.
+std::optional<Tree> settled(const Tree& base, const PluginSource& plugins) {
+  Tree out = base;
+  try {
+    for (const ResolveNotes::Origin& one : resolve_experiment(base, plugins).notes.dropped) erase_path(out, one.path);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  return out;
+}
+
+}  // namespace
+
+Tree written_config(const std::filesystem::path& file, const Tree& base, const SweepDescription& description,
+                    const ResolvedConfig& first, const PluginSource& plugins) {
+  const Tree own = read_yaml(file);
+  const std::optional<Tree> whole = settled(base, plugins);
+  const auto is_own = [&](const std::string& top) {
+    return top != "expect" && (!whole || is_touched(top, description.keys()));
+  };
+  Tree out = Tree::map();
+  const Tree* name = base.find("name");
+  out.at("name") = Tree::scalar(name != nullptr ? name->text : first.options.name, true);
+  if (const Tree* defaults = own.find("defaults")) {
+    Tree kept = Tree::list();
+    for (const Tree& item : defaults->items) {
+      if (is_own(item.entries.front().key)) kept.items.push_back(item);
+    }
+    if (!kept.items.empty()) out.at("defaults") = std::move(kept);
+  }
+  for (const std::string& top : ordered_keys(base, first.tree)) {
+    const Tree* said = is_own(top) ? own.find(top) : (whole ? *whole : base).find(top);
+    if (said != nullptr) out.at(top) = *said;
+  }
+  out.at("sweep") = description.written();
+  return out;
+}
+
+}  // namespace palpate
