@@ -34,8 +34,8 @@ std::size_t number_without_seed(std::size_t number, const SweptValue* seed) {
 }
 
 std::vector<Override> job_overrides(const SweepPlan& plan, const Combination& combination) {
-  std::vector<Override> overrides = overrides_of(combination);
-  overrides.insert(overrides.end(), plan.shared.begin(), plan.shared.end());
+  std::vector<Override> overrides = plan.shared;
+  for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));
   return overrides;
 }
 

@@ -28,7 +28,7 @@ struct SweepPlan {
   Tree config;                 ///< what `palpate sweep` would make the same jobs of: see written_config()
   SweepDescription description;
   std::vector<std::size_t> combinations;  ///< of each job: its number in the description
-  std::vector<Override> shared;           ///< what all jobs lay over `file` beside their combination
+  std::vector<Override> shared;           ///< what all jobs lay over `file` before their combination
   /// Configs of a few combinations, by their number with the first seed: those of other seeds are made from them.
   std::map<std::size_t, std::shared_ptr<const ResolvedConfig>> kept;
 };

@@ -139,47 +139,31 @@ TEST(AxisText, RefusesAGapBetweenCommas) {
   EXPECT_EQ(refusal([] { parse_axis("seed=1,,2"); }), "command line: seed: has no value, write [value, value]");
 }
 
-TEST(ConfigAxes, AreTheKeysOfTheGridInTheirOrder) {
-  const auto axes = config_axes(parse_yaml("grid: {b.c: [1, 2], a: 'range(0,2)'}", "c.yaml"));
-  ASSERT_EQ(axes.size(), 2U);
-  EXPECT_EQ(axes[0].key, "b.c");
-  EXPECT_EQ(texts(axes[1].values), (Texts{"0", "1"}));
-}
-
-TEST(ConfigAxes, RefuseWhatIsNoGrid) {
-  const auto refused = [](const char* text) {
-    return refusal([&] { config_axes(*parse_yaml(text, "c.yaml").find("sweep")); });
+TEST(AxisText, IsWrittenAsWhatReadsBackAsTheSame) {
+  const auto again = [](const std::string& text) {
+    const Axis axis = parse_axis(text);
+    Tree sweep = Tree::map();
+    sweep.at("k") = axis.written;
+    const Tree file = parse_yaml(to_yaml(sweep), "c.yaml");
+    EXPECT_EQ(texts(expand_values(*file.find("k"), "k")), texts(axis.values)) << text;
   };
-  EXPECT_EQ(refused("sweep: 3"), "c.yaml:1:8: sweep: expects a map, write sweep: {grid: {key: [values]}}");
-  EXPECT_EQ(refused("sweep: {gird: {}}"), "c.yaml:1:9: unknown option 'gird' of sweep, did you mean 'grid'?");
-  EXPECT_EQ(refused("sweep: {grid: [seed]}"),
-            "c.yaml:1:9: sweep.grid: expects a map of keys to values, write seed: range(0,10), a key a line");
-}
-
-TEST(Product, RunsTheLastAxisFastest) {
-  std::string text;
-  for (const Combination& one : product({parse_axis("a=1,2"), parse_axis("b=x,y,z")})) {
-    text += one[0].path + one[0].value.text + one[1].path + one[1].value.text + " ";
+  for (const char* text : {"seed=range(0,3)", "seed=range(0,2),7", "a=1", "a=x,y", "a=[1, 2],[3, 4]", "a=[1, 2]",
+                           "a='x,y',z", "a=log(1cm,5cm,3)", "kernel={type: rbf},matern52"}) {
+    again(text);
   }
-  EXPECT_EQ(text, "a1bx a1by a1bz a2bx a2by a2bz ");
 }
 
-TEST(Product, OfNothingIsOneEmptyCombination) {
-  ASSERT_EQ(product({}).size(), 1U);
-  EXPECT_TRUE(product({})[0].empty());
-}
-
-TEST(Product, LiftsValuesOfAConfigAboveThatConfig) {
-  const auto axes = config_axes(parse_yaml("grid: {a: [1]}", "c.yaml"));
-  EXPECT_EQ(product(axes)[0][0].value.layer, kSweepLayer);
-  EXPECT_EQ(product({parse_axis("a=1")})[0][0].value.layer, kCommandLineLayer);
-}
-
-TEST(Product, RefusesMoreThanAMillionJobs) {
-  EXPECT_EQ(refusal([] {
-              product({parse_axis("a=range(0,1001)"), parse_axis("b=range(0,1000)")});
-            }),
-            "command line: b: the sweep has more than a million jobs, take fewer values");
+TEST(ParsedCall, TakesNameAndBoundsApart) {
+  const auto call = parse_call(Tree::scalar("uniform( 1 mm,2.5cm )"), "k", {"uniform"}, "");
+  ASSERT_TRUE(call);
+  EXPECT_EQ(call->name, "uniform");
+  ASSERT_EQ(call->bounds.size(), 2U);
+  EXPECT_EQ(call->bounds[0].value, 1.0);
+  EXPECT_EQ(call->bounds[0].unit, "mm");
+  EXPECT_EQ(call->bounds[1].value, 2.5);
+  EXPECT_EQ(call->bounds[1].unit, "cm");
+  EXPECT_FALSE(parse_call(Tree::scalar("log(1,2)"), "k", {"uniform"}, "")) << "another name";
+  EXPECT_FALSE(parse_call(Tree::scalar(""), "k", {"uniform"}, ""));
 }
 
 TEST(ValueText, IsOneLineForAMap) { EXPECT_EQ(value_text(parse_value("{}", "x")), "{}"); }

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// Plans of the shipped configs: every job is what a single run would be, however it was arrived at.
+#include "sweep/plan.hpp"
+
+#include "config/yaml.hpp"
+#include "support/runs.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Texts = std::vector<std::string>;
+
+const fs::path kConfigs = test::source_folder() / "configs";
+
+struct Planned {
+  SweepPlan plan;
+  std::vector<ResolvedConfig> configs;  ///< of each job, as the sink had it
+};
+
+Planned planned(const fs::path& file, const Texts& words) {
+  Composer composer(kConfigs);
+  Planned out;
+  out.plan = plan_sweep(composer, test::shared_host(), file, words, "runs",
+                        [&](const Job&, const ResolvedConfig& config) { out.configs.push_back(config); });
+  return out;
+}
+
+Texts ids(const SweepPlan& plan) {
+  Texts out;
+  for (const Job& job : plan.sweep.jobs) out.push_back(job.id);
+  return out;
+}
+
+std::string refusal(const fs::path& file, const Texts& words) {
+  try {
+    planned(file, words);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string all_of(const ResolvedConfig& config) {
+  std::string out = config.id + "\n" + to_yaml(config.tree) + std::to_string(config.options.seed);
+  for (const ResolveNotes::Origin& one : config.notes.origins) out += "\n" + one.path + " " + one.place;
+  return out;
+}
+
+/// A table of the swept values, a job a line.
+Texts rows(const SweepPlan& plan) {
+  Texts out;
+  for (const Job& job : plan.sweep.jobs) {
+    std::string line;
+    for (const std::string& value : job.values) line += (line.empty() ? "" : "|") + value;
+    out.push_back(line);
+  }
+  return out;
+}
+
+TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhateverConfigItIs) {
+  for (const char* folder : {"paper", "ci"}) {
+    for (const auto& entry : fs::directory_iterator(kConfigs / folder)) {
+      const std::string file = std::string(folder) + "/" + entry.path().filename().string();
+      for (const Texts& more :
+           {Texts{}, Texts{"kernel=matern52"}, Texts{"taps=12", "height.kernel=rational_quadratic"}}) {
+        // Their own sweeps are other tests' work: here it is the seed alone that runs.
+        Texts words = more;
+        words.insert(words.end(), {"seed=3,17,4", "sweep.grid={}", "acquisition=uncertainty", "log.surface=true"});
+        const Planned out = planned(entry.path(), words);
+        ASSERT_EQ(out.configs.size(), 3U) << file;
+        for (std::size_t i = 0; i < 3; ++i) {
+          Texts single = more;
+          single.insert(single.end(),
+                        {"seed=" + Texts{"3", "17", "4"}[i], "acquisition=uncertainty", "log.surface=true"});
+          EXPECT_EQ(all_of(out.configs[i]), all_of(test::shipped_config(file, single))) << file;
+        }
+      }
+    }
+  }
+}
+
+TEST(Plan, MakesTheSameConfigAgainForEveryJob) {
+  Composer composer(kConfigs);
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  for (const Texts& words :
+       {Texts{"seed=range(0,5)", "acquisition=weighted,random"},
+        Texts{"acquisition=weighted,random", "seed=range(0,5)"}, Texts{"sweep.zip={seed: [1, 2], taps: [12, 17]}"},
+        Texts{"sweep.list=[{seed: [1, 2]}, {taps: 12, seed: [3, 4]}]"},
+        Texts{"seed=range(0,3)", "taps=range(10,80)"}}) {
+    const Planned out = planned(file, words);
+    ASSERT_GE(out.configs.size(), 2U);
+    for (std::size_t i = 0; i < out.configs.size(); ++i) {
+      EXPECT_EQ(all_of(planned_config(out.plan, composer, test::shared_host(), i)), all_of(out.configs[i])) << i;
+      EXPECT_EQ(out.configs[i].id, out.plan.sweep.jobs[i].id);
+    }
+  }
+}
+
+TEST(Plan, RefusesWhatIsNoSeedAsASingleRunDoes) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  for (const char* bad : {"-1", "2.5", "1 cm", "x", "99999999999999999999"}) {
+    std::string single = "accepted";
+    try {
+      test::shipped_config("paper/object_i.yaml", {std::string("seed=") + bad});
+    } catch (const Error& error) {
+      single = error.what();
+    }
+    EXPECT_EQ(refusal(file, {std::string("seed=1,") + bad}), single);
+  }
+}
+
+TEST(Plan, LeavesOutOptionsThatAPluginLacksAndTakesEqualJobsForOne) {
+  const SweepPlan plan = planned(kConfigs / "paper/object_i.yaml",
+                                 {"kernel=rbf,rational_quadratic,matern52", "kernel.alpha=1,2", "seed=1,2"})
+                             .plan;
+  EXPECT_EQ(rows(plan), (Texts{"rbf||1", "rbf||2", "rational_quadratic|1|1", "rational_quadratic|1|2",
+                               "rational_quadratic|2|1", "rational_quadratic|2|2", "matern52||1", "matern52||2"}));
+  for (std::size_t i = 0; i < plan.sweep.jobs.size(); ++i) EXPECT_EQ(plan.sweep.jobs[i].index, static_cast<int>(i));
+  EXPECT_EQ(plan.sweep.jobs[0].id, test::shipped_config("paper/object_i.yaml", {"kernel=rbf", "seed=1"}).id);
+  EXPECT_EQ(plan.sweep.jobs[5].id,
+            test::shipped_config("paper/object_i.yaml", {"kernel=rational_quadratic", "kernel.alpha=2", "seed=2"}).id);
+}
+
+TEST(Plan, LeavesOutOptionsOfAChoiceInTheConfigThatTheCommandLineNames) {
+  const test::TemporaryFolder folder;
+  const fs::path file =
+      folder.write("c.yaml",
+                   "defaults: [kernel: rbf, acquisition: weighted, fitting: fixed, backend: simulator, "
+                   "scene: object_i]\nsweep: {grid: {acquisition: [grid, random]}}\n");
+  EXPECT_EQ(rows(planned(file, {"acquisition.count=3,4"}).plan), (Texts{"grid|3", "grid|4", "random|"}));
+}
+
+TEST(Plan, LeavesOutOptionsOfMotionsAndOfWholeGroups) {
+  const SweepPlan plan = planned(kConfigs / "paper/object_i.yaml",
+                                 {"backend=paper,two_stage,continuous", "backend.motion.back_off=1cm,3cm"})
+                             .plan;
+  EXPECT_EQ(rows(plan), (Texts{"paper|", "two_stage|1cm", "two_stage|3cm", "continuous|"}));
+}
+
+TEST(Plan, CountsAnOptionThatAnotherProcessTakesOverAsTakingPart) {
+  const SweepPlan plan =
+      planned(kConfigs / "paper/object_i.yaml", {"kernel=rbf,rational_quadratic", "kernel.alpha=1,2",
+                                                 "height.kernel={type: rational_quadratic, length_scale: 2 cm}"})
+          .plan;
+  EXPECT_EQ(rows(plan).size(), 4U) << "the heights have alpha whatever the shared kernel is";
+  EXPECT_EQ(rows(plan)[0].substr(0, 6), "rbf|1|");
+}
+
+TEST(Plan, RefusesAnOptionThatNoJobHas) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  EXPECT_EQ(refusal(file, {"acquisition=weighted,grid", "acquisition.cuont=1,2"}),
+            "command line: no job of the sweep has an option 'acquisition.cuont', did you mean 'count'?");
+  EXPECT_EQ(refusal(file, {"acquisition=weighted,random", "acquisition.beta=1,2"}),
+            "command line: no job of the sweep has an option 'acquisition.beta', take it away");
+  EXPECT_EQ(refusal(file, {"backend=paper,two_stage", "backend.motoin.speed=1cm/s,2cm/s"}).substr(0, 68),
+            "command line: no job of the sweep has an option 'backend.motoin.spee");
+  EXPECT_NE(refusal(file, {"acquisition.beta=1,2"}).find("unknown option 'beta'"), std::string::npos);
+}
+
+TEST(Plan, RefusesJobsThatAreTheSameRunForAnotherReason) {
+  const std::string same =
+      " of the sweep are the same run, a swept key has no effect in one of them, or a value stands twice";
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  const auto ends = [&](const Texts& words, const std::string& jobs) {
+    EXPECT_EQ(refusal(file, words), file.string() + ": jobs " + jobs + same);
+  };
+  ends({"seed=1,1"}, "0 and 1");
+  ends({"name=a,b"}, "0 and 1");
+  ends({"kernel.length_scale=1cm,10mm"}, "0 and 1");
+  ends({"acquisition=grid,weighted,weighted", "acquisition.count=3,4"}, "2 and 3");
+  ends({"acquisition=weighted,grid", "acquisition.count=3,4,3"}, "1 and 3");
+  ends({"sweep.list=[{taps: 12}, {taps: 12}]"}, "0 and 1");
+}
+
+TEST(Plan, DropsUnwantedCombinationsBeforeTheyAreResolved) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  const Texts words{"taps=2,5", "initial.count=1,4"};
+  EXPECT_NE(refusal(file, words).find("the budget is smaller"), std::string::npos);
+  Texts with = words;
+  with.emplace_back("sweep.where=initial.count <= taps");
+  EXPECT_EQ(rows(planned(file, with).plan), (Texts{"2|1", "5|1", "5|4"}));
+}
+
+TEST(Plan, AsksTheConfigForNamesThatAreNotSwept) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  EXPECT_EQ(rows(planned(file, {"seed=1,2", "sweep.where=kernel == rbf and taps == 17"}).plan).size(), 2U);
+  EXPECT_EQ(rows(planned(file, {"seed=1,2", "sweep.where=surface == single or seed == 1"}).plan).size(), 2U)
+      << "a default that the config does not write";
+  EXPECT_EQ(rows(planned(file, {"seed=1,2", "sweep.where=kernel.length_scale == 17 mm and seed < 2"}).plan).size(), 1U);
+  EXPECT_EQ(refusal(file, {"seed=1,2", "sweep.where=surfaces == single"}).substr(0, 90),
+            "command line: in the condition 'surfaces == single' the name 'surfaces' is not known, know");
+}
+
+TEST(Plan, RefusesASweepOfNothing) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  EXPECT_EQ(refusal(file, {}), file.string() + ": nothing to sweep, give KEY=V1,V2 or a 'sweep:' in the config");
+  EXPECT_EQ(refusal(file, {"seed=1,2,3", "sweep.where=seed > 3"}),
+            "command line: sweep.where: it holds for none of the 3 combinations, ask for less, or sweep other values");
+}
+
+TEST(Plan, SaysWhatAJobHasWhereOtherItemsOfAListSayIt) {
+  const SweepPlan plan =
+      planned(kConfigs / "paper/object_i.yaml",
+              {"sweep.list=[{taps: 12}, {acquisition: grid, acquisition.count: [3, 4]}, {surface: two_part}]"})
+          .plan;
+  EXPECT_EQ(plan.sweep.keys, (Texts{"taps", "acquisition", "acquisition.count", "surface"}));
+  EXPECT_EQ(rows(plan),
+            (Texts{"12|weighted||single", "17|grid|3|single", "17|grid|4|single", "17|weighted||two_part"}));
+}
+
+struct RoundTrip {
+  const char* file;
+  Texts words;
+};
+
+TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
+  const std::vector<RoundTrip> cases{
+      {"paper/object_i.yaml", {"seed=range(0,3)", "taps=12,17"}},
+      {"paper/object_i.yaml", {"kernel=rbf,matern52,rational_quadratic", "kernel.alpha=1,2"}},
+      {"paper/object_i.yaml", {"backend=paper,two_stage,adaptive", "backend.motion.speed=3cm/s,6cm/s"}},
+      {"paper/object_i.yaml", {"backend.motion.type=two_stage,continuous,paper"}},
+      {"paper/object_i.yaml", {"candidates.spacing=5 mm,1 cm", "candidates.count=none"}},
+      {"paper/object_i.yaml", {"scene=object_i,two_blocks,cone", "fitting=fixed,ceres"}},
+      {"paper/object_i.yaml", {"height.kernel=matern32,rbf", "kernel.length_scale=2cm,3cm"}},
+      {"paper/object_i.yaml", {"sweep.zip={taps: [12, 17], acquisition: [random, grid]}", "seed=1,2"}},
+      {"paper/object_i.yaml",
+       {"sweep.list=[{acquisition: random}, {acquisition: grid, acquisition.count: [3, 4]}, {taps: 9}]", "seed=1,2",
+        "sweep.where=not (seed == 1 and taps == 9)"}},
+      {"paper/object_i.yaml",
+       {"sweep.sobol={samples: 5, keys: {kernel.length_scale: 'log(1cm,10cm)', height.noise: 'uniform(0.1mm,1mm)'}}",
+        "expect.failed_runs=<= 1", "name=points"}},
+      {"paper/comparison.yaml", {"seed=range(0,3)"}},
+      {"sweep/fitting.yaml", {"seed=4", "taps=17"}},
+      {"sweep/trade_compute.yaml", {"seed=4"}},
+      {"sweep/trade_motion.yaml", {"seed=4", "taps=17"}},
+      {"ci/strategy.yaml", {}},
+  };
+  for (const RoundTrip& one : cases) {
+    const test::TemporaryFolder folder;
+    const SweepPlan first = planned(kConfigs / one.file, one.words).plan;
+    const fs::path file = folder.write("config.yaml", to_yaml(first.config));
+    const SweepPlan again = planned(file, {}).plan;
+    const std::string what = one.file + (one.words.empty() ? "" : " " + one.words.front());
+    EXPECT_EQ(ids(again), ids(first)) << what;
+    EXPECT_EQ(rows(again), rows(first)) << what;
+    EXPECT_EQ(again.sweep.directory, first.sweep.directory) << what << "\n"
+                                                            << to_yaml(first.config) << to_yaml(again.config);
+  }
+}
+
+TEST(Plan, WritesAConfigThatNeedsNoGroupThatItDoesNotSweep) {
+  const test::TemporaryFolder folder;
+  folder.write("there/kernel/mine.yaml", "kernel: {type: matern12, length_scale: 3 cm}\n");
+  const fs::path file = folder.write(
+      "there/c.yaml",
+      "defaults: [kernel: mine, acquisition: weighted, fitting: fixed, backend: simulator, scene: object_i]\n");
+  const SweepPlan first = planned(file, {"seed=1,2", "acquisition=weighted,random"}).plan;
+  const SweepPlan again = planned(folder.write("elsewhere/config.yaml", to_yaml(first.config)), {}).plan;
+  EXPECT_EQ(ids(again), ids(first));
+}
+
+}  // namespace
+}  // namespace palpate
