@@ -66,6 +66,39 @@ Tree expect_schema() {
   return out;
 }
 
+Tree of_type(const char* type, const char* description) {
+  Tree out = Tree::map();
+  out.at("description") = quoted(description);
+  out.at("type") = quoted(type);
+  return out;
+}
+
+/// `sweep:`: its blocks, whose keys may be any.
+Tree sweep_schema() {
+  Tree sweep = of_type("object", "what 'palpate sweep' varies; its blocks multiply with each other in their order");
+  sweep.at("additionalProperties") = Tree::scalar("false");
+  Tree& blocks = sweep.at("properties");
+  blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), log(1cm,5cm,8)");
+  blocks.at("zip") = of_type("object", "side by side: values of equal number");
+  blocks.at("list") = of_type("array", "settings one after the other, each a little grid");
+  blocks.at("list").at("items").at("type") = quoted("object");
+  Tree& sobol = blocks.at("sobol") = of_type("object", "quasi-random points of continuous ranges");
+  sobol.at("additionalProperties") = Tree::scalar("false");
+  sobol.at("required") = Tree::list();
+  sobol.at("required").items = {quoted("samples"), quoted("keys")};
+  Tree& samples = sobol.at("properties").at("samples") = of_type("integer", "how many points");
+  samples.at("minimum") = Tree::scalar("1");
+  samples.at("maximum") = Tree::scalar("100000");
+  Tree& keys = sobol.at("properties").at("keys") = of_type("object", "ranges: uniform(0.1 mm, 1 mm), log(1cm, 10cm)");
+  keys.at("additionalProperties").at("type") = quoted("string");
+  const char* const condition = "combinations for which it does not hold are dropped: taps >= 12 and not kernel == rbf";
+  Tree several = of_type("array", "all of which have to hold");
+  several.at("items").at("type") = quoted("string");
+  blocks.at("where").at("anyOf") = Tree::list();
+  blocks.at("where").at("anyOf").items = {of_type("string", condition), std::move(several)};
+  return sweep;
+}
+
 }  // namespace
 
 int schema(Program& program) {
@@ -91,12 +124,7 @@ int schema(Program& program) {
   item.at("maxProperties") = Tree::scalar("1");
   properties.at("defaults") = std::move(defaults);
 
-  Tree sweep = Tree::map();
-  sweep.at("description") = quoted("what 'palpate sweep' varies");
-  sweep.at("type") = quoted("object");
-  sweep.at("properties").at("grid").at("type") = quoted("object");
-  sweep.at("additionalProperties") = Tree::scalar("false");
-  properties.at("sweep") = std::move(sweep);
+  properties.at("sweep") = sweep_schema();
 
   properties.at("expect") = expect_schema();
 

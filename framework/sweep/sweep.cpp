@@ -145,8 +145,9 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int
   for (const Row& row : results) {
     std::string name;
     for (const std::string& key : sweep.keys) {
-      if (key == "seed") continue;
-      name += (name.empty() ? "" : ", ") + (sweep.keys.size() > 2 ? key + "=" : std::string()) + text_at(row, key);
+      const std::string value = text_at(row, key);
+      if (key == "seed" || value.empty()) continue;
+      name += (name.empty() ? "" : ", ") + (sweep.keys.size() > 2 ? key + "=" : std::string()) + value;
     }
     auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.name == name; });
     if (group == groups.end()) group = groups.insert(groups.end(), Group{name, 0, 0, 0, 0, {}, {}, {}});

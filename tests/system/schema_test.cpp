@@ -58,7 +58,7 @@ class Schema : public ::testing::Test {
 
 TEST_F(Schema, AcceptsEveryShippedExperiment) {
   int files = 0;
-  for (const char* folder : {"configs/paper", "configs/ci", "runs/reference"}) {
+  for (const char* folder : {"configs/paper", "configs/ci", "configs/sweep", "runs/reference"}) {
     for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / folder)) {
       if (entry.path().extension() != ".yaml") continue;
       ++files;
@@ -98,6 +98,15 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/expect", {{"rmse", "<= 2 cm"}})) << "no field of the summary";
   EXPECT_TRUE(refused("/expect", {{"meadian(rmse_m)", "<= 2 cm"}})) << "unknown statistic";
   EXPECT_TRUE(refused("/expect", {{"taps", 17}})) << "no comparison";
+  const Json points = {{"samples", 64}, {"keys", {{"kernel.length_scale", "log(1cm, 10cm)"}}}};
+  EXPECT_FALSE(refused("/sweep", {{"grid", {{"seed", "range(0,9)"}, {"taps", {12, 17}}}}, {"sobol", points}}));
+  EXPECT_FALSE(refused("/sweep", {{"list", Json::array({{{"taps", 12}}})}, {"where", "taps > 9"}}));
+  EXPECT_FALSE(refused("/sweep", {{"zip", {{"taps", {12, 17}}}}, {"where", {"taps > 9", "seed < 3"}}}));
+  EXPECT_TRUE(refused("/sweep", {{"gird", {{"taps", {12, 17}}}}})) << "unknown block";
+  EXPECT_TRUE(refused("/sweep", {{"list", {{"taps", 12}}}})) << "no list";
+  EXPECT_TRUE(refused("/sweep", {{"sobol", {{"samples", 0}, {"keys", points["keys"]}}}})) << "no points";
+  EXPECT_TRUE(refused("/sweep", {{"sobol", {{"samples", 4}}}})) << "no keys";
+  EXPECT_TRUE(refused("/sweep", {{"where", 3}})) << "no condition";
 }
 
 }  // namespace

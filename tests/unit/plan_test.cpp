@@ -267,5 +267,25 @@ TEST(Plan, WritesAConfigThatNeedsNoGroupThatItDoesNotSweep) {
   EXPECT_EQ(ids(again), ids(first));
 }
 
+TEST(Plan, WritesAConfigOfABaseThatIsNoneWithoutItsSweepOrLeavesOptionsOut) {
+  const test::TemporaryFolder folder;
+  const std::string rest = "fitting: fixed\nbackend: simulator\nscene: object_i\n";
+  for (const std::string& text :
+       {"defaults: [kernel: rbf]\n" + rest + "sweep: {grid: {acquisition: [random, grid], seed: [1, 2]}}\n",
+        "defaults: [kernel: rational_quadratic]\nkernel: {type: rbf}\nacquisition: weighted\n" + rest +
+            "sweep: {grid: {kernel.length_scale: [1 cm, 2 cm]}}\n"}) {
+    const SweepPlan first = planned(folder.write("c.yaml", text), {}).plan;
+    const SweepPlan again = planned(folder.write("config.yaml", to_yaml(first.config)), {}).plan;
+    EXPECT_EQ(ids(again), ids(first)) << to_yaml(first.config);
+    EXPECT_EQ(again.sweep.directory, first.sweep.directory);
+  }
+}
+
+TEST(Plan, TakesASurfaceThatIsAskedFor) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  EXPECT_FALSE(planned(file, {"seed=1,2"}).configs[0].options.log.surface) << "not by default";
+  EXPECT_TRUE(planned(file, {"seed=1,2", "log.surface=true"}).configs[0].options.log.surface);
+}
+
 }  // namespace
 }  // namespace palpate
