@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/expand.hpp"
 
-#include "config/yaml.hpp"
-
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -107,9 +106,13 @@ std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, c
 std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
                                const std::string& how_to) {
   const auto open = value.text.find('(');
-  if (!value.is_scalar() || open == std::string::npos || value.text.back() != ')') return std::nullopt;
+  if (!value.is_scalar() || open == std::string::npos) return std::nullopt;
   Call call{value.text.substr(0, open), {}};
   if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
+  if (value.text.back() != ')') {
+    throw Error(value.place.text(), fmt::format("{}: '{}' lacks its ')'", key, value.text),
+                fmt::format("within braces, where commas part entries, put it into quotes: \"{}(...)\"", call.name));
+  }
   for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
     call.bounds.push_back(parse_bound(trimmed(part), value, key, how_to));
   }
@@ -166,9 +169,13 @@ Axis parse_axis(const std::string& text) {
 
 std::string value_text(const Tree& value) {
   if (value.is_scalar()) return value.text;
-  std::string text = to_yaml(value);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
+  if (value.kind == Tree::Kind::null) return "~";
+  std::string out;
+  for (const Tree& item : value.items) out += (out.empty() ? "" : ", ") + value_text(item);
+  for (const Tree::Entry& entry : value.entries) {
+    out += (out.empty() ? "" : ", ") + entry.key + ": " + value_text(entry.value);
+  }
+  return value.is_map() ? "{" + out + "}" : "[" + out + "]";
 }
 
 }  // namespace palpate

@@ -93,6 +93,12 @@ TEST(Expand, RefusesRangesThatAreNotUnderstood) {
   }
 }
 
+TEST(Expand, RefusesARangeThatYamlCutAtItsComma) {
+  EXPECT_EQ(refusal([] { expand_values(*parse_yaml("{k: range(0,3)}", "c.yaml").find("k"), "k"); }),
+            "c.yaml:1:5: k: 'range(0' lacks its ')', within braces, where commas part entries, put it into quotes: "
+            "\"range(...)\"");
+}
+
 TEST(Expand, RefusesRangesOfWhatAreNoNumbers) {
   EXPECT_EQ(refused_value("range(a,b)"), std::string("c.yaml:1:4: k: 'a' in 'range(a,b)' is not a number") + kHowTo);
   EXPECT_EQ(refused_value("range()"), std::string("c.yaml:1:4: k: '' in 'range()' is not a number") + kHowTo);
@@ -166,7 +172,11 @@ TEST(ParsedCall, TakesNameAndBoundsApart) {
   EXPECT_FALSE(parse_call(Tree::scalar(""), "k", {"uniform"}, ""));
 }
 
-TEST(ValueText, IsOneLineForAMap) { EXPECT_EQ(value_text(parse_value("{}", "x")), "{}"); }
+TEST(ValueText, IsOneLineWhateverItIs) {
+  EXPECT_EQ(value_text(parse_value("{}", "x")), "{}");
+  EXPECT_EQ(value_text(parse_yaml("type: sum\nparts:\n  - {type: rbf, scale: 1 cm}\n  - [1, ~]\n", "x")),
+            "{type: sum, parts: [{type: rbf, scale: 1 cm}, [1, ~]]}");
+}
 
 }  // namespace
 }  // namespace palpate
