@@ -42,7 +42,7 @@ Range parse_range(const Tree::Entry& entry) {
         fmt::format("{}: {} is no continuous range", entry.key, value.is_scalar() ? "'" + value.text + "'" : "this"),
         kHowTo);
   }
-  const Range range{call->name == "log", call->bounds[0].value, call->bounds[1].value, call->bounds[0].unit};
+  Range range{call->name == "log", call->bounds[0].value, call->bounds[1].value, call->bounds[0].unit};
   if (call->bounds[1].unit != range.unit) {
     throw Error(place, fmt::format("{}: the ends of '{}' have unlike units", entry.key, value.text), kHowTo);
   }
