@@ -3,8 +3,8 @@
 #pragma once
 
 #include "cli/commands.hpp"
-#include "sweep/conduct.hpp"
-#include "sweep/local_launcher.hpp"
+#include "launch/conduct.hpp"
+#include "launch/local_launcher.hpp"
 #include "sweep/sweep.hpp"
 
 #include <cstddef>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "analysis/compare_report.hpp"
 #include "cli/commands.hpp"
 #include "config/hash.hpp"
 #include "experiment/resolved.hpp"
 #include "record/files.hpp"
-#include "sweep/compare_report.hpp"
 
 #include <palpate/error.hpp>
 

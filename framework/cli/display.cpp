@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/display.hpp"
 
+#include "analysis/sweep_table.hpp"
 #include "record/tap_row.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 // What a person sees of a run or a sweep while it goes on, and at its end.
 #pragma once
 
+#include "launch/conduct.hpp"
 #include "record/session.hpp"
-#include "sweep/conduct.hpp"
 #include "sweep/sweep.hpp"
 
 #include <chrono>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "analysis/gnuplot.hpp"
+#include "analysis/pareto_report.hpp"
 #include "cli/commands.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
-#include "sweep/gnuplot.hpp"
-#include "sweep/pareto_report.hpp"
 
 #include <palpate/error.hpp>
 

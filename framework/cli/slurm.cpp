@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/campaign.hpp"
-#include "sweep/slurm_launcher.hpp"
+#include "launch/slurm_launcher.hpp"
 
 #include <palpate/error.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "launch/job.hpp"
 #include "record/run_directory.hpp"
-#include "sweep/job.hpp"
 #include "sweep/sweep.hpp"
 
 #include <palpate/error.hpp>

@@ -3,8 +3,8 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "launch/estimate.hpp"
 #include "sweep/draft.hpp"
-#include "sweep/estimate.hpp"
 #include "sweep/plan.hpp"
 
 #include <fmt/format.h>

@@ -53,7 +53,4 @@ std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::option
 /// Error.
 std::vector<std::optional<Row>> write_results(const Sweep& sweep);
 
-/// Median, spread and dead starts by group: all swept keys but the seed. One line a group under a header.
-std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int initial_taps);
-
 }  // namespace palpate

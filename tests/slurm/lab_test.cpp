@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The cluster of the tests leaves nothing running, however a test ends.
+#include "launch/job.hpp"
 #include "slurm_lab.hpp"
 #include "slurm_words.hpp"
 #include "support/programs.hpp"
-#include "sweep/job.hpp"
 
 #include <gtest/gtest.h>
 

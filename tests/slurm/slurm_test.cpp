@@ -3,9 +3,9 @@
 #include "slurm_lab.hpp"
 #include "slurm_words.hpp"
 
+#include "launch/job.hpp"
 #include "record/json.hpp"
 #include "support/programs.hpp"
-#include "sweep/job.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Intervals of the bootstrap against scipy's, against Student's where that is right, and against what they promise.
-#include "sweep/bootstrap.hpp"
+#include "analysis/bootstrap.hpp"
 
 #include <palpate/random.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Programs of the system, and words for a shell.
-#include "sweep/command.hpp"
+#include "launch/command.hpp"
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>

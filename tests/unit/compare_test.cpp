@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which jobs make groups and pairs, what is counted, and how a comparison reads.
-#include "sweep/compare_report.hpp"
+#include "analysis/compare_report.hpp"
 
 #include <palpate/error.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The front against its definition, and what counts as a setting.
-#include "sweep/pareto.hpp"
+#include "analysis/pareto.hpp"
 
-#include "sweep/gnuplot.hpp"
-#include "sweep/pareto_report.hpp"
+#include "analysis/gnuplot.hpp"
+#include "analysis/pareto_report.hpp"
 
 #include <palpate/error.hpp>
 

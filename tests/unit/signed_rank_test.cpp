@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The signed-rank test against printed tables, scipy, and the count of all patterns of signs.
-#include "sweep/signed_rank.hpp"
+#include "analysis/signed_rank.hpp"
 
 #include <palpate/random.hpp>
 

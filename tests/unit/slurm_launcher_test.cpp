@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the launcher of clusters says to Slurm and makes of its answers, without Slurm.
-#include "sweep/slurm_launcher.hpp"
+#include "launch/slurm_launcher.hpp"
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>

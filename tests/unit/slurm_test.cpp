@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What Slurm prints and how arrays are described, without Slurm.
-#include "sweep/slurm.hpp"
+#include "launch/slurm.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/random.hpp>

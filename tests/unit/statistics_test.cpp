@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/statistics.hpp"
+#include "analysis/statistics.hpp"
 
 #include <gtest/gtest.h>
 

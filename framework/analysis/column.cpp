@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/column.hpp"
+#include "analysis/column.hpp"
 
 #include "config/tree.hpp"
 

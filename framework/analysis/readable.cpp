@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/readable.hpp"
+#include "analysis/readable.hpp"
 
 #include "config/quantity.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/pareto.hpp"
+#include "analysis/pareto.hpp"
 
+#include "analysis/column.hpp"
+#include "analysis/readable.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
-#include "sweep/column.hpp"
-#include "sweep/readable.hpp"
 
 #include <palpate/error.hpp>
 

@@ -2,7 +2,7 @@
 // A sweep under way: hands what is missing to a launcher and reads from the jobs' directories what became of it.
 #pragma once
 
-#include "sweep/launcher.hpp"
+#include "launch/launcher.hpp"
 #include "sweep/sweep.hpp"
 
 #include <atomic>

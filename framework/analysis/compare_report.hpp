@@ -2,7 +2,7 @@
 // A comparison for people, as tables with a word on how to read them, and for programs, as rows.
 #pragma once
 
-#include "sweep/compare.hpp"
+#include "analysis/compare.hpp"
 
 #include <string>
 #include <vector>

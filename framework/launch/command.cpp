@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/command.hpp"
+#include "launch/command.hpp"
 
 #include <palpate/error.hpp>
 

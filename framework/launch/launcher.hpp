@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Who runs the jobs of a sweep, and where. A launcher takes jobs and lets go of them; whether a job is done it does not
-// say, because schedulers err: that stands in the job's directory alone, and the job itself (sweep/job.hpp) sees to it
+// say, because schedulers err: that stands in the job's directory alone, and the job itself (launch/job.hpp) sees to it
 // that nothing runs twice, however many launchers have it in hand.
 #pragma once
 

@@ -3,10 +3,10 @@
 // are equal in all but what makes the groups. sweep/compare_report.hpp shows it.
 #pragma once
 
-#include "sweep/column.hpp"
+#include "analysis/column.hpp"
+#include "analysis/signed_rank.hpp"
+#include "analysis/statistics.hpp"
 #include "sweep/condition.hpp"
-#include "sweep/signed_rank.hpp"
-#include "sweep/statistics.hpp"
 #include "sweep/sweep.hpp"
 
 #include <cstddef>

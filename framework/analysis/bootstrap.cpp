@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/bootstrap.hpp"
+#include "analysis/bootstrap.hpp"
 
 #include <palpate/random.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/local_launcher.hpp"
+#include "launch/local_launcher.hpp"
 
 #include <palpate/error.hpp>
 

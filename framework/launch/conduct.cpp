@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/conduct.hpp"
+#include "launch/conduct.hpp"
 
-#include "sweep/job.hpp"
+#include "launch/job.hpp"
 
 namespace palpate {
 namespace {

@@ -4,9 +4,9 @@
 // left alone, so nothing runs twice however often it is submitted, and what Slurm says is only ever a hint.
 #pragma once
 
+#include "launch/launcher.hpp"
+#include "launch/slurm.hpp"
 #include "record/session.hpp"
-#include "sweep/launcher.hpp"
-#include "sweep/slurm.hpp"
 #include "sweep/sweep.hpp"
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 // of runs are skewed, bounded and often of two kinds.
 #pragma once
 
-#include "sweep/statistics.hpp"
+#include "analysis/statistics.hpp"
 
 #include <cstddef>
 #include <vector>

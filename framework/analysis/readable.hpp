@@ -2,7 +2,7 @@
 // Numbers and tables for people: units in which values are short, columns that stand under each other.
 #pragma once
 
-#include "sweep/statistics.hpp"
+#include "analysis/statistics.hpp"
 
 #include <palpate/options.hpp>
 

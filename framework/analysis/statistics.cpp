@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/statistics.hpp"
+#include "analysis/statistics.hpp"
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/compare_report.hpp"
+#include "analysis/compare_report.hpp"
 
-#include "sweep/bootstrap.hpp"
-#include "sweep/readable.hpp"
+#include "analysis/bootstrap.hpp"
+#include "analysis/readable.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

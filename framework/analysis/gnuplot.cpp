@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/gnuplot.hpp"
+#include "analysis/gnuplot.hpp"
 
 #include <fmt/format.h>
 

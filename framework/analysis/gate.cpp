@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/gate.hpp"
+#include "analysis/gate.hpp"
 
+#include "analysis/statistics.hpp"
 #include "config/quantity.hpp"
 #include "experiment/summary_fields.hpp"
-#include "sweep/statistics.hpp"
 
 #include <fmt/format.h>
 

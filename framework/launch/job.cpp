@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/job.hpp"
+#include "launch/job.hpp"
 
 #include "record/build_info.hpp"
 #include "record/files.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/compare.hpp"
+#include "analysis/compare.hpp"
 
+#include "analysis/bootstrap.hpp"
+#include "analysis/readable.hpp"
 #include "config/quantity.hpp"
-#include "sweep/bootstrap.hpp"
-#include "sweep/readable.hpp"
 
 #include <palpate/error.hpp>
 

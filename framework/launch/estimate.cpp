@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/estimate.hpp"
+#include "launch/estimate.hpp"
 
 #include "experiment/experiment.hpp"
 #include "scene/scene_options.hpp"

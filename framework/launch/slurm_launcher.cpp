@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/slurm_launcher.hpp"
+#include "launch/slurm_launcher.hpp"
 
 #include "record/files.hpp"
 

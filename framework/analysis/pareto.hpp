@@ -3,8 +3,8 @@
 // error. sweep/pareto_report.hpp shows them.
 #pragma once
 
+#include "analysis/statistics.hpp"
 #include "record/row.hpp"
-#include "sweep/statistics.hpp"
 #include "sweep/sweep.hpp"
 
 #include <palpate/options.hpp>

@@ -3,7 +3,7 @@
 // for as a config.
 #pragma once
 
-#include "sweep/pareto.hpp"
+#include "analysis/pareto.hpp"
 
 #include <optional>
 #include <string>

@@ -4,8 +4,8 @@
 // the back of `resume`.
 #pragma once
 
-#include "sweep/job.hpp"
-#include "sweep/launcher.hpp"
+#include "launch/job.hpp"
+#include "launch/launcher.hpp"
 #include "sweep/sweep.hpp"
 
 #include <chrono>

@@ -3,7 +3,7 @@
 // knows of jobs; a task is one index of an array.
 #pragma once
 
-#include "sweep/command.hpp"
+#include "launch/command.hpp"
 
 #include <chrono>
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/pareto_report.hpp"
+#include "analysis/pareto_report.hpp"
 
-#include "sweep/gnuplot.hpp"
-#include "sweep/readable.hpp"
+#include "analysis/gnuplot.hpp"
+#include "analysis/readable.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/slurm.hpp"
+#include "launch/slurm.hpp"
 
 #include <palpate/error.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/signed_rank.hpp"
+#include "analysis/signed_rank.hpp"
 
 #include <algorithm>
 #include <cmath>

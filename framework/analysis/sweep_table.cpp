@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/sweep_table.hpp"
+
+#include "analysis/statistics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+std::string text_at(const Row& row, const std::string& name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? csv_cell(*value) : std::string();
+}
+
+std::string spread(std::vector<double> values, const char* format, double scale) {
+  if (values.empty()) return "-";
+  std::sort(values.begin(), values.end());
+  const auto shown = [&](double share) { return fmt::format(fmt::runtime(format), quantile(values, share) * scale); };
+  return fmt::format("{} ({}-{})", shown(0.5), shown(0.1), shown(0.9));
+}
+
+struct Group {
+  std::string name;
+  int runs = 0;
+  int dead = 0;
+  int found = 0;
+  int failed = 0;
+  std::vector<double> on_surface_live, on_surface_all, rmse_live;
+};
+
+}  // namespace
+
+std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int initial_taps) {
+  std::vector<Group> groups;
+  for (const Row& row : results) {
+    std::string name;
+    for (const std::string& key : sweep.keys) {
+      const std::string value = text_at(row, key);
+      if (key == "seed" || value.empty()) continue;
+      name += (name.empty() ? "" : ", ") + (sweep.keys.size() > 2 ? key + "=" : std::string()) + value;
+    }
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.name == name; });
+    if (group == groups.end()) group = groups.insert(groups.end(), Group{name, 0, 0, 0, 0, {}, {}, {}});
+    ++group->runs;
+    if (text_at(row, "status") != "done") {
+      ++group->failed;
+      continue;
+    }
+    const std::string hit = text_at(row, "first_hit_tap");
+    const bool dead = hit.empty() || std::stoi(hit) > initial_taps;
+    group->dead += dead ? 1 : 0;
+    group->found += hit.empty() ? 0 : 1;
+    const double on_surface = std::stod(text_at(row, "on_surface_taps"));
+    group->on_surface_all.push_back(on_surface);
+    if (dead) continue;
+    group->on_surface_live.push_back(on_surface);
+    if (const std::string error = text_at(row, "rmse_height_m"); !error.empty())
+      group->rmse_live.push_back(std::stod(error));
+  }
+  std::size_t width = 8;
+  for (const Group& group : groups) width = std::max(width, group.name.size());
+  std::string out =
+      fmt::format("{:<{}}  {:>5}  {:>11}  {:>7}  {:>6}  {:>22}  {:>22}  {:>18}\n", "group", width, "runs",
+                  "dead starts", "found", "failed", "on-surface, live", "on-surface, all", "height cm, live");
+  for (const Group& group : groups) {
+    const int ended = std::max(1, group.runs - group.failed);
+    out += fmt::format("{:<{}}  {:>5}  {:>10.1f}%  {:>6.1f}%  {:>6}  {:>22}  {:>22}  {:>18}\n", group.name, width,
+                       group.runs, 100.0 * group.dead / ended, 100.0 * group.found / ended, group.failed,
+                       spread(group.on_surface_live, "{:.0f}", 1.0), spread(group.on_surface_all, "{:.0f}", 1.0),
+                       spread(group.rmse_live, "{:.1f}", 100.0));
+  }
+  return out + "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";
+}
+
+}  // namespace palpate
