@@ -128,7 +128,7 @@ class FakeSlurm : public ::testing::Test {
   static std::vector<std::size_t> returned(SlurmLauncher& launcher) {
     for (;;) {
       const Launcher::State state = launcher.poll(0.1);
-      if (!state.returned.empty() || state.idle()) return state.returned;
+      if (!state.returned.empty() || state.empty_handed()) return state.returned;
     }
   }
 
@@ -197,7 +197,7 @@ TEST_F(FakeSlurm, AsksNothingWhenThereIsNothingToSubmit) {
   SlurmLauncher one = launcher();
   one.submit({});
   one.cancel();
-  EXPECT_TRUE(one.poll(10.0).idle());
+  EXPECT_TRUE(one.poll(10.0).empty_handed());
   for (const char* name : {"scontrol", "sinfo", "sbatch", "squeue", "scancel"}) EXPECT_THAT(calls(name), IsEmpty());
   EXPECT_FALSE(fs::exists(sweep_.directory / "slurm"));
 }
@@ -221,7 +221,7 @@ TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
   EXPECT_EQ(state.waiting, 3);
   folder_.write("queue", "");
   EXPECT_THAT(returned(one), ElementsAre(0, 2, 3, 4, 5));
-  EXPECT_TRUE(one.poll(0.1).idle());
+  EXPECT_TRUE(one.poll(0.1).empty_handed());
 }
 
 TEST_F(FakeSlurm, ASilentQueueReturnsNothing) {
