@@ -40,7 +40,7 @@ class Resolver final : public Fields {
     if (input_ != nullptr) {
       for (const Tree::Entry& entry : input_->entries) {
         if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-        if (entry.value.layer < type_layer_) {
+        if (entry.value.highest_layer() < type_layer_) {
           notes_.dropped.push_back({path_ + entry.key, place_text(entry.value)});
           continue;
         }

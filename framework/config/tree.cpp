@@ -127,6 +127,13 @@ Place Tree::place_of(std::string_view path) const {
   return best;
 }
 
+Layer Tree::highest_layer() const {
+  Layer highest = layer;
+  for (const Tree& item : items) highest = std::max(highest, item.highest_layer());
+  for (const Entry& entry : entries) highest = std::max(highest, entry.value.highest_layer());
+  return highest;
+}
+
 void Tree::set_layer(Layer value) {
   layer = value;
   for (Tree& item : items) item.set_layer(value);

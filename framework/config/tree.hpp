@@ -64,6 +64,8 @@ struct Tree {
   /// The place of the value at a dotted path or, where that has none, of what encloses it; none if nothing is there.
   Place place_of(std::string_view path) const;
 
+  /// The highest layer of this tree and all below: the last who had a say in it.
+  Layer highest_layer() const;
   /// Marks this tree and all below as coming from `layer`.
   void set_layer(Layer layer);
   /// Moves this tree and all below by `steps` layers, keeping their order among themselves.

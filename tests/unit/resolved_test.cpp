@@ -7,6 +7,7 @@
 
 #include <palpate/error.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace palpate {
@@ -79,6 +80,13 @@ std::string refused_config(const std::vector<std::string>& overrides) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST(ResolvedConfig, RefusesATypoBesideAGroupChosenAtTheSameTime) {
+  // A folder that the typo alone makes is no older than the choice.
+  EXPECT_THAT(refused_config({"backend=paper", "backend.motoin.speed=3cm/s"}),
+              testing::HasSubstr("unknown option 'motoin', did you mean 'motion'?"));
+  EXPECT_EQ(refused_config({"backend=paper", "backend.motion.speed=3cm/s"}), "accepted");
 }
 
 TEST(ResolvedConfig, RefusesAGridThatIsTooFineForAnyComputer) {
