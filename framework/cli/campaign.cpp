@@ -79,7 +79,7 @@ int run_campaign(Program& program, const Campaign& campaign) {
   }
   const Missing missing = find_missing(sweep, jobs, campaign.options.retry_failed, launch.attempts);
   if (campaign.one_at_a_time && missing.jobs.size() > 1 && !launch.quiet) {
-    fmt::print(stderr, "one job at a time: the backend has but one thing to move\n");
+    mention("one job at a time: the backend has but one thing to move\n");
   }
   if (launch.launcher == kSlurm) {
     if (!missing.jobs.empty() && !run_on_slurm(program, campaign, missing)) return kDone;

@@ -80,6 +80,8 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   std::fflush(stdout);
 }
 
+void mention(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 SweepLine::SweepLine(bool quiet)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) != 0),
@@ -107,7 +109,7 @@ void SweepLine::show(const SweepProgress& progress) {
     line += fmt::format(", {}", rate_words(rate));
     if (ended < progress.jobs) line += fmt::format(", {} left", duration_words((progress.jobs - ended) / rate));
   }
-  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\x1b[K" : "", line, terminal_ && !progress.last ? "" : "\n");
+  mention((terminal_ ? "\r\x1b[K" : "") + line + (terminal_ && !progress.last ? "" : "\n"));
 }
 
 namespace {

@@ -30,6 +30,10 @@ class TapTable final : public Journal {
 /// "12 s", "8 min", "3 h 05 min".
 std::string duration_words(double seconds);
 
+/// Writes to stderr what only accompanies the work. That nobody can read it any more, because the terminal is closed,
+/// is no reason to break the work off, as fmt::print(stderr) would.
+void mention(const std::string& text);
+
 /// Prints a live line of a sweep on a terminal, else a line per tenth, on stderr: done, running, failed, rate, time
 /// left.
 class SweepLine {

@@ -2,6 +2,7 @@
 #include "cli/gate.hpp"
 
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -37,7 +38,7 @@ bool conclude(const std::vector<Expectation>& expectations, const std::vector<Ru
   if (output.count_on_stdout && !verdicts.empty()) fmt::print("expected: {} of {}\n", held, verdicts.size());
   std::fflush(stdout);
   for (const Verdict& verdict : verdicts) {
-    if (!verdict.holds) fmt::print(stderr, "{}\n", verdict_line(verdict));
+    if (!verdict.holds) mention(verdict_line(verdict) + "\n");
   }
   write_junit(verdicts, runs, output);
   return held == static_cast<std::ptrdiff_t>(verdicts.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The command line: which commands there are, what they are called with, and what becomes of errors and signals.
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 
 #include <palpate/error.hpp>
 
@@ -204,10 +205,10 @@ int main(int argc, char** argv) {
   try {
     return palpate::cli::run_main(argc, argv);
   } catch (const palpate::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    palpate::cli::mention(std::string(error.what()) + "\n");
     return palpate::cli::exit_status(error.kind());
   } catch (const std::exception& error) {
-    fmt::print(stderr, "palpate: {}\n", error.what());
+    palpate::cli::mention(fmt::format("palpate: {}\n", error.what()));
     return palpate::cli::kFailed;
   }
 }

@@ -58,15 +58,15 @@ int sweep(Program& program, const SweepArguments& arguments) {
   const Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
   if (arguments.list) {
     print_jobs(plan.sweep);
-    if (!arguments.launch.quiet) fmt::print(stderr, "{}\n", size_words(program, campaign));
+    if (!arguments.launch.quiet) mention(size_words(program, campaign) + "\n");
     return kDone;
   }
   const bool is_new = draft->publish(plan);
   draft.reset();
   if (!is_new) check_builds(program, campaign);
   if (!arguments.launch.quiet) {
-    fmt::print(stderr, "{} in {}{}\n", size_words(program, campaign), plan.sweep.directory.string(),
-               is_new ? "" : ", which exists: what is missing is run");
+    mention(fmt::format("{} in {}{}\n", size_words(program, campaign), plan.sweep.directory.string(),
+                        is_new ? "" : ", which exists: what is missing is run"));
   }
   return run_campaign(program, campaign);
 }

@@ -46,6 +46,9 @@ Error system_error(const char* what) {
   return Error("", fmt::format("{}: {}", what, std::strerror(errno)), {}, Error::Kind::run);
 }
 
+/// Not with fmt::print, which throws when stderr is a terminal that was closed.
+void mention(std::size_t job, const char* what) { std::fputs(fmt::format("job {}: {}\n", job, what).c_str(), stderr); }
+
 }  // namespace
 
 LocalLauncher::LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of,
@@ -95,9 +98,9 @@ void LocalLauncher::be_child(std::size_t job) {
   try {
     status = status_of(run_job(workshop_, config_of_(job), directory_of(job), options_.resume));
   } catch (const std::exception& trouble) {
-    fmt::print(stderr, "job {}: {}\n", job, trouble.what());
+    mention(job, trouble.what());
   } catch (...) {
-    fmt::print(stderr, "job {}: something was thrown that is no exception\n", job);
+    mention(job, "something was thrown that is no exception");
   }
   // Not _exit(): plugins have things to take down, such as a robot's node.
   std::exit(status);

@@ -253,6 +253,14 @@ TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
   EXPECT_THAT(ended.err, AllOf(HasSubstr("one job at a time"), Not(HasSubstr("2 running"))));
 }
 
+TEST_F(Recovery, AMessageThatNobodyCanReadEndsNothing) {
+  // As on a terminal that was closed, every byte to stderr is an error.
+  const std::string words = test::program_file().string() + " sweep " + paper() + " taps=3 -j 2 'seed=range(0,20)'";
+  const Ended ended = test::run_program({"/bin/sh", "-c", "exec " + words + " 2> /dev/full"}, folder_.path());
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(status(), StartsWith("20 jobs, 20 done"));
+}
+
 TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
