@@ -183,6 +183,7 @@ int run_main(int argc, char** argv) {
   std::signal(SIGINT, on_key);
   std::signal(SIGTERM, on_request);
   if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
   return perform(action, argc, argv);
 }
 

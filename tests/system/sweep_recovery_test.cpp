@@ -261,6 +261,16 @@ TEST_F(Recovery, AMessageThatNobodyCanReadEndsNothing) {
   EXPECT_THAT(status(), StartsWith("20 jobs, 20 done"));
 }
 
+TEST_F(Recovery, JobsAreReapedWhereTheEndsOfChildrenWereIgnored) {
+  const char* ignoring =
+      "import os, signal, sys; signal.signal(signal.SIGCHLD, signal.SIG_IGN); os.execv(sys.argv[1], sys.argv[1:])";
+  const Ended ended = test::run_program({"python3", "-SEc", ignoring, test::program_file().string(), "sweep", paper(),
+                                         "taps=3", "seed=range(0,4)", "--quiet"},
+                                        folder_.path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(status(), StartsWith("4 jobs, 4 done"));
+}
+
 TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
