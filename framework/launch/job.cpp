@@ -29,7 +29,9 @@ class Attempt {
  public:
   Attempt(const fs::path& directory, int taps) : number_(attempts_of(directory) + 1) {
     const fs::path file = directory / kAttempts;
-    if (number_ > 1) fs::resize_file(file, read_json_lines(file).bytes);  // a kill may have left half a line
+    std::error_code none;
+    // A kill or a full disk may have left half a line, of the first attempt, too.
+    if (fs::exists(file, none)) fs::resize_file(file, read_json_lines(file).bytes);
     log_ = AppendFile(file);
     Row row = line();
     row.add("after_tap", taps);

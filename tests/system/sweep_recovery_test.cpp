@@ -244,6 +244,10 @@ TEST_F(Recovery, HalfALineInTheListOfAttemptsDoesNoHarm) {
   EXPECT_EQ(resume({"--retry-failed"}).status, 1);
   EXPECT_EQ(attempts(1), 2);
   EXPECT_THAT(text_of(job(1) / "attempts.jsonl"), AllOf(StartsWith(whole), Not(HasSubstr("{\"attem{"))));
+
+  folder_.write(fs::relative(job(1) / "attempts.jsonl", folder_.path()).string(), "{\"attem");
+  EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  EXPECT_EQ(attempts(1), 1) << "half a line is no attempt, and the next begins a line of its own";
 }
 
 TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
