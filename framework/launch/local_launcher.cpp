@@ -68,19 +68,25 @@ void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
 }
 
-void LocalLauncher::start(std::size_t job) {
+bool LocalLauncher::start(std::size_t job) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw system_error("no pipe for a job");
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    if (!running_.empty()) return false;
+    throw system_error("no pipe for a job");
+  }
   std::fflush(nullptr);  // or the child would print it again
   const pid_t pid = ::fork();
   if (pid == 0) {
     ::close(ends[0]);
+    // What it may open is for its own files.
+    for (const Child& other : running_) ::close(other.pipe);
     be_child(job);
   }
   const int why = errno;
   ::close(ends[1]);
   if (pid < 0) {
     ::close(ends[0]);
+    if (!running_.empty()) return false;
     errno = why;
     throw system_error("no process for a job");
   }
@@ -88,6 +94,7 @@ void LocalLauncher::start(std::size_t job) {
   // and passes them on once.
   ::setpgid(pid, pid);
   running_.push_back({job, pid, ends[0]});
+  return true;
 }
 
 void LocalLauncher::be_child(std::size_t job) {
@@ -111,8 +118,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
     waiting_.push_back(later_.front().job);
     later_.pop_front();
   }
-  while (!waiting_.empty() && static_cast<int>(running_.size()) < options_.workers) {
-    start(waiting_.front());
+  while (!waiting_.empty() && static_cast<int>(running_.size()) < options_.workers && start(waiting_.front())) {
     waiting_.pop_front();
   }
   std::vector<pollfd> pipes;

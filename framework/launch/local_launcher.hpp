@@ -53,7 +53,8 @@ class LocalLauncher final : public Launcher {
     Clock::time_point when;
   };
 
-  void start(std::size_t job);
+  /// Returns false where this process may have no more files or children, and has to go on with those it has.
+  bool start(std::size_t job);
   [[noreturn]] void be_child(std::size_t job);
   void reap(const Child& child, State& state);
   void conclude(std::size_t job, int wait_status, State& state);

@@ -275,6 +275,15 @@ TEST_F(Recovery, JobsAreReapedWhereTheEndsOfChildrenWereIgnored) {
   EXPECT_THAT(status(), StartsWith("4 jobs, 4 done"));
 }
 
+TEST_F(Recovery, WhereFilesRunShortFewerJobsGoOnTogetherAndNoneFails) {
+  const std::string words = test::program_file().string() + " sweep " + paper() +
+                            " taps=3 backend.pace=0.02 -j 200 'seed=range(0,100)' --quiet";
+  const Ended ended = test::run_program({"/bin/sh", "-c", "ulimit -n 40; exec " + words}, folder_.path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  EXPECT_THAT(status(), StartsWith("100 jobs, 100 done"));
+}
+
 TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
