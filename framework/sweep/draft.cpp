@@ -81,9 +81,22 @@ void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
   write_file(directory / "config.yaml", text);
 }
 
+void SweepDraft::replace_lost(const Sweep& sweep) const {
+  for (const Job& job : sweep.jobs) {
+    const fs::path directory = job_directory(sweep, job);
+    std::error_code none;
+    if (fs::exists(directory / "config.yaml", none)) continue;
+    make_folder(directory);
+    write_file(directory / "config.yaml", read_file(folder_ / "jobs" / job.id / "config.yaml"));
+  }
+}
+
 bool SweepDraft::publish(const SweepPlan& plan) {
   const fs::path& directory = plan.sweep.directory;
-  if (is_sweep(directory)) return false;
+  if (is_sweep(directory)) {
+    replace_lost(plan.sweep);
+    return false;
+  }
   write_file(folder_ / "config.yaml", to_yaml(plan.config));
   std::string manifest;
   for (const Job& job : plan.sweep.jobs) manifest += to_json_line(manifest_row(plan.sweep.keys, job)) + "\n";

@@ -26,10 +26,14 @@ class SweepDraft {
   void add(const Job& job, const ResolvedConfig& config);
 
   /// Writes config.yaml and manifest.jsonl and gives all of it the name of the sweep. Returns false, and leaves
-  /// what is there alone, when that sweep exists already. Throws Error.
+  /// what is there alone, when that sweep exists already; but where the config of a job was deleted it is put back.
+  /// Throws Error.
   bool publish(const SweepPlan& plan);
 
  private:
+  /// A job without its config would run, but could be neither carried on nor replayed.
+  void replace_lost(const Sweep& sweep) const;
+
   /// A top-level key as it was last written, because the jobs of a sweep differ in few.
   struct Written {
     std::string value;  ///< canonical

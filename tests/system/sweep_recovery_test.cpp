@@ -284,6 +284,16 @@ TEST_F(Recovery, WhereFilesRunShortFewerJobsGoOnTogetherAndNoneFails) {
   EXPECT_THAT(status(), StartsWith("100 jobs, 100 done"));
 }
 
+TEST_F(Recovery, AJobWhoseFolderWasDeletedIsRunAgainByTheSweepWithItsConfig) {
+  ASSERT_EQ(palpate(dying("none,exit")).status, 1);
+  const std::string config = text_of(job(0) / "config.yaml");
+  fs::remove_all(job(0));
+  EXPECT_THAT(resume().err, HasSubstr("it has no config.yaml"));
+  EXPECT_EQ(palpate(dying("none,exit")).status, 1);
+  EXPECT_EQ(text_of(job(0) / "config.yaml"), config);
+  EXPECT_EQ(palpate({"replay", job(0).string()}).status, 0);
+}
+
 TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
