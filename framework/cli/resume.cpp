@@ -33,6 +33,10 @@ int resume_sweep(Program& program, const ResumeArguments& arguments, const Resum
     throw Error("command line", "--jobs and --jobs-per-task do not go together: a task carries on all of its jobs",
                 "leave one of them out");
   }
+  if (!arguments.jobs.empty() && !arguments.launch.junit.empty()) {
+    throw Error("command line", "--jobs and --junit do not go together: what is expected is judged of the whole sweep",
+                "leave one of them out");
+  }
   check_jobs(program, campaign);
   return run_campaign(program, campaign);
 }

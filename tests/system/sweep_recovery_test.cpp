@@ -235,6 +235,9 @@ TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
     EXPECT_EQ(refused.status, 2) << wrong;
     EXPECT_THAT(refused.err, HasSubstr("--jobs: ")) << wrong;
   }
+  const Ended judged = resume({"--jobs", "0", "--junit", "part.xml"});
+  EXPECT_EQ(judged.status, 2);
+  EXPECT_THAT(judged.err, HasSubstr("--jobs and --junit do not go together"));
 }
 
 TEST_F(Recovery, HalfALineInTheListOfAttemptsDoesNoHarm) {
