@@ -157,12 +157,17 @@ void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
     later_.push_back({job, Clock::now() + kBusyPause});
     return;
   }
-  const bool known =
-      std::any_of(kStatuses.begin(), kStatuses.end(), [status](const auto& one) { return one.second == status; });
-  if (!known && status != kUnrecorded && !cancelled_) {
+  if (status != kUnrecorded && !cancelled_ && !is_borne_out(job, status)) {
     record_failure(directory_of(job), sweep_.jobs[job].id, fmt::format("its process ended with status {}", status));
   }
   state.returned.push_back(job);
+}
+
+bool LocalLauncher::is_borne_out(std::size_t job, int status) const {
+  if (status == status_of(JobEnd::busy) || status == status_of(JobEnd::interrupted)) return true;
+  if (status != status_of(JobEnd::done) && status != status_of(JobEnd::failed)) return false;
+  const RunStatus::State state = read_ending(directory_of(job)).state;
+  return state == RunStatus::State::done || state == RunStatus::State::failed;
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {

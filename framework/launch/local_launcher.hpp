@@ -58,6 +58,8 @@ class LocalLauncher final : public Launcher {
   [[noreturn]] void be_child(std::size_t job);
   void reap(const Child& child, State& state);
   void conclude(std::size_t job, int wait_status, State& state);
+  /// Whether an exit status is a job's own: a plugin that calls exit(0) or exit(1) leaves no result behind.
+  bool is_borne_out(std::size_t job, int status) const;
   void was_killed(std::size_t job, int signal, State& state);
   std::filesystem::path directory_of(std::size_t job) const { return job_directory(sweep_, sweep_.jobs[job]); }
 

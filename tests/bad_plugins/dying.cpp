@@ -9,7 +9,7 @@
 namespace broken {
 
 struct Options : palpate::Options {
-  enum class Way { none, crash, kill, exit, fail };
+  enum class Way { none, crash, kill, exit, leave, fail };
   Way way = Way::none;
   void list(palpate::Fields& fields) override {
     fields.choice(way, palpate::Field("way", "how its process ends"),
@@ -17,6 +17,7 @@ struct Options : palpate::Options {
                    {"crash", "by a crash", {}},
                    {"kill", "as if memory had run out", {}},
                    {"exit", "by a call of exit", {}},
+                   {"leave", "by a call of exit that says all is well", {}},
                    {"fail", "not at all, but the run fails", {}}});
   }
 };
@@ -33,6 +34,7 @@ class Backend final : public palpate::Backend {
     }
     if (request.number == 5 && way_ == Options::Way::kill) std::raise(SIGKILL);
     if (request.number == 5 && way_ == Options::Way::exit) std::_Exit(3);
+    if (request.number == 5 && way_ == Options::Way::leave) std::_Exit(0);
     if (request.number == 5 && way_ == Options::Way::fail) {
       throw palpate::Error("", "its arm has fallen off", {}, palpate::Error::Kind::run);
     }

@@ -122,6 +122,13 @@ TEST_F(Recovery, AJobThatCrashesCostsItselfAlone) {
   EXPECT_EQ(attempts(1), 1) << "it would crash again";
 }
 
+TEST_F(Recovery, AJobWhoseProcessSaysThatAllIsWellButLeavesNoResultHasFailed) {
+  const Ended ended = palpate(dying("none,leave"));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr("its process ended with status 0")));
+  EXPECT_THAT(status(), StartsWith("2 jobs, 1 done, 0 running, 1 failed"));
+}
+
 TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
   const Ended ended = palpate(dying("none,kill"));
   EXPECT_EQ(ended.status, 1);
