@@ -171,7 +171,8 @@ bool LocalLauncher::is_borne_out(std::size_t job, int status) const {
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
-  const int attempts = attempts_of(directory_of(job));
+  // Who is killed before its attempt is noted counts, too, or it would be begun for ever.
+  const int attempts = std::max(attempts_of(directory_of(job)), ++kills_[job]);
   const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
   if (is_crash(signal)) {
     record_failure(directory_of(job), sweep_.jobs[job].id, "crashed: " + name);

@@ -71,6 +71,7 @@ class LocalLauncher final : public Launcher {
   std::deque<std::size_t> waiting_;
   std::deque<Later> later_;
   std::vector<Child> running_;
+  std::map<std::size_t, int> kills_;  ///< of each job's processes
   bool cancelled_ = false;
 };
 
