@@ -33,8 +33,10 @@ void print_sweep_status(const Sweep& sweep) {
   std::vector<SweepFailure> failures;
   for (std::size_t i = 0; i < sweep.jobs.size(); ++i) {
     const std::filesystem::path directory = job_directory(sweep, sweep.jobs[i]);
-    const RunStatus status = read_ending(directory);
+    RunStatus status = read_ending(directory);
     const bool held = status.state != RunStatus::State::done && is_running(directory);
+    // Who ended between the two questions has written meanwhile what the first one missed.
+    if (!held && status.state != RunStatus::State::done) status = read_ending(directory);
     ++counts[held ? RunStatus::State::running : status.state];
     if (!held && status.state == RunStatus::State::failed) {
       failures.push_back({i, attempts_of(directory), status.stop_reason});
