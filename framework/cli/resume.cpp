@@ -15,6 +15,7 @@ namespace {
 void check_jobs(const Program& program, Campaign& campaign) {
   const std::vector<std::size_t>& only = campaign.only;
   for (std::size_t i = 0; i < (only.empty() ? campaign.sweep.jobs.size() : only.size()); ++i) {
+    if (program.workshop.interrupted->load()) return;  // then none will run
     const std::size_t job = only.empty() ? i : only[i];
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
     if (read_ending(directory).state == RunStatus::State::done) continue;
