@@ -47,7 +47,11 @@ RunStatus read_ending(const fs::path& directory) {
   std::error_code none;
   if (fs::exists(directory / kSummary, none)) {
     const std::optional<Row> summary = parse_json_row(read_file(directory / kSummary));
-    if (!summary) throw Error((directory / kSummary).string(), "is not a JSON object", "the file is damaged");
+    if (!summary) {
+      // As a power cut leaves it: the name is there and the content was never written.
+      throw Error((directory / kSummary).string(), "is not a JSON object",
+                  "the file is damaged: remove it, and 'palpate resume' makes it anew from the taps");
+    }
     out.state = text_at(*summary, "status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
     out.stop_reason = text_at(*summary, "stop_reason");
   } else if (fs::exists(directory / kTaps, none)) {

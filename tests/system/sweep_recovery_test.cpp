@@ -304,6 +304,19 @@ TEST_F(Recovery, AJobWhoseFolderWasDeletedIsRunAgainByTheSweepWithItsConfig) {
   EXPECT_EQ(palpate({"replay", job(0).string()}).status, 0);
 }
 
+TEST_F(Recovery, OfADamagedResultItIsSaidHowToMakeItAnew) {
+  ASSERT_EQ(palpate({"sweep", paper(), "taps=4", "seed=1,2", "--quiet"}).status, 0);
+  const std::string summary = fs::relative(job(1) / "summary.json", folder_.path()).string();
+  folder_.write(summary, "");
+  for (const Ended& ended : {palpate({"status", directory().string()}), resume()}) {
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_THAT(ended.err, AllOf(HasSubstr(job(1).string()), HasSubstr("remove it, and 'palpate resume'")));
+  }
+  fs::remove(folder_.path() / summary);
+  EXPECT_EQ(resume().status, 0);
+  EXPECT_EQ(lines(text_of(job(1) / "taps.jsonl")), 4);
+}
+
 TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
   EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
