@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Groups of a sweep's jobs side by side: each with its mean and spread, every two of them compared on the jobs that
-// are equal in all but what makes the groups. sweep/compare_report.hpp shows it.
+// are equal in all but what makes the groups. analysis/compare_report.hpp shows it.
 #pragma once
 
 #include "analysis/column.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What accuracy costs: the settings of a sweep, each over its seeds, and those that no other beats in both cost and
-// error. sweep/pareto_report.hpp shows them.
+// error. analysis/pareto_report.hpp shows them.
 #pragma once
 
 #include "analysis/statistics.hpp"
