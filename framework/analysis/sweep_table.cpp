@@ -24,6 +24,7 @@ std::string spread(std::vector<double> values, const char* format, double scale)
 
 struct Group {
   std::string name;
+  int initial_taps = 0;
   int runs = 0;
   int dead = 0;
   int found = 0;
@@ -33,7 +34,8 @@ struct Group {
 
 }  // namespace
 
-std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int initial_taps) {
+std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
+                        const std::function<int(std::size_t job)>& initial_taps) {
   std::vector<Group> groups;
   for (const Row& row : results) {
     std::string name;
@@ -43,14 +45,17 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results, int
       name += (name.empty() ? "" : ", ") + (sweep.keys.size() > 2 ? key + "=" : std::string()) + value;
     }
     auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.name == name; });
-    if (group == groups.end()) group = groups.insert(groups.end(), Group{name, 0, 0, 0, 0, {}, {}, {}});
+    if (group == groups.end()) {
+      const auto job = static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job")));
+      group = groups.insert(groups.end(), Group{name, initial_taps(job), 0, 0, 0, 0, {}, {}, {}});
+    }
     ++group->runs;
     if (text_at(row, "status") != "done") {
       ++group->failed;
       continue;
     }
     const std::string hit = text_at(row, "first_hit_tap");
-    const bool dead = hit.empty() || std::stoi(hit) > initial_taps;
+    const bool dead = hit.empty() || std::stoi(hit) > group->initial_taps;
     group->dead += dead ? 1 : 0;
     group->found += hit.empty() ? 0 : 1;
     const double on_surface = std::stod(text_at(row, "on_surface_taps"));

@@ -34,13 +34,19 @@ int conclude_part(const Sweep& sweep, const SweepReport& report) {
   return report.unfinished > 0 ? kBusy : kDone;
 }
 
-int conclude_whole(const Sweep& sweep, const ResolvedConfig& config, const SweepReport& report,
-                   const std::string& junit) {
+int conclude_whole(const Campaign& campaign, const SweepReport& report) {
+  const Sweep& sweep = campaign.sweep;
+  const ResolvedConfig config = campaign.config_of(0);
+  // Otherwise all jobs have as many, and none of their configs need be read.
+  const bool varies = std::any_of(sweep.keys.begin(), sweep.keys.end(),
+                                  [](const std::string& key) { return key.substr(0, key.find('.')) == "initial"; });
   const std::vector<std::optional<Row>> summaries = write_results(sweep);
-  print_sweep(sweep, sweep_results(sweep, summaries), report, static_cast<int>(config.options.initial.count));
+  print_sweep(sweep, sweep_results(sweep, summaries), report, [&](std::size_t job) {
+    return static_cast<int>(varies ? campaign.config_of(job).options.initial.count : config.options.initial.count);
+  });
   if (report.interrupted) return kInterrupted;
   const bool all_hold =
-      conclude(config.expectations, outcomes_of(sweep, summaries), {config.options.name, junit, true});
+      conclude(config.expectations, outcomes_of(sweep, summaries), {config.options.name, campaign.launch.junit, true});
   return sweep_status(config.expectations, all_hold, !report.failures.empty() || report.unfinished > 0);
 }
 
@@ -90,7 +96,7 @@ int run_campaign(Program& program, const Campaign& campaign) {
   }
   SweepReport report = report_on(sweep, jobs);
   report.interrupted = program.workshop.interrupted->load();
-  return whole ? conclude_whole(sweep, campaign.config_of(0), report, launch.junit) : conclude_part(sweep, report);
+  return whole ? conclude_whole(campaign, report) : conclude_part(sweep, report);
 }
 
 std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {

@@ -167,7 +167,8 @@ void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failure
   }
 }
 
-void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report, int initial_taps) {
+void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
+                 const std::function<int(std::size_t job)>& initial_taps) {
   fmt::print("{}", sweep_table(sweep, results, initial_taps));
   print_failures(sweep, report.failures);
   if (!report.failures.empty())

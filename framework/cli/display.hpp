@@ -7,6 +7,8 @@
 #include "sweep/sweep.hpp"
 
 #include <chrono>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,7 +57,8 @@ void print_summary(const RunReport& report);
 /// A line a failed job with its keys and its reason; of very many, the first.
 void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures);
 
-/// The table, the failures and the place of a sweep.
-void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report, int initial_taps);
+/// The table, the failures and the place of a sweep; `initial_taps` as sweep_table() asks for them.
+void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
+                 const std::function<int(std::size_t job)>& initial_taps);
 
 }  // namespace palpate::cli

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <sstream>
 
 namespace palpate {
 namespace {
@@ -96,6 +97,32 @@ TEST(Sweep, ABadValueIsRefusedBeforeAnyJobStarts) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("taps: 0 is out of range"));
   EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+}
+
+/// The dead starts in a group's row of the table at the end of a sweep.
+std::string dead_starts(const std::string& table, const std::string& group) {
+  std::istringstream row(table.substr(table.find("\n" + group + " ") + 1));
+  std::string name, runs, dead;
+  row >> name >> runs >> dead;
+  EXPECT_EQ(name, group);
+  return dead;
+}
+
+TEST(Sweep, CountsDeadStartsByTheInitialTapsOfEachGroup) {
+  const TemporaryFolder folder;
+  const auto table = [&](const std::string& counts) {
+    return test::palpate({"sweep", paper(), "initial.count=" + counts, "seed=range(0,20)", "--quiet"}, folder.path())
+        .out;
+  };
+  const std::string one = table("1");
+  const std::string eleven = table("11");
+  const std::string both = table("1,11");
+  const std::string turned = table("11,1");
+  EXPECT_NE(dead_starts(one, "1"), dead_starts(eleven, "11")) << "else this tests nothing";
+  for (const std::string& made : {both, turned}) {
+    EXPECT_EQ(dead_starts(made, "1"), dead_starts(one, "1"));
+    EXPECT_EQ(dead_starts(made, "11"), dead_starts(eleven, "11"));
+  }
 }
 
 TEST(Sweep, CarriesOnWithWhatIsMissing) {
