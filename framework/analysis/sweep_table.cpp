@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/sweep_table.hpp"
 
+#include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
 
 #include <fmt/format.h>
@@ -65,19 +66,23 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     if (const std::string error = text_at(row, "rmse_height_m"); !error.empty())
       group->rmse_live.push_back(std::stod(error));
   }
-  std::size_t width = 8;
-  for (const Group& group : groups) width = std::max(width, group.name.size());
-  std::string out =
-      fmt::format("{:<{}}  {:>5}  {:>11}  {:>7}  {:>6}  {:>22}  {:>22}  {:>18}\n", "group", width, "runs",
-                  "dead starts", "found", "failed", "on-surface, live", "on-surface, all", "height cm, live");
+  // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
+  constexpr std::size_t kLongest = 32;
+  const bool behind =
+      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.name.size() > kLongest; });
+  std::vector<std::vector<std::string>> lines{{behind ? "" : "group", "runs", "dead starts", "found", "failed",
+                                               "on-surface, live", "on-surface, all", "height cm, live",
+                                               behind ? "group" : ""}};
   for (const Group& group : groups) {
     const int ended = std::max(1, group.runs - group.failed);
-    out += fmt::format("{:<{}}  {:>5}  {:>10.1f}%  {:>6.1f}%  {:>6}  {:>22}  {:>22}  {:>18}\n", group.name, width,
-                       group.runs, 100.0 * group.dead / ended, 100.0 * group.found / ended, group.failed,
-                       spread(group.on_surface_live, "{:.0f}", 1.0), spread(group.on_surface_all, "{:.0f}", 1.0),
-                       spread(group.rmse_live, "{:.1f}", 100.0));
+    const std::string name = one_line(group.name);
+    lines.push_back({behind ? "" : name, std::to_string(group.runs), fmt::format("{:.1f}%", 100.0 * group.dead / ended),
+                     fmt::format("{:.1f}%", 100.0 * group.found / ended), std::to_string(group.failed),
+                     spread(group.on_surface_live, "{:.0f}", 1.0), spread(group.on_surface_all, "{:.0f}", 1.0),
+                     spread(group.rmse_live, "{:.1f}", 100.0), behind ? name : ""});
   }
-  return out + "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";
+  return aligned(lines, "lrrrrrrrl") +
+         "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";
 }
 
 }  // namespace palpate

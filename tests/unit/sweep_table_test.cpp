@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// The table at the end of a sweep.
+#include "analysis/sweep_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// The table of a job for each of `groups`, with three initial taps; each first hits at tap 2.
+std::string table_of(const std::vector<std::string>& keys, const std::vector<std::vector<std::string>>& groups) {
+  Sweep sweep{"runs/x/0123456789ab", keys, {}};
+  std::vector<Row> results;
+  for (const std::vector<std::string>& values : groups) {
+    const int index = static_cast<int>(sweep.jobs.size());
+    sweep.jobs.push_back({index, "id", values});
+    Row row;
+    row.add("job", index);
+    for (std::size_t i = 0; i < keys.size(); ++i) row.add(keys[i], values[i]);
+    row.add("status", "done");
+    row.add("first_hit_tap", 2);
+    row.add("on_surface_taps", 7);
+    row.add("rmse_height_m", 0.021);
+    results.push_back(std::move(row));
+  }
+  return sweep_table(sweep, results, [](std::size_t) { return 3; });
+}
+
+TEST(SweepTable, IsThisLetterByLetter) {
+  EXPECT_EQ(table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}),
+            "group     runs  dead starts   found  failed  on-surface, live  on-surface, all  height cm, live\n"
+            "rbf          1         0.0%  100.0%       0           7 (7-7)          7 (7-7)    2.1 (2.1-2.1)\n"
+            "matern52     1         0.0%  100.0%       0           7 (7-7)          7 (7-7)    2.1 (2.1-2.1)\n"
+            "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n");
+}
+
+TEST(SweepTable, KeepsItsNumbersToTheWidthOfAScreenThoughGroupsHaveLongNames) {
+  const std::string name = "scene=object_i, kernel=rational_quadratic, kernel.length_scale=2.5 cm, kernel.alpha=0.5";
+  const std::string table =
+      table_of({"scene", "kernel", "kernel.length_scale", "kernel.alpha", "seed"},
+               {{"object_i", "rational_quadratic", "2.5 cm", "0.5", "1"}, {"object_ii", "rbf", "1.7 cm", "", "1"}});
+  EXPECT_THAT(table, StartsWith("runs  dead starts  "));
+  std::istringstream lines(table);
+  std::size_t at = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (at == 0) at = line.find("group");
+    EXPECT_LE(std::min(line.size(), line.find("scene=")), 100U) << line;
+  }
+  EXPECT_THAT(table, HasSubstr("  " + name + "\n"));
+  EXPECT_EQ(table.find(name), table.find('\n') + 1 + at) << "under its header";
+}
+
+TEST(SweepTable, HasALineAGroupWhateverIsInItsName) {
+  const std::string table = table_of({"name", "seed"}, {{"two\nlines", "1"}});
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+}
+
+}  // namespace
+}  // namespace palpate
