@@ -150,9 +150,16 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
   return groups;
 }
 
+/// An option that the plugin of a group does not have is named as such: nothing would look like a slip.
+std::string name_of(const Values& values) {
+  Values shown = values;
+  std::replace(shown.begin(), shown.end(), std::string(), std::string("(none)"));
+  return one_line(fmt::format("{}", fmt::join(shown, ", ")));
+}
+
 ComparedGroup summarise(const Collected& collected) {
   ComparedGroup out;
-  out.name = one_line(fmt::format("{}", fmt::join(collected.values, ", ")));
+  out.name = name_of(collected.values);
   std::vector<double> values;
   for (const auto& [pairing, outcome] : collected.outcomes) {
     ++out.counts.jobs;

@@ -34,7 +34,7 @@ struct JobCounts {
 };
 
 struct ComparedGroup {
-  std::string name;  ///< its values, in the order of the keys: "weighted, rbf"
+  std::string name;  ///< its values, in the order of the keys: "weighted, rbf"; "(none)" of a key that its jobs lack
   JobCounts counts;
   MeanEstimate mean;  ///< over the jobs that have a value; interval by the bootstrap
   double median = 0.0;

@@ -108,6 +108,14 @@ TEST(Compare, MakesGroupsOfSeveralKeysAndAdjustsForAllPairs) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(*made.pairs[i].p_holm, adjusted[i]);
 }
 
+TEST(Compare, NamesAGroupWhoseJobsLackAnOption) {
+  const MadeSweep made({{"a", "", 1, 0.1}, {"b", "4", 1, 0.2}});
+  const Comparison both = made.by({"acquisition", "kernel"}, "rmse_m", "a, (none)");
+  EXPECT_EQ(both.groups[0].name, "a, (none)");
+  EXPECT_EQ(both.groups[1].name, "b, 4");
+  EXPECT_THAT(compare_tables(made.by({"kernel"})), HasSubstr("\n4 - (none) "));
+}
+
 TEST(Compare, TheMeanDifferenceOfCompletePairsIsTheDifferenceOfTheMeans) {
   const Comparison made = MadeSweep(two_by_two(30)).by({"acquisition"});
   EXPECT_NEAR(made.pairs[0].difference.mean, made.groups[1].mean.mean - made.groups[0].mean.mean, 1e-12);
