@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace palpate {
 namespace {
@@ -276,6 +277,22 @@ Values varying(const Sweep& sweep, const Values& keys) {
   return out;
 }
 
+/// Adds to `apart` the places in the pairing of which the two groups have no value in common.
+void find_apart(const Outcomes& a, const Outcomes& b, std::set<std::size_t>& apart) {
+  const auto values_at = [](const Outcomes& outcomes, std::size_t place) {
+    std::set<std::string> values;
+    for (const auto& [pairing, outcome] : outcomes) values.insert(pairing[place]);
+    return values;
+  };
+  const std::size_t places = a.begin()->first.size() - 1;  // the last one tells equal jobs apart
+  for (std::size_t place = 0; place < places; ++place) {
+    const std::set<std::string> others = values_at(b, place);
+    const std::set<std::string> own = values_at(a, place);
+    if (std::none_of(own.begin(), own.end(), [&](const std::string& one) { return others.count(one) > 0; }))
+      apart.insert(place);
+  }
+}
+
 /// Throws Error if nothing is left to compare, with the reason.
 void check_values(const Comparison& made, const Sweep& sweep) {
   JobCounts all;
@@ -327,6 +344,12 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
     }
   }
   adjust(out.pairs);
+  std::set<std::size_t> apart;
+  for (const ComparedPair& pair : out.pairs) {
+    if (pair.lost.without_partner > 0) find_apart(groups[pair.first].outcomes, groups[pair.second].outcomes, apart);
+  }
+  const Values paired = others(sweep.keys, query.by);
+  for (const std::size_t place : apart) out.apart.push_back(paired[place]);
   return out;
 }
 

@@ -66,7 +66,9 @@ struct ComparedPair {
 struct Comparison {
   Column metric;
   std::vector<std::string> by;
-  std::vector<std::string> pairing;   ///< the other swept keys, if they vary: they are equal within a pair
+  std::vector<std::string> pairing;  ///< the other swept keys, if they vary: they are equal within a pair
+  /// Of those keys the ones of which some compared groups have no value in common, so that they have no pairs.
+  std::vector<std::string> apart;
   std::vector<ComparedGroup> groups;  ///< in the order of the sweep
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
   std::size_t compared = 0;           ///< groups; those that the condition leaves out whole are in no pair

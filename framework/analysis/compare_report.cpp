@@ -165,6 +165,11 @@ std::string remarks(const Comparison& comparison) {
   }
   for (const ComparedPair& pair : comparison.pairs)
     out += lost_note(comparison, pair) + contrary_note(comparison, pair);
+  if (!comparison.apart.empty()) {
+    out += fmt::format("groups that have no {} in common have no pairs: '--by {},{}' compares them\n",
+                       keys_text(comparison.apart), one_line(fmt::format("{}", fmt::join(comparison.by, ","))),
+                       one_line(fmt::format("{}", fmt::join(comparison.apart, ","))));
+  }
   return out;
 }
 

@@ -210,6 +210,21 @@ TEST(Compare, GroupsWithoutACommonJobHaveNoPairAndNoP) {
   EXPECT_THAT(compare_tables(made), HasSubstr("b - a           0     2                     -               0/0/0  -"));
 }
 
+TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
+  // a has no such option, and c shares one value of it with b.
+  const MadeSweep made({{"a", "", 1, 0.1}, {"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
+  const Comparison apart = made.by({"acquisition"});
+  EXPECT_EQ(apart.apart, std::vector<std::string>{"kernel"});
+  EXPECT_THAT(
+      compare_tables(apart),
+      HasSubstr("\ngroups that have no kernel in common have no pairs: '--by acquisition,kernel' compares them"));
+  const Comparison paired = made.by({"acquisition", "kernel"});
+  EXPECT_TRUE(paired.apart.empty());
+  for (const ComparedPair& pair : paired.pairs) EXPECT_EQ(pair.difference.count, 1U);
+  const MadeSweep shared({{"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
+  EXPECT_TRUE(shared.by({"acquisition"}).apart.empty()) << "one lost pair of two is no reason to group otherwise";
+}
+
 TEST(Compare, AJobThatASweepHoldsTwiceIsPairedWithItsLike) {
   const Comparison made =
       MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 1, 0.1}, {"b", "k", 1, 0.3}, {"b", "k", 1, 0.3}}).by({"acquisition"});
