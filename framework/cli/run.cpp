@@ -45,7 +45,12 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
 int run(Program& program, const RunArguments& arguments) {
   std::vector<Override> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
-  const ResolvedConfig config = load_experiment(program.composer, program.host, arguments.config, overrides);
+  const Tree composed = program.composer.compose(arguments.config, overrides);
+  const ResolvedConfig config = resolve_experiment(composed, program.host);
+  if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
+    fmt::print(stderr, "{}: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n",
+               sweep->place.text());
+  }
   if (arguments.print_config) {
     if (arguments.origins) {
       print_origins(config);

@@ -163,5 +163,17 @@ TEST(SweepDescription, OfAShippedConfigRunsToItsEnd) {
   EXPECT_THAT(ended.out, Not(HasSubstr("kernel.alpha= "))) << "what a setting does not have is not shown";
 }
 
+TEST(SweepDescription, ASingleRunLeavesItAsideAndSaysSo) {
+  const TemporaryFolder folder;
+  const Words run{"run", paper(), "taps=5", "sweep.grid={seed: [1, 2]}"};
+  const Ended ended = test::palpate(run, folder.path());
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.err, "command line: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n");
+  Words quiet = run;
+  quiet.push_back("--quiet");
+  EXPECT_EQ(test::palpate(quiet, folder.path()).err, "");
+  EXPECT_EQ(test::palpate({"run", paper(), "taps=6"}, folder.path()).err, "");
+}
+
 }  // namespace
 }  // namespace palpate
