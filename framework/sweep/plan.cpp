@@ -6,6 +6,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -96,9 +97,7 @@ class Planner {
     const auto [twin, is_new] = seen_.emplace(job.id, job.index);
     if (!is_new) {
       if (differs_by_what_is_left_out(static_cast<std::size_t>(twin->second), job, combination)) return;
-      throw Error(plan_.file.string(),
-                  fmt::format("jobs {} and {} of the sweep are the same run", twin->second, job.index),
-                  "a swept key has no effect in one of them, or a value stands twice");
+      throw same_run(plan_.sweep.jobs[static_cast<std::size_t>(twin->second)], job);
     }
     if (sink) sink(job, config);
     plan_.sweep.jobs.push_back(std::move(job));
@@ -193,6 +192,17 @@ class Planner {
       }
     }
     return any;
+  }
+
+  Error same_run(const Job& twin, const Job& job) const {
+    std::vector<std::string> differing;
+    for (std::size_t key = 0; key < keys_.size(); ++key) {
+      if (twin.values[key] != job.values[key]) differing.push_back(keys_[key]);
+    }
+    const std::string reason = fmt::format("jobs {} and {} of the sweep are the same run", twin.index, job.index);
+    if (differing.empty()) return {plan_.file.string(), reason, "a value stands twice: write it once"};
+    return {plan_.file.string(), fmt::format("{} though they differ in {}", reason, fmt::join(differing, ", ")),
+            "that has no effect there: take it away, or what differs in writing alone"};
   }
 
   SweepPlan& plan_;

@@ -296,8 +296,7 @@ std::vector<Case> cases() {
             "bad.yaml:11:3: unknown option 'gird' of sweep, did you mean 'grid'?"),
       sweep("NothingToSweep", "", {}, "bad.yaml: nothing to sweep, give KEY=V1,V2 or a 'sweep:' in the config"),
       sweep("SweepOfOneValueTwice", "", {"seed=1,1"},
-            "bad.yaml: jobs 0 and 1 of the sweep are the same run, a swept key has no effect in one of them, or a "
-            "value stands twice"),
+            "bad.yaml: jobs 0 and 1 of the sweep are the same run, a value stands twice: write it once"),
   };
 }
 

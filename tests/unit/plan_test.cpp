@@ -166,18 +166,23 @@ TEST(Plan, RefusesAnOptionThatNoJobHas) {
 }
 
 TEST(Plan, RefusesJobsThatAreTheSameRunForAnotherReason) {
-  const std::string same =
-      " of the sweep are the same run, a swept key has no effect in one of them, or a value stands twice";
-  const fs::path file = kConfigs / "paper/object_i.yaml";
-  const auto ends = [&](const Texts& words, const std::string& jobs) {
-    EXPECT_EQ(refusal(file, words), file.string() + ": jobs " + jobs + same);
+  const std::string same = " of the sweep are the same run";
+  const std::string twice = ", a value stands twice: write it once";
+  const auto differ = [](const std::string& key) {
+    return " though they differ in " + key +
+           ", that has no effect there: take it away, or what differs in writing alone";
   };
-  ends({"seed=1,1"}, "0 and 1");
-  ends({"name=a,b"}, "0 and 1");
-  ends({"kernel.length_scale=1cm,10mm"}, "0 and 1");
-  ends({"acquisition=grid,weighted,weighted", "acquisition.count=3,4"}, "2 and 3");
-  ends({"acquisition=weighted,grid", "acquisition.count=3,4,3"}, "1 and 3");
-  ends({"sweep.list=[{taps: 12}, {taps: 12}]"}, "0 and 1");
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  const auto ends = [&](const Texts& words, const std::string& jobs, const std::string& why) {
+    EXPECT_EQ(refusal(file, words), file.string() + ": jobs " + jobs + same + why);
+  };
+  ends({"seed=1,1"}, "0 and 1", twice);
+  ends({"name=a,b"}, "0 and 1", differ("name"));
+  ends({"log.maps=true,false", "seed=1,2", "threads=1,2"}, "0 and 1", differ("threads"));
+  ends({"kernel.length_scale=1cm,10mm"}, "0 and 1", differ("kernel.length_scale"));
+  ends({"acquisition=grid,weighted,weighted", "acquisition.count=3,4"}, "2 and 3", twice);
+  ends({"acquisition=weighted,grid", "acquisition.count=3,4,3"}, "1 and 3", twice);
+  ends({"sweep.list=[{taps: 12}, {taps: 12}]"}, "0 and 1", twice);
 }
 
 TEST(Plan, DropsUnwantedCombinationsBeforeTheyAreResolved) {
