@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-/// What a job computes, on this machine, in the mean over those that were tried.
+/// What a job computes and writes, on this machine, in the mean over those that were tried.
 struct Estimate {
   double job_seconds = 0.0;
   bool at_least = false;  ///< some were broken off and their rest was taken to be like their beginning
