@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <memory>
 
 #include <fcntl.h>
@@ -108,6 +109,7 @@ std::optional<Estimate> estimate_job(const PluginFactory& factory,
                                      std::size_t jobs) {
   std::array<int, 2> ends{};
   if (jobs == 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
+  std::fflush(nullptr);  // or the child might print it again
   const pid_t pid = ::fork();
   if (pid == 0) answer(ends[1], factory, config_of, jobs);
   ::close(ends[1]);
