@@ -25,15 +25,16 @@ double seconds_of(const ResolvedConfig& config) {
 }
 
 TEST(Estimate, IsOfTheSizeOfWhatAJobComputes) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  // So small that it ends in its share of time, a busy machine and sanitizers notwithstanding.
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4", "candidates.count=8"});
   const std::optional<Estimate> estimate = estimate_job(
       shared_host(), [&](std::size_t) { return config; }, 40);
   ASSERT_TRUE(estimate);
   EXPECT_FALSE(estimate->at_least);
-  // Not a time, but a ratio, and a wide one: the machine may be busy with other tests.
+  // Not a time, but a ratio, and a wide one. What a job costs beside its computing comes on top.
   const double seconds = seconds_of(config);
   EXPECT_GT(estimate->job_seconds, seconds / 50);
-  EXPECT_LT(estimate->job_seconds, seconds * 50);
+  EXPECT_LT(estimate->job_seconds, seconds * 50 + 0.02);
 }
 
 TEST(Estimate, OfLongJobsIsALeastOne) {
