@@ -92,11 +92,11 @@ void expect_comparison(const std::string& readme, const std::string& printed) {
 /// Commands whose work is the same in every build, and minutes long under the sanitizers.
 bool only_in_release(const std::string& command) {
 #ifdef __SANITIZE_ADDRESS__
-  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ",
-                            "./palpate pareto ", "./palpate compare "}) {
+  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep "}) {
     if (command.rfind(begin, 0) == 0) return true;
   }
-  return false;
+  // What reads runs reads those of a sweep that was left out.
+  return command.find(" runs/") != std::string::npos;
 #else
   static_cast<void>(command);
   return false;
