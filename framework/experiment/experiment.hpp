@@ -44,6 +44,13 @@ class Experiment {
   /// The result as of now; computes what only the record needs, building models that the loop did not.
   RunResult result();
 
+  /// Chooses the next tap as run() does, whatever the budget, and describes the state that it is chosen from; makes
+  /// none. None if no candidate is left.
+  std::optional<TapRecord> choose_next();
+
+  /// What the acquisition gives each candidate as of now.
+  Eigen::VectorXd scores() const;
+
   const Candidates& candidates() const { return candidates_; }
   const Scene& scene() const { return *scene_; }
   const Backend& backend() const { return *backend_; }
@@ -54,7 +61,6 @@ class Experiment {
 
  private:
   std::optional<std::string> stop_reason() const;
-  std::optional<TapRecord> choose_next();
   void choose_by_score(TapRecord& tap);
   Pick pick_best();
   void describe_state(TapRecord& tap);

@@ -57,6 +57,12 @@ void Experiment::resume(const std::vector<PastTap>& past) {
   for (const PastTap& tap : past) absorb(tap.target, tap.contact, tap.source);
 }
 
+Eigen::VectorXd Experiment::scores() const {
+  Eigen::VectorXd out(candidates_.size());
+  acquisition_->score(belief_, out);
+  return out;
+}
+
 Pick Experiment::pick_best() {
   const double scale = acquisition_->prior_scale();
   if (const Scores* formed = belief_.formed()) return chooser_.pick(*formed, allowed_, scale, options_.tie_tolerance);

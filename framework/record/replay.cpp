@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Replay: the recorded contacts go through the same models, and every number is compared as text, bit for bit.
 #include "experiment/experiment.hpp"
-#include "record/files.hpp"
-#include "record/json.hpp"
-#include "record/session.hpp"
+#include "record/recording.hpp"
 #include "record/summary.hpp"
 #include "record/tap_row.hpp"
-
-#include <palpate/error.hpp>
-
-#include <fmt/format.h>
 
 namespace palpate {
 
@@ -38,13 +32,13 @@ Built built_at(const Row& row) {
 class Recorded final : public Backend {
  public:
   /// `built`: for each tap, what was built when the next one was chosen.
-  Recorded(std::vector<PastTap> taps, std::vector<Built> built, bool truth_known, bool predicted)
-      : taps_(std::move(taps)), built_(std::move(built)), truth_known_(truth_known), predicted_(predicted) {}
+  Recorded(const Recording& recording, std::vector<Built> built, bool predicted)
+      : recording_(recording), built_(std::move(built)), predicted_(predicted) {}
   Contact tap(const TapRequest& request) override {
-    return taps_.at(static_cast<std::size_t>(request.number - 1)).contact;
+    return recording_.taps.at(static_cast<std::size_t>(request.number - 1)).contact;
   }
   bool repeatable() const override { return true; }
-  bool scene_is_truth() const override { return truth_known_; }
+  bool scene_is_truth() const override { return recording_.truth_known(); }
   bool wants_prediction() const override { return predicted_; }
   /// Reading more than was built would fill fields that the record leaves empty; reading less, leave some empty.
   void show(const Belief& belief) override {
@@ -55,9 +49,8 @@ class Recorded final : public Backend {
   }
 
  private:
-  std::vector<PastTap> taps_;
+  const Recording& recording_;
   std::vector<Built> built_;
-  bool truth_known_;
   bool predicted_;
 };
 
@@ -91,29 +84,21 @@ void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& re
 }  // namespace
 
 ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
-  ResolvedConfig config = load_run(workshop.host, directory);
-  std::vector<Row> recorded;
-  for (Row& row : read_json_lines(directory / "taps.jsonl").rows) {
-    if (!is_intent(row)) recorded.push_back(std::move(row));
-  }
-  if (recorded.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
-  std::vector<PastTap> taps;
+  const Recording recording = read_recording(workshop, directory);
+  const std::vector<Row>& recorded = recording.rows;
   std::vector<Built> built;
-  for (std::size_t i = 0; i < recorded.size(); ++i) {
+  for (std::size_t i = 0; i < recorded.size(); ++i)
     built.push_back(built_at(recorded[std::min(i + 1, recorded.size() - 1)]));
-    taps.push_back(past_tap(recorded[i], fmt::format("{}: tap {}", (directory / "taps.jsonl").string(), i + 1)));
-  }
-  const auto made = static_cast<int>(taps.size());
-  const bool cut = made < config.options.taps;
+  const auto made = static_cast<int>(recorded.size());
+  const bool cut = made < recording.config.options.taps;
   Experiment experiment(
-      config.options, workshop.host, workshop.interrupted,
-      std::make_shared<Recorded>(std::move(taps), std::move(built), has(recorded.front(), "true_on_surface"),
-                                 has(recorded.front(), "predicted.height")));
+      recording.config.options, workshop.host, workshop.interrupted,
+      std::make_shared<Recorded>(recording, std::move(built), has(recorded.front(), "predicted.height")));
   Collector collector;
   experiment.run(collector, made);
 
   ReplayReport report;
-  report.taps = static_cast<int>(recorded.size());
+  report.taps = made;
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
     if (i < collector.rows.size()) {
@@ -122,19 +107,17 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
       report.differences.push_back({number, "tap", "made", "not made"});
     }
   }
-  std::error_code none;
-  if (!fs::exists(directory / "summary.json", none)) return report;
-  const std::optional<Row> summary = parse_json_row(read_file(directory / "summary.json"));
-  if (!summary) throw Error((directory / "summary.json").string(), "is not a JSON object", "the file is damaged");
+  if (!recording.summary) return report;
+  const Row& summary = *recording.summary;
   // A failed run asks its models nothing any more: see carry_out().
-  const bool failed = shown(summary->find("status")) == "failed";
+  const bool failed = recording.failed();
   RunResult result = failed ? experiment.counts() : experiment.result();
   // A record that failed, or ended before its budget, did so for a reason that the taps alone do not show.
   if (failed || cut) {
-    if (const Scalar* reason = summary->find("stop_reason")) result.stop_reason = shown(reason);
+    if (const Scalar* reason = summary.find("stop_reason")) result.stop_reason = shown(reason);
   }
   const std::string failure = failed ? result.stop_reason : std::string();
-  compare(*summary, summary_row(config, result, failure, Stopwatch{}, {}), 0, report);
+  compare(summary, summary_row(recording.config, result, failure, Stopwatch{}, {}), 0, report);
   return report;
 }
 

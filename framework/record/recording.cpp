@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "record/recording.hpp"
+
+#include "record/files.hpp"
+#include "record/json.hpp"
+#include "record/tap_row.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// In the place of a backend: knows whether the scene was the truth, and makes no tap.
+class Absent final : public Backend {
+ public:
+  explicit Absent(bool truth_known) : truth_known_(truth_known) {}
+  Contact tap(const TapRequest&) override {
+    throw Error("", "a recorded run makes no taps", {}, Error::Kind::run);  // would be a mistake in this program
+  }
+  bool repeatable() const override { return true; }
+  bool scene_is_truth() const override { return truth_known_; }
+
+ private:
+  bool truth_known_;
+};
+
+}  // namespace
+
+bool Recording::truth_known() const {
+  const Scalar* value = rows.front().find("true_on_surface");
+  return value != nullptr && !std::holds_alternative<std::monostate>(*value);
+}
+
+bool Recording::failed() const {
+  const Scalar* status = summary ? summary->find("status") : nullptr;
+  return status != nullptr && *status == Scalar(std::string("failed"));
+}
+
+Recording read_recording(const Workshop& workshop, const fs::path& directory) {
+  const fs::path file = directory / "taps.jsonl";
+  Recording out{directory, load_run(workshop.host, directory), {}, {}, {}};
+  for (Row& row : read_json_lines(file).rows) {
+    if (!is_intent(row)) out.rows.push_back(std::move(row));
+  }
+  if (out.rows.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
+  for (std::size_t i = 0; i < out.rows.size(); ++i)
+    out.taps.push_back(past_tap(out.rows[i], fmt::format("{}: tap {}", file.string(), i + 1)));
+  const fs::path summary = directory / "summary.json";
+  std::error_code none;
+  if (!fs::exists(summary, none)) return out;
+  out.summary = parse_json_row(read_file(summary));
+  if (!out.summary) throw Error(summary.string(), "is not a JSON object", "the file is damaged");
+  return out;
+}
+
+Playback::Playback(const Workshop& workshop, const Recording& recording)
+    : recording_(recording),
+      experiment_(std::make_unique<Experiment>(recording.config.options, workshop.host, workshop.interrupted,
+                                               std::make_shared<Absent>(recording.truth_known()))) {}
+
+void Playback::advance_to(int taps) {
+  const auto begin = recording_.taps.begin();
+  experiment_->resume({begin + taps_, begin + taps});
+  taps_ = taps;
+}
+
+}  // namespace palpate
