@@ -106,4 +106,11 @@ struct CompareArguments {
 };
 int compare(const CompareArguments& arguments);
 
+struct ReportArguments {
+  std::string directory;
+  bool figures = false;
+  bool paper = false;
+};
+int report(Program& program, const ReportArguments& arguments);
+
 }  // namespace palpate::cli

@@ -31,6 +31,7 @@ struct Arguments {
   ResumeArguments resume;
   ParetoArguments pareto;
   CompareArguments compare;
+  ReportArguments report;
   std::string directory;
   std::vector<std::string> configs;
   std::string plugin;
@@ -148,6 +149,14 @@ void add_compare(CLI::App& app, Arguments& a, Action& action) {
   sub->callback([&] { action = [&](Program&) { return compare(a.compare); }; });
 }
 
+void add_report(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("report", "A run or a sweep as one HTML page, and as pictures");
+  sub->add_option("DIR", a.report.directory, "its directory")->required();
+  sub->add_flag("--figures", a.report.figures, "PNG of the same panels, too, by gnuplot");
+  sub->add_flag("--paper", a.report.paper, "laid out as the figures of the paper");
+  sub->callback([&] { action = [&](Program& program) { return report(program, a.report); }; });
+}
+
 /// CLI11's own words, on one line.
 int usage_error(const CLI::Error& trouble) { throw Error("", trouble.what(), "see palpate --help"); }
 
@@ -173,6 +182,7 @@ int run_main(int argc, char** argv) {
   add_resume(app, arguments, action);
   add_rest(app, arguments, action);
   add_compare(app, arguments, action);
+  add_report(app, arguments, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

@@ -44,6 +44,9 @@ std::string csv_cell(const Scalar& value);
 /// Text quoted for CSV where it needs to be.
 std::string csv_text(const std::string& text);
 
+/// The same as a value of JSON: null for null and for what is not a finite number.
+std::string json_value(const Scalar& value);
+
 /// One line of JSON without line end. Numbers as in csv_cell; what is not finite is null.
 std::string to_json_line(const Row& row);
 

@@ -14,7 +14,7 @@ constexpr std::array<const char*, 6> kOutcomes{"contact", "no_contact", "unreach
 
 void add_head(Row& row, const TapRecord& tap) {
   row.add("tap", tap.number);
-  row.add("source", kSources[static_cast<std::size_t>(tap.source)]);
+  row.add("source", source_name(tap.source));
   row.add("why", tap.why.empty() ? std::nullopt : std::optional<std::string>(tap.why));
   row.add("x", tap.target.x);
   row.add("y", tap.target.y);
@@ -105,6 +105,8 @@ void add_process(Row& row, const std::string& name, const std::optional<ProcessS
 }
 
 const char* outcome_name(Outcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }
+
+const char* source_name(Source source) { return kSources[static_cast<std::size_t>(source)]; }
 
 Row tap_row(const TapRecord& tap) {
   Row row;

@@ -29,5 +29,6 @@ PastTap past_tap(const Row& row, const std::string& where);
 void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state);
 
 const char* outcome_name(Outcome outcome);
+const char* source_name(Source source);
 
 }  // namespace palpate

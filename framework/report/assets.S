@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The files that a page is made of, byte for byte within the program: see assets.hpp. The build passes their folder.
+        .macro asset name, file
+        .globl palpate_asset_\name
+        .globl palpate_asset_\name\()_end
+palpate_asset_\name:
+        .incbin "\file"
+palpate_asset_\name\()_end:
+        .endm
+
+        .section .rodata
+        asset plotly, "vendor/plotly/plotly.min.js.gz"
+        asset style, "page/style.css"
+        asset common, "page/common.js"
+        asset run, "page/run.js"
+        asset sweep, "page/sweep.js"
+
+        .section .note.GNU-stack, "", %progbits

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// A run looked at from each of its taps: what was believed then, how wrong it was, where the next tap would go. All of
+// it is computed again from the recorded taps, so that runs need not store their maps.
+#pragma once
+
+#include "record/recording.hpp"
+#include "report/packed_maps.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// After `taps` taps.
+struct Moment {
+  int taps = 0;
+  RunResult result;                ///< what summary.json would say if the run had ended here
+  std::optional<TapRecord> next;   ///< what would be tapped next; absent if no candidate is left
+  double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres
+  double least_weight = 0.0;       ///< of the candidates, as the weight process has it
+  double most_weight = 0.0;
+};
+
+struct History {
+  std::vector<Moment> moments;  ///< before the first tap, and after each
+  /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres), "u", "w", and, where the
+  /// acquisition's score is neither u nor u w, "score": a frame for each moment. Last, where truth is known, "truth" in
+  /// one frame, metres.
+  std::vector<MapSeries> maps;
+  Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row
+};
+
+/// Tells how many of all taps are done.
+using Progress = std::function<void(int done, int all)>;
+
+/// Maps of more columns or rows than this have only every second, third, ... of them.
+inline constexpr int kMostCellsAcross = 128;
+
+/// Lives through the taps of a recorded run again. Throws Error as Playback does.
+History make_history(const Workshop& workshop, const Recording& recording, const Progress& progress);
+
+}  // namespace palpate

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// A page that is one file: style, scripts, plotly and data in it, nothing to load. Data goes in as data, compressed: no
+// text of a config is ever part of the markup, and the page's own policy forbids the browser to ask a network for
+// anything.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+/// A page that runs `script` (behind the common one) on the data: `json` as an object, `maps` as bytes
+/// (packed_maps.hpp).
+std::string make_page(std::string_view script, const std::string& json, const std::string& maps);
+
+/// Compressed by gzip; equal bytes for equal input.
+std::string gzip(std::string_view bytes);
+
+std::string base64(std::string_view bytes);
+
+}  // namespace palpate

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Opens a page in headless Chromium and does there what it is told.
+
+    browse.py FILE [--no-webgl] STEP...
+
+A step is `return ...` or other JavaScript, whose value is printed as a line of JSON; `await CONDITION`, which waits until that
+JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of all of the page; `size W H`, of
+the window. The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
+"""
+
+import json
+import os
+import pathlib
+import sys
+import tempfile
+
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.support.ui import WebDriverWait
+
+PATIENCE = 120  # seconds: machines that run many tests are slow
+
+
+def open_browser(profile, webgl):
+    options = webdriver.ChromeOptions()
+    options.binary_location = "/usr/bin/chromium"
+    # Without the last few the browser would look for servers of its maker.
+    for flag in ("--headless=new", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+                 "--disable-sync", "--disable-quic", "--disable-dev-shm-usage", "--window-size=1400,1000",
+                 f"--user-data-dir={profile}"):
+        options.add_argument(flag)
+    if webgl:
+        options.add_argument("--enable-unsafe-swiftshader")  # WebGL in software, wherever it runs
+    else:
+        options.add_argument("--disable-3d-apis")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+
+
+def picture(browser, file):
+    width = browser.execute_script("return document.documentElement.clientWidth")
+    height = browser.execute_script("return document.documentElement.scrollHeight")
+    browser.set_window_size(width, height + 100)
+    pathlib.Path(file).write_bytes(browser.get_screenshot_as_png())
+
+
+def perform(browser, step):
+    word, _, rest = step.partition(" ")
+    if word == "await":
+        WebDriverWait(browser, PATIENCE, 0.05).until(lambda b: b.execute_script("return Boolean(" + rest + ")"))
+    elif word == "key":
+        browser.find_element(By.TAG_NAME, "body").send_keys(getattr(Keys, rest))
+    elif word == "picture":
+        picture(browser, rest)
+    elif word == "size":
+        browser.set_window_size(*map(int, rest.split()))
+    else:
+        print(json.dumps(browser.execute_script(step)))
+
+
+def main():
+    arguments = sys.argv[1:]
+    webgl = "--no-webgl" not in arguments
+    page, *steps = [one for one in arguments if one != "--no-webgl"]
+    # Under another name Chromium would take this for a terminal's colours and the like.
+    os.environ.setdefault("HOME", tempfile.gettempdir())
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = open_browser(profile, webgl)
+        try:
+            browser.get(pathlib.Path(page).absolute().as_uri())
+            for step in steps:
+                perform(browser, step)
+            print(json.dumps([entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]))
+        finally:
+            browser.quit()
+
+
+if __name__ == "__main__":
+    main()
