@@ -67,9 +67,9 @@ function section(title, ...children) {
   return element("section", {}, element("h2", {}, title), ...children);
 }
 
-/// A place for a plot, with its caption.
+/// A place for a plot, under its caption.
 function figure(id, caption) {
-  return element("figure", {}, element("div", { id, class: "plot" }), element("figcaption", {}, caption));
+  return element("figure", {}, element("figcaption", {}, caption), element("div", { id, class: "plot" }));
 }
 
 /// A number for people: `digits` significant ones, nothing for null.
@@ -100,7 +100,7 @@ const kGrey = "#9a9a9a";
 /// What all plots have in common.
 function layout(more = {}) {
   return {
-    margin: { l: 56, r: 12, t: 30, b: 44 },
+    margin: { l: 54, r: 12, t: 8, b: 42 },
     font: { family: "system-ui, sans-serif", size: 12 },
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "#ffffff",
@@ -109,7 +109,7 @@ function layout(more = {}) {
   };
 }
 
-const kPlotConfig = { responsive: true, displaylogo: false };
+const kPlotConfig = { responsive: true, displaylogo: false, displayModeBar: false };
 
 /// Unpacks the page's data and lets `draw` fill it; what goes wrong is said on the page.
 async function openPage(draw) {

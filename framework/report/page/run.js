@@ -92,22 +92,30 @@ function mapPanels(data, maps) {
   const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
   const most = Math.max(extent(exploration)[1], 1e-12);
   const panels = [
-    { id: "u", title: "uncertainty u", frames: maps.u, range: [0, 1], colours: "Viridis" },
-    { id: "w", title: "weight w", frames: maps.w, range: [0, 1], colours: "Cividis" },
-    { id: "e", title: "exploration e = u w", frames: exploration, range: [0, most], colours: "Viridis" },
+    { id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: "Viridis" },
+    { id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: "Cividis" },
+    { id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: "Viridis" },
   ];
   if (maps.score) {
-    const title = `score of ${plain(data.run.acquisition)}`;
-    panels.push({ id: "score", title, frames: maps.score, range: extent(maps.score), colours: "Viridis" });
+    const title = `Score of the acquisition, ${data.run.acquisition}`;
+    panels.push({ id: "score", title, bar: "score", frames: maps.score, range: extent(maps.score), colours: "Viridis" });
   }
   return panels;
 }
 
 const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
-const planeAxes = {
-  xaxis: axis("x [cm]", { constrain: "domain" }),
-  yaxis: axis("y [cm]", { scaleanchor: "x", constrain: "domain" }),
-};
+
+/// From edge to edge of the cells, centimetres equally long in both directions.
+function planeAxes(data) {
+  const range = (centres) => {
+    const half = centres.length > 1 ? (centres[1] - centres[0]) / 2 : 0.005;
+    return [(centres[0] - half) * kCentimetres, (centres[centres.length - 1] + half) * kCentimetres];
+  };
+  return {
+    xaxis: axis("x [cm]", { range: range(data.x), constrain: "domain" }),
+    yaxis: axis("y [cm]", { range: range(data.y), constrain: "domain", scaleanchor: "x" }),
+  };
+}
 
 function heatMap(data, lines, range, colours, title) {
   return {
@@ -118,7 +126,7 @@ function heatMap(data, lines, range, colours, title) {
     zmin: range[0],
     zmax: range[1],
     colorscale: colours,
-    colorbar: { title: { text: title, side: "right" }, thickness: 12 },
+    colorbar: { title: { text: title, side: "right" }, thickness: 12, xpad: 4 },
     hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm: %{z:.4g}<extra></extra>",
   };
 }
@@ -132,7 +140,9 @@ class SurfaceView {
     this.deviations = maps.deviation.map((lines) => scaled(lines, kCentimetres));
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent(this.truth ? [...this.heights, this.truth] : this.heights);
-    this.mostDeviation = extent(this.deviations)[1];
+    // Where nothing is known of an object's level, its deviation is of no size that means anything.
+    const prior = Math.max(...data.moments.map((moment) => moment.height_process.signal)) * kCentimetres;
+    this.mostDeviation = Math.min(extent(this.deviations)[1], prior);
     this.withTruth = false;
     this.x = data.x.map((value) => value * kCentimetres);
     this.y = data.y.map((value) => value * kCentimetres);
@@ -198,7 +208,7 @@ class SurfaceView {
   }
 
   layout() {
-    if (!this.spatial) return layout({ ...planeAxes, showlegend: false });
+    if (!this.spatial) return layout({ ...planeAxes(this.data), showlegend: false });
     const range = [Math.min(this.range[0], 0), this.range[1] * 1.05 + 0.1];
     return layout({
       margin: { l: 0, r: 0, t: 0, b: 0 },
@@ -236,7 +246,7 @@ function curves(data) {
   const process = (kind) => (moment) => moment[kind];
   const out = [
     {
-      title: "error of the reconstruction",
+      title: "Error of the reconstruction (root mean square)",
       unit: "cm",
       lines: [
         line("scene", (m) => m.rmse_m && m.rmse_m * kCentimetres),
@@ -244,16 +254,16 @@ function curves(data) {
         line("height mean on the object", (m) => m.rmse_height_m && m.rmse_height_m * kCentimetres),
       ],
     },
-    { title: "outline: intersection over union", unit: "", range: [0, 1], lines: [line("IoU", (m) => m.footprint_iou)] },
-    { title: "largest standard deviation", unit: "cm", lines: [line("largest", (m) => m.largest_deviation * kCentimetres)] },
+    { title: "Outline: intersection over union", unit: "", range: [0, 1], lines: [line("IoU", (m) => m.footprint_iou)] },
+    { title: "Largest standard deviation of a height", unit: "cm", fromZero: true, lines: [line("largest", (m) => m.largest_deviation * kCentimetres)] },
     {
-      title: "share of taps on the object",
+      title: "Share of taps on the object",
       unit: "",
       range: [0, 1],
       lines: [line("share", (m) => (m.taps > 0 ? m.on_surface_taps / m.taps : null))],
     },
     {
-      title: "log marginal likelihood",
+      title: "Log marginal likelihood",
       unit: "nat",
       lines: [
         line("heights", (m) => m.height_process?.log_marginal_likelihood),
@@ -261,12 +271,12 @@ function curves(data) {
         line("surface", (m) => m.surface_process?.log_marginal_likelihood),
       ],
     },
-    { title: "robot time so far", unit: "s", lines: [line("robot", (m) => m.robot_seconds)] },
+    { title: "Robot time so far", unit: "s", fromZero: true, lines: [line("robot", (m) => m.robot_seconds)] },
   ];
   for (const [kind, label] of [["height_process", "heights"], ["weight_process", "labels"], ["surface_process", "surface"]]) {
     const names = Object.keys(hyperparameters(moments[moments.length - 1][kind])).filter((name) => name !== "mean");
     const lines = names.map((name) => line(name, (m) => hyperparameters(process(kind)(m))[name]));
-    out.push({ title: `hyperparameters, ${label}`, unit: kind === "weight_process" ? "m; signal, noise: none" : "m", logarithmic: true, lines });
+    out.push({ title: `Hyperparameters, ${label} (SI units)`, unit: "", logarithmic: true, lines });
   }
   out.push(timeCurves(data));
   return out
@@ -286,7 +296,7 @@ function timeCurves(data) {
       return row ? 1000 * Number(row[at(name)]) : null;
     }),
   }));
-  return { title: "computing time of a tap", unit: "ms", lines };
+  return { title: "Computing time of a tap, by phase", unit: "ms", lines };
 }
 
 function curveTraces(one, data) {
@@ -304,11 +314,10 @@ function curveTraces(one, data) {
 
 function curveLayout(one) {
   return layout({
-    title: { text: one.title, font: { size: 13 }, x: 0.02, xanchor: "left" },
     xaxis: axis("taps", { rangemode: "tozero" }),
-    yaxis: axis(one.unit ? `[${one.unit}]` : "", { type: one.logarithmic ? "log" : "linear", range: one.range, exponentformat: "power" }),
+    yaxis: axis(one.unit ? `[${one.unit}]` : "", { automargin: true, type: one.logarithmic ? "log" : "linear", range: one.range, rangemode: one.fromZero ? "tozero" : "normal", exponentformat: "power" }),
     showlegend: one.lines.length > 1,
-    legend: { orientation: "h", y: -0.28, font: { size: 10 } },
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", font: { size: 11 } },
     hovermode: "x unified",
   });
 }
@@ -410,9 +419,9 @@ class Slider {
     this.output.textContent = `after tap ${moment.taps} of ${this.data.taps.length}`;
     document.getElementById("story").replaceWith(story(this.data, moment));
     await this.surface.draw(frame, moment);
-    for (const { id, title, frames, range, colours } of this.panels) {
-      const traces = [heatMap(this.data, frames[frame], range, colours, title), ...marks(this.data, moment)];
-      await Plotly.react(`map_${id}`, traces, layout({ ...planeAxes, margin: { l: 48, r: 8, t: 12, b: 42 }, showlegend: false }), kPlotConfig);
+    for (const { id, bar, frames, range, colours } of this.panels) {
+      const traces = [heatMap(this.data, frames[frame], range, colours, bar), ...marks(this.data, moment)];
+      await Plotly.react(`map_${id}`, traces, layout({ ...planeAxes(this.data), margin: { l: 44, r: 4, t: 6, b: 40 }, showlegend: false }), kPlotConfig);
     }
     const here = { type: "line", x0: moment.taps, x1: moment.taps, yref: "paper", y0: 0, y1: 1, line: { color: "#999999", width: 1, dash: "dot" } };
     await Promise.all(this.curves.map((one, i) => Plotly.relayout(`curve_${i}`, { shapes: [here] })));
@@ -437,10 +446,10 @@ function drawRun(data, bytes) {
     element("p", { class: "story", id: "story" }),
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),
     element("h2", {}, "Maps"),
-    element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, title))),
+    element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, foreign(title)))),
     element("p", { class: "sub" }, `Dots: taps on the object, crosses: off it, triangles: no contact; the star would be tapped next. Arrow keys move the slider.${thinned}`),
     element("h2", {}, "By tap"),
-    element("div", { class: "row small" }, ...slider.curves.map((_, i) => figure(`curve_${i}`, ""))),
+    element("div", { class: "row small" }, ...slider.curves.map(({ title }, i) => figure(`curve_${i}`, title))),
     section("Config", table(["key", "value", "where it was said"], data.config.map((line) => line.map(foreign)))),
     section("Made by", table(["", ""], data.build.map((line) => line.map(foreign)))),
     element("footer", {}, `palpate ${data.version}; method: Sun and Min 2021, arXiv:2110.09593; drawn with plotly.js (MIT).`),

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// The page of a run in a browser: it draws, moves, shows what the record says, and takes text for text.
+#include "report/browser.hpp"
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+using nlohmann::json;
+using test::Browsed;
+using test::Cells;
+using test::csv_rows;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class RunPage : public ::testing::TestWithParam<bool> {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = test::browser_missing(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+
+  /// Runs the paper's experiment with `words` and writes its report. Returns the run directory.
+  fs::path reported(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"});
+    const test::Ended ran = test::palpate(words, folder_.path());
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    const fs::path directory = test::only_run(folder_.path() / "runs");
+    const test::Ended ended = test::palpate({"report", directory.string()}, folder_.path());
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(ended.out, (directory / "report.html").string() + "\n");
+    return directory;
+  }
+
+  Browsed browse(const fs::path& directory, const std::vector<std::string>& steps) const {
+    return test::browse(directory / "report.html", steps, GetParam());
+  }
+
+  const TemporaryFolder folder_;
+};
+
+std::string drawn(int tap) { return fmt::format("await document.body.dataset.drawn == '{}'", tap); }
+
+/// The picture of a heat map and of the surface, as the browser has painted them.
+const std::string kPainted =
+    "return Promise.all(['map_e', 'surface'].map((id) => Plotly.toImage(id, {format: 'png', width: 400, height: "
+    "300})))";
+
+TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
+  const fs::path directory = reported({"seed=4"});
+  const Browsed seen =
+      browse(directory,
+             {drawn(17), kPainted, "key ARROW_LEFT", "key ARROW_LEFT", drawn(15), kPainted,
+              "return document.getElementById('at').textContent", "key ARROW_RIGHT", drawn(16),
+              "const s = document.getElementById('slider'); s.value = 0; s.dispatchEvent(new Event('input'));",
+              drawn(0), "return document.getElementById('story').textContent",
+              "return document.getElementById('surface').data.map((trace) => trace.type)",
+              "document.getElementById('truth').click()", "await document.getElementById('surface').data.length > 0",
+              "return document.querySelectorAll('.plot .main-svg').length > 0"});
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  const json& last = seen.values.at(0);
+  const json& before = seen.values.at(1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto picture = last.at(i).get<std::string>();
+    EXPECT_EQ(picture.compare(0, 22, "data:image/png;base64,"), 0);
+    EXPECT_GT(picture.size(), 5000U);
+    EXPECT_TRUE(picture != before.at(i)) << "picture " << i << " is the same after tap 15 and after tap 17";
+  }
+  EXPECT_EQ(seen.values.at(2), "after tap 15 of 17");
+  EXPECT_THAT(seen.values.at(4).get<std::string>(), HasSubstr("Before the first tap."));
+  EXPECT_EQ(seen.values.at(5).at(0), GetParam() ? "surface" : "heatmap");
+}
+
+TEST_P(RunPage, PlotsTheTapsOfTheRecordAndTheMapsThatItsModelsHad) {
+  // The oracle of the maps is the run itself, which writes them while it goes on.
+  const fs::path directory =
+      reported({"seed=4", "log.maps=true", "scene.effects={missed_contacts: {probability: 0.2}}"});
+  const std::vector<Cells> taps = csv_rows(text_of(directory / "taps.csv"));
+  std::vector<std::string> steps;
+  for (int tap = 17; tap >= 1; --tap) {
+    steps.push_back(drawn(tap));
+    steps.push_back(
+        "const d = document.getElementById('map_e').data; const at = (t) => t.x.map((x, i) => [x, t.y[i]]); return "
+        "d.slice(1).map(at)");
+    steps.emplace_back(
+        "const z = (id) => document.getElementById(id).data[0].z.flat(); return [z('map_u'), z('map_w'), z('map_e')]");
+    steps.emplace_back("key ARROW_LEFT");
+  }
+  const Browsed seen = browse(directory, steps);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  int failed_taps = 0;
+  for (std::size_t made = 1; made <= 17; ++made) {
+    const json& marks = seen.values.at(2 * (17 - made));
+    std::vector<json> expected(3, json::array());
+    for (std::size_t i = 0; i < made; ++i) {
+      const std::string& on = taps[i].at("on_surface");
+      expected[on == "true"    ? 0
+               : on == "false" ? 1
+                               : 2]
+          .push_back({std::stod(taps[i].at("x")) * 100.0, std::stod(taps[i].at("y")) * 100.0});
+    }
+    EXPECT_TRUE(marks.at(0) == expected[0]) << made;
+    EXPECT_TRUE(marks.at(1) == expected[1]) << made;
+    EXPECT_TRUE(marks.at(2) == expected[1]) << made;  // each cross has an edge in white
+    EXPECT_TRUE(marks.at(3) == expected[2]) << made;
+    failed_taps = static_cast<int>(expected[2].size());
+    ASSERT_EQ(marks.at(4).size(), 1U);
+    if (made < 17) {
+      EXPECT_EQ(marks.at(4).at(0).at(0), std::stod(taps[made].at("x")) * 100.0);
+      EXPECT_EQ(marks.at(4).at(0).at(1), std::stod(taps[made].at("y")) * 100.0);
+    }
+  }
+  EXPECT_GT(failed_taps, 0);
+  const json summary = json::parse(text_of(directory / "summary.json"));
+  EXPECT_EQ(summary.at("failed_taps"), failed_taps);
+  EXPECT_EQ(seen.values.at(0).at(0).size(), summary.at("on_surface_taps"));
+  EXPECT_EQ(seen.values.at(0).at(1).size(), summary.at("off_surface_taps"));
+
+  // Maps are rounded to 1 / 131070 of their range.
+  int maps = 0;
+  for (std::size_t made = 3; made < 17; ++made) {
+    const fs::path file = directory / fmt::format("maps/tap_{:03}.csv", made + 1);  // at the next choice
+    if (!fs::exists(file)) continue;                                                // the loop had no models yet
+    const std::vector<Cells> cells = csv_rows(text_of(file));
+    ++maps;
+    const json& shown = seen.values.at(2 * (17 - made) + 1);
+    ASSERT_EQ(shown.at(0).size(), cells.size());
+    double worst = 0.0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const double u = std::stod(cells[i].at("u"));
+      const double w = std::stod(cells[i].at("w"));
+      for (const double off : {u - shown.at(0).at(i).get<double>(), (w - shown.at(1).at(i).get<double>()) / 2.0,
+                               (u * w - shown.at(2).at(i).get<double>()) / 3.0})
+        worst = std::max(worst, std::abs(off));
+    }
+    EXPECT_LT(worst, 1.0 / 65535.0) << made;
+  }
+  EXPECT_GT(maps, 10);
+}
+
+TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {
+  const std::string name =
+      "<script>alert(1)</script> \"quoted\" 'too' </bdi>&amp;\nsecond line \u202Egnitset\u202C <img src=x "
+      "onerror=alert(2)>";
+  const std::string file = "<b onmouseover=alert(3)>config<\xE2\x80\xAE.yaml";
+  std::string text = text_of(test::source_folder() / "configs/paper/object_i.yaml");
+  text.replace(text.find("name: object_i"), 14, "name: " + json(name).dump());
+  folder_.write(file, text);
+  const test::Ended ran = test::palpate({"run", file, "--quiet", "--runs", "<i>runs", "taps=5"}, folder_.path());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const fs::path directory = test::only_run(folder_.path() / "<i>runs");
+  ASSERT_EQ(test::palpate({"report", directory.string()}, folder_.path()).status, 0);
+  EXPECT_EQ(text_of(directory / "report.html").find("alert(1)"), std::string::npos);
+  const Browsed seen =
+      browse(directory,
+             {drawn(5), "return document.querySelector('h1').textContent", "return document.title",
+              "return document.querySelectorAll('img, b[onmouseover], i').length",
+              "return [...document.scripts].filter((s) => s.textContent.startsWith('alert')).length",
+              "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('config<'))",
+              "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('--runs <i>runs'))",
+              "return getComputedStyle(document.querySelector('h1 bdi')).unicodeBidi"});
+  ASSERT_EQ(seen.trouble, "");  // an alert would have stopped the browser's driver
+  EXPECT_THAT(seen.severe, IsEmpty());
+  EXPECT_EQ(seen.values.at(0), name);
+  EXPECT_THAT(seen.values.at(1).get<std::string>(), HasSubstr("<script>alert(1)</script>"));
+  EXPECT_EQ(seen.values.at(2), 0);
+  EXPECT_EQ(seen.values.at(3), 0);
+  EXPECT_EQ(seen.values.at(4), true);
+  EXPECT_EQ(seen.values.at(5), true);
+  EXPECT_EQ(seen.values.at(6), "isolate");
+}
+
+std::string webgl_name(const ::testing::TestParamInfo<bool>& info) { return info.param ? "WithWebGL" : "WithoutWebGL"; }
+INSTANTIATE_TEST_SUITE_P(InABrowser, RunPage, ::testing::Bool(), webgl_name);
+
+}  // namespace
+}  // namespace palpate
