@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// A run lived through again says at every tap what the run said then, and at its end what its summary says.
+#include "report/history.hpp"
+#include "record/session.hpp"
+#include "record/summary.hpp"
+#include "record/tap_row.hpp"
+#include "report/run_page.hpp"
+#include "report/warnings.hpp"
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+/// A run that was made in this process.
+class Recorded {
+ public:
+  Recorded(const std::string& base, const std::vector<std::string>& words) {
+    Composer composer(test::source_folder() / "configs");
+    std::vector<Override> overrides;
+    for (const std::string& word : words) overrides.push_back(parse_override(word));
+    const ResolvedConfig config =
+        load_experiment(composer, test::shared_host(), test::source_folder() / "configs" / base, overrides);
+    directory = start_run(workshop, config, folder_.path() / "run", false, nullptr).directory;
+  }
+
+  Recording recording() const { return read_recording(workshop, directory); }
+  History history() const {
+    return make_history(workshop, recording(), [](int, int) {});
+  }
+
+ private:
+  TemporaryFolder folder_;
+  Installation installation_;
+
+ public:
+  Workshop workshop{test::shared_host(), installation_, {}, nullptr};
+  fs::path directory;
+};
+
+std::string cell(const Row& row, const char* name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? csv_cell(*value) : "absent";
+}
+
+class RunHistory : public ::testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
+  const Recorded run("paper/object_i.yaml", GetParam());
+  const Recording recording = run.recording();
+  const History history = run.history();
+  ASSERT_EQ(history.moments.size(), recording.rows.size() + 1);
+  int compared = 0;
+  for (std::size_t made = 0; made < recording.rows.size(); ++made) {
+    const Row& row = recording.rows[made];
+    const Moment& moment = history.moments[made];
+    ASSERT_TRUE(moment.next.has_value());
+    const Row next = tap_row(*moment.next);
+    for (const char* field : {"x", "y", "source", "score", "ties", "runner_up.x"}) {
+      EXPECT_EQ(cell(next, field), cell(row, field)) << field << " of tap " << made + 1;
+    }
+    if (cell(row, "rmse_m").empty()) continue;
+    ++compared;
+    EXPECT_EQ(cell(row, "rmse_m"), csv_cell(*moment.result.errors.rmse));
+    EXPECT_EQ(cell(row, "max_standard_deviation"), csv_cell(moment.largest_deviation));
+  }
+  const ExperimentOptions& options = recording.config.options;
+  const bool reads_surface =
+      options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single;
+  EXPECT_EQ(compared > 0, reads_surface);
+  RunResult last = history.moments.back().result;
+  last.stop_reason = cell(*recording.summary, "stop_reason");
+  for (const auto& [name, value] : summary_row(recording.config, last, "", Stopwatch(), {}).fields) {
+    if (!depends_on_machine(name)) {
+      EXPECT_EQ(csv_cell(value), cell(*recording.summary, name.c_str())) << name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfEveryKind, RunHistory,
+    ::testing::Values(std::vector<std::string>{}, std::vector<std::string>{"acquisition=uncertainty", "seed=4"},
+                      std::vector<std::string>{"surface=two_part", "fitting=ceres", "fitting.every=4", "seed=4"},
+                      std::vector<std::string>{"acquisition=random", "weight.clip=true", "posterior=dense"},
+                      std::vector<std::string>{"backend=continuous",
+                                               "scene.effects={missed_contacts: {probability: 0.3}}"}));
+
+TEST(History, KeepsAScoreOfItsOwnOnlyWhereItIsNeitherUNorE) {
+  const auto names = [](const std::vector<std::string>& words) {
+    std::vector<std::string> out;
+    for (const MapSeries& one : Recorded("paper/object_i.yaml", words).history().maps) out.push_back(one.name);
+    return out;
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(names({"taps=6"}), ElementsAre("height", "deviation", "u", "w", "truth"));
+  EXPECT_THAT(names({"taps=6", "acquisition=uncertainty"}), ElementsAre("height", "deviation", "u", "w", "truth"));
+  EXPECT_THAT(names({"taps=6", "acquisition=random"}), ElementsAre("height", "deviation", "u", "w", "score", "truth"));
+}
+
+TEST(History, TakesOnlySomeCellsOfFineMaps) {
+  const Recorded run("paper/object_i.yaml", {"taps=4", "candidates.count=150"});
+  const History history = run.history();
+  EXPECT_EQ(history.x.size(), 75);
+  EXPECT_EQ(history.y.size(), 75);
+  EXPECT_EQ(history.maps.front().frames.front().size(), 75 * 75);
+  EXPECT_NEAR(history.x(1) - history.x(0), 2 * 0.23 / 150, 1e-12);
+}
+
+TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{}, {"taps=60"}, {"taps=200"}, {"taps=40", "candidates.count=128"}}) {
+    const Recorded run("paper/object_i.yaml", words);
+    const std::string page = run_page(run.recording(), run.history());
+    EXPECT_LE(page.size(), kMostPageBytes);
+    EXPECT_GT(page.size(), 1'900'000U);  // plotly is in it
+  }
+}
+
+TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
+  const Recorded run("paper/object_i.yaml", {});
+  const std::vector<std::string> said = warnings_of(run.recording(), run.history());
+  EXPECT_THAT(said, Contains(HasSubstr("5 of 17 taps were chosen by the fallback")));
+  EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("weight.clip=true"))));
+}
+
+TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
+  const Recorded run("paper/object_i.yaml", {"repeat=allow", "fallback=none", "height.noise=0 mm", "weight.noise=0",
+                                             "seed=1", "scene.effects={missed_contacts: {probability: 0.3}}"});
+  const RunResult last = run.history().moments.back().result;
+  const std::vector<std::string> said = warnings_of(run.recording(), run.history());
+  ASSERT_GT(last.failed_taps, 0);
+  ASSERT_GT(last.interventions.at("jitter"), 0);
+  EXPECT_THAT(said, Contains(HasSubstr(std::to_string(last.failed_taps) + " tap")));
+  EXPECT_THAT(said, Contains(HasSubstr("Jitter up to ")));
+}
+
+TEST(Warnings, AreNoneOfARunWithoutTrouble) {
+  // One tap, on the object: w is 1 there and falls to 0 around it.
+  const Recorded run("paper/object_i.yaml", {"taps=1", "initial.count=1", "initial.design=grid"});
+  ASSERT_EQ(run.history().moments.back().result.on_surface_taps, 1);
+  EXPECT_THAT(warnings_of(run.recording(), run.history()), ::testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace palpate

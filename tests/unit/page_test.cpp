@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// The pieces of a page: what is packed comes out again by other hands, and text stays data.
+#include "report/page.hpp"
+#include "report/packed_maps.hpp"
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <random>
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Base64, HasTheVectorsOfItsStandard) {  // RFC 4648, section 10
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foob"), "Zm9vYg==");
+  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64(std::string("\xFF\xFE\x00", 3)), "//4A");
+}
+
+TEST(Gzip, IsUnpackedByTheProgramOfThatNameAndTheSameEveryTime) {
+  const TemporaryFolder folder;
+  std::string bytes;
+  std::mt19937 random(1);
+  for (int i = 0; i < 100'000; ++i) bytes += static_cast<char>(random() % 7 == 0 ? random() & 0xFFU : 'a');
+  for (const std::string& one : {std::string(), std::string("x"), bytes}) {
+    const std::string packed = gzip(one);
+    EXPECT_EQ(packed, gzip(one));
+    const auto file = folder.write("packed.gz", packed);
+    const test::Ended ended = test::run_program({"gzip", "-dc", file.string()}, folder.path());
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_TRUE(ended.out == one);
+  }
+}
+
+/// As page/run.js unpacks it.
+std::vector<double> unpack_frame(const std::string& bytes, std::size_t at, std::size_t cells, double least,
+                                 double most) {
+  std::vector<double> out;
+  unsigned level = 0;
+  for (std::size_t i = 0; i < cells; ++i) {
+    const auto low = static_cast<unsigned char>(bytes[at + i]);
+    const auto high = static_cast<unsigned char>(bytes[at + cells + i]);
+    level = (level + low + 256U * high) & 0xFFFFU;
+    out.push_back(least + level / 65535.0 * (most - least));
+  }
+  return out;
+}
+
+TEST(PackedMaps, AreOffByAtMostHalfAStepOfTheirRange) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> any(-3.0F, 5.0F);
+  std::vector<MapSeries> series{{"a", {}}, {"b", {}}};
+  for (int frame = 0; frame < 4; ++frame) {
+    for (MapSeries& one : series)
+      one.frames.push_back(Eigen::VectorXf::NullaryExpr(35, [&](Eigen::Index) { return any(random); }));
+  }
+  const PackedMaps packed = pack_maps(series);
+  EXPECT_EQ(packed.bytes.size(), 2U * 4U * 35U * 2U);
+  const auto described = nlohmann::json::parse(packed.json);
+  std::size_t at = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    EXPECT_EQ(described.at(s).at("name"), series[s].name);
+    EXPECT_EQ(described.at(s).at("frames"), 4);
+    const double least = described.at(s).at("least");
+    const double most = described.at(s).at("most");
+    for (const Eigen::VectorXf& frame : series[s].frames) {
+      const std::vector<double> out = unpack_frame(packed.bytes, at, 35, least, most);
+      at += 70;
+      for (std::size_t i = 0; i < 35; ++i)
+        EXPECT_LE(std::abs(out[i] - static_cast<double>(frame(static_cast<Eigen::Index>(i)))),
+                  (most - least) / 131070.0 * 1.0001);
+    }
+  }
+}
+
+TEST(PackedMaps, KeepAMapThatIsEverywhereTheSame) {
+  const PackedMaps packed = pack_maps({{"flat", {Eigen::VectorXf::Constant(9, 0.25F)}}});
+  const auto described = nlohmann::json::parse(packed.json);
+  EXPECT_EQ(described.at(0).at("least"), 0.25);
+  EXPECT_EQ(described.at(0).at("most"), 0.25);
+  for (const double value : unpack_frame(packed.bytes, 0, 9, 0.25, 0.25)) EXPECT_EQ(value, 0.25);
+}
+
+TEST(Page, AsksNoNetworkForAnythingAndHasNoDataAsMarkup) {
+  const std::string page = make_page("draw();", R"({"name": "<b>secret</b>"})", "maps");
+  EXPECT_THAT(page, HasSubstr("content=\"default-src 'none';"));
+  const std::string head = page.substr(0, page.find("<script"));
+  const std::string tail = page.substr(page.rfind("<script>"));
+  EXPECT_THAT(head, Not(HasSubstr("http:")));
+  EXPECT_THAT(tail, Not(HasSubstr("src=")));
+  EXPECT_TRUE(page.find("secret") == std::string::npos);
+  EXPECT_THAT(tail, HasSubstr("draw();</script>"));
+}
+
+}  // namespace
+}  // namespace palpate
