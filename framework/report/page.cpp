@@ -22,7 +22,7 @@ std::string gzip(std::string_view bytes) {
   constexpr int kWithGzipHeader = 15 + 16;
   constexpr int kMemory = 9;
   z_stream stream{};
-  if (::deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kWithGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+  if (::deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kWithGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw Error("report", "no memory to compress it", {}, Error::Kind::run);
   std::string out(::deflateBound(&stream, bytes.size()), '\0');
   // zlib does not write to its input, whatever the type says.
