@@ -43,10 +43,10 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
   const RunResult& last = history.moments.back().result;
   if (const int fallbacks = interventions(last, "fallback"); fallbacks > 0) {
-    out.push_back(
-        fmt::format("{} of {} chosen by the fallback, the largest uncertainty, because the acquisition's scores told "
-                    "no candidate apart (so it is until the first hit).",
-                    fallbacks, counted(last.taps, "tap") + (last.taps == 1 ? " was" : " were")));
+    out.push_back(fmt::format(
+        "{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores told "
+        "no candidate apart (so it is until the first hit).",
+        fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
   }
   if (const int drift = first_drift(recording, history); drift > 0) {
     out.push_back(

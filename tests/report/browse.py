@@ -5,8 +5,8 @@
     browse.py FILE [--no-webgl] STEP...
 
 A step is `return ...` or other JavaScript, whose value is printed as a line of JSON; `await CONDITION`, which waits until that
-JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of all of the page; `size W H`, of
-the window. The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
+JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of all of the page, and `view FILE`,
+of what the window shows; `size W H`, of the window. The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
 """
 
 import json
@@ -55,6 +55,8 @@ def perform(browser, step):
         browser.find_element(By.TAG_NAME, "body").send_keys(getattr(Keys, rest))
     elif word == "picture":
         picture(browser, rest)
+    elif word == "view":
+        pathlib.Path(rest).write_bytes(browser.get_screenshot_as_png())
     elif word == "size":
         browser.set_window_size(*map(int, rest.split()))
     else:

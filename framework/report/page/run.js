@@ -172,21 +172,22 @@ class SurfaceView {
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{surfacecolor:.2f} cm<extra></extra>",
     };
     const { on, off } = tapsUntil(this.data.taps, moment.taps);
+    const lift = 0.015 * (this.range[1] - this.range[0]);  // or half of every mark would be inside of the surface
     const points = (taps, name, marker) => ({
       type: "scatter3d",
       mode: "markers",
       name,
       x: taps.map((tap) => tap.x * kCentimetres),
       y: taps.map((tap) => tap.y * kCentimetres),
-      z: taps.map((tap) => tap.height * kCentimetres),
+      z: taps.map((tap) => tap.height * kCentimetres + lift),
       text: taps.map(hover),
       hovertemplate: "%{text}<extra></extra>",
       marker,
     });
     const out = [
       surface,
-      points(on, "on the object", { symbol: "circle", size: 5, color: "#ffffff", line: { color: "#000000", width: 2 } }),
-      points(off, "off the object", { symbol: "cross", size: 4, color: "#d55e00" }),
+      points(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: { color: "#000000", width: 2 } }),
+      points(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }),
     ];
     if (this.withTruth && this.truth) out.push(this.wireframe());
     return out;
@@ -216,7 +217,7 @@ class SurfaceView {
       uirevision: "keep the view",
       scene: {
         aspectmode: "data",
-        camera: { eye: { x: 1.1, y: -1.5, z: 1.0 } },
+        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: -0.15 } },
         xaxis: axis("x [cm]"),
         yaxis: axis("y [cm]"),
         zaxis: axis("height [cm]", { range }),
@@ -237,7 +238,7 @@ function hyperparameters(process) {
   return out;
 }
 
-/// What is drawn over the taps: a list of {title, unit, lines: [{name, values}], logarithmic}. Values stand at all
+/// What is drawn over the taps: a list of {title, unit or axis, lines: [{name, values}], logarithmic}. Values stand at all
 /// moments; what a run has not is left out.
 function curves(data) {
   const moments = data.moments;
@@ -254,12 +255,12 @@ function curves(data) {
         line("height mean on the object", (m) => m.rmse_height_m && m.rmse_height_m * kCentimetres),
       ],
     },
-    { title: "Outline: intersection over union", unit: "", range: [0, 1], lines: [line("IoU", (m) => m.footprint_iou)] },
+    { title: "Outline: intersection over union", axis: "IoU", range: [-0.02, 1.02], lines: [line("IoU", (m) => m.footprint_iou)] },
     { title: "Largest standard deviation of a height", unit: "cm", fromZero: true, lines: [line("largest", (m) => m.largest_deviation * kCentimetres)] },
     {
       title: "Share of taps on the object",
-      unit: "",
-      range: [0, 1],
+      axis: "share",
+      range: [-0.02, 1.02],
       lines: [line("share", (m) => (m.taps > 0 ? m.on_surface_taps / m.taps : null))],
     },
     {
@@ -276,7 +277,7 @@ function curves(data) {
   for (const [kind, label] of [["height_process", "heights"], ["weight_process", "labels"], ["surface_process", "surface"]]) {
     const names = Object.keys(hyperparameters(moments[moments.length - 1][kind])).filter((name) => name !== "mean");
     const lines = names.map((name) => line(name, (m) => hyperparameters(process(kind)(m))[name]));
-    out.push({ title: `Hyperparameters, ${label} (SI units)`, unit: "", logarithmic: true, lines });
+    out.push({ title: `Hyperparameters, ${label} (SI units)`, axis: "value", logarithmic: true, lines });
   }
   out.push(timeCurves(data));
   return out
@@ -315,7 +316,7 @@ function curveTraces(one, data) {
 function curveLayout(one) {
   return layout({
     xaxis: axis("taps", { rangemode: "tozero" }),
-    yaxis: axis(one.unit ? `[${one.unit}]` : "", { automargin: true, type: one.logarithmic ? "log" : "linear", range: one.range, rangemode: one.fromZero ? "tozero" : "normal", exponentformat: "power" }),
+    yaxis: axis(one.axis ?? `[${one.unit}]`, { automargin: true, type: one.logarithmic ? "log" : "linear", dtick: one.logarithmic ? 1 : undefined, range: one.range, rangemode: one.fromZero ? "tozero" : "normal", exponentformat: "power" }),
     showlegend: one.lines.length > 1,
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", font: { size: 11 } },
     hovermode: "x unified",
