@@ -160,7 +160,11 @@ TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {
   std::string text = text_of(test::source_folder() / "configs/paper/object_i.yaml");
   text.replace(text.find("name: object_i"), 14, "name: " + json(name).dump());
   folder_.write(file, text);
-  const test::Ended ran = test::palpate({"run", file, "--quiet", "--runs", "<i>runs", "taps=5"}, folder_.path());
+  folder_.write("<u>cup.stl", text_of(test::source_folder() / "configs/scene/meshes/cup.stl"));
+  const test::Ended ran =
+      test::palpate({"run", file, "--quiet", "--runs", "<i>runs", "taps=5",
+                     "scene.objects=[{type: mesh, file: <u>cup.stl, unit: 1 mm, at: [11.5 cm, 11.5 cm]}]"},
+                    folder_.path());
   ASSERT_EQ(ran.status, 0) << ran.err;
   const fs::path directory = test::only_run(folder_.path() / "<i>runs");
   ASSERT_EQ(test::palpate({"report", directory.string()}, folder_.path()).status, 0);
@@ -168,7 +172,7 @@ TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {
   const Browsed seen =
       browse(directory,
              {drawn(5), "return document.querySelector('h1').textContent", "return document.title",
-              "return document.querySelectorAll('img, b[onmouseover], i').length",
+              "return document.querySelectorAll('img, b[onmouseover], i, u').length",
               "return [...document.scripts].filter((s) => s.textContent.startsWith('alert')).length",
               "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('config<'))",
               "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('--runs <i>runs'))",
@@ -181,7 +185,8 @@ TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {
   EXPECT_EQ(seen.values.at(3), 0);
   EXPECT_EQ(seen.values.at(4), true);
   EXPECT_EQ(seen.values.at(5), true);
-  EXPECT_EQ(seen.values.at(6), "isolate");
+  EXPECT_EQ(seen.values.at(6), true);
+  EXPECT_EQ(seen.values.at(7), "isolate");
 }
 
 std::string webgl_name(const ::testing::TestParamInfo<bool>& info) { return info.param ? "WithWebGL" : "WithoutWebGL"; }
