@@ -176,6 +176,7 @@ TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {
               "return [...document.scripts].filter((s) => s.textContent.startsWith('alert')).length",
               "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('config<'))",
               "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('--runs <i>runs'))",
+              "return [...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('<u>cup.stl'))",
               "return getComputedStyle(document.querySelector('h1 bdi')).unicodeBidi"});
   ASSERT_EQ(seen.trouble, "");  // an alert would have stopped the browser's driver
   EXPECT_THAT(seen.severe, IsEmpty());
