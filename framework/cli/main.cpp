@@ -32,7 +32,9 @@ struct Arguments {
   ParetoArguments pareto;
   CompareArguments compare;
   ReportArguments report;
+  ExportArguments exported;
   std::string directory;
+  int tap = 0;
   std::vector<std::string> configs;
   std::string plugin;
   bool json = false;
@@ -157,6 +159,21 @@ void add_report(CLI::App& app, Arguments& a, Action& action) {
   sub->callback([&] { action = [&](Program& program) { return report(program, a.report); }; });
 }
 
+void add_one_run(CLI::App& app, Arguments& a, Action& action) {
+  CLI::App* sub = app.add_subcommand("explain", "Why a run made a tap where it made it, in words");
+  sub->add_option("RUN", a.directory, "the run's directory")->required();
+  sub->add_option("TAP", a.tap, "the number of the tap, from 1")->required();
+  sub->callback([&] { action = [&](Program& program) { return explain(program, a.directory, a.tap); }; });
+
+  sub = app.add_subcommand("export", "Write the surface and the taps of a run for other programs");
+  sub->add_option("RUN", a.exported.directory, "the run's directory")->required();
+  sub->add_option("--format", a.exported.format, "ply for programs that show meshes, csv for tables")
+      ->required()
+      ->check(CLI::IsMember({"ply", "csv"}));
+  sub->add_option("--to", a.exported.to, "the folder to write into; if not given, export/ of the run");
+  sub->callback([&] { action = [&](Program& program) { return export_run(program, a.exported); }; });
+}
+
 /// CLI11's own words, on one line.
 int usage_error(const CLI::Error& trouble) { throw Error("", trouble.what(), "see palpate --help"); }
 
@@ -183,6 +200,7 @@ int run_main(int argc, char** argv) {
   add_rest(app, arguments, action);
   add_compare(app, arguments, action);
   add_report(app, arguments, action);
+  add_one_run(app, arguments, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "cli/one_run.hpp"
+#include "record/files.hpp"
+#include "record/run_directory.hpp"
+#include "report/exchange.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder to write into. A record has a surface.csv and a taps.csv of its own, which are no one's to overwrite.
+fs::path prepare_folder(const ExportArguments& arguments) {
+  const fs::path folder = arguments.to.empty() ? fs::path(arguments.directory) / "export" : fs::path(arguments.to);
+  std::error_code trouble;
+  for (const char* file : {"taps.jsonl", "manifest.jsonl", "config.yaml"}) {
+    if (fs::exists(folder / file, trouble))
+      throw Error(folder.string(), "is the directory of a run or a sweep, whose files would be overwritten",
+                  "give another folder with --to, or none");
+  }
+  fs::create_directories(folder, trouble);
+  if (trouble) throw Error(folder.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
+  return folder;
+}
+
+/// That more taps may follow is no mistake, but whoever reads the files should know.
+void mention_state(const Recording& recording) {
+  const RunStatus status = read_status(recording.directory);
+  if (status.state == RunStatus::State::done) return;
+  const std::string why = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
+  mention(fmt::format("this run is {}{}; what is written is what its first {} taps tell\n", state_name(status.state),
+                      why, recording.rows.size()));
+}
+
+}  // namespace
+
+int export_run(Program& program, const ExportArguments& arguments) {
+  const Recording recording = read_one_run(program, arguments.directory);
+  Playback playback(program.workshop, recording);
+  playback.advance_to(static_cast<int>(recording.taps.size()));
+  const ReconstructedSurface surface = reconstruct(playback.experiment());
+  const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
+  const bool ply = arguments.format == "ply";
+  const fs::path folder = prepare_folder(arguments);
+  mention_state(recording);
+  const auto write = [&](const char* name, const std::string& text) {
+    const fs::path file = folder / (std::string(name) + "." + arguments.format);
+    write_file(file, text);
+    fmt::print("{}\n", file.string());
+  };
+  write("surface", ply ? surface_ply(surface, run) : surface_table(surface));
+  write("taps", ply ? taps_ply(recording, run) : taps_table(recording));
+  return kDone;
+}
+
+}  // namespace palpate::cli

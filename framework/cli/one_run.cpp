@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "cli/one_run.hpp"
+
+#include "sweep/sweep.hpp"
+
+#include <palpate/error.hpp>
+
+namespace palpate::cli {
+
+Recording read_one_run(const Program& program, const std::filesystem::path& directory) {
+  if (is_sweep(directory)) {
+    throw Error(directory.string(), "is a sweep of many runs",
+                "give one of them: " + (directory / "jobs" / "<id>").string());
+  }
+  return read_recording(program.workshop, directory);
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Numbers in sentences: lengths in the unit that suits them, and lines that fit a terminal.
+#pragma once
+
+#include <string>
+
+namespace palpate {
+
+/// Six digits at most: "0.384833", "-1.2e-05".
+std::string plain_words(double value);
+
+/// Metres as people say them: "0.1 mm", "9.07 cm", "1.2 m", "0 cm"; four digits at most.
+std::string length_words(double metres);
+
+/// "x 12.97 cm, y 7.59 cm", as in the table of a run.
+std::string place_words(double x, double y);
+
+/// "1 tap", "3 taps"
+std::string counted(long count, const std::string& noun);
+
+/// Text in sections: headings, and sentences below them, broken into lines of at most 100 letters.
+class Page {
+ public:
+  void heading(const std::string& text);
+  /// A sentence or two that begin on a line of their own; control characters become blanks.
+  void say(const std::string& text);
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace palpate
