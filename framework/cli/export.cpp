@@ -33,9 +33,10 @@ fs::path prepare_folder(const ExportArguments& arguments) {
 void mention_state(const Recording& recording) {
   const RunStatus status = read_status(recording.directory);
   if (status.state == RunStatus::State::done) return;
-  const std::string why = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
-  mention(fmt::format("this run is {}{}; what is written is what its first {} taps tell\n", state_name(status.state),
-                      why, recording.rows.size()));
+  std::string how = "is unfinished";
+  if (status.state == RunStatus::State::running) how = "is under way";
+  if (status.state == RunStatus::State::failed) how = "failed: " + status.stop_reason;
+  mention(fmt::format("this run {}; what is written is what its first {} taps tell\n", how, recording.rows.size()));
 }
 
 }  // namespace

@@ -209,12 +209,21 @@ class Explanation {
           ties == allowed ? "All" : std::to_string(ties), counted(allowed, "candidate"), bound);
     }
     page_.say(text);
-    if (tap_.source == Source::acquisition && (*score <= 0.0 || (ties > 1 && ties == allowed))) {
-      page_.say(fmt::format("{}: such scores tell nothing, but the config has the rule stand (fallback: none).",
-                            *score <= 0.0 ? "No score is positive" : "Every score is equal"));
-    }
+    if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
     explain_left_out(out);
     explain_runner_up(evidence, *score);
+  }
+
+  /// Of scores that tell candidates hardly apart: why the rule had its way all the same.
+  void explain_flatness(double best, double bound, bool equal) {
+    if (options_.fallback == ExperimentOptions::Fallback::none) {
+      if (best > 0.0 && !equal) return;
+      page_.say(fmt::format("{}: such scores tell nothing, but the config has the rule stand (fallback: none).",
+                            best > 0.0 ? "Every score is equal" : "No score is positive"));
+    } else if (best > 0.0 && best <= bound) {
+      page_.say(fmt::format("The best score, {}, is as good as 0, but it is positive: so no fallback stepped in.",
+                            plain_words(best)));
+    }
   }
 
   void explain_left_out(int out) {

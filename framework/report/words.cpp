@@ -31,12 +31,13 @@ void Page::heading(const std::string& text) {
 
 void Page::say(const std::string& text) {
   constexpr std::size_t kWidth = 100;
+  constexpr std::size_t kIndent = 3;
   std::string line = "  -";
   const std::string words = one_line(text);
   for (std::size_t at = 0; at < words.size();) {
     const std::size_t end = std::min(words.find(' ', at), words.size());
     if (end > at) {
-      if (line.size() + 1 + (end - at) > kWidth) {
+      if (line.size() > kIndent && line.size() + 1 + (end - at) > kWidth) {
         text_ += line + "\n";
         line = "   ";
       }

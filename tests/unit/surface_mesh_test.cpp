@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// Heights over a grid as triangles: normals, orientation, and what hangs together.
+#include "report/surface_mesh.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr double kRounding = 1e-13;
+
+/// A grid whose sides, numbers and distances all differ.
+Candidates oblong() {
+  return product_grid(Eigen::VectorXd::LinSpaced(7, 0.01, 0.13), Eigen::Vector4d(0.1, 0.15, 0.2, 0.25));
+}
+
+template <class Height>
+Eigen::VectorXd heights(const Candidates& candidates, const Height& height) {
+  Eigen::VectorXd out(candidates.size());
+  for (int i = 0; i < candidates.size(); ++i) out(i) = height(candidates.points(i, 0), candidates.points(i, 1));
+  return out;
+}
+
+Eigen::Vector3d corner(const SurfaceMesh& mesh, int vertex) { return mesh.points.row(vertex).transpose(); }
+
+/// Twice the area of a triangle, along its normal by the order of its corners.
+Eigen::Vector3d area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& t) {
+  return (corner(mesh, t[1]) - corner(mesh, t[0])).cross(corner(mesh, t[2]) - corner(mesh, t[0]));
+}
+
+TEST(SurfaceMesh, HasTheCandidatesAsVerticesInTheirOrder) {
+  const Candidates candidates = oblong();
+  const Eigen::VectorXd z = heights(candidates, [](double x, double y) { return std::sin(40 * x) * y; });
+  const SurfaceMesh mesh = surface_mesh(candidates, z);
+  ASSERT_EQ(mesh.points.rows(), 28);
+  EXPECT_EQ(mesh.points.leftCols<2>(), candidates.points);
+  EXPECT_EQ(mesh.points.col(2), z);
+}
+
+TEST(SurfaceMesh, OfAPlaneHasThePlanesNormalAtEveryVertexTheEdgesIncluded) {
+  const double along_x = 0.7;
+  const double along_y = -1.9;
+  const Candidates candidates = oblong();
+  const SurfaceMesh mesh = surface_mesh(
+      candidates, heights(candidates, [&](double x, double y) { return 0.03 + along_x * x + along_y * y; }));
+  const Eigen::RowVector3d expected = Eigen::RowVector3d(-along_x, -along_y, 1.0).normalized();
+  for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i)
+    EXPECT_LT((mesh.normals.row(i) - expected).cwiseAbs().maxCoeff(), kRounding) << i;
+}
+
+TEST(SurfaceMesh, OfALevelSurfaceLooksStraightUpWithoutAMinusBeforeAnyZero) {
+  const Candidates candidates = oblong();
+  const SurfaceMesh mesh = surface_mesh(candidates, Eigen::VectorXd::Constant(candidates.size(), 0.07));
+  for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i) {
+    EXPECT_EQ(mesh.normals.row(i), Eigen::RowVector3d(0.0, 0.0, 1.0));
+    EXPECT_FALSE(std::signbit(mesh.normals(i, 0)) || std::signbit(mesh.normals(i, 1)));
+  }
+}
+
+TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
+  // Of a parabola along x the central difference is the slope itself; at an edge it is that half a step inside.
+  const double bend = 3.0;
+  const Candidates candidates = oblong();
+  const SurfaceMesh mesh =
+      surface_mesh(candidates, heights(candidates, [&](double x, double) { return bend * x * x; }));
+  const double step = candidates.xs(1) - candidates.xs(0);
+  for (int row = 0; row < candidates.rows; ++row) {
+    for (int column = 0; column < candidates.columns; ++column) {
+      double x = candidates.xs(column);
+      if (column == 0) x += step / 2;
+      if (column == candidates.columns - 1) x -= step / 2;
+      const Eigen::RowVector3d expected = Eigen::RowVector3d(-2 * bend * x, 0.0, 1.0).normalized();
+      EXPECT_LT((mesh.normals.row(row * candidates.columns + column) - expected).cwiseAbs().maxCoeff(), kRounding);
+    }
+  }
+}
+
+TEST(SurfaceMesh, HasNormalsOfLengthOneOnTheSideOfItsTriangles) {
+  const Candidates candidates = oblong();
+  const SurfaceMesh mesh = surface_mesh(
+      candidates, heights(candidates, [](double x, double y) { return 0.1 * std::sin(90 * x) * std::cos(50 * y); }));
+  for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i) {
+    EXPECT_NEAR(mesh.normals.row(i).norm(), 1.0, kRounding);
+    EXPECT_GT(mesh.normals(i, 2), 0.0);
+  }
+  for (const auto& triangle : mesh.triangles) EXPECT_GT(area_vector(mesh, triangle).z(), 0.0);
+}
+
+TEST(SurfaceMesh, CoversTheRectangleOfItsVerticesOnce) {
+  const Candidates candidates = oblong();
+  const double tilt = 2.0;
+  const SurfaceMesh mesh = surface_mesh(candidates, heights(candidates, [&](double x, double) { return tilt * x; }));
+  double seen_from_above = 0.0;
+  double area = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    seen_from_above += area_vector(mesh, triangle).z() / 2;
+    area += area_vector(mesh, triangle).norm() / 2;
+  }
+  EXPECT_NEAR(seen_from_above, 0.12 * 0.15, kRounding);
+  EXPECT_NEAR(area, 0.12 * 0.15 * std::hypot(1.0, tilt), kRounding);
+}
+
+TEST(SurfaceMesh, IsADiscWhoseInnerEdgesHaveATriangleOnEitherSide) {
+  const Candidates candidates = oblong();
+  const SurfaceMesh mesh = surface_mesh(candidates, Eigen::VectorXd::Zero(candidates.size()));
+  std::set<std::pair<int, int>> directed;
+  std::set<std::pair<int, int>> edges;
+  std::set<int> vertices;
+  for (const auto& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const int from = t[static_cast<std::size_t>(i)];
+      const int to = t[static_cast<std::size_t>((i + 1) % 3)];
+      EXPECT_TRUE(directed.emplace(from, to).second) << "two triangles on one side of an edge";
+      edges.emplace(std::min(from, to), std::max(from, to));
+      vertices.insert(from);
+    }
+  }
+  EXPECT_EQ(vertices.size(), 28U);
+  EXPECT_EQ(
+      static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.triangles.size()), 1)
+      << "Euler characteristic of a disc";
+  EXPECT_EQ(2 * edges.size() - directed.size(), 2U * (6 + 3)) << "edges of the rim have one triangle";
+}
+
+TEST(SurfaceMesh, OfASingleRowOrASingleCandidateHasNoTriangleAndLevelNormalsAcross) {
+  const Candidates row = product_grid(Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::VectorXd::Constant(1, 0.5));
+  const SurfaceMesh strip = surface_mesh(row, Eigen::Vector3d(0.0, 0.1, 0.2));
+  EXPECT_TRUE(strip.triangles.empty());
+  for (int i = 0; i < 3; ++i)
+    EXPECT_LT((strip.normals.row(i) - Eigen::RowVector3d(-1, 0, 1).normalized()).norm(), kRounding);
+
+  const Candidates one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.5));
+  const SurfaceMesh point = surface_mesh(one, Eigen::VectorXd::Constant(1, 0.3));
+  EXPECT_TRUE(point.triangles.empty());
+  EXPECT_EQ(point.normals.row(0), Eigen::RowVector3d(0, 0, 1));
+}
+
+}  // namespace
+}  // namespace palpate
