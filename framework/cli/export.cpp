@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// The folder to write into. A record has a surface.csv and a taps.csv of its own, which are no one's to overwrite.
 fs::path prepare_folder(const ExportArguments& arguments) {
-  const fs::path folder = arguments.to.empty() ? fs::path(arguments.directory) / "export" : fs::path(arguments.to);
+  fs::path folder = arguments.to.empty() ? fs::path(arguments.directory) / "export" : fs::path(arguments.to);
   std::error_code trouble;
   for (const char* file : {"taps.jsonl", "manifest.jsonl", "config.yaml"}) {
     if (fs::exists(folder / file, trouble))

@@ -159,8 +159,8 @@ class Explanation {
 
   void explain_fallback(const Evidence& evidence) {
     const std::string why = evidence.text("why");
-    page_.say(fmt::format("The acquisition had nothing to go by: {}. It is {}.",
-                          why.empty() ? "its scores told no candidate from another" : why, acquisition_words()));
+    page_.say(fmt::format("The acquisition, {}, had nothing to go by: {}.", acquisition_words(),
+                          why.empty() ? "its scores told no candidate from another" : why));
     const auto greatest = evidence.number("max_weight");
     if (hits_before() == 0 && greatest && *greatest <= 0.0) {
       page_.say(

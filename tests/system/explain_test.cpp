@@ -183,7 +183,7 @@ TEST_F(Explain, TellsEveryTapOfRunsWithFailedTapsOrPredictions) {
 
 TEST_F(Explain, SaysWhyTheFallbackHadToChoose) {
   const std::string text = explain(run({}), 8);
-  EXPECT_THAT(text, HasSubstr("The acquisition had nothing to go by: no score is positive. It is weighted ("));
+  EXPECT_THAT(text, HasSubstr("The acquisition, weighted (tap where "));
   EXPECT_THAT(text, HasSubstr("No tap has hit an object yet: every label is 0"));
   EXPECT_THAT(text, HasSubstr("503 of 2202 candidates are tied: within 2e-08 of the best (tie_tolerance)"));
   EXPECT_THAT(text, HasSubstr("- 7 candidates are left out, because tapped before (repeat: forbid)."));
