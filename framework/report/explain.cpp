@@ -198,7 +198,9 @@ class Explanation {
     const double best = second ? std::max(*score, *second) : *score;
     const double bound = options_.tie_tolerance * (std::abs(best) + scale);
     std::string text = fmt::format("Its score there is {}", plain_words(*score));
-    if (ties <= 1) {
+    if (allowed == 1) {
+      text += "; no other candidate is left.";
+    } else if (ties <= 1) {
       text += fmt::format(", the best of {}; no other is within {:.2g} of it (tie_tolerance).",
                           counted(allowed, "candidate"), bound);
     } else {
@@ -227,19 +229,18 @@ class Explanation {
   }
 
   void explain_left_out(int out) {
-    if (out == 0) return page_.say("No candidate is left out.");
-    page_.say(options_.repeat == ExperimentOptions::Repeat::forbid
-                  ? fmt::format("{} left out, because tapped before (repeat: forbid).",
-                                counted(out, "candidate") + (out == 1 ? " is" : " are"))
-                  : fmt::format("{} left out, because a tap failed there; others may be tapped again (repeat: allow).",
-                                counted(out, "candidate") + (out == 1 ? " is" : " are")));
+    const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
+                          ? "because tapped before (repeat: forbid)"
+                          : "because a tap failed there; others may be tapped again (repeat: allow)";
+    page_.say(out == 0 ? std::string("No candidate is left out.")
+                       : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
   }
 
   void explain_runner_up(const Evidence& evidence, double score) {
     const auto x = evidence.number("runner_up.x");
     const auto y = evidence.number("runner_up.y");
     const auto second = evidence.number("runner_up.score");
-    if (!x || !y || !second) return page_.say("There is no runner-up: no other candidate was left.");
+    if (!x || !y || !second) return page_.say("There is no runner-up.");
     std::string by = "the same";
     if (const double less = score - *second; less != 0.0) {
       const char* sense = less > 0.0 ? "less" : "more, which is a tie";
@@ -351,9 +352,10 @@ class Explanation {
       const auto from = before.number(field);
       const auto to = then.number(field);
       if (!from || !to) return {};
-      const std::string old = words(*from) + before.star(field);
+      const std::string old = words(*from);
       const std::string now = words(*to) + then.star(field);
-      return old == now ? "still " + now : fmt::format("from {} to {}", old, now);
+      if (words(*to) == old) return "still " + now;
+      return fmt::format("from {}{} to {}", old, before.star(field), now);
     };
     std::vector<std::string> parts;
     const auto add = [&](const char* what, const std::string& text) {

@@ -213,6 +213,14 @@ TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPosi
   EXPECT_GT(found, 0);
 }
 
+TEST_F(Explain, TellsTheLastCandidateAndARunThatOnlyFailed) {
+  const std::string last = explain(run({"candidates.count=2", "taps=4"}), 4);
+  EXPECT_THAT(last, HasSubstr("Its score there is 1; no other candidate is left."));
+  EXPECT_THAT(last, HasSubstr("There is no runner-up."));
+  expect_whole_words(last);
+  expect_explained(run({"scene.effects.missed_contacts={probability: 1}", "surface=two_part", "taps=6"}));
+}
+
 TEST_F(Explain, PrintsWhatReadmeShows) {
   const std::string text = palpate({"explain", run({"name=first"}).string(), "9"}).out;
   const std::string shown = "```\n" + text.substr(0, text.find("\nThe models"));
