@@ -50,14 +50,17 @@ std::string gnuplot_text(const std::string& text) {
   return out + "'";
 }
 
+std::string png_header(int width, int height, const std::string& output) {
+  return fmt::format("set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,12'\nset output {}\n", width,
+                     height, gnuplot_text(output));
+}
+
 std::string draw_png(const std::string& script, int width, int height, const fs::path& file) {
   const fs::path temporary = fs::absolute(file.string() + ".tmp");
   const File input(std::tmpfile());
   const File trouble(std::tmpfile());
   if (!input || !trouble) return fmt::format("no temporary file could be made: {}", std::strerror(errno));
-  const std::string all =
-      fmt::format("set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,12'\nset output {}\n{}", width, height,
-                  gnuplot_text(temporary.string()), script);
+  const std::string all = png_header(width, height, temporary.string()) + script;
   if (std::fwrite(all.data(), 1, all.size(), input.get()) != all.size() || std::fflush(input.get()) != 0)
     return fmt::format("its script could not be written: {}", std::strerror(errno));
   ::lseek(::fileno(input.get()), 0, SEEK_SET);

@@ -10,6 +10,9 @@ namespace palpate {
 /// `text` as gnuplot's literal: nothing in it is a command, a macro or a format.
 std::string gnuplot_text(const std::string& text);
 
+/// The first lines of a script: its terminal, a PNG of `width` by `height` pixels, and `output`, its file.
+std::string png_header(int width, int height, const std::string& output);
+
 /// Draws `script` (without terminal and output) as a PNG of `width` by `height` pixels and renames it to `file`.
 /// Returns "", or in one line why there is no picture.
 std::string draw_png(const std::string& script, int width, int height, const std::filesystem::path& file);

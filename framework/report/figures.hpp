@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Pictures of runs and sweeps: DIR/figures/NAME.png, each with the script that draws it, and all its data, beside it as
+// NAME.gnuplot.
+#pragma once
+
+#include "record/recording.hpp"
+#include "sweep/sweep.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What was written.
+struct Figures {
+  std::vector<std::filesystem::path> pictures;
+  std::vector<std::string> notes;  ///< what could not be drawn for want of data, a line each
+};
+
+/// Of a run: `surface`, `maps` and `curves`; with `paper` only `paper_progress`, in the layout of the paper's figure 2.
+/// Throws Error, of kind `run` and with the scripts left, if gnuplot draws none.
+Figures write_run_figures(const Workshop& workshop, const Recording& recording, bool paper);
+
+/// Of a sweep: `distributions` and, where two keys but the seed are swept, `heat_map`; with `paper` only the paper's
+/// `figure_2` to `figure_5`, of the jobs that they need. Throws Error as above, and where not one can be drawn.
+Figures write_sweep_figures(const Workshop& workshop, const Sweep& sweep, bool paper);
+
+}  // namespace palpate

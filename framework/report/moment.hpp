@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// What a figure shows of a run as it stood after some of its taps.
+#pragma once
+
+#include "record/recording.hpp"
+
+#include <palpate/types.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A tap as it is drawn.
+struct TapMark {
+  enum class Kind { on, off, failed };
+  int tap = 1;
+  Kind kind = Kind::failed;
+  double x = 0.0;  ///< metres, as `y`
+  double y = 0.0;
+  double height = 0.0;  ///< metres; the desk's where nothing was touched
+};
+
+/// A run after its first `taps` taps. The maps have one value for each candidate.
+struct Moment {
+  int taps = 0;
+  int on = 0;  ///< taps on an object, on the desk, without a contact
+  int off = 0;
+  int failed = 0;
+  std::vector<TapMark> marks;      ///< of these taps, in their order
+  std::optional<Target> next;      ///< that the strategy would choose now; none if no candidate is left
+  Eigen::VectorXd surface;         ///< as reconstructed, metres
+  Eigen::VectorXd deviation;       ///< standard deviation of the height, metres
+  Eigen::VectorXd uncertainty;     ///< u
+  Eigen::VectorXd weight;          ///< w, as the strategy reads it
+  Eigen::VectorXd scores;          ///< what the strategy gives each candidate
+  double largest_deviation = 0.0;  ///< of the height process, all taps seen, metres; as `mean_deviation`
+  double mean_deviation = 0.0;
+  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e
+};
+
+/// The run after each of these numbers of taps, which ascend and lie between 1 and all.
+std::vector<Moment> moments_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
+
+/// "7 on the object, 10 on the desk, 1 failed"; what there is none of but the first two is left out.
+std::string count_words(const Moment& moment);
+
+}  // namespace palpate

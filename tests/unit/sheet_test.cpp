@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "report/sheet.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// CIE L* of "#rrggbb" under D65: how light a colour looks, 0 to 100.
+double lightness(const std::string& colour) {
+  const auto linear = [&](std::size_t at) {
+    const double c = static_cast<double>(std::strtol(colour.substr(at, 2).c_str(), nullptr, 16)) / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  const double y = 0.2126 * linear(1) + 0.7152 * linear(3) + 0.0722 * linear(5);
+  return y > 0.008856 ? 116.0 * std::cbrt(y) - 16.0 : 903.3 * y;
+}
+
+TEST(PaletteTest, GrowsLighterInEvenSteps) {
+  for (const Palette palette : {Palette::viridis, Palette::cividis}) {
+    const std::vector<std::string>& stops = palette_stops(palette);
+    const double step = (lightness(stops.back()) - lightness(stops.front())) / static_cast<double>(stops.size() - 1);
+    EXPECT_GT(step * static_cast<double>(stops.size() - 1), 70.0) << "from dark to light";
+    for (std::size_t i = 1; i < stops.size(); ++i)
+      EXPECT_NEAR(lightness(stops[i]) - lightness(stops[i - 1]), step, 0.35 * step) << stops[i];
+  }
+}
+
+std::vector<std::vector<double>> numbers_in(const std::string& text) {
+  std::vector<std::vector<double>> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    out.emplace_back();
+    for (double cell = 0.0; cells >> cell;) out.back().push_back(cell);
+  }
+  return out;
+}
+
+TEST(RasterTest, HasEveryCellOnceWithTheLowestRowFirst) {
+  const Area area{0.3, 0.2};
+  const Candidates candidates = grid_by_spacing(area, 0.1);  // 3 x 2
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(6, 1, 6);
+  EXPECT_EQ(Raster(candidates, area).matrix(values), "1 2 3\n4 5 6\n");
+  EXPECT_EQ(Raster(candidates, area).surface(values / 100, values / 1000),
+            "5 5 1 0.1\n15 5 2 0.2\n25 5 3 0.3\n\n5 15 4 0.4\n15 15 5 0.5\n25 15 6 0.6\n\n");
+  EXPECT_EQ(Raster(candidates, area).matrix_columns(), "(10 * (column(1) + 0.5)):(10 * (column(2) + 0.5)):3");
+}
+
+TEST(RasterTest, ThinsOutWhatNoPictureShowsAndStillCoversTheArea) {
+  const Area area{1.0, 1.0};
+  const Candidates candidates = grid_by_count(area, 1000);
+  const auto rows = numbers_in(Raster(candidates, area).matrix(candidates.points.col(0)));
+  ASSERT_LT(rows.size(), 300U);
+  const auto count = static_cast<double>(rows.size());
+  for (std::size_t i = 0; i < rows[0].size(); ++i)
+    EXPECT_NEAR(rows[0][i], (static_cast<double>(i) + 0.5) / count, 0.51 / 1000) << "the candidate nearest to the cell";
+}
+
+TEST(RasterTest, ASingleCandidateFillsTheArea) {
+  const Area area{0.1, 0.1};
+  const Candidates candidates = grid_by_count(area, 1);
+  EXPECT_EQ(Raster(candidates, area).matrix(Eigen::VectorXd::Constant(1, 7.0)), "7 7\n7 7\n");
+}
+
+TEST(RasterTest, WhatIsNotFiniteIsAGapAndNoWord) {
+  const Area area{0.2, 0.2};
+  const Candidates candidates = grid_by_count(area, 2);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(4);
+  values(1) = std::nan("");
+  values(2) = HUGE_VAL;
+  EXPECT_EQ(Raster(candidates, area).matrix(values), "0 NaN\nNaN 0\n");
+}
+
+Moment flat_moment(double height) {
+  Moment moment;
+  moment.surface = Eigen::VectorXd::Constant(1, height);
+  return moment;
+}
+
+TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
+  Points middle(1, 2);
+  middle << 0.1, 0.1;
+  const Area area{0.2, 0.2};
+  const Relief bare = relief_of({flat_moment(0.0)}, middle, area, 0.0);
+  const Relief hill = relief_of({flat_moment(0.0), flat_moment(0.5)}, middle, area, 0.0);
+  EXPECT_EQ(hill.low, 0.0);
+  EXPECT_EQ(hill.top, 0.5);
+  EXPECT_EQ(hill.below, bare.below);
+  EXPECT_NEAR(hill.above, 0.5 * std::sin(std::acos(0.5)), 1e-9) << "seen from 60 degrees off the vertical";
+  const Relief pit = relief_of({flat_moment(-0.5)}, middle, area, 0.0);
+  EXPECT_EQ(pit.low, -0.5);
+  EXPECT_EQ(pit.below, hill.above);
+  Moment tapped = flat_moment(0.0);
+  tapped.marks.push_back({1, TapMark::Kind::on, 0.1, 0.1, 0.7});
+  EXPECT_EQ(relief_of({tapped}, middle, area, 0.0).top, 0.7);
+}
+
+TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
+  Sheet sheet(400, 300);
+  Moment moment;
+  moment.marks = {{1, TapMark::Kind::on, 0.01, 0.02, 0.03}, {2, TapMark::Kind::failed, 0.04, 0.05, 0.0}};
+  moment.next = Target{0.06, 0.07};
+  sheet.taps("a", moment);
+  const Area area{0.1, 0.1};
+  const Candidates candidates = grid_by_count(area, 2);
+  const Raster raster(candidates, area);
+  sheet.data("m", raster.matrix(Eigen::VectorXd::Zero(4)));
+  sheet.map({50, 50, 200, 200}, raster, "m", "a", {Palette::viridis, 0, 1, "e"});
+  const std::string script = sheet.script();
+  EXPECT_THAT(script, HasSubstr("$on_a << END\n1 2 3 1\nEND\n"));
+  EXPECT_THAT(script, HasSubstr("$failed_a << END\n4 5 0 2\nEND\n"));
+  EXPECT_THAT(script, HasSubstr("$next_a << END\n6 7\nEND\n"));
+  EXPECT_THAT(script, Not(HasSubstr("off_a"))) << "gnuplot has no empty blocks";
+}
+
+TEST(SheetTest, TextFromConfigsIsNeverACommand) {
+  Sheet sheet(400, 300);
+  sheet.text("it's `date`\nand \"more\"", 10, 10, 12);
+  sheet.plot({10, 10, 100, 100}, "", "plot NaN");
+  EXPECT_THAT(sheet.script(), HasSubstr("'it''s `date`'"));
+  EXPECT_THAT(sheet.script(), HasSubstr("'and \"more\"'"));
+}
+
+}  // namespace
+}  // namespace palpate
