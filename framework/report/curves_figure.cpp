@@ -216,7 +216,8 @@ std::string names(const Sheet& sheet, const Box& box, double top, const Panel& p
   if (name_lines(panel) == 0) return out;
   for (std::size_t i = 0; i < std::min(panel.curves.size(), kMostNames); ++i) {
     const double x = box.left + 6 + 160.0 * static_cast<double>(i % columns);
-    const double y = top + kNameHeight * (static_cast<double>(i / columns) + 0.5);
+    const std::size_t line = i / columns;
+    const double y = top + kNameHeight * (static_cast<double>(line) + 0.5);
     const bool rest = i + 1 == kMostNames && panel.curves.size() > kMostNames;
     out += fmt::format(
         "set label {} at screen {:.5f}, screen {:.5f} left font ',10' point pt 7 ps 1 lc rgb '{}' "
