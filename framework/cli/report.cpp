@@ -2,14 +2,18 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "record/files.hpp"
+#include "report/figures.hpp"
 #include "report/run_page.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 
 namespace palpate::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Speaks on stderr once a second, so that whoever waits knows for what.
 class Patience {
@@ -25,14 +29,25 @@ class Patience {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+void show(const Figures& figures) {
+  for (const std::string& note : figures.notes) mention(note + "\n");
+  for (const fs::path& picture : figures.pictures) fmt::print("{}\n", picture.string());
+}
+
+void report_run(Program& program, const ReportArguments& arguments) {
+  const Workshop& workshop = program.workshop;
+  const Recording recording = read_recording(workshop, arguments.directory);
+  const fs::path page = recording.directory / "report.html";
+  write_file(page, run_page(recording, make_history(workshop, recording, Patience())));
+  fmt::print("{}\n", page.string());
+  if (arguments.figures) show(write_run_figures(workshop, recording, false));
+  if (arguments.paper) show(write_run_figures(workshop, recording, true));
+}
+
 }  // namespace
 
 int report(Program& program, const ReportArguments& arguments) {
-  const Recording recording = read_recording(program.workshop, arguments.directory);
-  const History history = make_history(program.workshop, recording, Patience());
-  const std::filesystem::path file = recording.directory / "report.html";
-  write_file(file, run_page(recording, history));
-  fmt::print("{}\n", file.string());
+  report_run(program, arguments);
   return kDone;
 }
 

@@ -75,14 +75,14 @@ Panel outline_panel(const Recording& recording, const Errors& last) {
   return panel;
 }
 
-Panel deviation_panel(const Recording& recording, const Moment& last) {
+Panel deviation_panel(const Recording& recording, const Snapshot& last) {
   Panel panel{"standard deviation [cm]", {}};
   add(panel, curve_of(recording, "max_standard_deviation", "largest", 100, last.largest_deviation));
   add(panel, curve_of(recording, "mean_standard_deviation", "mean", 100, last.mean_deviation));
   return panel;
 }
 
-Panel share_panel(const Moment& last) {
+Panel share_panel(const Snapshot& last) {
   Panel panel{"share of the taps on the object", {}};
   panel.share = true;
   Curve curve{"", {}};
@@ -268,7 +268,7 @@ void draw(Sheet& sheet, const Box& box, double top, const Panel& panel, int numb
 
 }  // namespace
 
-Figure curves_figure(const Recording& recording, const Moment& last, const RunResult& result) {
+Figure curves_figure(const Recording& recording, const Snapshot& last, const RunResult& result) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;

@@ -49,7 +49,7 @@ Figures write_run_figures(const Workshop& workshop, const Recording& recording, 
     figures.push_back(progress_figure("paper_progress", recording.config.options.name, progress));
   } else {
     Playback playback(workshop, recording);
-    const Moment last = moments_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
+    const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
     figures.push_back(surface_figure(recording, playback.experiment(), last));
     figures.push_back(maps_figure(recording, playback.experiment(), last));
     figures.push_back(curves_figure(recording, last, playback.experiment().result()));

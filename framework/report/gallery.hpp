@@ -19,17 +19,17 @@ struct Figure {
   Sheet sheet;
 };
 
-Figure surface_figure(const Recording& recording, const Experiment& experiment, const Moment& last);
-Figure maps_figure(const Recording& recording, const Experiment& experiment, const Moment& last);
+Figure surface_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last);
+Figure maps_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last);
 /// Curves over the taps; `result` is that of the recorded taps. What the run has not is left out. Throws Error for a
 /// damaged timings.csv.
-Figure curves_figure(const Recording& recording, const Moment& last, const RunResult& result);
+Figure curves_figure(const Recording& recording, const Snapshot& last, const RunResult& result);
 
 /// What a figure of the paper shows of one run.
 struct Progress {
   std::string strategy;
   std::vector<int> iterations;
-  std::vector<Moment> moments;  ///< one for each iteration
+  std::vector<Snapshot> snapshots;  ///< one for each iteration
   Candidates candidates;
   Area area;
   double desk = 0.0;  ///< metres

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "report/history.hpp"
 
-#include <cmath>
+#include "report/snapshot.hpp"
+
+#include <algorithm>
+#include <array>
 
 namespace palpate {
 namespace {
@@ -42,19 +45,11 @@ class Shown {
   int step_ = 1;
 };
 
-enum : std::size_t { kHeight, kDeviation, kUncertainty, kWeight, kScore };
-
-/// Whether scores are maps of their own: not u, nor u w, at some moment.
-bool is_own(const Eigen::VectorXd& scores, const TapBelief& belief) {
-  return scores != belief.uncertainty() && scores != belief.uncertainty().cwiseProduct(belief.weight());
-}
-
 }  // namespace
 
 History make_history(const Workshop& workshop, const Recording& recording, const Progress& progress) {
   Playback playback(workshop, recording);
   Experiment& experiment = playback.experiment();
-  const TapBelief& belief = experiment.belief();
   const Shown shown(experiment.candidates());
   History out;
   out.x = shown.x();
@@ -64,19 +59,14 @@ History make_history(const Workshop& workshop, const Recording& recording, const
   const auto all = static_cast<int>(recording.taps.size());
   for (int taps = 0; taps <= all; ++taps) {
     playback.advance_to(taps);
-    const auto keep = [&](std::size_t which, const Eigen::VectorXd& map) {
-      out.maps[which].frames.push_back(shown.of(map));
-    };
-    keep(kHeight, reconstruction(belief));
-    keep(kDeviation, belief.height_variance().cwiseSqrt());
-    keep(kUncertainty, belief.uncertainty());
-    keep(kWeight, belief.weight());
-    const Eigen::VectorXd scores = experiment.scores();
-    keep(kScore, scores);
-    own_scores = own_scores || is_own(scores, belief);
-    out.moments.push_back({taps, experiment.result(), experiment.choose_next(),
-                           std::sqrt(belief.all_taps_variance().maxCoeff()), belief.weight_mean().minCoeff(),
-                           belief.weight_mean().maxCoeff()});
+    const Snapshot now = snapshot_of(playback, recording);
+    const std::array<const Eigen::VectorXd*, 5> maps{&now.surface, &now.deviation, &now.uncertainty, &now.weight,
+                                                     &now.scores};
+    for (std::size_t i = 0; i < maps.size(); ++i) out.maps[i].frames.push_back(shown.of(*maps[i]));
+    own_scores = own_scores || (now.scores != now.uncertainty && now.scores != now.exploration());
+    const Eigen::VectorXd& weight = experiment.belief().weight_mean();
+    out.moments.push_back(
+        {taps, experiment.result(), now.next, now.largest_deviation, weight.minCoeff(), weight.maxCoeff()});
     progress(taps, all);
   }
   if (!own_scores) out.maps.pop_back();

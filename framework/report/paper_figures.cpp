@@ -23,28 +23,28 @@ int taps_at(int iteration, int initial, int all) {
   return std::clamp(iteration + initial - 1, 1, all);
 }
 
-std::string iteration_words(int iteration, const Moment& moment) {
-  return fmt::format("iteration {}, after tap {}\n{}", iteration, moment.taps, count_words(moment));
+std::string iteration_words(int iteration, const Snapshot& snapshot) {
+  return fmt::format("iteration {}, after tap {}\n{}", iteration, snapshot.taps, count_words(snapshot));
 }
 
-/// The largest value of a map over some moments, at least `least`.
+/// The largest value of a map over some snapshots, at least `least`.
 template <class Pick>
-double largest(const std::vector<Moment>& moments, double least, const Pick& pick) {
-  for (const Moment& one : moments) least = std::max(least, pick(one).maxCoeff());
+double largest(const std::vector<Snapshot>& snapshots, double least, const Pick& pick) {
+  for (const Snapshot& one : snapshots) least = std::max(least, pick(one).maxCoeff());
   return least;
 }
 
 /// Colours for the scores of a run: from 0, where nobody would tap.
 Colours score_colours(const Progress& progress) {
   const double high = largest(
-      progress.moments, 0.0, [](const Moment& m) -> const auto& { return m.scores; });
+      progress.snapshots, 0.0, [](const Snapshot& m) -> const auto& { return m.scores; });
   return {Palette::viridis, 0.0, high > 0.0 ? high : 1.0, fmt::format("score ({})", progress.strategy)};
 }
 
 double least_score(const std::vector<Progress>& rows) {
   double least = 0.0;
   for (const Progress& row : rows) {
-    for (const Moment& one : row.moments) least = std::min(least, one.scores.minCoeff());
+    for (const Snapshot& one : row.snapshots) least = std::min(least, one.scores.minCoeff());
   }
   return least;
 }
@@ -53,8 +53,8 @@ std::string below_zero_words(double least) {
   return least < -0.005 ? fmt::format("scores below 0, to {:.2f}, have the colour of 0", least) : "";
 }
 
-bool any_failed(const std::vector<Moment>& moments) {
-  return std::any_of(moments.begin(), moments.end(), [](const Moment& one) { return one.failed > 0; });
+bool any_failed(const std::vector<Snapshot>& snapshots) {
+  return std::any_of(snapshots.begin(), snapshots.end(), [](const Snapshot& one) { return one.failed > 0; });
 }
 
 int sheet_width(std::size_t columns) {
@@ -77,7 +77,7 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
   Playback playback(workshop, recording);
   std::vector<int> taps;
   for (const int one : iterations) taps.push_back(taps_at(one, static_cast<int>(options.initial.count), all));
-  Progress out{options.acquisition.type, iterations, moments_at(playback, recording, taps), {}, {}, 0.0};
+  Progress out{options.acquisition.type, iterations, snapshots_at(playback, recording, taps), {}, {}, 0.0};
   out.candidates = playback.experiment().candidates();
   out.area = playback.experiment().scene().area();
   out.desk = playback.experiment().scene().desk();
@@ -87,27 +87,27 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
   constexpr double kSurface = 200;
   constexpr double kWords = 56;
-  const std::size_t columns = progress.moments.size();
+  const std::size_t columns = progress.snapshots.size();
   const Box first = map_box(progress.area, kLeft, kHead + kWords + kSurface + 58, kMap);
   Sheet sheet(sheet_width(columns) + 30, static_cast<int>(first.top + first.height + 88));
   const Raster raster(progress.candidates, progress.area);
-  const auto deviation = [](const Moment& m) -> const auto& { return m.deviation; };
-  const Colours doubt{Palette::cividis, 0.0, 100.0 * largest(progress.moments, 1e-6, deviation),
+  const auto deviation = [](const Snapshot& m) -> const auto& { return m.deviation; };
+  const Colours doubt{Palette::cividis, 0.0, 100.0 * largest(progress.snapshots, 1e-6, deviation),
                       "standard deviation [cm]"};
   const Colours scores = score_colours(progress);
-  const Relief relief = relief_of(progress.moments, progress.candidates.points, progress.area, progress.desk);
+  const Relief relief = relief_of(progress.snapshots, progress.candidates.points, progress.area, progress.desk);
   sheet.text(title, kLeft, 14, 15);
   for (std::size_t i = 0; i < columns; ++i) {
-    const Moment& moment = progress.moments[i];
+    const Snapshot& snapshot = progress.snapshots[i];
     const std::string key = key_of(progress, i);
-    sheet.data("surface_" + key, raster.surface(moment.surface, moment.deviation));
-    sheet.data("scores_" + key, raster.matrix(moment.scores));
-    sheet.taps(key, moment);
+    sheet.data("surface_" + key, raster.surface(snapshot.surface, snapshot.deviation));
+    sheet.data("scores_" + key, raster.matrix(snapshot.scores));
+    sheet.taps(key, snapshot);
   }
   for (std::size_t i = 0; i < columns; ++i) {
     const std::string key = key_of(progress, i);
     const double left = kLeft + kStep * static_cast<double>(i);
-    sheet.text(iteration_words(progress.iterations[i], progress.moments[i]), left + 0.5 * first.width, kHead, 11,
+    sheet.text(iteration_words(progress.iterations[i], progress.snapshots[i]), left + 0.5 * first.width, kHead, 11,
                Sheet::Align::centre);
     sheet.surface({left - 4, kHead + kWords, first.width + 26, kSurface}, raster, "surface_" + key, key, doubt, relief);
     sheet.map({left, first.top, first.width, first.height}, raster, "scores_" + key, key, scores);
@@ -118,14 +118,14 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
   const double bottom = first.top + first.height + 64;
   const std::string words = below_zero_words(least_score({progress}));
   if (!words.empty()) sheet.text(words, 680, bottom - 8, 10);
-  sheet.legend(kLeft + 6, bottom, any_failed(progress.moments));
+  sheet.legend(kLeft + 6, bottom, any_failed(progress.snapshots));
   return {name, std::move(sheet)};
 }
 
 Figure comparison_figure(const std::string& name, const std::string& title, const std::vector<Progress>& rows,
                          ComparedMap map) {
   constexpr double kWords = 62;
-  const std::size_t columns = rows.front().moments.size();
+  const std::size_t columns = rows.front().snapshots.size();
   const Area area = rows.front().area;
   const Box first = map_box(area, kLeft + 24, kHead + kWords, kMap);
   const double row_step = first.height + kWords + 48;
@@ -138,8 +138,8 @@ Figure comparison_figure(const std::string& name, const std::string& title, cons
     const Raster raster(row.candidates, area);
     for (std::size_t i = 0; i < columns; ++i) {
       sheet.data(prefix + key_of(row, i),
-                 raster.matrix(of_scores ? row.moments[i].scores : row.moments[i].uncertainty));
-      sheet.taps(key_of(row, i), row.moments[i]);
+                 raster.matrix(of_scores ? row.snapshots[i].scores : row.snapshots[i].uncertainty));
+      sheet.taps(key_of(row, i), row.snapshots[i]);
     }
   }
   bool failed = false;
@@ -150,14 +150,14 @@ Figure comparison_figure(const std::string& name, const std::string& title, cons
     const Colours colours = of_scores ? score_colours(row) : Colours{Palette::cividis, 0.0, 1.0, "u"};
     for (std::size_t i = 0; i < columns; ++i) {
       const double left = first.left + kStep * static_cast<double>(i);
-      sheet.text(iteration_words(row.iterations[i], row.moments[i]), left + 0.5 * first.width, top - 48, 11,
+      sheet.text(iteration_words(row.iterations[i], row.snapshots[i]), left + 0.5 * first.width, top - 48, 11,
                  Sheet::Align::centre);
       sheet.map({left, top, first.width, first.height}, raster, prefix + key_of(row, i), key_of(row, i), colours);
     }
     sheet.upright(row.strategy, 22, top + 0.5 * first.height, 14);
     sheet.bar({first.left + kStep * static_cast<double>(columns - 1) + first.width + 22, top, 14, first.height},
               colours);
-    failed = failed || any_failed(row.moments);
+    failed = failed || any_failed(row.snapshots);
   }
   const std::string words = of_scores ? below_zero_words(least_score(rows)) : "";
   if (!words.empty()) sheet.text(words, 680, bottom - 8, 10);

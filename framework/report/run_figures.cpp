@@ -8,13 +8,13 @@
 namespace palpate {
 namespace {
 
-std::string after_words(const Moment& moment) {
-  return fmt::format("after tap {}: {}", moment.taps, count_words(moment));
+std::string after_words(const Snapshot& snapshot) {
+  return fmt::format("after tap {}: {}", snapshot.taps, count_words(snapshot));
 }
 
 }  // namespace
 
-Figure surface_figure(const Recording& recording, const Experiment& experiment, const Moment& last) {
+Figure surface_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last) {
   Sheet sheet(1000, 700);
   const Raster raster(experiment.candidates(), experiment.scene().area());
   sheet.data("surface", raster.surface(last.surface, last.deviation));
@@ -31,7 +31,7 @@ Figure surface_figure(const Recording& recording, const Experiment& experiment, 
   return {"surface", std::move(sheet)};
 }
 
-Figure maps_figure(const Recording& recording, const Experiment& experiment, const Moment& last) {
+Figure maps_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last) {
   constexpr double kLeft = 70;
   constexpr double kTop = 118;
   constexpr double kStep = 440;

@@ -57,7 +57,7 @@ Box map_box(const Area& area, double left, double top, double side) {
   return {left, top, scale * area.width, scale * area.depth};
 }
 
-Relief relief_of(const std::vector<Moment>& moments, const Points& candidates, const Area& area, double desk) {
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk) {
   // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
   const auto up = [&](double x, double y, double height) {
     const double back = (y - 0.5 * area.depth) * std::cos(kTurn) - (x - 0.5 * area.width) * std::sin(kTurn);
@@ -70,7 +70,7 @@ Relief relief_of(const std::vector<Moment>& moments, const Points& candidates, c
     out.above = std::max(out.above, up(x, y, height));
     out.below = std::max(out.below, -up(x, y, height));
   };
-  for (const Moment& one : moments) {
+  for (const Snapshot& one : snapshots) {
     for (Eigen::Index i = 0; i < one.surface.size(); ++i) include(candidates(i, 0), candidates(i, 1), one.surface(i));
     for (const TapMark& mark : one.marks) include(mark.x, mark.y, mark.height);
   }
@@ -128,18 +128,19 @@ void Sheet::data(const std::string& name, const std::string& lines) {
   data_ += fmt::format("${} << END\n{}END\n", name, lines);
 }
 
-void Sheet::taps(const std::string& name, const Moment& moment) {
+void Sheet::taps(const std::string& name, const Snapshot& snapshot) {
   std::string on;
   std::string off;
   std::string failed;
-  for (const TapMark& mark : moment.marks) {
+  for (const TapMark& mark : snapshot.marks) {
     std::string& lines = mark.kind == TapMark::Kind::on ? on : mark.kind == TapMark::Kind::off ? off : failed;
     lines += fmt::format("{} {} {} {}\n", centimetres(mark.x), centimetres(mark.y), centimetres(mark.height), mark.tap);
   }
   data("on_" + name, on);
   data("off_" + name, off);
   data("failed_" + name, failed);
-  if (moment.next) data("next_" + name, centimetres(moment.next->x) + " " + centimetres(moment.next->y) + "\n");
+  if (snapshot.next)
+    data("next_" + name, centimetres(snapshot.next->target.x) + " " + centimetres(snapshot.next->target.y) + "\n");
 }
 
 void Sheet::text(const std::string& words, double x, double top, int points, Align align) {

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "report/moment.hpp"
 #include "report/palette.hpp"
+#include "report/snapshot.hpp"
 
 #include <string>
 #include <vector>
@@ -63,8 +63,8 @@ struct Relief {
   double below = 0.0;
 };
 
-/// What these moments of one experiment need to be drawn alike.
-Relief relief_of(const std::vector<Moment>& moments, const Points& candidates, const Area& area, double desk);
+/// What these snapshots of one experiment need to be drawn alike.
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk);
 
 class Sheet {
  public:
@@ -77,9 +77,9 @@ class Sheet {
 
   /// A named block of lines; "" makes none.
   void data(const std::string& name, const std::string& lines);
-  /// The taps of a moment as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number") and the next one as
+  /// The taps of a snapshot as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number") and the next one as
   /// `next_NAME` ("x y"), in centimetres.
-  void taps(const std::string& name, const Moment& moment);
+  void taps(const std::string& name, const Snapshot& snapshot);
 
   /// Text whose upper edge is at `top`; `x` is its left end or its middle. May have several lines.
   enum class Align { left, centre };

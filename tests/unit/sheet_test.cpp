@@ -80,10 +80,10 @@ TEST(RasterTest, WhatIsNotFiniteIsAGapAndNoWord) {
   EXPECT_EQ(Raster(candidates, area).matrix(values), "0 NaN\nNaN 0\n");
 }
 
-Moment flat_moment(double height) {
-  Moment moment;
-  moment.surface = Eigen::VectorXd::Constant(1, height);
-  return moment;
+Snapshot flat_moment(double height) {
+  Snapshot snapshot;
+  snapshot.surface = Eigen::VectorXd::Constant(1, height);
+  return snapshot;
 }
 
 TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
@@ -99,17 +99,18 @@ TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
   const Relief pit = relief_of({flat_moment(-0.5)}, middle, area, 0.0);
   EXPECT_EQ(pit.low, -0.5);
   EXPECT_EQ(pit.below, hill.above);
-  Moment tapped = flat_moment(0.0);
+  Snapshot tapped = flat_moment(0.0);
   tapped.marks.push_back({1, TapMark::Kind::on, 0.1, 0.1, 0.7});
   EXPECT_EQ(relief_of({tapped}, middle, area, 0.0).top, 0.7);
 }
 
 TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
   Sheet sheet(400, 300);
-  Moment moment;
-  moment.marks = {{1, TapMark::Kind::on, 0.01, 0.02, 0.03}, {2, TapMark::Kind::failed, 0.04, 0.05, 0.0}};
-  moment.next = Target{0.06, 0.07};
-  sheet.taps("a", moment);
+  Snapshot snapshot;
+  snapshot.marks = {{1, TapMark::Kind::on, 0.01, 0.02, 0.03}, {2, TapMark::Kind::failed, 0.04, 0.05, 0.0}};
+  snapshot.next.emplace();
+  snapshot.next->target = {0.06, 0.07};
+  sheet.taps("a", snapshot);
   const Area area{0.1, 0.1};
   const Candidates candidates = grid_by_count(area, 2);
   const Raster raster(candidates, area);

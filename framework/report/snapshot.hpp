@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a figure shows of a run as it stood after some of its taps.
+// A run as it stood after some of its taps: what pictures and pages show of it.
 #pragma once
 
 #include "record/recording.hpp"
@@ -23,13 +23,13 @@ struct TapMark {
 };
 
 /// A run after its first `taps` taps. The maps have one value for each candidate.
-struct Moment {
+struct Snapshot {
   int taps = 0;
   int on = 0;  ///< taps on an object, on the desk, without a contact
   int off = 0;
   int failed = 0;
   std::vector<TapMark> marks;      ///< of these taps, in their order
-  std::optional<Target> next;      ///< that the strategy would choose now; none if no candidate is left
+  std::optional<TapRecord> next;   ///< that would be chosen now; none if no candidate is left
   Eigen::VectorXd surface;         ///< as reconstructed, metres
   Eigen::VectorXd deviation;       ///< standard deviation of the height, metres
   Eigen::VectorXd uncertainty;     ///< u
@@ -40,10 +40,13 @@ struct Moment {
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e
 };
 
+/// The run as `playback` has it now, after as many of the taps of `recording`.
+Snapshot snapshot_of(Playback& playback, const Recording& recording);
+
 /// The run after each of these numbers of taps, which ascend and lie between 1 and all.
-std::vector<Moment> moments_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
+std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
 
 /// "7 on the object, 10 on the desk, 1 failed"; what there is none of but the first two is left out.
-std::string count_words(const Moment& moment);
+std::string count_words(const Snapshot& snapshot);
 
 }  // namespace palpate
