@@ -34,20 +34,26 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) fmt::print("{}\n", picture.string());
 }
 
-void report_run(Program& program, const ReportArguments& arguments) {
-  const Workshop& workshop = program.workshop;
+void report_run(const Workshop& workshop, const ReportArguments& arguments) {
   const Recording recording = read_recording(workshop, arguments.directory);
+  const History history = make_history(workshop, recording, Patience());
   const fs::path page = recording.directory / "report.html";
-  write_file(page, run_page(recording, make_history(workshop, recording, Patience())));
+  write_file(page, run_page(recording, history));
   fmt::print("{}\n", page.string());
-  if (arguments.figures) show(write_run_figures(workshop, recording, false));
-  if (arguments.paper) show(write_run_figures(workshop, recording, true));
+  if (arguments.figures) show(write_run_figures(workshop, recording, history));
+  if (arguments.paper) show(write_paper_figures(workshop, recording));
+}
+
+void report_sweep(const Workshop& workshop, const ReportArguments& arguments) {
+  const Sweep sweep = read_sweep(arguments.directory);
+  if (arguments.figures) show(write_sweep_figures(sweep));
+  if (arguments.paper) show(write_paper_figures(workshop, sweep));
 }
 
 }  // namespace
 
 int report(Program& program, const ReportArguments& arguments) {
-  report_run(program, arguments);
+  (is_sweep(arguments.directory) ? report_sweep : report_run)(program.workshop, arguments);
   return kDone;
 }
 

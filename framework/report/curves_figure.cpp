@@ -31,24 +31,13 @@ struct Panel {
   bool share = false;        ///< from 0 to 1
 };
 
-std::optional<double> number_at(const Row& row, const std::string& name) {
-  const Scalar* value = row.find(name);
-  if (value == nullptr) return std::nullopt;
-  if (const auto* real = std::get_if<double>(value)) return *real;
-  if (const auto* whole = std::get_if<std::int64_t>(value)) return static_cast<double>(*whole);
-  return std::nullopt;
-}
-
-/// A field of the taps. It tells the state that a tap was chosen from, so it stands at the number of taps before.
-Curve curve_of(const Recording& recording, const std::string& field, const std::string& name, double factor,
-               const std::optional<double>& last) {
+/// A value of every moment that has it.
+template <class Get>
+Curve curve_of(const History& history, const std::string& name, const Get& get) {
   Curve curve{name, {}};
-  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
-    if (const auto value = number_at(recording.rows[i], field))
-      curve.points.emplace_back(static_cast<int>(i), factor * *value);
+  for (const Moment& moment : history.moments) {
+    if (const std::optional<double> value = get(moment)) curve.points.emplace_back(moment.taps, *value);
   }
-  // A model that the loop never read has but its end: no curve.
-  if (!curve.points.empty() && last) curve.points.emplace_back(static_cast<int>(recording.rows.size()), factor * *last);
   return curve;
 }
 
@@ -59,86 +48,89 @@ void add(Panel& panel, Curve curve) {
   if (drawn) panel.curves.push_back(std::move(curve));
 }
 
-Panel errors_panel(const Recording& recording, const Errors& last) {
+Panel errors_panel(const Recording& recording, const History& history) {
   Panel panel{"error, rms [cm]", {}};
-  add(panel, curve_of(recording, "rmse_m", "scene", 100, last.rmse));
-  add(panel, curve_of(recording, "rmse_on_surface_m", "on the object", 100, last.rmse_on_surface));
+  const auto add_error = [&](const char* name, std::optional<double> Errors::*error) {
+    add(panel, curve_of(history, name, [&](const Moment& moment) {
+          const std::optional<double>& value = moment.result.errors.*error;
+          return value ? std::optional(100.0 * *value) : std::nullopt;
+        }));
+  };
+  add_error("scene", &Errors::rmse);
+  add_error("on the object", &Errors::rmse_on_surface);
   if (recording.config.options.surface == ExperimentOptions::Surface::two_part)
-    add(panel, curve_of(recording, "rmse_height_m", "on the object, its height mean", 100, last.rmse_height));
+    add_error("on the object, its height mean", &Errors::rmse_height);
   return panel;
 }
 
-Panel outline_panel(const Recording& recording, const Errors& last) {
+Panel outline_panel(const History& history) {
   Panel panel{"outline, intersection over union", {}};
   panel.share = true;
-  add(panel, curve_of(recording, "footprint_iou", "", 1, last.footprint_iou));
+  add(panel, curve_of(history, "", [](const Moment& moment) { return moment.result.errors.footprint_iou; }));
   return panel;
 }
 
-Panel deviation_panel(const Recording& recording, const Snapshot& last) {
-  Panel panel{"standard deviation [cm]", {}};
-  add(panel, curve_of(recording, "max_standard_deviation", "largest", 100, last.largest_deviation));
-  add(panel, curve_of(recording, "mean_standard_deviation", "mean", 100, last.mean_deviation));
+Panel deviation_panel(const History& history) {
+  Panel panel{"largest standard deviation [cm]", {}};
+  add(panel,
+      curve_of(history, "", [](const Moment& moment) { return std::optional(100.0 * moment.largest_deviation); }));
   return panel;
 }
 
-Panel share_panel(const Snapshot& last) {
+Panel share_panel(const History& history) {
   Panel panel{"share of the taps on the object", {}};
   panel.share = true;
-  Curve curve{"", {}};
-  int on = 0;
-  for (const TapMark& mark : last.marks) {
-    on += mark.kind == TapMark::Kind::on ? 1 : 0;
-    curve.points.emplace_back(mark.tap, static_cast<double>(on) / mark.tap);
-  }
-  panel.curves.push_back(std::move(curve));  // of a single tap, too: so no run is without a panel
+  // Of a single tap, too: so no run is without a panel.
+  panel.curves.push_back(curve_of(history, "", [](const Moment& moment) {
+    return moment.taps > 0 ? std::optional(static_cast<double>(moment.result.on_surface_taps) / moment.taps)
+                           : std::nullopt;
+  }));
   return panel;
 }
 
 struct NamedState {
-  const char* field;
   const char* name;
-  const std::optional<ProcessState>& state;
+  std::optional<ProcessState> RunResult::*state;
 };
+constexpr std::array<NamedState, 3> kStates{{{"heights", &RunResult::height_process},
+                                             {"labels", &RunResult::weight_process},
+                                             {"object", &RunResult::surface_process}}};
 
-std::vector<NamedState> states_of(const RunResult& result) {
-  return {{"height_process", "heights", result.height_process},
-          {"weight_process", "labels", result.weight_process},
-          {"surface_process", "object", result.surface_process}};
-}
-
-Panel likelihood_panel(const Recording& recording, const RunResult& result) {
+Panel likelihood_panel(const History& history) {
   Panel panel{"log marginal likelihood", {}};
   panel.from_zero = false;
-  for (const NamedState& one : states_of(result)) {
-    const auto last = one.state ? std::optional(one.state->log_marginal_likelihood) : std::nullopt;
-    add(panel, curve_of(recording, std::string(one.field) + ".log_marginal_likelihood", one.name, 1, last));
+  for (const NamedState& one : kStates) {
+    add(panel, curve_of(history, one.name, [&](const Moment& moment) {
+          const std::optional<ProcessState>& state = moment.result.*one.state;
+          return state ? std::optional(state->log_marginal_likelihood) : std::nullopt;
+        }));
   }
   return panel;
 }
 
+/// The hyperparameters of a process by name.
+std::vector<std::pair<std::string, double>> parameters_of(const ProcessState& state) {
+  std::vector<std::pair<std::string, double>> out{{"signal", state.settings.signal}, {"noise", state.settings.noise}};
+  for (const KernelParameter& one : state.kernel) out.emplace_back(one.name, one.value);
+  return out;
+}
+
 /// Relative to the first value, so that lengths, heights and numbers go into one panel; what a fit leaves alone is not
 /// drawn.
-Panel hyperparameters_panel(const Recording& recording, const RunResult& result) {
+Panel hyperparameters_panel(const History& history) {
   Panel panel{"hyperparameters, relative to the first", {}};
   panel.logarithmic = true;
-  for (const NamedState& one : states_of(result)) {
-    if (!one.state) continue;
-    std::vector<std::pair<std::string, double>> fields{{"signal", one.state->settings.signal},
-                                                       {"noise", one.state->settings.noise}};
-    for (const KernelParameter& parameter : one.state->kernel)
-      fields.emplace_back("kernel." + parameter.name, parameter.value);
-    for (const auto& [field, last] : fields) {
-      const std::string shown = field.compare(0, 7, "kernel.") == 0 ? field.substr(7) : field;
-      Curve curve =
-          curve_of(recording, fmt::format("{}.{}", one.field, field), fmt::format("{}: {}", one.name, shown), 1, last);
-      if (curve.points.empty() || !(curve.points.front().second > 0.0)) continue;
-      const double first = curve.points.front().second;
-      const bool moves = std::any_of(curve.points.begin(), curve.points.end(),
-                                     [&](const auto& point) { return point.second != first; });
-      if (!moves) continue;
-      for (auto& [tap, value] : curve.points) value /= first;
-      add(panel, std::move(curve));
+  for (const NamedState& one : kStates) {
+    const std::optional<ProcessState>& first_state = history.moments.front().result.*one.state;
+    if (!first_state) continue;
+    const auto first = parameters_of(*first_state);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      Curve curve = curve_of(history, fmt::format("{}: {}", one.name, first[i].first), [&](const Moment& moment) {
+        return std::optional(parameters_of(*(moment.result.*one.state))[i].second / first[i].second);
+      });
+      const bool moves =
+          std::any_of(curve.points.begin(), curve.points.end(), [](const auto& point) { return point.second != 1.0; });
+      if (moves && first[i].second > 0.0) add(panel, std::move(curve));
     }
   }
   return panel;
@@ -175,15 +167,10 @@ Panel phases_panel(const Recording& recording) {
   return panel;
 }
 
-Panel robot_panel(const Recording& recording) {
+Panel robot_panel(const History& history) {
   Panel panel{"robot time [s]", {}};
-  Curve curve{"", {{0, 0.0}}};
-  double sum = 0.0;
-  for (const PastTap& tap : recording.taps) {
-    sum += tap.contact.seconds;
-    curve.points.emplace_back(curve.points.back().first + 1, sum);
-  }
-  if (sum > 0.0) add(panel, std::move(curve));
+  if (history.moments.back().result.robot_seconds > 0.0)
+    add(panel, curve_of(history, "", [](const Moment& moment) { return std::optional(moment.result.robot_seconds); }));
   return panel;
 }
 
@@ -268,18 +255,13 @@ void draw(Sheet& sheet, const Box& box, double top, const Panel& panel, int numb
 
 }  // namespace
 
-Figure curves_figure(const Recording& recording, const Snapshot& last, const RunResult& result) {
+Figure curves_figure(const Recording& recording, const History& history, const Snapshot& last) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;
-  std::vector<Panel> panels{errors_panel(recording, result.errors),
-                            outline_panel(recording, result.errors),
-                            deviation_panel(recording, last),
-                            share_panel(last),
-                            likelihood_panel(recording, result),
-                            hyperparameters_panel(recording, result),
-                            phases_panel(recording),
-                            robot_panel(recording)};
+  std::vector<Panel> panels{
+      errors_panel(recording, history), outline_panel(history),         deviation_panel(history), share_panel(history),
+      likelihood_panel(history),        hyperparameters_panel(history), phases_panel(recording),  robot_panel(history)};
   panels.erase(std::remove_if(panels.begin(), panels.end(), [](const Panel& one) { return one.curves.empty(); }),
                panels.end());
   const int count = static_cast<int>(panels.size());

@@ -42,33 +42,35 @@ std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Fi
   return pictures;
 }
 
-Figures write_run_figures(const Workshop& workshop, const Recording& recording, bool paper) {
-  std::vector<Figure> figures;
-  if (paper) {
-    const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
-    figures.push_back(progress_figure("paper_progress", recording.config.options.name, progress));
-  } else {
-    Playback playback(workshop, recording);
-    const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
-    figures.push_back(surface_figure(recording, playback.experiment(), last));
-    figures.push_back(maps_figure(recording, playback.experiment(), last));
-    figures.push_back(curves_figure(recording, last, playback.experiment().result()));
-  }
-  return {write_gallery(recording.directory / "figures", figures), {}};
+Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history) {
+  Playback playback(workshop, recording);
+  const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
+  const Experiment& experiment = playback.experiment();
+  return {write_gallery(recording.directory / "figures",
+                        {surface_figure(recording, experiment, last), maps_figure(recording, experiment, last),
+                         curves_figure(recording, history, last)}),
+          {}};
 }
 
-Figures write_sweep_figures(const Workshop& workshop, const Sweep& sweep, bool paper) {
+Figures write_sweep_figures(const Sweep& sweep) {
+  const std::vector<Row> results = sweep_results(sweep);
+  if (std::none_of(results.begin(), results.end(), is_done))
+    throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
+  std::vector<Figure> figures{distributions_figure(sweep, results)};
+  for (Figure& one : heat_maps(sweep, results)) figures.push_back(std::move(one));
+  return {write_gallery(sweep.directory / "figures", figures), {}};
+}
+
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording) {
+  const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
+  return {write_gallery(recording.directory / "figures",
+                        {progress_figure("paper_progress", recording.config.options.name, progress)}),
+          {}};
+}
+
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
   Figures out;
-  std::vector<Figure> figures;
-  if (paper) {
-    figures = paper_figures(workshop, sweep, out.notes);
-  } else {
-    const std::vector<Row> results = sweep_results(sweep);
-    if (std::none_of(results.begin(), results.end(), is_done))
-      throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
-    figures.push_back(distributions_figure(sweep, results));
-    for (Figure& one : heat_maps(sweep, results)) figures.push_back(std::move(one));
-  }
+  const std::vector<Figure> figures = paper_figures(workshop, sweep, out.notes);
   out.pictures = write_gallery(sweep.directory / "figures", figures);
   return out;
 }

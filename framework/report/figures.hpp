@@ -4,6 +4,7 @@
 #pragma once
 
 #include "record/recording.hpp"
+#include "report/history.hpp"
 #include "sweep/sweep.hpp"
 
 #include <filesystem>
@@ -18,12 +19,19 @@ struct Figures {
   std::vector<std::string> notes;  ///< what could not be drawn for want of data, a line each
 };
 
-/// Of a run: `surface`, `maps` and `curves`; with `paper` only `paper_progress`, in the layout of the paper's figure 2.
-/// Throws Error, of kind `run` and with the scripts left, if gnuplot draws none.
-Figures write_run_figures(const Workshop& workshop, const Recording& recording, bool paper);
+/// Of a run: `surface`, `maps` and `curves`. Throws Error, of kind `run` and with the scripts left, if gnuplot draws
+/// none.
+Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history);
 
-/// Of a sweep: `distributions` and, where two keys but the seed are swept, `heat_map`; with `paper` only the paper's
-/// `figure_2` to `figure_5`, of the jobs that they need. Throws Error as above, and where not one can be drawn.
-Figures write_sweep_figures(const Workshop& workshop, const Sweep& sweep, bool paper);
+/// Of a sweep: `distributions` and, where two keys but the seed are swept, `heat_map`. Throws Error as above, and where
+/// no job ended well.
+Figures write_sweep_figures(const Sweep& sweep);
+
+/// Of a run: `paper_progress`, in the layout of the paper's figure 2. Throws Error as above.
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording);
+
+/// Of a sweep: the paper's `figure_2` to `figure_5`, of the jobs that they need. Throws Error as above, and where not
+/// one can be drawn.
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep);
 
 }  // namespace palpate

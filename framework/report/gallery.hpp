@@ -4,6 +4,7 @@
 #pragma once
 
 #include "report/figures.hpp"
+#include "report/history.hpp"
 #include "report/sheet.hpp"
 
 #include <filesystem>
@@ -21,9 +22,8 @@ struct Figure {
 
 Figure surface_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last);
 Figure maps_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last);
-/// Curves over the taps; `result` is that of the recorded taps. What the run has not is left out. Throws Error for a
-/// damaged timings.csv.
-Figure curves_figure(const Recording& recording, const Snapshot& last, const RunResult& result);
+/// Curves over the taps. What the run has not is left out. Throws Error for a damaged timings.csv.
+Figure curves_figure(const Recording& recording, const History& history, const Snapshot& last);
 
 /// What a figure of the paper shows of one run.
 struct Progress {

@@ -47,7 +47,7 @@ class Shown {
 
 }  // namespace
 
-History make_history(const Workshop& workshop, const Recording& recording, const Progress& progress) {
+History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
   Playback playback(workshop, recording);
   Experiment& experiment = playback.experiment();
   const Shown shown(experiment.candidates());

@@ -33,12 +33,12 @@ struct History {
 };
 
 /// Tells how many of all taps are done.
-using Progress = std::function<void(int done, int all)>;
+using OnProgress = std::function<void(int done, int all)>;
 
 /// Maps of more columns or rows than this have only every second, third, ... of them.
 inline constexpr int kMostCellsAcross = 128;
 
 /// Lives through the taps of a recorded run again. Throws Error as Playback does.
-History make_history(const Workshop& workshop, const Recording& recording, const Progress& progress);
+History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress);
 
 }  // namespace palpate

@@ -21,8 +21,9 @@ Figure surface_figure(const Recording& recording, const Experiment& experiment, 
   sheet.taps("last", last);
   sheet.text(recording.config.options.name, 30, 16, 15);
   sheet.text("surface " + after_words(last), 30, 44, 11);
-  const Colours colours{Palette::cividis, 0.0, 100.0 * std::max(1e-6, last.deviation.maxCoeff()),
-                        "standard deviation [cm]"};
+  // Where nothing is known of an object's level, its deviation is of no size that means anything.
+  const double most = std::min(last.deviation.maxCoeff(), last.largest_deviation);
+  const Colours colours{Palette::cividis, 0.0, 100.0 * std::max(1e-6, most), "standard deviation [cm]"};
   sheet.surface(
       {90, 80, 740, 510}, raster, "surface", "last", colours,
       relief_of({last}, experiment.candidates().points, experiment.scene().area(), experiment.scene().desk()));

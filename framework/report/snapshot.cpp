@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace palpate {
 namespace {
 
@@ -34,9 +36,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   out.deviation = belief.height_variance().cwiseSqrt();
   out.uncertainty = belief.uncertainty();
   out.weight = belief.weight();
-  const Eigen::VectorXd all = belief.all_taps_variance().cwiseSqrt();
-  out.largest_deviation = all.maxCoeff();
-  out.mean_deviation = all.mean();
+  out.largest_deviation = std::sqrt(belief.all_taps_variance().maxCoeff());
   return out;
 }
 

@@ -35,8 +35,7 @@ struct Snapshot {
   Eigen::VectorXd uncertainty;     ///< u
   Eigen::VectorXd weight;          ///< w, as the strategy reads it
   Eigen::VectorXd scores;          ///< what the strategy gives each candidate
-  double largest_deviation = 0.0;  ///< of the height process, all taps seen, metres; as `mean_deviation`
-  double mean_deviation = 0.0;
+  double largest_deviation = 0.0;  ///< of the height process, all taps seen, metres
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e
 };
 

@@ -141,7 +141,7 @@ class SurfaceView {
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent(this.truth ? [...this.heights, this.truth] : this.heights);
     // Where nothing is known of an object's level, its deviation is of no size that means anything.
-    const prior = Math.max(...data.moments.map((moment) => moment.height_process.signal)) * kCentimetres;
+    const prior = Math.max(...data.moments.map((moment) => moment.largest_deviation)) * kCentimetres;
     this.mostDeviation = Math.min(extent(this.deviations)[1], prior);
     this.withTruth = false;
     this.x = data.x.map((value) => value * kCentimetres);
