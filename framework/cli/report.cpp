@@ -4,6 +4,7 @@
 #include "record/files.hpp"
 #include "report/figures.hpp"
 #include "report/run_page.hpp"
+#include "report/sweep_page.hpp"
 
 #include <fmt/format.h>
 
@@ -18,16 +19,25 @@ namespace fs = std::filesystem;
 /// Speaks on stderr once a second, so that whoever waits knows for what.
 class Patience {
  public:
+  explicit Patience(const char* what) : what_(what) {}
+
   void operator()(int done, int all) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::seconds(1)) return;
     last_ = now;
-    mention(fmt::format("report: {} of {} taps\n", done, all));
+    mention(fmt::format("report: {} of {} {}\n", done, all, what_));
   }
 
  private:
+  const char* what_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+void write_page(const fs::path& directory, const std::string& page) {
+  const fs::path file = directory / "report.html";
+  write_file(file, page);
+  fmt::print("{}\n", file.string());
+}
 
 void show(const Figures& figures) {
   for (const std::string& note : figures.notes) mention(note + "\n");
@@ -36,16 +46,15 @@ void show(const Figures& figures) {
 
 void report_run(const Workshop& workshop, const ReportArguments& arguments) {
   const Recording recording = read_recording(workshop, arguments.directory);
-  const History history = make_history(workshop, recording, Patience());
-  const fs::path page = recording.directory / "report.html";
-  write_file(page, run_page(recording, history));
-  fmt::print("{}\n", page.string());
+  const History history = make_history(workshop, recording, Patience("taps"));
+  write_page(recording.directory, run_page(recording, history));
   if (arguments.figures) show(write_run_figures(workshop, recording, history));
   if (arguments.paper) show(write_paper_figures(workshop, recording));
 }
 
 void report_sweep(const Workshop& workshop, const ReportArguments& arguments) {
   const Sweep sweep = read_sweep(arguments.directory);
+  write_page(sweep.directory, sweep_page(sweep, Patience("jobs")));
   if (arguments.figures) show(write_sweep_figures(sweep));
   if (arguments.paper) show(write_paper_figures(workshop, sweep));
 }

@@ -8,11 +8,22 @@ palpate_asset_\name:
 palpate_asset_\name\()_end:
         .endm
 
+        # Three files, one behind the other.
+        .macro asset_of_three name, first, second, third
+        .globl palpate_asset_\name
+        .globl palpate_asset_\name\()_end
+palpate_asset_\name:
+        .incbin "\first"
+        .incbin "\second"
+        .incbin "\third"
+palpate_asset_\name\()_end:
+        .endm
+
         .section .rodata
         asset plotly, "vendor/plotly/plotly.min.js.gz"
         asset style, "page/style.css"
         asset common, "page/common.js"
         asset run, "page/run.js"
-        asset sweep, "page/sweep.js"
+        asset_of_three sweep, "page/sweep_numbers.js", "page/sweep_panels.js", "page/sweep.js"
 
         .section .note.GNU-stack, "", %progbits

@@ -102,13 +102,6 @@ std::string json_of_build(const Tree& manifest) {
   return json_list(lines);
 }
 
-template <class Item, class ToJson>
-std::string json_list_of(const std::vector<Item>& items, const ToJson& to_json) {
-  std::vector<std::string> out;
-  std::transform(items.begin(), items.end(), std::back_inserter(out), to_json);
-  return json_list(out);
-}
-
 /// The maps of every `stride`-th moment, counted from the last.
 std::vector<MapSeries> thinned(const std::vector<MapSeries>& maps, const std::vector<int>& shown) {
   std::vector<MapSeries> out;
