@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 // The page of a sweep: cost against error, the table of jobs, and how all panels follow the controls.
 
+/// The least and the most of very many numbers.
+const leastOf = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
+const mostOf = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
+
 /// Ends of an axis for values, logarithmic where they span much; `low` and `high` are its ends in the values' unit.
 function rangeOf(means, ends) {
-  const least = Math.min(...means);
-  const most = Math.max(...means);
-  const low = Math.min(...ends, least);
-  const high = Math.max(...ends, most);
+  const least = leastOf(means);
+  const most = mostOf(means);
+  const low = Math.min(leastOf(ends), least);
+  const high = Math.max(mostOf(ends), most);
   if (least > 0 && most / least > 20) {
     const bottom = Math.max(low, least / 4);
     const margin = (high / bottom) ** 0.07;
@@ -41,7 +45,7 @@ class FrontPanel {
     // A few settings seen in a few seeds have intervals far wider than anything measured: the axis ends before them.
     const values = (kind) => all.map((run) => run[kind]).filter((value) => value !== null);
     const kept = (kind) => {
-      const [least, most] = [Math.min(...values(kind)), Math.max(...values(kind))];
+      const [least, most] = [leastOf(values(kind)), mostOf(values(kind))];
       const room = Math.max(most - least, 1e-12) / 2;
       return ends(kind).map((end) => Math.min(Math.max(end, least - room), most + room));
     };
@@ -75,7 +79,7 @@ class FrontPanel {
     const complete = settings.filter((one) => one.complete);
     const front = complete.filter((one) => one.front > 0);
     return [
-      points(runs.done.filter((_, i) => i % step === 0), "runs", { size: 5, color: "#56b4e9", opacity: 0.5 }, about),
+      points(runs.done.filter((_, i) => i % step === 0), "runs", { size: 5, color: "#56b4e9", opacity: runs.done.length > 600 ? 0.2 : 0.5 }, about),
       points(runs.failed, "failed runs", { size: 9, symbol: "x", color: kGrey, line: { color: "#ffffff", width: 0.5 } }, why),
       this.means(settings.filter((one) => !one.complete), "settings not compared", { size: 9, symbol: "circle-open", color: kGrey, line: { width: 2 } }, x, y),
       this.means(complete.filter((one) => one.front === 0), "settings", { size: 9, color: kColours[0], line: { color: "#ffffff", width: 1 } }, x, y),
@@ -236,7 +240,10 @@ class JobTable {
 function troubles(sweep) {
   const kMostReasons = 12;
   const reasons = new Map();
-  for (const job of sweep.failed) reasons.set(job.reason, [...(reasons.get(job.reason) ?? []), job]);
+  for (const job of sweep.failed) {
+    if (!reasons.has(job.reason)) reasons.set(job.reason, []);
+    reasons.get(job.reason).push(job);
+  }
   const out = [...reasons].slice(0, kMostReasons).map(([reason, jobs]) =>
     element(
       "li",

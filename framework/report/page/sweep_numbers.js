@@ -220,12 +220,13 @@ function firstChoices(sweep) {
   const names = [...sweep.columns.keys()];
   const first = (wanted, otherwise) => wanted.find((name) => sweep.columns.has(name)) ?? otherwise;
   const [across, up] = bestPair(sweep);
+  const fewest = sweep.varying.reduce((a, b) => (b.order.length < a.order.length ? b : a), sweep.varying[0]);
   const costs = ["robot_seconds", "compute_seconds", "taps"].filter((name) => sweep.columns.has(name));
   return {
     metric: first(["rmse_m", "on_surface_taps"], names[0]),
     across,
     up,
-    group: sweep.varying.length > 1 && sweep.groups(sweep.settings).length <= 16 ? kEachSetting : across,
+    group: sweep.varying.length > 1 && sweep.groups(sweep.settings).length <= 16 ? kEachSetting : fewest?.name ?? across,
     then: "",
     cost: costs.find((name) => differs(sweep, name)) ?? costs[0] ?? names[0],
     error: first(["rmse_m", "on_surface_taps"], names[0]),

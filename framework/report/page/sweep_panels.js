@@ -4,9 +4,9 @@
 const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, automargin: true, ...more });
 
 /// An axis along the values of a key, or of groups: one place each, named as far as there is room.
-function placesAxis(title, names, more = {}, most = 36) {
+function placesAxis(title, names, more = {}, most = 36, room = 25) {
   const texts = briefs(names, most);
-  const step = Math.ceil(names.length / 40);
+  const step = Math.ceil(names.length / room);
   const places = names.map((_, i) => i).filter((i) => i % step === 0);
   return axis(title, {
     tickmode: "array",
@@ -83,7 +83,7 @@ class CellsPanel {
       hovers[row][column] = this.hover(jobs, [across, up], metric, found);
     }
     const cells = across.order.length * up.order.length;
-    const trace = (z, title, colours) => ({
+    const cellsOf = (z, title, colours) => ({
       type: "heatmap",
       z,
       text: z.map((line) => line.map((value) => (value === null ? "" : shown(value)))),
@@ -95,13 +95,29 @@ class CellsPanel {
       xgap: 1,
       ygap: 1,
     });
+    // Cells of continuous keys are too many and nearly all empty: there each stands as a square.
+    const filled = means.flatMap((line, row) => line.map((_, column) => [row, column])).filter(([row, column]) => means[row][column] !== null);
+    const sparse = cells > 400 && filled.length < cells / 8;
+    const squaresOf = (z, title, colours) => {
+      const places = filled.filter(([row, column]) => z[row][column] !== null);
+      return {
+        type: "scatter",
+        mode: "markers",
+        x: places.map(([, column]) => column),
+        y: places.map(([row]) => row),
+        marker: { symbol: "square", size: 8, color: places.map(([row, column]) => z[row][column]), colorscale: colours, showscale: true, colorbar: { title: { text: title, side: "right" }, thickness: 12 } },
+        customdata: places.map(([row, column]) => hovers[row][column]),
+        hovertemplate: "%{customdata}<extra></extra>",
+      };
+    };
+    const trace = sparse ? squaresOf : cellsOf;
     const more = {
       xaxis: placesAxis(plain(brief(across.name)), namesOf(across)),
       yaxis: placesAxis(plain(brief(up.name)), namesOf(up)),
       plot_bgcolor: "#dcdcdc",
       margin: { l: 60, r: 12, t: 12, b: 50 },
     };
-    const height = Math.min(900, Math.max(340, 130 + 24 * up.order.length));
+    const height = Math.min(sparse ? 520 : 900, Math.max(340, 130 + 24 * up.order.length));
     say("cells_mean", "Mean ", foreign(this.others(across, up)), " of the jobs that are done. Grey: no value.");
     say("cells_spread", "Spread: standard deviation of the same jobs. Grey: fewer than two values.");
     return Promise.all([
@@ -184,7 +200,7 @@ class GroupsPanel {
     );
     const more = {
       xaxis: axis(judged(this.sweep, choice.metric)),
-      yaxis: placesAxis("", names, { range: [groups.length - 0.5, -0.5] }, 60),
+      yaxis: placesAxis("", names, { range: [groups.length - 0.5, -0.5] }, 60, kMostGroups),
       showlegend: false,
     };
     return drawIn("groups", traces, more, Math.max(260, 90 + 30 * groups.length));
