@@ -128,7 +128,7 @@ RunStatus standing_of(const Row* row, const fs::path& directory) {
   return out;
 }
 
-std::string json_of_jobs(const Sweep& sweep, const std::vector<const Row*>& rows, const Progress& progress) {
+std::string json_of_jobs(const Sweep& sweep, const std::vector<const Row*>& rows, const OnProgress& progress) {
   std::vector<std::string> jobs;
   for (const Job& job : sweep.jobs) {
     const fs::path directory = job_directory(sweep, job);
@@ -157,7 +157,7 @@ std::string id_of(const Sweep& sweep) {
 
 }  // namespace
 
-std::string sweep_page(const Sweep& sweep, const Progress& progress) {
+std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   const std::vector<Row> results = sweep_results(sweep);
   std::vector<const Row*> rows(sweep.jobs.size(), nullptr);  // of each job
   for (const Row& row : results) rows[static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job")))] = &row;

@@ -13,6 +13,6 @@ namespace palpate {
 
 /// The page of a sweep as it stands, under way or not: HTML, complete in itself but for the links to its jobs, which
 /// hold where the page lies in the sweep's directory. `progress` counts jobs. Throws Error for a damaged record.
-std::string sweep_page(const Sweep& sweep, const Progress& progress);
+std::string sweep_page(const Sweep& sweep, const OnProgress& progress);
 
 }  // namespace palpate
