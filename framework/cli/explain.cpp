@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/explain.hpp"
+#include "report/words/explain.hpp"
 
 #include "cli/commands.hpp"
 #include "cli/one_run.hpp"

@@ -4,7 +4,7 @@
 #include "cli/one_run.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
-#include "report/exchange.hpp"
+#include "report/exchange/exchange.hpp"
 
 #include <palpate/error.hpp>
 

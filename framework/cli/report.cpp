@@ -2,9 +2,9 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "record/files.hpp"
-#include "report/figures.hpp"
-#include "report/run_page.hpp"
-#include "report/sweep_page.hpp"
+#include "report/figures/figures.hpp"
+#include "report/page/run_page.hpp"
+#include "report/page/sweep_page.hpp"
 
 #include <fmt/format.h>
 

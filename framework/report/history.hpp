@@ -4,7 +4,7 @@
 #pragma once
 
 #include "record/recording.hpp"
-#include "report/packed_maps.hpp"
+#include "report/page/packed_maps.hpp"
 
 #include <functional>
 #include <optional>

@@ -20,7 +20,7 @@ struct Browsed {
 /// Opens `page` and does the steps, each as browse.py describes it.
 Browsed browse(const std::filesystem::path& page, const std::vector<std::string>& steps, bool webgl);
 
-/// Why there is no browser here to test with, "" if there is one.
+/// Why nothing is tested with a browser here, "" if it is.
 std::string browser_missing();
 
 }  // namespace palpate::test

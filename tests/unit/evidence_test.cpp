@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is recorded and what is computed now are told apart; and numbers read like words.
-#include "report/evidence.hpp"
-#include "report/words.hpp"
+#include "report/words/evidence.hpp"
+#include "report/words/words.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

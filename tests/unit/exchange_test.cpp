@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // PLY and CSV as other programs read them.
-#include "report/exchange.hpp"
+#include "report/exchange/exchange.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>

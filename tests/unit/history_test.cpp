@@ -4,8 +4,8 @@
 #include "record/session.hpp"
 #include "record/summary.hpp"
 #include "record/tap_row.hpp"
-#include "report/run_page.hpp"
-#include "report/warnings.hpp"
+#include "report/page/run_page.hpp"
+#include "report/page/warnings.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The pieces of a page: what is packed comes out again by other hands, and text stays data.
-#include "report/page.hpp"
-#include "report/packed_maps.hpp"
+#include "report/page/page.hpp"
+#include "report/page/packed_maps.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ TEST(Gzip, IsUnpackedByTheProgramOfThatNameAndTheSameEveryTime) {
   }
 }
 
-/// As page/run.js unpacks it.
+/// As web/run.js unpacks it.
 std::vector<double> unpack_frame(const std::string& bytes, std::size_t at, std::size_t cells, double least,
                                  double most) {
   std::vector<double> out;

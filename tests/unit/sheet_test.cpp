@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/sheet.hpp"
+#include "report/figures/sheet.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "report/figures/gallery.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+std::string after_words(const Snapshot& snapshot) {
+  return fmt::format("after tap {}: {}", snapshot.taps, count_words(snapshot));
+}
+
+}  // namespace
+
+Figure surface_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last) {
+  Sheet sheet(1000, 700);
+  const Raster raster(experiment.candidates(), experiment.scene().area());
+  sheet.data("surface", raster.surface(last.surface, last.deviation));
+  sheet.taps("last", last);
+  sheet.text(recording.config.options.name, 30, 16, 15);
+  sheet.text("surface " + after_words(last), 30, 44, 11);
+  // Where nothing is known of an object's level, its deviation is of no size that means anything.
+  const double most = std::min(last.deviation.maxCoeff(), last.largest_deviation);
+  const Colours colours{Palette::cividis, 0.0, 100.0 * std::max(1e-6, most), "standard deviation [cm]"};
+  sheet.surface(
+      {90, 80, 740, 510}, raster, "surface", "last", colours,
+      relief_of({last}, experiment.candidates().points, experiment.scene().area(), experiment.scene().desk()));
+  sheet.bar({880, 160, 18, 380}, colours);
+  sheet.legend(36, 670, last.failed > 0, false);
+  return {"surface", std::move(sheet)};
+}
+
+Figure maps_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last) {
+  constexpr double kLeft = 70;
+  constexpr double kTop = 118;
+  constexpr double kStep = 440;
+  constexpr double kSide = 290;
+  const ExperimentOptions& options = recording.config.options;
+  const Area area = experiment.scene().area();
+  const Raster raster(experiment.candidates(), area);
+  const Box first = map_box(area, kLeft, kTop, kSide);
+  Sheet sheet(static_cast<int>(kLeft + 2 * kStep + kSide + 90), static_cast<int>(kTop + first.height + 96));
+  const Eigen::VectorXd e = last.exploration();
+  struct Panel {
+    const char* name;
+    const Eigen::VectorXd& values;
+    Colours colours;
+    std::string words;
+  };
+  const auto outside = [](const Eigen::VectorXd& values, double low, double high) {
+    if (values.minCoeff() >= low - 5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
+    return fmt::format("\nit goes from {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
+  };
+  const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
+  const std::vector<Panel> panels{
+      {"u", last.uncertainty, {Palette::cividis, 0.0, 1.0, ""}, "u: what is not known of the height"},
+      {"w",
+       last.weight,
+       {Palette::viridis, 0.0, 1.0, ""},
+       "w: whether there is an object" + outside(last.weight, 0, 1)},
+      {"e", e, {Palette::viridis, 0.0, most, ""}, "e = u w: the exploration function" + outside(e, 0, most)}};
+  sheet.text(options.name, kLeft, 14, 15);
+  sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kLeft, 42, 11);
+  for (const Panel& panel : panels) sheet.data(panel.name, raster.matrix(panel.values));
+  sheet.taps("last", last);
+  double left = first.left;
+  for (const Panel& panel : panels) {
+    sheet.text(panel.words, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
+    sheet.map({left, kTop, first.width, first.height}, raster, panel.name, "last", panel.colours);
+    sheet.bar({left + first.width + 14, kTop, 14, first.height}, panel.colours);
+    left += kStep;
+  }
+  sheet.legend(kLeft + 6, kTop + first.height + 68, last.failed > 0);
+  return {"maps", std::move(sheet)};
+}
+
+}  // namespace palpate

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+#include "report/figures/sheet.hpp"
+
+#include "analysis/gnuplot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kMostDrawn = 128;  ///< along a side: a panel has about twice as many pixels
+
+constexpr const char* kStar = "#e6007e";
+
+/// A star of five rays of this length about (next_x, next_y). It is drawn, not written: no font is asked for it; and
+/// whole where it reaches over the edge of a map.
+std::string star_at(double ray) {
+  std::string out = "set object 1 polygon";
+  for (int i = 0; i <= 10; ++i) {
+    const double radius = ray * (i % 2 == 0 ? 1.0 : 0.42);
+    const double angle = kPi * (0.5 + i / 5.0);
+    out += fmt::format("{} next_x+({:.4f}),next_y+({:.4f})", i == 0 ? " from" : " to", radius * std::cos(angle),
+                       radius * std::sin(angle));
+  }
+  return out + fmt::format(" front noclip fc rgb '{}' fs solid border lc rgb 'white' lw 1.3\n", kStar);
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
+
+std::string axis(char name, double length) {
+  return fmt::format("set {0}range [0:{1}]\nset {0}tics {2} nomirror out scale 0.5 font ',9'\n", name, 100.0 * length,
+                     100.0 * length > 12.0 ? "5" : "autofreq");
+}
+
+std::string colour_range(const Colours& colours) {
+  return gnuplot_palette(colours.palette) +
+         fmt::format("set cbrange [{}:{}]\n", number(colours.low), number(colours.high));
+}
+
+// How surfaces are seen: from so far above, turned so far.
+constexpr double kTiltDegrees = 60.0;
+constexpr double kTurnDegrees = 32.0;
+constexpr double kTilt = kTiltDegrees * kPi / 180.0;
+constexpr double kTurn = kTurnDegrees * kPi / 180.0;
+constexpr int kBarSteps = 128;
+
+}  // namespace
+
+std::string centimetres(double value) { return fmt::format("{:.10g}", 100.0 * value); }
+
+Box map_box(const Area& area, double left, double top, double side) {
+  const double scale = side / std::max(area.width, area.depth);
+  return {left, top, scale * area.width, scale * area.depth};
+}
+
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk) {
+  // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
+  const auto up = [&](double x, double y, double height) {
+    const double back = (y - 0.5 * area.depth) * std::cos(kTurn) - (x - 0.5 * area.width) * std::sin(kTurn);
+    return back * std::cos(kTilt) + (height - desk) * std::sin(kTilt);
+  };
+  Relief out{desk, desk, desk + 0.01, up(0.0, area.depth, desk), up(0.0, area.depth, desk)};
+  const auto include = [&](double x, double y, double height) {
+    out.low = std::min(out.low, height);
+    out.top = std::max(out.top, height);
+    out.above = std::max(out.above, up(x, y, height));
+    out.below = std::max(out.below, -up(x, y, height));
+  };
+  for (const Snapshot& one : snapshots) {
+    for (Eigen::Index i = 0; i < one.surface.size(); ++i) include(candidates(i, 0), candidates(i, 1), one.surface(i));
+    for (const TapMark& mark : one.marks) include(mark.x, mark.y, mark.height);
+  }
+  return out;
+}
+
+Raster::Raster(const Candidates& candidates, const Area& area)
+    : candidates_(candidates),
+      area_(area),
+      columns_(std::clamp(candidates.columns, 2, kMostDrawn)),  // gnuplot's images have two at least
+      rows_(std::clamp(candidates.rows, 2, kMostDrawn)) {}
+
+Eigen::Index Raster::index(int column, int row) const {
+  const int from_column = static_cast<int>((column + 0.5) * candidates_.columns / columns_);
+  const int from_row = static_cast<int>((row + 0.5) * candidates_.rows / rows_);
+  return static_cast<Eigen::Index>(from_row) * candidates_.columns + from_column;
+}
+
+std::string Raster::matrix(const Eigen::VectorXd& values) const {
+  std::string out;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column)
+      out += (column > 0 ? " " : "") + number(values(index(column, row)));
+    out += "\n";
+  }
+  return out;
+}
+
+std::string Raster::matrix_columns() const {
+  const double dx = 100.0 * area_.width / columns_;
+  const double dy = 100.0 * area_.depth / rows_;
+  return fmt::format("({0} * (column(1) + 0.5)):({1} * (column(2) + 0.5)):3", dx, dy);
+}
+
+std::string Raster::surface(const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) const {
+  std::string out;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const Eigen::Index i = index(column, row);
+      out += fmt::format("{} {} {} {}\n", number(100.0 * x(column)), number(100.0 * y(row)), number(100.0 * height(i)),
+                         number(100.0 * deviation(i)));
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+bool Sheet::has(const std::string& block) const {
+  return std::find(blocks_.begin(), blocks_.end(), block) != blocks_.end();
+}
+
+void Sheet::data(const std::string& name, const std::string& lines) {
+  if (lines.empty()) return;
+  blocks_.push_back(name);
+  data_ += fmt::format("${} << END\n{}END\n", name, lines);
+}
+
+void Sheet::taps(const std::string& name, const Snapshot& snapshot) {
+  std::string on;
+  std::string off;
+  std::string failed;
+  for (const TapMark& mark : snapshot.marks) {
+    std::string& lines = mark.kind == TapMark::Kind::on ? on : mark.kind == TapMark::Kind::off ? off : failed;
+    lines += fmt::format("{} {} {} {}\n", centimetres(mark.x), centimetres(mark.y), centimetres(mark.height), mark.tap);
+  }
+  data("on_" + name, on);
+  data("off_" + name, off);
+  data("failed_" + name, failed);
+  if (snapshot.next)
+    data("next_" + name, centimetres(snapshot.next->target.x) + " " + centimetres(snapshot.next->target.y) + "\n");
+}
+
+void Sheet::text(const std::string& words, double x, double top, int points, Align align) {
+  double y = top + 0.5 * 1.35 * points;
+  std::size_t begin = 0;
+  while (begin <= words.size()) {
+    const std::size_t end = std::min(words.find('\n', begin), words.size());
+    texts_ += fmt::format("set label {} at screen {:.5f}, screen {:.5f} {} font ',{}'\n",
+                          gnuplot_text(words.substr(begin, end - begin)), x / width_, 1.0 - y / height_,
+                          align == Align::left ? "left" : "center", points);
+    y += 1.6 * points;
+    begin = end + 1;
+  }
+}
+
+void Sheet::upright(const std::string& words, double x, double middle, int points) {
+  texts_ += fmt::format("set label {} at screen {:.5f}, screen {:.5f} center rotate by 90 font ',{}'\n",
+                        gnuplot_text(words), x / width_, 1.0 - middle / height_, points);
+}
+
+std::string Sheet::flush_texts() {
+  std::string out;
+  out.swap(texts_);
+  return out;
+}
+
+std::string Sheet::place(const Box& box) const {
+  return fmt::format(
+      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n"
+      "set bmargin at screen {:.5f}\n",
+      box.left / width_, (box.left + box.width) / width_, 1.0 - box.top / height_,
+      1.0 - (box.top + box.height) / height_);
+}
+
+void Sheet::plot(const Box& box, const std::string& settings, const std::string& clauses) {
+  panels_ += "\nreset\nunset key\n" + place(box) + flush_texts() + settings + clauses + "\n";
+}
+
+std::string Sheet::marks(const std::string& taps, const std::string& columns) const {
+  std::string out;
+  const auto add = [&](const std::string& kind, const std::string& under, const std::string& over) {
+    if (!has(kind + "_" + taps)) return;
+    for (const std::string& style : {under, over})
+      out += fmt::format(", \\\n  ${}_{} using {} with points {}", kind, taps, columns, style);
+  };
+  add("failed", "pt 4 ps 1.3 lw 4.5 lc rgb 'white'", "pt 4 ps 1.3 lw 2 lc rgb '#d55e00'");
+  add("off", "pt 2 ps 1.15 lw 4.5 lc rgb 'white'", "pt 2 ps 1.05 lw 2 lc rgb 'black'");
+  add("on", "pt 7 ps 1.45 lc rgb 'white'", "pt 7 ps 1.05 lc rgb 'black'");
+  return out;
+}
+
+void Sheet::map(const Box& box, const Raster& raster, const std::string& map, const std::string& taps,
+                const Colours& colours) {
+  const Area& area = raster.area();
+  std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
+  settings += "unset colorbox\nset border lc rgb '#555555'\nset xlabel 'x [cm]' font ',10' offset 0,0.7\n";
+  settings += "set ylabel 'y [cm]' font ',10' offset 1.6,0\n";
+  if (const std::string next = "next_" + taps; has(next)) {
+    settings += fmt::format("next_x = real(word(${0}[1], 1))\nnext_y = real(word(${0}[1], 2))\n", next);
+    settings += star_at(100.0 * 0.042 * std::max(area.width, area.depth));
+  }
+  plot(box, settings,
+       fmt::format("plot ${} matrix using {} with image", map, raster.matrix_columns()) + marks(taps, "1:2"));
+}
+
+void Sheet::surface(const Box& box, const Raster& raster, const std::string& surface, const std::string& taps,
+                    const Colours& colours, const Relief& relief) {
+  const Area& area = raster.area();
+  const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
+  const double scale = std::min(box.width / wide, box.height / (relief.above + relief.below));     // pixels a metre
+  const double middle = box.top + 0.5 * box.height + 0.5 * scale * (relief.above - relief.below);  // of the desk
+  const double lift = scale * (0.5 * (relief.low + relief.top) - relief.desk) * std::sin(kTilt);
+  // gnuplot puts the longer side of the area to the shorter one of the margins, and the middle of all into theirs.
+  const double side = scale * std::max(area.width, area.depth);
+  const Box inner{box.left + 0.5 * (box.width - side), middle - lift - 0.5 * side, side, side};
+  std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
+  settings += fmt::format("set zrange [{}:{}]\nset ztics 5 font ',9' offset 0.7,0\n", centimetres(relief.low),
+                          centimetres(relief.top));
+  settings +=
+      fmt::format("unset colorbox\nset border 31 lc rgb '#777777'\nset xyplane at {}\n", centimetres(relief.desk));
+  settings += "set xlabel 'x [cm]' font ',10' rotate parallel offset 1.2,-0.3\n";
+  settings += "set ylabel 'y [cm]' font ',10' rotate parallel offset -1.5,-0.3\n";
+  settings += "set zlabel 'height [cm]' font ',10' rotate by 90 offset 3.2,0\n";
+  settings += "set xtics offset -0.3,-0.3\nset ytics offset 0.4,-0.3\n";
+  settings += fmt::format("set view {}, {}\nset view equal xyz\n", kTiltDegrees, kTurnDegrees) +
+              "set pm3d scansautomatic lighting primary 0.35 specular 0\n";
+  plot(inner, settings, fmt::format("splot ${} using 1:2:3:4 with pm3d", surface) + marks(taps, "1:2:3"));
+}
+
+void Sheet::bar(const Box& box, const Colours& colours) {
+  std::string settings = gnuplot_palette(colours.palette) + "unset colorbox\nset border lc rgb '#555555'\n";
+  settings += fmt::format("unset xtics\nunset ytics\nset xrange [-0.5:1.5]\nset yrange [-0.5:{}]\n", kBarSteps - 0.5);
+  settings += fmt::format("set y2range [{}:{}]\nset y2tics nomirror out scale 0.5 font ',9'\n", number(colours.low),
+                          number(colours.high));
+  if (!colours.label.empty()) upright(colours.label, box.left + box.width + 68, box.top + 0.5 * box.height, 10);
+  plot(box, settings, "plot $bar matrix using 1:2:3 with image");
+}
+
+void Sheet::legend(double x, double y, bool failed, bool next) {
+  std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
+  const auto entry = [&](const std::string& style, const std::string& words, double width) {
+    if (!style.empty()) {
+      settings += fmt::format("set label '' at screen {:.5f}, screen {:.5f} point {} front\n", x / width_,
+                              1.0 - y / height_, style);
+    }
+    settings += fmt::format("set label {} at screen {:.5f}, screen {:.5f} left font ',11'\n", gnuplot_text(words),
+                            (x + 14) / width_, 1.0 - y / height_);
+    x += width;
+  };
+  entry("pt 7 ps 1.2 lc rgb 'black'", "tap on the object", 165);
+  entry("pt 2 ps 1.1 lw 2 lc rgb 'black'", "tap on the desk", 150);
+  if (failed) entry("pt 4 ps 1.3 lw 2 lc rgb '#d55e00'", "failed tap", 115);
+  const Box star{x - 9, y - 9, 18, 18};
+  if (next) {
+    entry("", "next tap", 0);
+    settings += "next_x = 0\nnext_y = 0\n" + star_at(1.0);
+  }
+  plot(star, settings, "plot NaN");
+}
+
+std::string Sheet::script() const {
+  std::string bar;
+  for (int i = 0; i < kBarSteps; ++i) bar += fmt::format("{0} {0}\n", i);
+  return "set encoding utf8\n" + fmt::format("$bar << END\n{}END\n", bar) + data_ + "set multiplot\n" + panels_ +
+         "unset multiplot\nset output\n";
+}
+
+}  // namespace palpate

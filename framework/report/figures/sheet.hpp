@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// A picture of several panels as a gnuplot script with its data inside: panels are placed in pixels, data stands in
+// named blocks before them.
+#pragma once
+
+#include "experiment/experiment.hpp"
+#include "report/figures/palette.hpp"
+#include "report/snapshot.hpp"
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A rectangle of the picture, pixels from its upper left corner.
+struct Box {
+  double left = 0.0;
+  double top = 0.0;
+  double width = 0.0;
+  double height = 0.0;
+};
+
+/// What the colours of some panels mean.
+struct Colours {
+  Palette palette = Palette::viridis;
+  double low = 0.0;
+  double high = 1.0;
+  std::string label;  ///< with its unit
+};
+
+/// Where candidates are drawn: their cells over the area, every cell once unless there are more than a picture can
+/// show.
+class Raster {
+ public:
+  /// `candidates` must outlive it.
+  Raster(const Candidates& candidates, const Area& area);
+
+  const Area& area() const { return area_; }
+  /// Rows of `values`, the lowest y first.
+  std::string matrix(const Eigen::VectorXd& values) const;
+  /// gnuplot's columns that place the matrix, in centimetres.
+  std::string matrix_columns() const;
+  /// "x y height deviation" in centimetres, a blank line behind each row.
+  std::string surface(const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) const;
+
+ private:
+  double x(int column) const { return (column + 0.5) * area_.width / columns_; }
+  double y(int row) const { return (row + 0.5) * area_.depth / rows_; }
+  Eigen::Index index(int column, int row) const;
+
+  const Candidates& candidates_;
+  Area area_;
+  int columns_;
+  int rows_;
+};
+
+/// The room that surfaces take when they are seen from the side, metres.
+struct Relief {
+  double desk = 0.0;
+  double low = 0.0;  ///< least and largest height; the desk lies between them
+  double top = 0.0;
+  double above = 0.0;  ///< in the picture, from the middle of the desk to the upper edge, and to the lower one
+  double below = 0.0;
+};
+
+/// What these snapshots of one experiment need to be drawn alike.
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk);
+
+class Sheet {
+ public:
+  Sheet(int width, int height) : width_(width), height_(height) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// Without terminal and output.
+  std::string script() const;
+
+  /// A named block of lines; "" makes none.
+  void data(const std::string& name, const std::string& lines);
+  /// The taps of a snapshot as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number") and the next one as
+  /// `next_NAME` ("x y"), in centimetres.
+  void taps(const std::string& name, const Snapshot& snapshot);
+
+  /// Text whose upper edge is at `top`; `x` is its left end or its middle. May have several lines.
+  enum class Align { left, centre };
+  void text(const std::string& words, double x, double top, int points, Align align = Align::left);
+  /// One line along the left side of a row, its middle at `middle`.
+  void upright(const std::string& words, double x, double middle, int points);
+
+  /// The block `map` seen from above, with the taps NAME over it. The box has the aspect of the area.
+  void map(const Box& box, const Raster& raster, const std::string& map, const std::string& taps,
+           const Colours& colours);
+  /// The block `surface` in three dimensions, with the taps NAME on it, in the middle of the box.
+  void surface(const Box& box, const Raster& raster, const std::string& surface, const std::string& taps,
+               const Colours& colours, const Relief& relief);
+  /// The scale of the colours.
+  void bar(const Box& box, const Colours& colours);
+  /// What the marks mean, from `x` on, its middle at `y`.
+  void legend(double x, double y, bool failed, bool next = true);
+
+  /// A plot of any kind: lines of settings, then the clauses of one plot command.
+  void plot(const Box& box, const std::string& settings, const std::string& clauses);
+
+ private:
+  std::string place(const Box& box) const;
+  std::string flush_texts();
+  /// Marks over a panel, as clauses; `columns` "1:2" or "1:2:3".
+  std::string marks(const std::string& taps, const std::string& columns) const;
+  bool has(const std::string& block) const;
+
+  int width_;
+  int height_;
+  std::vector<std::string> blocks_;  ///< names
+  std::string data_;
+  std::string texts_;
+  std::string panels_;
+};
+
+/// `value` metres as centimetres, as it stands in a block.
+std::string centimetres(double value);
+
+/// The box of a map: as wide or as high as `side`, in the aspect of the area, its upper left corner at (left, top).
+Box map_box(const Area& area, double left, double top, double side);
+
+}  // namespace palpate

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "report/page/sweep_page.hpp"
+
+#include "analysis/column.hpp"
+#include "analysis/statistics.hpp"
+#include "config/quantity.hpp"
+#include "config/yaml.hpp"
+#include "record/build_info.hpp"
+#include "record/run_directory.hpp"
+#include "report/page/assets.hpp"
+#include "report/page/json_text.hpp"
+#include "report/page/page.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a swept value stands among those of its key, if it is a quantity; its unit tells whether two compare.
+std::optional<AnyQuantity> quantity_of(const std::string& text) {
+  try {
+    return any_quantity(text);
+  } catch (const Error&) {  // a length of 1e999 m, say: no number to sort by, but a text like others
+    return {};
+  }
+}
+
+/// A swept key: its values in the order of the sweep, where they stand as numbers if all are of one dimension, and for
+/// each job which of them it has.
+std::string json_of_key(const Sweep& sweep, std::size_t key) {
+  std::vector<std::string> values;
+  std::map<std::string, std::size_t> found;
+  std::vector<std::size_t> of_job;
+  for (const Job& job : sweep.jobs) {
+    const auto [at, is_new] = found.emplace(job.values[key], values.size());
+    if (is_new) values.push_back(job.values[key]);
+    of_job.push_back(at->second);
+  }
+  std::vector<std::string> numbers;
+  std::optional<Unit> unit;
+  bool all = true;
+  for (const std::string& value : values) {
+    const std::optional<AnyQuantity> number = quantity_of(value);
+    numbers.push_back(number ? json_value(number->value) : "null");
+    if (value.empty()) continue;  // where the plugin has no such option
+    all = all && number && (!unit || *unit == number->unit);
+    if (number) unit = number->unit;
+  }
+  return json_object({{"name", json_quoted(sweep.keys[key])},
+                      {"values", json_texts(values)},
+                      {"numbers", all && unit ? json_list(numbers) : "null"},
+                      {"of_job", json_list_of(of_job, [](std::size_t value) { return std::to_string(value); })}});
+}
+
+/// The value of a cell as a number of JSON, "null" where there is none; none for a text that is no number. As
+/// `palpate pareto` reads cells: flags count, and so do swept values that are plain numbers.
+std::optional<std::string> json_number(const Scalar& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "1" : "0";
+  const auto* text = std::get_if<std::string>(&value);
+  if (text == nullptr) return json_value(value);
+  if (text->empty()) return "null";
+  double number = 0.0;
+  const char* const end = text->data() + text->size();
+  const auto result = std::from_chars(text->data(), end, number);
+  if (result.ec != std::errc() || result.ptr != end) return {};
+  return json_value(number);
+}
+
+const char* better_name(SummaryField::Better better) {
+  switch (better) {
+    case SummaryField::Better::less:
+      return "less";
+    case SummaryField::Better::more:
+      return "more";
+    case SummaryField::Better::neither:
+      break;
+  }
+  return "neither";
+}
+
+/// A column of the results with a number for each job, null where a job has none; none for columns without numbers.
+std::optional<std::string> json_of_column(const std::string& name, const std::vector<const Row*>& rows) {
+  std::vector<std::string> numbers;
+  bool any = false;
+  for (const Row* row : rows) {
+    const Scalar* value = row != nullptr ? row->find(name) : nullptr;
+    const std::optional<std::string> number = value != nullptr ? json_number(*value) : std::string("null");
+    if (!number) return {};
+    any = any || *number != "null";
+    numbers.push_back(*number);
+  }
+  if (!any) return {};
+  const SummaryField* field = find_summary_field(name);
+  const auto better = field != nullptr ? field->better : SummaryField::Better::neither;
+  return json_object(
+      {{"name", json_quoted(name)}, {"better", json_quoted(better_name(better))}, {"numbers", json_list(numbers)}});
+}
+
+std::string json_of_columns(const std::vector<Row>& results, const std::vector<const Row*>& rows) {
+  std::vector<std::string> columns;
+  for (const std::string& name : columns_of(results)) {
+    if (name == "job" || name == "id" || name == "seed") continue;
+    if (const std::optional<std::string> column = json_of_column(name, rows)) columns.push_back(*column);
+  }
+  return json_list(columns);
+}
+
+/// What became of a job: from its row, or, without one, from its directory as it is now.
+RunStatus standing_of(const Row* row, const fs::path& directory) {
+  RunStatus out;
+  if (row != nullptr) {
+    out.state = is_done(*row) ? RunStatus::State::done : RunStatus::State::failed;
+    const Scalar* reason = row->find("stop_reason");
+    const auto* text = reason != nullptr ? std::get_if<std::string>(reason) : nullptr;
+    if (text != nullptr) out.stop_reason = *text;
+    return out;
+  }
+  out = read_ending(directory);
+  // Who ended since the rows were read was running then.
+  const bool ended = out.state == RunStatus::State::done || out.state == RunStatus::State::failed;
+  if (ended || is_running(directory)) return {RunStatus::State::running, 0, ""};
+  return out;
+}
+
+std::string json_of_jobs(const Sweep& sweep, const std::vector<const Row*>& rows, const OnProgress& progress) {
+  std::vector<std::string> jobs;
+  for (const Job& job : sweep.jobs) {
+    const fs::path directory = job_directory(sweep, job);
+    const RunStatus standing = standing_of(rows[static_cast<std::size_t>(job.index)], directory);
+    std::error_code none;
+    const bool reported = fs::exists(directory / "report.html", none);
+    jobs.push_back(json_list({json_quoted(job.id), json_quoted(state_name(standing.state)),
+                              json_quoted(standing.stop_reason), reported ? "1" : "0"}));
+    progress(static_cast<int>(jobs.size()), static_cast<int>(sweep.jobs.size()));
+  }
+  return json_list(jobs);
+}
+
+/// The factors of the 95 % intervals of means over 2, 3, ... jobs, as many as a setting may have.
+std::string json_of_factors(std::size_t jobs) {
+  constexpr std::size_t kMost = 2000;  // from here on it changes by less than 1 in 1000
+  std::vector<std::string> factors;
+  for (std::size_t degrees = 1; degrees < std::min(jobs, kMost); ++degrees)
+    factors.push_back(json_value(student_factor(degrees)));
+  return json_list(factors);
+}
+
+std::string id_of(const Sweep& sweep) {
+  return fs::absolute(sweep.directory / "").lexically_normal().parent_path().filename().string();
+}
+
+}  // namespace
+
+std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
+  const std::vector<Row> results = sweep_results(sweep);
+  std::vector<const Row*> rows(sweep.jobs.size(), nullptr);  // of each job
+  for (const Row& row : results) rows[static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job")))] = &row;
+  const Tree config = read_run_config(sweep.directory);
+  const Tree* name = config.find("name");
+  std::vector<std::string> keys;
+  for (std::size_t key = 0; key < sweep.keys.size(); ++key) keys.push_back(json_of_key(sweep, key));
+  const std::vector<std::pair<std::string, std::string>> data{
+      {"version", json_quoted(kVersion)},
+      {"name", json_quoted(name != nullptr ? name->text : "sweep")},
+      {"id", json_quoted(id_of(sweep))},
+      {"keys", json_list(keys)},
+      {"jobs", json_of_jobs(sweep, rows, progress)},
+      {"columns", json_of_columns(results, rows)},
+      {"factors", json_of_factors(sweep.jobs.size())},
+      {"config", json_quoted(to_yaml(config))}};
+  return make_page(sweep_script(), json_object(data), "");
+}
+
+}  // namespace palpate

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The report of a sweep as one page: what became of every job, and the numbers of those that ended, from which
+// web/sweep.js draws what is asked for. Groups, means and the front are made there, so that they follow the choices
+// of whoever reads.
+#pragma once
+
+#include "report/history.hpp"
+#include "sweep/sweep.hpp"
+
+#include <string>
+
+namespace palpate {
+
+/// The page of a sweep as it stands, under way or not: HTML, complete in itself but for the links to its jobs, which
+/// hold where the page lies in the sweep's directory. `progress` counts jobs. Throws Error for a damaged record.
+std::string sweep_page(const Sweep& sweep, const OnProgress& progress);
+
+}  // namespace palpate

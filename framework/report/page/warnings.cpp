@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "report/page/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+/// "1 tap", "3 taps"
+std::string counted(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
+int interventions(const RunResult& result, const char* kind) {
+  const auto found = result.interventions.find(kind);
+  return found != result.interventions.end() ? found->second : 0;
+}
+
+/// The first tap that this build would have made elsewhere; 0 if there is none.
+int first_drift(const Recording& recording, const History& history) {
+  for (std::size_t i = 0; i < recording.taps.size(); ++i) {
+    const std::optional<TapRecord>& next = history.moments[i].next;
+    const Target& made = recording.taps[i].target;
+    if (!next || next->target.x != made.x || next->target.y != made.y) return static_cast<int>(i) + 1;
+  }
+  return 0;
+}
+
+void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
+  if (recording.failed()) {
+    const Scalar* reason = recording.summary->find("stop_reason");
+    out.push_back(fmt::format("The run failed: {}", reason != nullptr ? std::get<std::string>(*reason) : "?"));
+  } else if (!recording.summary) {
+    out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
+  }
+  if (last.on_surface_taps == 0) out.push_back("No tap touched an object: the maps show where it is not.");
+  if (last.failed_taps > 0)
+    out.push_back(fmt::format("{} brought no contact and did not reach the models.", counted(last.failed_taps, "tap")));
+  if (const int refused = interventions(last, "height_refused"); refused > 0)
+    out.push_back(fmt::format("{} brought a height that is no number, and was refused.", counted(refused, "tap")));
+}
+
+void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
+  const RunResult& last = history.moments.back().result;
+  if (const int fallbacks = interventions(last, "fallback"); fallbacks > 0) {
+    out.push_back(fmt::format(
+        "{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores told "
+        "no candidate apart (so it is until the first hit).",
+        fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
+  }
+  if (const int drift = first_drift(recording, history); drift > 0) {
+    out.push_back(
+        fmt::format("From the same taps this build would have made tap {} elsewhere: the run was made by another build "
+                    "or on another instruction path. The maps are those of the recorded taps.",
+                    drift));
+  }
+}
+
+void warn_of_weights(const Recording& recording, const History& history, std::vector<std::string>& out) {
+  const auto least = std::min_element(history.moments.begin(), history.moments.end(),
+                                      [](const Moment& a, const Moment& b) { return a.least_weight < b.least_weight; });
+  const auto most = std::max_element(history.moments.begin(), history.moments.end(),
+                                     [](const Moment& a, const Moment& b) { return a.most_weight < b.most_weight; });
+  constexpr double kRounding = 1e-6;
+  if (least->least_weight >= -kRounding && most->most_weight <= 1.0 + kRounding) return;
+  out.push_back(
+      fmt::format("The weight leaves [0, 1]: from {:.2f} after tap {} to {:.2f} after tap {}. It is a regression on "
+                  "labels, no probability; {}.",
+                  least->least_weight, least->taps, most->most_weight, most->taps,
+                  recording.config.options.weight.clip ? "the strategy sees it clipped (weight.clip)"
+                                                       : "weight.clip=true would clip it for the strategy"));
+}
+
+void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
+  if (const int raised = interventions(last, "jitter"); raised > 0) {
+    out.push_back(
+        fmt::format("Jitter up to {:.1e} was added to the covariance, {}: the taps made it singular in "
+                    "double precision. It acts as noise of each tap.",
+                    last.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
+  }
+  if (const int pivoted = interventions(last, "pivoted"); pivoted > 0)
+    out.push_back(fmt::format("{} needed pivoting as the last resort.", counted(pivoted, "factorisation")));
+  if (const int aside = interventions(last, "set_aside"); aside > 0)
+    out.push_back(fmt::format("{} set aside: the others already tell everything about {}, as far as numbers go.",
+                              counted(aside, "tap") + (aside == 1 ? " was" : " were"), aside == 1 ? "it" : "them"));
+  if (const int clamped = interventions(last, "variance_clamped"); clamped > 0)
+    out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; shown are the bounds.",
+                              counted(clamped, "candidate")));
+  if (const int kept = interventions(last, "fit_failed"); kept > 0)
+    out.push_back(fmt::format("{} found nothing better and kept the old hyperparameters.", counted(kept, "fit")));
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const Recording& recording, const History& history) {
+  const RunResult& last = history.moments.back().result;
+  std::vector<std::string> out;
+  warn_of_end(recording, last, out);
+  warn_of_choices(recording, history, out);
+  warn_of_weights(recording, history, out);
+  warn_of_numbers(last, out);
+  if (!recording.truth_known()) out.push_back("The truth is not known here: there are no errors to show.");
+  return out;
+}
+
+}  // namespace palpate

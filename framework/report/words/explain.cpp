@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: MIT
+#include "report/words/explain.hpp"
+
+#include "experiment/metrics.hpp"
+#include "record/tap_row.hpp"
+#include "report/words/evidence.hpp"
+#include "report/words/explain_models.hpp"
+#include "report/words/words.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+/// The errors of the models of `experiment` as fields of a tap, null where no truth is known.
+Row errors_row(Experiment& experiment) {
+  const Truth* truth = experiment.truth();
+  const Errors errors = truth != nullptr ? final_errors(experiment.belief(), *truth) : Errors{};
+  Row row;
+  row.add("rmse_m", errors.rmse);
+  row.add("rmse_on_surface_m", errors.rmse_on_surface);
+  row.add("rmse_height_m", errors.rmse_height);
+  row.add("footprint_iou", errors.footprint_iou);
+  return row;
+}
+
+class Explanation {
+ public:
+  Explanation(const Workshop& workshop, const Recording& recording, int tap)
+      : workshop_(workshop),
+        recording_(recording),
+        options_(recording.config.options),
+        number_(tap),
+        row_(recording.rows[static_cast<std::size_t>(tap - 1)]),
+        tap_(recording.taps[static_cast<std::size_t>(tap - 1)]),
+        playback_(workshop, recording) {}
+
+  std::string text() {
+    playback_.advance_to(number_ - 1);
+    Experiment& experiment = playback_.experiment();
+    const TapBelief& belief = experiment.belief();
+    // All three, so that the choice describes them whatever the strategy reads.
+    belief.uncertainty();
+    belief.weight_mean();
+    belief.height_mean();
+    candidate_ = experiment.candidates().nearest(tap_.target.x, tap_.target.y, experiment.scene().area());
+    now_ = experiment.choose_next();
+    const Evidence evidence(row_, computed_row());
+
+    page_.heading(fmt::format("Tap {} of {}{}, run {} ({}): {}", number_, recording_.rows.size(),
+                              recording_.summary ? "" : " so far", options_.name, recording_.config.id,
+                              place_words(tap_.target.x, tap_.target.y)));
+    page_.heading("Why there");
+    explain_choice(evidence);
+    page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
+                              counted(contacts_before(), "contact"), hits_before()));
+    if (!evidence.recorded("height_process.signal") && !evidence.recorded("weight_process.signal"))
+      page_.say("This choice read no model. What the models would have said:");
+    if (now_) explain_models(page_, evidence, options_, belief, *now_);
+    page_.heading("What was expected and what was found");
+    explain_expectation(evidence);
+    explain_outcome();
+    page_.heading("What it changed");
+    explain_errors(evidence);
+    if (starred_ || evidence.starred())
+      page_.heading("* computed now from the recorded taps; the record does not hold it");
+    return page_.text();
+  }
+
+ private:
+  /// What this program finds at the recorded place, in the fields of a record.
+  Row computed_row() {
+    Experiment& experiment = playback_.experiment();
+    const TapBelief& belief = experiment.belief();
+    TapRecord at = now_ ? *now_ : TapRecord{};
+    // The state is that of any choice now; what is said of a place must be of the recorded one.
+    at.target = tap_.target;
+    at.uncertainty = belief.uncertainty()(candidate_);
+    at.weight = belief.weight()(candidate_);
+    at.exploration = *at.uncertainty * *at.weight;
+    at.predicted = Prediction{belief.height_mean()(candidate_), std::sqrt(belief.height_variance()(candidate_))};
+    at.score.reset();
+    at.ties.reset();
+    at.runner_up.reset();
+    at.runner_up_score.reset();
+    if (const Truth* truth = experiment.truth()) at.errors = final_errors(belief, *truth);
+    Row row = tap_row(at);
+    return row;
+  }
+
+  int contacts_before() const {
+    return static_cast<int>(std::count_if(recording_.taps.begin(), recording_.taps.begin() + number_ - 1,
+                                          [](const PastTap& tap) { return tap.contact.outcome == Outcome::contact; }));
+  }
+
+  int hits_before() {
+    const Scene& scene = playback_.experiment().scene();
+    return static_cast<int>(
+        std::count_if(recording_.taps.begin(), recording_.taps.begin() + number_ - 1, [&](const PastTap& tap) {
+          return tap.contact.outcome == Outcome::contact && scene.on_surface(tap.contact.height);
+        }));
+  }
+
+  // The choice.
+
+  void explain_choice(const Evidence& evidence) {
+    switch (tap_.source) {
+      case Source::initial:
+        explain_design();
+        break;
+      case Source::acquisition:
+        page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
+        explain_score(evidence, acquisition_scale());
+        break;
+      case Source::fallback:
+        explain_fallback(evidence);
+        explain_score(evidence, 1.0);  // that of u
+        break;
+    }
+    explain_place(evidence);
+    explain_repeats();
+    explain_other_choice();
+  }
+
+  void explain_design() {
+    const char* how = "";
+    switch (options_.initial.design) {
+      case InitialOptions::Design::random:
+        how = "random: drawn from the candidates by the seed alone";
+        break;
+      case InitialOptions::Design::sobol:
+        how = "sobol: a sequence that spreads evenly, shifted by the seed";
+        break;
+      case InitialOptions::Design::grid:
+        how = "grid: a lattice over the area";
+        break;
+    }
+    page_.say(fmt::format("It is initial tap {} of {}, placed by the design before any model has a say ({}, seed {}).",
+                          number_, options_.initial.count, how, options_.seed));
+  }
+
+  std::string acquisition_words() const {
+    const std::string& type = options_.acquisition.type;
+    const std::vector<PluginListing> found = workshop_.host.list("acquisition", type);
+    return found.empty() || found.front().summary.empty() ? type : fmt::format("{} ({})", type, found.front().summary);
+  }
+
+  double acquisition_scale() {
+    const Context context{workshop_.host, playback_.experiment().scene(), static_cast<std::uint64_t>(options_.seed),
+                          nullptr};
+    return context.create<Acquisition>(options_.acquisition)->prior_scale();
+  }
+
+  void explain_fallback(const Evidence& evidence) {
+    const std::string why = evidence.text("why");
+    page_.say(fmt::format("The acquisition, {}, had nothing to go by: {}.", acquisition_words(),
+                          why.empty() ? "its scores told no candidate from another" : why));
+    const auto greatest = evidence.number("max_weight");
+    if (hits_before() == 0 && greatest && *greatest <= 0.0) {
+      page_.say(
+          fmt::format("No tap has hit an object yet: every label is 0, and so the weight w is nowhere above {}{}.",
+                      plain_words(*greatest), evidence.star("max_weight")));
+    } else if (hits_before() == 0) {
+      page_.say("No tap has hit an object yet.");
+    }
+    page_.say(
+        "So the fallback chose it (fallback: uncertainty), which looks where the height is least known: its score "
+        "is u.");
+  }
+
+  /// Candidates that may not be tapped again, by the rule of the loop.
+  int left_out() {
+    const Experiment& experiment = playback_.experiment();
+    std::vector<bool> out(static_cast<std::size_t>(experiment.candidates().size()), false);
+    for (int i = 0; i < number_ - 1; ++i) {
+      const PastTap& tap = recording_.taps[static_cast<std::size_t>(i)];
+      const bool failed = tap.contact.outcome != Outcome::contact;
+      if (!failed && options_.repeat == ExperimentOptions::Repeat::allow) continue;
+      const int cell = experiment.candidates().nearest(tap.target.x, tap.target.y, experiment.scene().area());
+      out[static_cast<std::size_t>(cell)] = true;
+    }
+    return static_cast<int>(std::count(out.begin(), out.end(), true));
+  }
+
+  void explain_score(const Evidence& evidence, double scale) {
+    const auto score = evidence.number("score");
+    if (!score) return page_.say("The record holds no score.");
+    const int out = left_out();
+    const int allowed = playback_.experiment().candidates().size() - out;
+    const int ties = static_cast<int>(std::lround(evidence.number("ties").value_or(1.0)));
+    const auto second = evidence.number("runner_up.score");
+    const double best = second ? std::max(*score, *second) : *score;
+    const double bound = options_.tie_tolerance * (std::abs(best) + scale);
+    std::string text = fmt::format("Its score there is {}", plain_words(*score));
+    if (allowed == 1) {
+      text += "; no other candidate is left.";
+    } else if (ties <= 1) {
+      text += fmt::format(", the best of {}; no other is within {:.2g} of it (tie_tolerance).",
+                          counted(allowed, "candidate"), bound);
+    } else {
+      text += fmt::format(
+          ". {} of {} are tied: within {:.2g} of the best (tie_tolerance), where rounding must not decide. Of these "
+          "the "
+          "lowest index is taken (they are counted along x, row by row).",
+          ties == allowed ? "All" : std::to_string(ties), counted(allowed, "candidate"), bound);
+    }
+    page_.say(text);
+    if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
+    explain_left_out(out);
+    explain_runner_up(evidence, *score);
+  }
+
+  /// Of scores that tell candidates hardly apart: why the rule had its way all the same.
+  void explain_flatness(double best, double bound, bool equal) {
+    if (options_.fallback == ExperimentOptions::Fallback::none) {
+      if (best > 0.0 && !equal) return;
+      page_.say(fmt::format("{}: such scores tell nothing, but the config has the rule stand (fallback: none).",
+                            best > 0.0 ? "Every score is equal" : "No score is positive"));
+    } else if (best > 0.0 && best <= bound) {
+      page_.say(fmt::format("The best score, {}, is as good as 0, but it is positive: so no fallback stepped in.",
+                            plain_words(best)));
+    }
+  }
+
+  void explain_left_out(int out) {
+    const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
+                          ? "because tapped before (repeat: forbid)"
+                          : "because a tap failed there; others may be tapped again (repeat: allow)";
+    page_.say(out == 0 ? std::string("No candidate is left out.")
+                       : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
+  }
+
+  void explain_runner_up(const Evidence& evidence, double score) {
+    const auto x = evidence.number("runner_up.x");
+    const auto y = evidence.number("runner_up.y");
+    const auto second = evidence.number("runner_up.score");
+    if (!x || !y || !second) return page_.say("There is no runner-up.");
+    std::string by = "the same";
+    if (const double less = score - *second; less != 0.0) {
+      const char* sense = less > 0.0 ? "less" : "more, which is a tie";
+      by = score == 0.0 ? fmt::format("{:.3g} {}", std::abs(less), sense)
+                        : fmt::format("{:.3g} % {}", 100.0 * std::abs(less / score), sense);
+    }
+    page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second), by));
+  }
+
+  void explain_place(const Evidence& evidence) {
+    const auto u = evidence.number("u");
+    const auto w = evidence.number("w");
+    const auto e = evidence.number("e");
+    if (!u || !w || !e) return;
+    page_.say(fmt::format(
+        "There u = {}{} (how little is known of the height: 0 all, 1 nothing), w = {}{} (what speaks "
+        "for an object: 0 desk, 1 object), e = u w = {}{}.",
+        plain_words(*u), evidence.star("u"), plain_words(*w), evidence.star("w"), plain_words(*e), evidence.star("e")));
+  }
+
+  void explain_repeats() {
+    const Experiment& experiment = playback_.experiment();
+    std::vector<int> before;
+    for (int i = 0; i < number_ - 1; ++i) {
+      const Target& target = recording_.taps[static_cast<std::size_t>(i)].target;
+      if (experiment.candidates().nearest(target.x, target.y, experiment.scene().area()) == candidate_)
+        before.push_back(i + 1);
+    }
+    if (!before.empty())
+      page_.say(fmt::format("This place was tapped before: {} {}.", before.size() == 1 ? "tap" : "taps",
+                            fmt::join(before, ", ")));
+  }
+
+  void explain_other_choice() {
+    if (!now_) return page_.say("This build would make no tap here: it finds no candidate left.");
+    const Experiment& experiment = playback_.experiment();
+    if (now_->candidate == candidate_) return;
+    page_.say(fmt::format(
+        "From the same taps this build would choose {} instead{}: the run was made by another build or with another "
+        "instruction set, and 'palpate replay' shows where their numbers part.",
+        place_words(experiment.candidates().points(now_->candidate, 0),
+                    experiment.candidates().points(now_->candidate, 1)),
+        now_->score ? fmt::format(", with a score of {}", plain_words(*now_->score)) : ""));
+  }
+
+  // The tap.
+
+  void explain_expectation(const Evidence& evidence) {
+    const auto height = evidence.number("predicted.height");
+    const auto deviation = evidence.number("predicted.standard_deviation");
+    if (!height || !deviation) return;
+    const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
+    page_.say(fmt::format("Expected: a height of {}{} with a standard deviation of {}{}{}.", length_words(*height),
+                          evidence.star("predicted.height"), length_words(*deviation),
+                          evidence.star("predicted.standard_deviation"),
+                          two_part ? ", if an object is there (the surface process)" : ""));
+    expected_ = *height;
+    star_of_expected_ = evidence.star("predicted.height");
+  }
+
+  void explain_outcome() {
+    const Contact& contact = tap_.contact;
+    if (contact.outcome != Outcome::contact) {
+      page_.say(fmt::format(
+          "Found: nothing, the tap failed: {}{}. It took {:.1f} s of the robot. No model learns from "
+          "it, and its place is left out from then on.",
+          outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, contact.seconds));
+      return explain_end();
+    }
+    const bool on = playback_.experiment().scene().on_surface(contact.height);
+    std::string text =
+        fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
+    if (const double more = contact.height - expected_; more != 0.0)
+      text += fmt::format(", {}{} {} than expected", length_words(std::abs(more)), star_of_expected_,
+                          more > 0.0 ? "higher" : "lower");
+    text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
+    const Scalar* truth = row_.find("true_on_surface");
+    const auto* truly = truth != nullptr ? std::get_if<bool>(truth) : nullptr;
+    if (truly != nullptr && *truly != on)
+      text += *truly ? " In truth an object is there: the label is wrong."
+                     : " In truth the desk is there: the label is wrong.";
+    page_.say(text);
+    explain_end();
+  }
+
+  void explain_end() {
+    if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
+    const Scalar* reason = recording_.summary->find("stop_reason");
+    const auto* text = reason != nullptr ? std::get_if<std::string>(reason) : nullptr;
+    page_.say(fmt::format("The run failed at this tap{}.", text != nullptr ? ": " + *text : ""));
+  }
+
+  /// The errors after the tap: recorded with the next one, or at the end of the run.
+  Evidence after() {
+    playback_.advance_to(number_);
+    const bool last = number_ == static_cast<int>(recording_.rows.size());
+    const Row nothing;
+    const Row& next = !last                ? recording_.rows[static_cast<std::size_t>(number_)]
+                      : recording_.summary ? *recording_.summary
+                                           : nothing;
+    return {next, errors_row(playback_.experiment())};
+  }
+
+  void explain_errors(const Evidence& before) {
+    if (playback_.experiment().truth() == nullptr)
+      return page_.say("The truth is not known, so nobody can say by how much the surface is off.");
+    const Evidence then = after();
+    const auto change = [&](const char* field, auto words) -> std::string {
+      const auto from = before.number(field);
+      const auto to = then.number(field);
+      if (!from || !to) return {};
+      const std::string old = words(*from);
+      const std::string now = words(*to) + then.star(field);
+      if (words(*to) == old) return "still " + now;
+      return fmt::format("from {}{} to {}", old, before.star(field), now);
+    };
+    std::vector<std::string> parts;
+    const auto add = [&](const char* what, const std::string& text) {
+      if (!text.empty()) parts.push_back(fmt::format("{} {}", what, text));
+    };
+    add("over the scene", change("rmse_m", length_words));
+    add("on the object", change("rmse_on_surface_m", length_words));
+    if (options_.surface == ExperimentOptions::Surface::two_part)
+      add("of the height alone, on the object,", change("rmse_height_m", length_words));
+    if (!parts.empty()) page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(parts, ", ")));
+    if (const std::string iou = change("footprint_iou", plain_words); !iou.empty())
+      page_.say(fmt::format("Overlap of the outline with the true one (IoU, 1 is perfect): {}.", iou));
+    starred_ = then.starred();
+  }
+
+  const Workshop& workshop_;
+  const Recording& recording_;
+  const ExperimentOptions& options_;
+  int number_;
+  const Row& row_;
+  const PastTap& tap_;
+  Playback playback_;
+  int candidate_ = 0;
+  std::optional<TapRecord> now_;
+  double expected_ = 0.0;
+  std::string star_of_expected_;
+  bool starred_ = false;
+  Page page_;
+};
+
+}  // namespace
+
+std::string explain_tap(const Workshop& workshop, const Recording& recording, int tap) {
+  const auto taps = static_cast<int>(recording.rows.size());
+  if (tap < 1 || tap > taps) {
+    throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
+                taps == 1 ? "ask for tap 1" : fmt::format("ask for one of 1 to {}", taps));
+  }
+  return Explanation(workshop, recording, tap).text();
+}
+
+}  // namespace palpate
