@@ -26,7 +26,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class RunPage : public ::testing::TestWithParam<bool> {
+class ReportedRun : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const std::string missing = test::browser_missing(); !missing.empty()) GTEST_SKIP() << missing;
@@ -44,11 +44,15 @@ class RunPage : public ::testing::TestWithParam<bool> {
     return directory;
   }
 
+  const TemporaryFolder folder_;
+};
+
+/// With WebGL and without.
+class RunPage : public ReportedRun, public ::testing::WithParamInterface<bool> {
+ protected:
   Browsed browse(const fs::path& directory, const std::vector<std::string>& steps) const {
     return test::browse(directory / "report.html", steps, GetParam());
   }
-
-  const TemporaryFolder folder_;
 };
 
 std::string drawn(int tap) { return fmt::format("await document.body.dataset.drawn == '{}'", tap); }
@@ -84,7 +88,7 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
   EXPECT_EQ(seen.values.at(5).at(0), GetParam() ? "surface" : "heatmap");
 }
 
-TEST_P(RunPage, PlotsTheTapsOfTheRecordAndTheMapsThatItsModelsHad) {
+TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
   // The oracle of the maps is the run itself, which writes them while it goes on.
   const fs::path directory =
       reported({"seed=4", "log.maps=true", "scene.effects={missed_contacts: {probability: 0.2}}"});
@@ -99,7 +103,7 @@ TEST_P(RunPage, PlotsTheTapsOfTheRecordAndTheMapsThatItsModelsHad) {
         "const z = (id) => document.getElementById(id).data[0].z.flat(); return [z('map_u'), z('map_w'), z('map_e')]");
     steps.emplace_back("key ARROW_LEFT");
   }
-  const Browsed seen = browse(directory, steps);
+  const Browsed seen = test::browse(directory / "report.html", steps, false);
   ASSERT_EQ(seen.trouble, "");
   EXPECT_THAT(seen.severe, IsEmpty());
   int failed_taps = 0;
