@@ -23,7 +23,7 @@ palpate_asset_\name\()_end:
         asset plotly, "vendor/plotly/plotly.min.js.gz"
         asset style, "web/style.css"
         asset common, "web/common.js"
-        asset run, "web/run.js"
+        asset_of_three run, "web/run_maps.js", "web/run_curves.js", "web/run.js"
         asset_of_three sweep, "web/sweep_numbers.js", "web/sweep_panels.js", "web/sweep.js"
 
         .section .note.GNU-stack, "", %progbits

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// What the page of a run draws of one moment: the surface, and the maps over the plane with the taps on them.
+
+const kCentimetres = 100;
+
+/// The maps of the page by name, each a list of frames, each a list of rows.
+function unpackMaps(bytes, described, columns, rows) {
+  const out = {};
+  let at = 0;
+  const cells = columns * rows;
+  for (const { name, least, most, frames } of described) {
+    out[name] = [];
+    for (let frame = 0; frame < frames; ++frame, at += 2 * cells) {
+      const lines = [];
+      let level = 0;
+      for (let row = 0, cell = 0; row < rows; ++row) {
+        const line = new Array(columns);
+        for (let column = 0; column < columns; ++column, ++cell) {
+          level = (level + bytes[at + cell] + 256 * bytes[at + cells + cell]) & 0xffff;
+          line[column] = least + (level / 65535) * (most - least);
+        }
+        lines.push(line);
+      }
+      out[name].push(lines);
+    }
+  }
+  return out;
+}
+
+const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
+const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
+
+function extent(frames) {
+  let least = Infinity;
+  let most = -Infinity;
+  for (const lines of frames) {
+    for (const line of lines) {
+      for (const value of line) {
+        if (value < least) least = value;
+        if (value > most) most = value;
+      }
+    }
+  }
+  return [least, most];
+}
+
+/// The taps up to `taps`, by what they touched.
+function tapsUntil(rows, taps) {
+  const made = rows.slice(0, taps);
+  return {
+    on: made.filter((tap) => tap.on_surface === true),
+    off: made.filter((tap) => tap.on_surface === false),
+    failed: made.filter((tap) => tap.on_surface === null),
+  };
+}
+
+const place = (tap) => `(${shown(tap.x * kCentimetres, 3)}, ${shown(tap.y * kCentimetres, 3)}) cm`;
+
+function hover(tap) {
+  const found = tap.on_surface === null ? tap.outcome : `${shown(tap.height * kCentimetres, 3)} cm`;
+  return `tap ${tap.tap}: ${plain(found)}`;
+}
+
+/// Taps as marks in the plane: dots on the object, crosses off it, triangles where nothing was felt; a star is next.
+function marks(data, moment) {
+  const { on, off, failed } = tapsUntil(data.taps, moment.taps);
+  const trace = (taps, name, marker) => ({
+    type: "scatter",
+    mode: "markers",
+    name,
+    x: taps.map((tap) => tap.x * kCentimetres),
+    y: taps.map((tap) => tap.y * kCentimetres),
+    text: taps.map(hover),
+    hovertemplate: "%{text}<extra></extra>",
+    marker,
+  });
+  const line = (colour, width) => ({ color: colour, width });
+  const next = moment.next ? [moment.next] : [];
+  const star = trace(next, "next", { symbol: "star", size: 15, color: "#e8112d", line: line("#ffffff", 1.2) });
+  star.text = next.map(() => `next, tap ${moment.taps + 1}`);
+  return [
+    trace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: line("#000000", 1.6) }),
+    trace(off, "off the object", { symbol: "x-thin", size: 9, line: line("#ffffff", 4) }),
+    { ...trace(off, "off the object", { symbol: "x-thin", size: 8, line: line("#000000", 1.8) }), showlegend: false },
+    trace(failed, "no contact", { symbol: "triangle-up-open", size: 9, line: line("#e8112d", 2), color: "#e8112d" }),
+    star,
+  ];
+}
+
+/// The panels over the plane: what each shows, in which colours and range.
+function mapPanels(data, maps) {
+  const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
+  const most = Math.max(extent(exploration)[1], 1e-12);
+  const panels = [
+    { id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: "Viridis" },
+    { id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: "Cividis" },
+    { id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: "Viridis" },
+  ];
+  if (maps.score) {
+    const title = `Score of the acquisition, ${data.run.acquisition}`;
+    panels.push({ id: "score", title, bar: "score", frames: maps.score, range: extent(maps.score), colours: "Viridis" });
+  }
+  return panels;
+}
+
+const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
+
+/// From edge to edge of the cells, centimetres equally long in both directions.
+function planeAxes(data) {
+  const range = (centres) => {
+    const half = centres.length > 1 ? (centres[1] - centres[0]) / 2 : 0.005;
+    return [(centres[0] - half) * kCentimetres, (centres[centres.length - 1] + half) * kCentimetres];
+  };
+  return {
+    xaxis: axis("x [cm]", { range: range(data.x), constrain: "domain" }),
+    yaxis: axis("y [cm]", { range: range(data.y), constrain: "domain", scaleanchor: "x" }),
+  };
+}
+
+function heatMap(data, lines, range, colours, title) {
+  return {
+    type: "heatmap",
+    x: data.x.map((value) => value * kCentimetres),
+    y: data.y.map((value) => value * kCentimetres),
+    z: lines,
+    zmin: range[0],
+    zmax: range[1],
+    colorscale: colours,
+    colorbar: { title: { text: title, side: "right" }, thickness: 12, xpad: 4 },
+    hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm: %{z:.4g}<extra></extra>",
+  };
+}
+
+/// The surface in three dimensions, or as a map where the browser has no WebGL.
+class SurfaceView {
+  constructor(data, maps) {
+    this.data = data;
+    this.spatial = hasWebGL();
+    this.heights = maps.height.map((lines) => scaled(lines, kCentimetres));
+    this.deviations = maps.deviation.map((lines) => scaled(lines, kCentimetres));
+    this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
+    this.range = extent(this.truth ? [...this.heights, this.truth] : this.heights);
+    // Where nothing is known of an object's level, its deviation is of no size that means anything.
+    const prior = Math.max(...data.moments.map((moment) => moment.largest_deviation)) * kCentimetres;
+    this.mostDeviation = Math.min(extent(this.deviations)[1], prior);
+    this.withTruth = false;
+    this.x = data.x.map((value) => value * kCentimetres);
+    this.y = data.y.map((value) => value * kCentimetres);
+  }
+
+  caption() {
+    return this.spatial
+      ? "Reconstructed surface, coloured by the standard deviation of its height; discs: taps on the object, crosses: taps off it. Drag to turn."
+      : "Reconstructed height. (This browser has no WebGL: the surface is a map instead of a picture in three dimensions.)";
+  }
+
+  traces(frame, moment) {
+    if (!this.spatial) {
+      const heights = this.withTruth && this.truth ? this.truth : this.heights[frame];
+      return [heatMap(this.data, heights, this.range, "Viridis", "height [cm]"), ...marks(this.data, moment)];
+    }
+    const surface = {
+      type: "surface",
+      x: this.x,
+      y: this.y,
+      z: this.heights[frame],
+      surfacecolor: this.deviations[frame],
+      cmin: 0,
+      cmax: this.mostDeviation,
+      colorscale: "Viridis",
+      colorbar: { title: { text: "standard deviation [cm]", side: "right" }, thickness: 12, len: 0.8 },
+      hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{surfacecolor:.2f} cm<extra></extra>",
+    };
+    const { on, off } = tapsUntil(this.data.taps, moment.taps);
+    const lift = 0.015 * (this.range[1] - this.range[0]);  // or half of every mark would be inside of the surface
+    const points = (taps, name, marker) => ({
+      type: "scatter3d",
+      mode: "markers",
+      name,
+      x: taps.map((tap) => tap.x * kCentimetres),
+      y: taps.map((tap) => tap.y * kCentimetres),
+      z: taps.map((tap) => tap.height * kCentimetres + lift),
+      text: taps.map(hover),
+      hovertemplate: "%{text}<extra></extra>",
+      marker,
+    });
+    const out = [
+      surface,
+      points(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: { color: "#000000", width: 2 } }),
+      points(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }),
+    ];
+    if (this.withTruth && this.truth) out.push(this.wireframe());
+    return out;
+  }
+
+  wireframe() {
+    const lines = (values) => ({ show: true, color: "#000000", width: 1, start: values[0], end: values[values.length - 1], size: 2 * (values[1] - values[0]) });
+    return {
+      type: "surface",
+      name: "truth",
+      x: this.x,
+      y: this.y,
+      z: this.truth,
+      hidesurface: true,
+      showscale: false,
+      hoverinfo: "skip",
+      contours: { x: lines(this.x), y: lines(this.y) },
+    };
+  }
+
+  layout() {
+    if (!this.spatial) return layout({ ...planeAxes(this.data), showlegend: false });
+    const range = [Math.min(this.range[0], 0), this.range[1] * 1.05 + 0.1];
+    return layout({
+      margin: { l: 0, r: 0, t: 0, b: 0 },
+      showlegend: false,
+      uirevision: "keep the view",
+      scene: {
+        aspectmode: "data",
+        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: -0.15 } },
+        xaxis: axis("x [cm]"),
+        yaxis: axis("y [cm]"),
+        zaxis: axis("height [cm]", { range }),
+      },
+    });
+  }
+
+  draw(frame, moment) {
+    return Plotly.react("surface", this.traces(frame, moment), this.layout(), kPlotConfig);
+  }
+}
