@@ -48,7 +48,7 @@ class Experiment {
   /// none. None if no candidate is left.
   std::optional<TapRecord> choose_next();
 
-  /// What the acquisition gives each candidate as of now.
+  /// What the acquisition gives each candidate as of now: asked again, which changes nothing (its law).
   Eigen::VectorXd scores() const;
 
   const Candidates& candidates() const { return candidates_; }

@@ -69,6 +69,9 @@ History make_history(const Workshop& workshop, const Recording& recording, const
         {taps, experiment.result(), now.next, now.largest_deviation, weight.minCoeff(), weight.maxCoeff()});
     progress(taps, all);
   }
+  double largest = 0.0;
+  for (const Moment& moment : out.moments) largest = std::max(largest, moment.largest_deviation);
+  for (Eigen::VectorXf& frame : out.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest));
   if (!own_scores) out.maps.pop_back();
   if (const Truth* truth = experiment.truth()) out.maps.push_back({"truth", {shown.of(truth->height)}});
   return out;

@@ -25,9 +25,10 @@ struct Moment {
 
 struct History {
   std::vector<Moment> moments;  ///< before the first tap, and after each
-  /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres), "u", "w", and, where the
-  /// acquisition's score is neither u nor u w, "score": a frame for each moment. Last, where truth is known, "truth" in
-  /// one frame, metres.
+  /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres, at most
+  /// the largest that the height process has at any moment: that of an object's level before it is touched means
+  /// nothing), "u", "w", and, where the acquisition's score is neither u nor u w, "score": a frame for each moment.
+  /// Last, where truth is known, "truth" in one frame, metres.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row
 };

@@ -48,9 +48,25 @@ bool is_sweep(const fs::path& directory) {
   return fs::exists(directory / "manifest.jsonl", none);
 }
 
+std::string sweep_name(const Sweep& sweep) {
+  const auto key = std::find(sweep.keys.begin(), sweep.keys.end(), "name");
+  const auto at = static_cast<std::size_t>(key - sweep.keys.begin());
+  const auto same = [&](const Job& job) { return job.values[at] == sweep.jobs.front().values[at]; };
+  if (key != sweep.keys.end() && std::all_of(sweep.jobs.begin(), sweep.jobs.end(), same))
+    return sweep.jobs.front().values[at];
+  const Tree config = read_run_config(sweep.directory);
+  const Tree* name = config.find("name");
+  return name != nullptr ? name->text : "experiment";
+}
+
 Sweep read_sweep(const fs::path& directory) {
   Sweep sweep{directory, {}, {}};
-  for (const Row& row : read_json_lines(directory / "manifest.jsonl").rows) {
+  const fs::path file = directory / "manifest.jsonl";
+  const JsonLines lines = read_json_lines(file);
+  // Complete before the first job began: a line without its end is damage, not work under way.
+  if (lines.bytes != fs::file_size(file))
+    throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
+  for (const Row& row : lines.rows) {
     Job job;
     job.index = static_cast<int>(sweep.jobs.size());
     for (const auto& [name, value] : row.fields) {
@@ -63,7 +79,7 @@ Sweep read_sweep(const fs::path& directory) {
     sweep.jobs.push_back(std::move(job));
   }
   if (sweep.jobs.empty()) throw Error((directory / "manifest.jsonl").string(), "lists no job", "the file is damaged");
-  const std::string name = fs::absolute(directory).lexically_normal().filename().string();
+  const std::string name = fs::absolute(directory / "").lexically_normal().parent_path().filename().string();
   if (begins_with_id(name) && sweep_id(read_run_config(directory), sweep.jobs) != name.substr(0, kIdLength)) {
     throw Error(directory.string(), "config.yaml or manifest.jsonl was changed since this sweep began",
                 "put the old one back, or run the changed config with 'palpate sweep'");

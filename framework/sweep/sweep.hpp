@@ -39,6 +39,9 @@ bool is_sweep(const std::filesystem::path& directory);
 /// directory is named after.
 Sweep read_sweep(const std::filesystem::path& directory);
 
+/// What it is called: as all its jobs are if that was said on the command line, else as its config says.
+std::string sweep_name(const Sweep& sweep);
+
 /// jobs/<id>
 std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 

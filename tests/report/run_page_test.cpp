@@ -64,15 +64,17 @@ const std::string kPainted =
 
 TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
   const fs::path directory = reported({"seed=4"});
-  const Browsed seen =
-      browse(directory,
-             {drawn(17), kPainted, "key ARROW_LEFT", "key ARROW_LEFT", drawn(15), kPainted,
-              "return document.getElementById('at').textContent", "key ARROW_RIGHT", drawn(16),
-              "const s = document.getElementById('slider'); s.value = 0; s.dispatchEvent(new Event('input'));",
-              drawn(0), "return document.getElementById('story').textContent",
-              "return document.getElementById('surface').data.map((trace) => trace.type)",
-              "document.getElementById('truth').click()", "await document.getElementById('surface').data.length > 0",
-              "return document.querySelectorAll('.plot .main-svg').length > 0"});
+  const Browsed seen = browse(
+      directory, {drawn(17), kPainted, "key ARROW_LEFT", "key ARROW_LEFT", drawn(15), kPainted,
+                  "return document.getElementById('at').textContent", "key ARROW_RIGHT", drawn(16),
+                  "const s = document.getElementById('slider'); s.value = 0; s.dispatchEvent(new Event('input'));",
+                  drawn(0), "return document.getElementById('story').textContent",
+                  "return document.getElementById('surface').data.map((trace) => trace.type)",
+                  "window.before = JSON.stringify(document.getElementById('surface').data[0].z); "
+                  "document.getElementById('truth').click()",
+                  GetParam() ? "await document.getElementById('surface').data.length === 4"
+                             : "await JSON.stringify(document.getElementById('surface').data[0].z) !== window.before",
+                  "document.getElementById('truth').focus()", "key ARROW_RIGHT", drawn(1)});
   ASSERT_EQ(seen.trouble, "");
   EXPECT_THAT(seen.severe, IsEmpty());
   const json& last = seen.values.at(0);
@@ -154,6 +156,42 @@ TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
     EXPECT_LT(worst, 1.0 / 65535.0) << made;
   }
   EXPECT_GT(maps, 10);
+}
+
+TEST_F(ReportedRun, KeepsToItsAxesNamesAllHyperparametersAndTakesTimesByTheirTap) {
+  const fs::path directory = reported({"seed=4", "scene.desk=-50cm", "kernel=swell_and_texture", "taps=20"});
+  std::string timings = text_of(directory / "timings.csv");
+  const auto line = timings.find("\n6,");
+  timings.erase(line, timings.find('\n', line + 1) - line);  // the program was killed during this tap
+  const std::string infer = timings.substr(timings.find("\n9,") + 1);
+  folder_.write(fs::relative(directory / "timings.csv", folder_.path()).string(), timings);
+  ASSERT_EQ(test::palpate({"report", directory.string()}, folder_.path()).status, 0);
+  const Browsed seen = test::browse(
+      directory / "report.html",
+      {drawn(20), "document.getElementById('truth').click()",
+       "await document.getElementById('surface').data.length === 4",
+       "const e = document.getElementById('surface'); const z = [...e.data[0].z.flat(), ...e.data[3].z.flat()];"
+       "return [e.layout.scene.zaxis.range, Math.min(...z), Math.max(...z)]",
+       "return [...document.querySelectorAll('.plot')].flatMap((plot) => (plot.data ?? []).map((trace) => trace.name))",
+       "const plots = [...document.querySelectorAll('.plot')];"
+       "return plots.flatMap((plot) => plot.data).filter((trace) => trace.name === 'infer').map((trace) => "
+       "trace.y)[0]"},
+      true);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  const json& axis = seen.values.at(1);
+  EXPECT_LT(axis.at(0).at(0).get<double>(), axis.at(1).get<double>() + 1e-9);
+  EXPECT_GT(axis.at(0).at(1).get<double>(), axis.at(2).get<double>());
+  EXPECT_LT(axis.at(0).at(1).get<double>(), axis.at(2).get<double>() + 2.0) << "no empty room above";
+  for (const char* name : {"kernels.0.factor", "kernels.1.kernel.length_scale"})
+    EXPECT_THAT(seen.values.at(2).get<std::vector<json>>(), ::testing::Contains(json(name)));
+  const json& times = seen.values.at(3);
+  ASSERT_EQ(times.size(), 21U);
+  EXPECT_TRUE(times.at(6).is_null());
+  std::istringstream cells(infer);
+  std::string cell;
+  for (int column = 0; column < 4; ++column) std::getline(cells, cell, ',');  // tap, robot, fit, infer
+  EXPECT_NEAR(times.at(9).get<double>(), 1000.0 * std::stod(cell), 1e-9);
 }
 
 TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {

@@ -88,6 +88,43 @@ TEST(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   EXPECT_TRUE(text_of(directory / "taps.jsonl") == taps);
 }
 
+TEST(Report, OfASweepNamedOnTheCommandLineHasThatName) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(
+      test::palpate({"sweep", paper(), "name=other", "seed=range(0,2)", "taps=4", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  ASSERT_EQ(test::palpate({"report", directory.string()}, folder.path()).status, 0);
+  EXPECT_EQ(data_of(directory / "report.html", folder).at("name"), "other");
+}
+
+TEST(Report, OfASweepWhoseListOfJobsIsCutOffIsRefused) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,3)", "taps=4", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  fs::resize_file(directory / "manifest.jsonl", fs::file_size(directory / "manifest.jsonl") - 20);
+  for (const char* command : {"report", "status"}) {
+    const Ended ended = test::palpate({command, directory.string() + "/"}, folder.path());
+    EXPECT_EQ(ended.status, 2) << command;
+    EXPECT_THAT(ended.err, HasSubstr("manifest.jsonl: ends in the middle of a line, the file is damaged"));
+  }
+}
+
+TEST(Report, OfARunThatFailedWithoutAReasonSaysSo) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(test::palpate({"run", paper(), "taps=4", "--quiet"}, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  std::string summary = text_of(directory / "summary.json");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    summary.replace(summary.find(from), from.size(), to);
+  };
+  replace("\"done\"", "\"failed\"");
+  replace("\"tap budget\"", "null");
+  folder.write(fs::relative(directory / "summary.json", folder.path()).string(), summary);
+  const Ended ended = test::palpate({"report", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(data_of(directory / "report.html", folder).at("warnings").at(0), "The run failed and does not say why.");
+}
+
 TEST(Report, OfWhatIsNoRunOrHasNoTapIsRefusedInOneLine) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "empty");

@@ -106,6 +106,19 @@ TEST(History, KeepsAScoreOfItsOwnOnlyWhereItIsNeitherUNorE) {
   EXPECT_THAT(names({"taps=6", "acquisition=random"}), ElementsAre("height", "deviation", "u", "w", "score", "truth"));
 }
 
+TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
+  // Before an object is touched its level is free, and so a thousand signals uncertain.
+  const Recorded run("paper/object_i.yaml", {"surface=two_part", "taps=12"});
+  const History history = run.history();
+  for (const Eigen::VectorXf& frame : history.maps.at(1).frames) EXPECT_LE(frame.maxCoeff(), 1.0F);
+  const Recording recording = run.recording();
+  Playback last(run.workshop, recording);
+  last.advance_to(12);
+  const Eigen::VectorXd deviation = last.experiment().belief().height_variance().cwiseSqrt();
+  for (Eigen::Index i = 0; i < deviation.size(); ++i)
+    EXPECT_NEAR(static_cast<double>(history.maps.at(1).frames.back()(i)), std::min(deviation(i), 1.0), 1e-6);
+}
+
 TEST(History, TakesOnlySomeCellsOfFineMaps) {
   const Recorded run("paper/object_i.yaml", {"taps=4", "candidates.count=150"});
   const History history = run.history();
@@ -130,6 +143,12 @@ TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   EXPECT_THAT(said, Contains(HasSubstr("5 of 17 taps were chosen by the fallback")));
   EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("weight.clip=true"))));
+}
+
+TEST(Warnings, TellOfARuleThatStalls) {
+  const Recorded run("paper/object_i.yaml", {"fallback=none", "repeat=allow"});
+  EXPECT_THAT(warnings_of(run.recording(), run.history()),
+              Contains(HasSubstr("14 taps were chosen by the acquisition although no candidate had a positive score")));
 }
 
 TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {

@@ -73,7 +73,8 @@ TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhateverConfigItIs) {
            {Texts{}, Texts{"kernel=matern52"}, Texts{"taps=12", "height.kernel=rational_quadratic"}}) {
         // Their own sweeps are other tests' work: here it is the seed alone that runs.
         Texts words = more;
-        words.insert(words.end(), {"seed=3,17,4", "sweep.grid={}", "sweep.list=[{}]", "acquisition=uncertainty", "log.surface=true"});
+        words.insert(words.end(), {"seed=3,17,4", "sweep.grid={}", "sweep.list=[{}]", "acquisition=uncertainty",
+                                   "log.surface=true"});
         const Planned out = planned(entry.path(), words);
         ASSERT_EQ(out.configs.size(), 3U) << file;
         for (std::size_t i = 0; i < 3; ++i) {

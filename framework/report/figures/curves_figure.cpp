@@ -115,29 +115,22 @@ std::vector<std::pair<std::string, double>> parameters_of(const ProcessState& st
   return out;
 }
 
-/// Relative to the first value, so that lengths, heights and numbers go into one panel; what a fit leaves alone is not
-/// drawn.
-Panel hyperparameters_panel(const History& history) {
-  Panel panel{"hyperparameters, relative to the first", {}};
+Panel hyperparameters_panel(const History& history, const NamedState& which) {
+  Panel panel{fmt::format("hyperparameters, {} (SI units)", which.name), {}};
   panel.logarithmic = true;
-  for (const NamedState& one : kStates) {
-    const std::optional<ProcessState>& first_state = history.moments.front().result.*one.state;
-    if (!first_state) continue;
-    const auto first = parameters_of(*first_state);
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      Curve curve = curve_of(history, fmt::format("{}: {}", one.name, first[i].first), [&](const Moment& moment) {
-        return std::optional(parameters_of(*(moment.result.*one.state))[i].second / first[i].second);
-      });
-      const bool moves =
-          std::any_of(curve.points.begin(), curve.points.end(), [](const auto& point) { return point.second != 1.0; });
-      if (moves && first[i].second > 0.0) add(panel, std::move(curve));
-    }
+  const std::optional<ProcessState>& first = history.moments.front().result.*which.state;
+  if (!first) return panel;
+  const auto names = parameters_of(*first);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    add(panel, curve_of(history, names[i].first, [&](const Moment& moment) {
+          return std::optional(parameters_of(*(moment.result.*which.state))[i].second);
+        }));
   }
   return panel;
 }
 
 Panel phases_panel(const Recording& recording) {
-  Panel panel{"computing time of a tap [ms]", {}};
+  Panel panel{"time of a tap, by phase [ms]", {}};
   panel.logarithmic = true;
   const auto file = recording.directory / "timings.csv";
   std::error_code none;
@@ -259,9 +252,11 @@ Figure curves_figure(const Recording& recording, const History& history, const S
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;
-  std::vector<Panel> panels{
-      errors_panel(recording, history), outline_panel(history),         deviation_panel(history), share_panel(history),
-      likelihood_panel(history),        hyperparameters_panel(history), phases_panel(recording),  robot_panel(history)};
+  std::vector<Panel> panels{errors_panel(recording, history), outline_panel(history), deviation_panel(history),
+                            share_panel(history), likelihood_panel(history)};
+  for (const NamedState& one : kStates) panels.push_back(hyperparameters_panel(history, one));
+  panels.push_back(phases_panel(recording));
+  panels.push_back(robot_panel(history));
   panels.erase(std::remove_if(panels.begin(), panels.end(), [](const Panel& one) { return one.curves.empty(); }),
                panels.end());
   const int count = static_cast<int>(panels.size());

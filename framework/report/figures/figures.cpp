@@ -16,12 +16,6 @@ namespace palpate {
 
 namespace fs = std::filesystem;
 
-std::string shown_name(const fs::path& directory) {
-  const Tree config = read_run_config(directory);
-  const Tree* name = config.find("name");
-  return name != nullptr ? name->text : "experiment";
-}
-
 std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Figure>& figures) {
   std::error_code failed;
   fs::create_directories(folder, failed);

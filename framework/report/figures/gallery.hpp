@@ -35,8 +35,8 @@ struct Progress {
   double desk = 0.0;  ///< metres
 };
 
-/// The run after these iterations of the paper: k is the state after k taps beyond the initial ones but one, at most
-/// the run's last tap.
+/// The run after these iterations of the paper: k is the state after k taps beyond the initial ones but one. The first
+/// that lies beyond the run's end shows its last tap, those after it are left out.
 Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations);
 
 /// Surfaces above, the strategy's suggestion function below: figures 2 and 3.
@@ -56,8 +56,5 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
 /// Writes all scripts to `folder`, then draws them. Throws Error.
 std::vector<std::filesystem::path> write_gallery(const std::filesystem::path& folder,
                                                  const std::vector<Figure>& figures);
-
-/// The name of the run or sweep as its config has it.
-std::string shown_name(const std::filesystem::path& directory);
 
 }  // namespace palpate

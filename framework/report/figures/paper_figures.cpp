@@ -75,9 +75,15 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
   const ExperimentOptions& options = recording.config.options;
   const int all = static_cast<int>(recording.taps.size());
   Playback playback(workshop, recording);
+  std::vector<int> shown;
   std::vector<int> taps;
-  for (const int one : iterations) taps.push_back(taps_at(one, static_cast<int>(options.initial.count), all));
-  Progress out{options.acquisition.type, iterations, snapshots_at(playback, recording, taps), {}, {}, 0.0};
+  for (const int one : iterations) {
+    const int at = taps_at(one, static_cast<int>(options.initial.count), all);
+    if (!taps.empty() && at == taps.back()) break;  // beyond the end there is but one last tap
+    shown.push_back(one);
+    taps.push_back(at);
+  }
+  Progress out{options.acquisition.type, shown, snapshots_at(playback, recording, taps), {}, {}, 0.0};
   out.candidates = playback.experiment().candidates();
   out.area = playback.experiment().scene().area();
   out.desk = playback.experiment().scene().desk();

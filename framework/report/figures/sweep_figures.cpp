@@ -178,7 +178,7 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   Sheet sheet(
       static_cast<int>(left + (kWidth + 40) * static_cast<double>(std::max<std::size_t>(metrics.size(), 2)) + 20),
       static_cast<int>(bottom + 44));
-  sheet.text(shown_name(sweep.directory), 24, 14, 15);
+  sheet.text(sweep_name(sweep), 24, 14, 15);
   std::string words = "line: 10 % to 90 % of a group's jobs; box: the middle half; bar: median";
   const bool dots =
       std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.rows.size() <= kMostDots; });
@@ -276,7 +276,7 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
   for (std::size_t i = 2; i < axes.size(); ++i) over.push_back(axes[i].key);
   std::string words = over.empty() ? "rmse_m" : fmt::format("rmse_m, mean over {}", fmt::join(over, ", "));
   if (left_out) words += fmt::format("; the first {} values of a key", kMostValues);
-  sheet.text(shown_name(sweep.directory), 24, 14, 15);
+  sheet.text(sweep_name(sweep), 24, 14, 15);
   sheet.text(words, 24, 42, 11);
   std::string settings = gnuplot_palette(colours.palette) +
                          fmt::format("set cbrange [{:.10g}:{:.10g}]\nunset colorbox\nset border lc rgb '#555555'\n",

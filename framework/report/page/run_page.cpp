@@ -34,9 +34,9 @@ std::string json_of_run(const Recording& recording) {
   row.add("state", state_name(status.state));
   row.add("stop_reason", status.stop_reason);
   row.add("budget", options.taps);
-  row.add("initial", options.initial.count);
   row.add("acquisition", options.acquisition.type);
-  row.add("two_part", options.surface == ExperimentOptions::Surface::two_part);
+  row.add("width", options.scene.area.width);
+  row.add("depth", options.scene.area.depth);
   row.add("desk", options.scene.desk);
   row.add("truth", recording.truth_known());
   return to_json_line(row);
@@ -138,7 +138,7 @@ std::string run_page(const Recording& recording, const History& history) {
       {"build", json_of_build(manifest)},
       {"warnings", json_texts(warnings_of(recording, history))}};
   const int last = history.moments.back().taps;
-  for (int stride = 1;; stride *= 2) {
+  for (int stride = 1;; stride += 1 + stride / 4) {
     const std::vector<int> shown = every(stride, last);
     const PackedMaps maps = pack_maps(thinned(history.maps, shown));
     std::vector<std::pair<std::string, std::string>> all = data;

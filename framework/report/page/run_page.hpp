@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// A page is at most so large, so that it can be mailed. Where a run's maps would make it larger, only every second,
-/// fourth, ... tap has maps; its page says so.
+/// third, fifth, ... moment has maps; its page says so.
 inline constexpr std::size_t kMostPageBytes = 2'900'000;
 
 /// The page of a run: HTML, complete in itself.

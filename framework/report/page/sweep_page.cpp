@@ -162,18 +162,16 @@ std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   std::vector<const Row*> rows(sweep.jobs.size(), nullptr);  // of each job
   for (const Row& row : results) rows[static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job")))] = &row;
   const Tree config = read_run_config(sweep.directory);
-  const Tree* name = config.find("name");
   std::vector<std::string> keys;
   for (std::size_t key = 0; key < sweep.keys.size(); ++key) keys.push_back(json_of_key(sweep, key));
-  const std::vector<std::pair<std::string, std::string>> data{
-      {"version", json_quoted(kVersion)},
-      {"name", json_quoted(name != nullptr ? name->text : "sweep")},
-      {"id", json_quoted(id_of(sweep))},
-      {"keys", json_list(keys)},
-      {"jobs", json_of_jobs(sweep, rows, progress)},
-      {"columns", json_of_columns(results, rows)},
-      {"factors", json_of_factors(sweep.jobs.size())},
-      {"config", json_quoted(to_yaml(config))}};
+  const std::vector<std::pair<std::string, std::string>> data{{"version", json_quoted(kVersion)},
+                                                              {"name", json_quoted(sweep_name(sweep))},
+                                                              {"id", json_quoted(id_of(sweep))},
+                                                              {"keys", json_list(keys)},
+                                                              {"jobs", json_of_jobs(sweep, rows, progress)},
+                                                              {"columns", json_of_columns(results, rows)},
+                                                              {"factors", json_of_factors(sweep.jobs.size())},
+                                                              {"config", json_quoted(to_yaml(config))}};
   return make_page(sweep_script(), json_object(data), "");
 }
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/warnings.hpp"
 
+#include "report/words/words.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace palpate {
 namespace {
-
-/// "1 tap", "3 taps"
-std::string counted(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
 int interventions(const RunResult& result, const char* kind) {
   const auto found = result.interventions.find(kind);
@@ -26,14 +25,31 @@ int first_drift(const Recording& recording, const History& history) {
   return 0;
 }
 
+/// Taps that the acquisition chose without a reason.
+int stalls(const Recording& recording) {
+  return static_cast<int>(std::count_if(recording.rows.begin(), recording.rows.end(), [](const Row& row) {
+    const Scalar* source = row.find("source");
+    const Scalar* score = row.find("score");
+    const auto* value = score != nullptr ? std::get_if<double>(score) : nullptr;
+    const auto* whole = score != nullptr ? std::get_if<std::int64_t>(score) : nullptr;
+    const bool none = (value != nullptr && *value <= 0.0) || (whole != nullptr && *whole <= 0);
+    return none && source != nullptr && *source == Scalar(std::string("acquisition"));
+  }));
+}
+
 void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
   if (recording.failed()) {
-    const Scalar* reason = recording.summary->find("stop_reason");
-    out.push_back(fmt::format("The run failed: {}", reason != nullptr ? std::get<std::string>(*reason) : "?"));
+    const Scalar* value = recording.summary->find("stop_reason");
+    const auto* reason = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+    out.push_back(reason != nullptr ? "The run failed: " + *reason : "The run failed and does not say why.");
   } else if (!recording.summary) {
     out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
   }
-  if (last.on_surface_taps == 0) out.push_back("No tap touched an object: the maps show where it is not.");
+  if (last.on_surface_taps + last.off_surface_taps == 0) {
+    out.push_back("No tap touched anything: the maps show what was assumed.");
+  } else if (last.on_surface_taps == 0) {
+    out.push_back("No tap touched an object: the maps show where it is not.");
+  }
   if (last.failed_taps > 0)
     out.push_back(fmt::format("{} brought no contact and did not reach the models.", counted(last.failed_taps, "tap")));
   if (const int refused = interventions(last, "height_refused"); refused > 0)
@@ -47,6 +63,12 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
         "{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores told "
         "no candidate apart (so it is until the first hit).",
         fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
+  }
+  if (const int stalled = stalls(recording); stalled > 0) {
+    out.push_back(
+        fmt::format("{} chosen by the acquisition although no candidate had a positive score: where nothing speaks for "
+                    "any of them the first one is taken. fallback=uncertainty looks for the object instead.",
+                    counted(stalled, "tap") + (stalled == 1 ? " was" : " were")));
   }
   if (const int drift = first_drift(recording, history); drift > 0) {
     out.push_back(
@@ -64,7 +86,7 @@ void warn_of_weights(const Recording& recording, const History& history, std::ve
   constexpr double kRounding = 1e-6;
   if (least->least_weight >= -kRounding && most->most_weight <= 1.0 + kRounding) return;
   out.push_back(
-      fmt::format("The weight leaves [0, 1]: from {:.2f} after tap {} to {:.2f} after tap {}. It is a regression on "
+      fmt::format("The weight leaves [0, 1]: from {:.2g} after tap {} to {:.2g} after tap {}. It is a regression on "
                   "labels, no probability; {}.",
                   least->least_weight, least->taps, most->most_weight, most->taps,
                   recording.config.options.weight.clip ? "the strategy sees it clipped (weight.clip)"
@@ -87,7 +109,7 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
     out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; shown are the bounds.",
                               counted(clamped, "candidate")));
   if (const int kept = interventions(last, "fit_failed"); kept > 0)
-    out.push_back(fmt::format("{} found nothing better and kept the old hyperparameters.", counted(kept, "fit")));
+    out.push_back(fmt::format("{} came to no finite values and kept the old hyperparameters.", counted(kept, "fit")));
 }
 
 }  // namespace

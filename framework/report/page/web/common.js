@@ -80,6 +80,11 @@ function shown(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+/// "1 setting", "3 settings"
+function many(count, what) {
+  return `${count} ${what}${count === 1 ? "" : "s"}`;
+}
+
 /// In which unit a quantity is shown, and how many of it are one SI unit; told by the end of its name.
 function unitOf(name) {
   if (name.endsWith("_m")) return { unit: "cm", factor: 100 };
@@ -111,13 +116,18 @@ function layout(more = {}) {
 
 const kPlotConfig = { responsive: true, displaylogo: false, displayModeBar: false };
 
+/// Says on the page what went wrong; what comes next may still be drawn.
+function complain(trouble) {
+  document.body.prepend(element("p", { class: "trouble" }, `Something could not be drawn: ${trouble}`));
+  console.error(trouble);
+}
+
 /// Unpacks the page's data and lets `draw` fill it; what goes wrong is said on the page.
 async function openPage(draw) {
   try {
     const [json, maps] = await Promise.all([unpackText("data"), unpack("maps"), loadPlotly()]);
     await draw(JSON.parse(json), maps);
   } catch (trouble) {
-    document.body.prepend(element("p", { class: "trouble" }, `This page could not be drawn: ${trouble}`));
-    throw trouble;
+    complain(trouble);
   }
 }

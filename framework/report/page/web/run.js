@@ -22,7 +22,7 @@ function facts(data) {
 const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback" };
 
 /// The moment in words.
-function story(data, moment) {
+function story(data, moment, drawn) {
   const out = [];
   const tap = data.taps[moment.taps - 1];
   if (tap) {
@@ -46,6 +46,7 @@ function story(data, moment) {
   if (moment.least_weight < -1e-6 || moment.most_weight > 1 + 1e-6) {
     out.push(`w leaves [0, 1] here: ${shown(moment.least_weight, 3)} to ${shown(moment.most_weight, 3)}; its colours end at 0 and 1.`);
   }
+  if (drawn !== moment) out.push(` The maps are those after tap ${drawn.taps}.`);
   return element("p", { class: "story", id: "story" }, foreign(out.join("")));
 }
 
@@ -56,7 +57,7 @@ class Slider {
     this.surface = new SurfaceView(data, maps);
     this.panels = mapPanels(data, maps);
     this.curves = curves(data);
-    this.input = element("input", { type: "range", id: "slider", min: 0, max: data.shown.length - 1, step: 1, value: data.shown.length - 1, "aria-label": "tap" });
+    this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });
     this.truth = element("input", { type: "checkbox", id: "truth" });
     this.drawing = Promise.resolve();
@@ -77,7 +78,7 @@ class Slider {
     // Arrow keys move the slider wherever the focus is, but in what takes keys itself.
     document.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      const busy = event.target !== this.input && event.target.closest?.("input, select, textarea");
+      const busy = event.target !== this.input && event.target.closest?.("input:not([type=checkbox]), select, textarea");
       if (!step || busy || event.altKey || event.ctrlKey || event.metaKey) return;
       event.preventDefault();
       this.input.value = Number(this.input.value) + step;
@@ -89,14 +90,17 @@ class Slider {
   show() {
     this.wanted = Number(this.input.value);
     const wanted = this.wanted;
-    this.drawing = this.drawing.then(() => (wanted === this.wanted ? this.draw(wanted) : undefined));
+    this.drawing = this.drawing.then(() => (wanted === this.wanted ? this.draw(wanted) : undefined)).catch(complain);
     return this.drawing;
   }
 
-  async draw(frame) {
-    const moment = this.data.moments[this.data.shown[frame]];
+  async draw(at) {
+    const moment = this.data.moments[at];
+    // The latest maps that there are, and the first where there are none yet.
+    const frame = Math.max(0, this.data.shown.findLastIndex((one) => one <= at));
+    const of = this.data.moments[this.data.shown[frame]];
     this.output.textContent = `after tap ${moment.taps} of ${this.data.taps.length}`;
-    document.getElementById("story").replaceWith(story(this.data, moment));
+    document.getElementById("story").replaceWith(story(this.data, moment, of));
     await this.surface.draw(frame, moment);
     for (const { id, bar, frames, range, colours } of this.panels) {
       const traces = [heatMap(this.data, frames[frame], range, colours, bar), ...marks(this.data, moment)];
@@ -114,7 +118,7 @@ function drawRun(data, bytes) {
   const run = data.run;
   document.title = `${run.name} ${run.id} – palpate`;
   const state = run.state === "done" ? `stopped by: ${run.stop_reason}` : run.state;
-  const thinned = data.shown.length < data.moments.length ? ` Maps are kept for ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
+  const thinned = data.shown.length < data.moments.length ? ` There are maps of ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
   const strategy = element("p", { class: "sub" }, "id ", run.id, `, seed ${run.seed}, acquisition `, foreign(run.acquisition), ", ", foreign(state), ".");
   document.body.append(
     element("h1", {}, foreign(run.name)),
@@ -126,11 +130,11 @@ function drawRun(data, bytes) {
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),
     element("h2", {}, "Maps"),
     element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, foreign(title)))),
-    element("p", { class: "sub" }, `Dots: taps on the object, crosses: off it, triangles: no contact; the star would be tapped next. Arrow keys move the slider.${thinned}`),
+    element("p", { class: "sub" }, `Dots: taps on the object, crosses: off it, squares: no contact; the star would be tapped next. Arrow keys move the slider.${thinned}`),
     element("h2", {}, "By tap"),
     element("div", { class: "row small" }, ...slider.curves.map(({ title }, i) => figure(`curve_${i}`, title))),
     section("Config", table(["key", "value", "where it was said"], data.config.map((line) => line.map(foreign)))),
-    section("Made by", table(["", ""], data.build.map((line) => line.map(foreign)))),
+    section("Made by", table(["", ""], data.build.filter(([, value]) => value !== "").map((line) => line.map(foreign)))),
     element("footer", {}, `palpate ${data.version}; method: Sun and Min 2021, arXiv:2110.09593; drawn with plotly.js (MIT).`),
   );
   slider.curves.forEach((one, i) => Plotly.newPlot(`curve_${i}`, curveTraces(one, data), curveLayout(one), kPlotConfig));

@@ -4,7 +4,15 @@
 /// The parameters of a process that a curve shows, by name: of the kernel, and signal, noise, mean.
 function hyperparameters(process) {
   if (!process) return {};
-  const out = { ...process.kernel };
+  const out = {};
+  // Kernels may be made of kernels: kernels.0.length_scale.
+  const take = (prefix, fields) => {
+    for (const [name, value] of Object.entries(fields)) {
+      if (value !== null && typeof value === "object") take(`${prefix}${name}.`, value);
+      else out[prefix + name] = value;
+    }
+  };
+  take("", process.kernel ?? {});
   for (const name of ["signal", "noise", "mean"]) out[name] = process[name];
   return out;
 }
@@ -59,16 +67,18 @@ function curves(data) {
 /// Milliseconds of each tap by phase, of timings.csv.
 function timeCurves(data) {
   const [header, ...rows] = data.timings.trim().split("\n").map((row) => row.split(","));
-  const phases = (header ?? []).slice(1).filter((name) => name !== "robot");
+  const phases = (header ?? []).slice(1);
   const at = (name) => (header ?? []).indexOf(name);
+  // Not every tap has a line: one during which the program was killed has none.
+  const byTap = new Map(rows.map((row) => [Number(row[0]), row]));
   const lines = phases.map((name) => ({
     name,
     values: data.moments.map((moment) => {
-      const row = rows[moment.taps - 1];
+      const row = byTap.get(moment.taps);
       return row ? 1000 * Number(row[at(name)]) : null;
     }),
   }));
-  return { title: "Computing time of a tap, by phase", unit: "ms", lines };
+  return { title: "Time of a tap, by phase", unit: "ms", logarithmic: true, lines };
 }
 
 function curveTraces(one, data) {

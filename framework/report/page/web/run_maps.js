@@ -2,6 +2,9 @@
 // What the page of a run draws of one moment: the surface, and the maps over the plane with the taps on them.
 
 const kCentimetres = 100;
+// Even in lightness, as in the figures: one for what is not known, one for what there is and where to tap.
+const kUnknown = "Cividis";
+const kWhere = "Viridis";
 
 /// The maps of the page by name, each a list of frames, each a list of rows.
 function unpackMaps(bytes, described, columns, rows) {
@@ -61,7 +64,7 @@ function hover(tap) {
   return `tap ${tap.tap}: ${plain(found)}`;
 }
 
-/// Taps as marks in the plane: dots on the object, crosses off it, triangles where nothing was felt; a star is next.
+/// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt; a star is next.
 function marks(data, moment) {
   const { on, off, failed } = tapsUntil(data.taps, moment.taps);
   const trace = (taps, name, marker) => ({
@@ -82,7 +85,7 @@ function marks(data, moment) {
     trace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: line("#000000", 1.6) }),
     trace(off, "off the object", { symbol: "x-thin", size: 9, line: line("#ffffff", 4) }),
     { ...trace(off, "off the object", { symbol: "x-thin", size: 8, line: line("#000000", 1.8) }), showlegend: false },
-    trace(failed, "no contact", { symbol: "triangle-up-open", size: 9, line: line("#e8112d", 2), color: "#e8112d" }),
+    trace(failed, "no contact", { symbol: "square", size: 8, line: line("#000000", 1), color: "#e69f00" }),
     star,
   ];
 }
@@ -90,43 +93,47 @@ function marks(data, moment) {
 /// The panels over the plane: what each shows, in which colours and range.
 function mapPanels(data, maps) {
   const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
-  const most = Math.max(extent(exploration)[1], 1e-12);
+  const largest = extent(exploration)[1];
+  const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
   const panels = [
-    { id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: "Viridis" },
-    { id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: "Cividis" },
-    { id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: "Viridis" },
+    { id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: kUnknown },
+    { id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: kWhere },
+    { id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: kWhere },
   ];
   if (maps.score) {
     const title = `Score of the acquisition, ${data.run.acquisition}`;
-    panels.push({ id: "score", title, bar: "score", frames: maps.score, range: extent(maps.score), colours: "Viridis" });
+    panels.push({ id: "score", title, bar: "score", frames: maps.score, range: extent(maps.score), colours: kWhere });
   }
   return panels;
 }
 
 const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
 
-/// From edge to edge of the cells, centimetres equally long in both directions.
+/// The whole area, centimetres equally long in both directions.
 function planeAxes(data) {
-  const range = (centres) => {
-    const half = centres.length > 1 ? (centres[1] - centres[0]) / 2 : 0.005;
-    return [(centres[0] - half) * kCentimetres, (centres[centres.length - 1] + half) * kCentimetres];
-  };
+  const range = (side) => [0, side * kCentimetres];
   return {
-    xaxis: axis("x [cm]", { range: range(data.x), constrain: "domain" }),
-    yaxis: axis("y [cm]", { range: range(data.y), constrain: "domain", scaleanchor: "x" }),
+    xaxis: axis("x [cm]", { range: range(data.run.width), constrain: "domain" }),
+    yaxis: axis("y [cm]", { range: range(data.run.depth), constrain: "domain", scaleanchor: "x" }),
   };
+}
+
+/// Where the cells of a map lie along an axis. Of a single one plotly would not know how wide it is.
+function cells(name, centres, side) {
+  if (centres.length > 1) return { [name]: centres.map((value) => value * kCentimetres) };
+  return { [`${name}0`]: (side / 2) * kCentimetres, [`d${name}`]: side * kCentimetres };
 }
 
 function heatMap(data, lines, range, colours, title) {
   return {
     type: "heatmap",
-    x: data.x.map((value) => value * kCentimetres),
-    y: data.y.map((value) => value * kCentimetres),
+    ...cells("x", data.x, data.run.width),
+    ...cells("y", data.y, data.run.depth),
     z: lines,
     zmin: range[0],
     zmax: range[1],
     colorscale: colours,
-    colorbar: { title: { text: title, side: "right" }, thickness: 12, xpad: 4 },
+    colorbar: { title: { text: title, side: "right" }, thickness: 12, xpad: 4, exponentformat: "power" },
     hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm: %{z:.4g}<extra></extra>",
   };
 }
@@ -135,20 +142,19 @@ function heatMap(data, lines, range, colours, title) {
 class SurfaceView {
   constructor(data, maps) {
     this.data = data;
-    this.spatial = hasWebGL();
+    this.flat = data.x.length < 2 || data.y.length < 2;  // a single line of cells has no surface
+    this.spatial = hasWebGL() && !this.flat;
     this.heights = maps.height.map((lines) => scaled(lines, kCentimetres));
     this.deviations = maps.deviation.map((lines) => scaled(lines, kCentimetres));
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent(this.truth ? [...this.heights, this.truth] : this.heights);
-    // Where nothing is known of an object's level, its deviation is of no size that means anything.
-    const prior = Math.max(...data.moments.map((moment) => moment.largest_deviation)) * kCentimetres;
-    this.mostDeviation = Math.min(extent(this.deviations)[1], prior);
     this.withTruth = false;
     this.x = data.x.map((value) => value * kCentimetres);
     this.y = data.y.map((value) => value * kCentimetres);
   }
 
   caption() {
+    if (this.flat) return "Reconstructed height.";
     return this.spatial
       ? "Reconstructed surface, coloured by the standard deviation of its height; discs: taps on the object, crosses: taps off it. Drag to turn."
       : "Reconstructed height. (This browser has no WebGL: the surface is a map instead of a picture in three dimensions.)";
@@ -157,7 +163,7 @@ class SurfaceView {
   traces(frame, moment) {
     if (!this.spatial) {
       const heights = this.withTruth && this.truth ? this.truth : this.heights[frame];
-      return [heatMap(this.data, heights, this.range, "Viridis", "height [cm]"), ...marks(this.data, moment)];
+      return [heatMap(this.data, heights, this.range, kWhere, "height [cm]"), ...marks(this.data, moment)];
     }
     const surface = {
       type: "surface",
@@ -166,8 +172,8 @@ class SurfaceView {
       z: this.heights[frame],
       surfacecolor: this.deviations[frame],
       cmin: 0,
-      cmax: this.mostDeviation,
-      colorscale: "Viridis",
+      cmax: extent([this.deviations[frame]])[1],  // of this moment: a fit may change it a hundredfold
+      colorscale: kUnknown,
       colorbar: { title: { text: "standard deviation [cm]", side: "right" }, thickness: 12, len: 0.8 },
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{surfacecolor:.2f} cm<extra></extra>",
     };
@@ -210,16 +216,21 @@ class SurfaceView {
 
   layout() {
     if (!this.spatial) return layout({ ...planeAxes(this.data), showlegend: false });
-    const range = [Math.min(this.range[0], 0), this.range[1] * 1.05 + 0.1];
+    const low = Math.min(this.range[0], this.data.run.desk * kCentimetres);
+    const range = [low, this.range[1] + 0.05 * (this.range[1] - low) + 0.1];
+    const [width, depth] = [this.data.run.width, this.data.run.depth].map((metres) => metres * kCentimetres);
+    const side = Math.max(width, depth);
     return layout({
       margin: { l: 0, r: 0, t: 0, b: 0 },
       showlegend: false,
       uirevision: "keep the view",
       scene: {
-        aspectmode: "data",
+        // By the axes, not by what is drawn on them: else a flat surface would fill the room.
+        aspectmode: "manual",
+        aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },
         camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: -0.15 } },
-        xaxis: axis("x [cm]"),
-        yaxis: axis("y [cm]"),
+        xaxis: axis("x [cm]", { range: [0, width] }),
+        yaxis: axis("y [cm]", { range: [0, depth] }),
         zaxis: axis("height [cm]", { range }),
       },
     });

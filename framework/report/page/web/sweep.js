@@ -126,8 +126,8 @@ class FrontPanel {
     const empty = this.sweep.groups(this.sweep.settings).length - settings.length;
     const end = this.sweep.better(choice.error) === "more" ? "lower" : "upper";
     const text = ["Means over the seeds with 95 % intervals; numbered: no other setting is at least as good in both."];
-    if (open > 0) text.push(`${open} settings with jobs that failed, have not ended or lack a value are not compared.`);
-    if (empty > 0) text.push(`${empty} settings have no value at all.`);
+    if (open > 0) text.push(`Not compared, for jobs that failed, have not ended or lack a value: ${many(open, "setting")}.`);
+    if (empty > 0) text.push(`Without any value: ${many(empty, "setting")}.`);
     if (edged > 0) text.push(`${edged} failed runs came to no error and stand at the ${end} edge.`);
     if (failed > placed) text.push(`${failed - placed} failed runs came to no cost either and are not drawn.`);
     say("front", text.join(" "));
@@ -215,8 +215,10 @@ class JobTable {
       this.down = this.by === i && !this.down;
       this.by = i;
       this.show();
+      this.head.querySelectorAll("button")[i].focus();  // the one that took its place
     });
-    return element("th", column.number ? { class: "number" } : {}, button);
+    const order = this.by === i ? { "aria-sort": this.down ? "descending" : "ascending" } : {};
+    return element("th", { ...(column.number ? { class: "number" } : {}), ...order }, button);
   }
 
   show() {
@@ -258,7 +260,7 @@ function troubles(sweep) {
   const open = sweep.jobs.length - sweep.done.length - sweep.failed.length;
   if (open > 0) {
     const some = ["running", "unfinished", "missing"].filter((state) => sweep.count(state) > 0).map((state) => `${sweep.count(state)} ${state}`);
-    out.push(element("li", {}, `${open} of ${sweep.jobs.length} jobs have not ended (${some.join(", ")}): this page shows the sweep as it stood; 'palpate resume' carries on what nobody runs.`));
+    out.push(element("li", {}, `${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${some.join(", ")}): this page shows the sweep as it stood; 'palpate resume' carries on what nobody runs.`));
   }
   return out.length > 0 ? [element("ul", { class: "warnings", id: "warnings" }, ...out)] : [];
 }
@@ -275,7 +277,7 @@ function drawSweep(data) {
   document.title = `${data.name} ${data.id} – palpate`;
   const counts = ["done", "failed", "running", "unfinished", "missing"].map((state) => [sweep.count(state), state]);
   const facts = [[sweep.jobs.length, "jobs"], ...counts.filter(([count, state]) => count > 0 || state === "done")];
-  const swept = sweep.keys.flatMap((key, i) => [i > 0 ? ", " : "", foreign(key.name), ` (${key.values.length})`]);
+  const swept = sweep.all.flatMap((key, i) => [i > 0 ? ", " : "", foreign(key.name), ` (${key.values.length})`]);
   document.body.append(
     element("h1", {}, foreign(data.name)),
     element("p", { class: "sub" }, "sweep ", foreign(data.id), ...(swept.length > 0 ? [" over ", ...swept] : []), "."),
@@ -301,8 +303,8 @@ function noPanels(sweep) {
 function drawPanels(sweep, choice) {
   const columns = [...sweep.columns.keys()];
   const keys = sweep.keys.map((key) => key.name);
-  const costs = columns.filter((name) => sweep.better(name) !== "more");
   const errors = columns.filter((name) => name !== "coverage_95"); // best at 0.95, neither small nor large
+  const costs = errors.filter((name) => sweep.better(name) !== "more");
   const cells = new CellsPanel(sweep);
   const groups = new GroupsPanel(sweep);
   const parallel = new ParallelPanel(sweep, hasWebGL());
@@ -346,7 +348,7 @@ function drawPanels(sweep, choice) {
     drawing = drawing.then(async () => {
       for (const panel of panels) await panel.draw(choice);
       document.body.dataset.drawn = String(++drawn);
-    });
+    }).catch(complain);
     return drawing;
   };
   for (const [id, panels] of Object.entries(all)) {

@@ -8,6 +8,7 @@ const kNoValue = "–";
 function brief(text, most = 36) {
   const line = String(text)
     .replace(/[\n\r\t]+/g, " ")
+    .replace(/\d*\.\d{5,}/g, (digits) => shown(Number(digits)))
     .replace(/[\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "");
   const letters = Array.from(line);
   return letters.length > most ? `${letters.slice(0, most - 1).join("")}…` : line;

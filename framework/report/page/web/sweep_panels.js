@@ -55,7 +55,7 @@ class CellsPanel {
   /// What all other keys are taken together for.
   others(...keys) {
     const rest = this.sweep.keys.filter((key) => key.varies && !keys.includes(key)).map((key) => brief(key.name));
-    return rest.length > 0 ? `over ${rest.join(", ")}` : "of single jobs";
+    return rest.length > 0 ? `over ${rest.join(", ")} of the jobs that are done` : "of the job that is done";
   }
 
   cell(jobs, metric) {
@@ -118,7 +118,7 @@ class CellsPanel {
       margin: { l: 60, r: 12, t: 12, b: 50 },
     };
     const height = Math.min(sparse ? 520 : 900, Math.max(340, 130 + 24 * up.order.length));
-    say("cells_mean", "Mean ", foreign(this.others(across, up)), " of the jobs that are done. Grey: no value.");
+    say("cells_mean", "Mean ", foreign(this.others(across, up)), ". Grey: no value.");
     say("cells_spread", "Spread: standard deviation of the same jobs. Grey: fewer than two values.");
     return Promise.all([
       drawIn("cells_mean", [trace(means, judged(this.sweep, metric), "Viridis")], more, height),
@@ -226,7 +226,7 @@ class ParallelPanel {
     const axes = this.sweep.varying.slice(0, 7).map((key) => {
       const names = namesOf(key);
       const thin = Math.ceil(names.length / 25);
-      const ticks = briefs(names, 20).map((text, at) => ({ at, text })).filter(({ at }) => at % thin === 0);
+      const ticks = briefs(names, 12).map((text, at) => ({ at, text })).filter(({ at }) => at % thin === 0);
       return { title: key.name, values: jobs.map((job) => key.place[key.of_job[job.index]]), least: 0, most: names.length - 1, ticks };
     });
     for (const name of columns) {
