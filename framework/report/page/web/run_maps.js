@@ -219,7 +219,7 @@ class SurfaceView {
     const low = Math.min(this.range[0], this.data.run.desk * kCentimetres);
     const range = [low, this.range[1] + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.run.width, this.data.run.depth].map((metres) => metres * kCentimetres);
-    const side = Math.max(width, depth);
+    const side = Math.max(width, depth) / 1.3;  // fills the room as the camera stands
     return layout({
       margin: { l: 0, r: 0, t: 0, b: 0 },
       showlegend: false,
