@@ -228,7 +228,7 @@ class SurfaceView {
         // By the axes, not by what is drawn on them: else a flat surface would fill the room.
         aspectmode: "manual",
         aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },
-        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: -0.15 } },
+        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: -0.22 } },
         xaxis: axis("x [cm]", { range: [0, width] }),
         yaxis: axis("y [cm]", { range: [0, depth] }),
         zaxis: axis("height [cm]", { range }),
