@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
-// `palpate report --figures` and `--paper`: what is plotted is what was recorded. The scripts beside the pictures hold
-// all data, so they are read here.
-#include "support/support.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+// `palpate report --figures`: what is plotted is what was recorded.
+#include "system/figure_blocks.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
 namespace palpate {
 namespace {
 
+using test::block_or_none;
+using test::blocks_of;
 using test::Cells;
+using test::config;
 using test::csv_rows;
 using test::Ended;
+using test::expect_equal;
+using test::Lines;
+using test::Recorded;
 using test::TemporaryFolder;
 using test::text_of;
+using test::value_at;
 using ::testing::_;
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -27,226 +28,6 @@ using ::testing::Not;
 using ::testing::SizeIs;
 
 namespace fs = std::filesystem;
-
-std::string config(const std::string& name) { return (test::source_folder() / "configs" / name).string(); }
-
-using Lines = std::vector<std::vector<double>>;
-
-/// The data blocks of a script by their names; blank lines are left out.
-std::map<std::string, Lines> blocks_of(const fs::path& script) {
-  std::map<std::string, Lines> out;
-  std::istringstream text(text_of(script));
-  Lines* block = nullptr;
-  for (std::string line; std::getline(text, line);) {
-    if (block == nullptr && line.rfind('$', 0) == 0 && line.find(" << END") != std::string::npos) {
-      block = &out[line.substr(1, line.find(' ') - 1)];
-    } else if (line == "END") {
-      block = nullptr;
-    } else if (block != nullptr && !line.empty()) {
-      std::istringstream cells(line);
-      block->emplace_back();
-      for (std::string cell; cells >> cell;) block->back().push_back(std::stod(cell));
-    }
-  }
-  return out;
-}
-
-Lines block_or_none(const std::map<std::string, Lines>& blocks, const std::string& name) {
-  const auto found = blocks.find(name);
-  return found != blocks.end() ? found->second : Lines{};
-}
-
-/// A recorded run as its directory tells it.
-struct Recorded {
-  fs::path directory;
-  std::vector<Cells> taps;
-
-  explicit Recorded(const fs::path& where) : directory(where), taps(csv_rows(text_of(where / "taps.csv"))) {}
-
-  int count() const { return static_cast<int>(taps.size()); }
-  double at(int tap, const char* field) const { return std::stod(taps[static_cast<std::size_t>(tap - 1)].at(field)); }
-  /// Of the taps up to `last` those whose on_surface is `on`: as a script has them.
-  Lines marks(int last, const std::string& on) const {
-    Lines out;
-    for (int tap = 1; tap <= last; ++tap) {
-      if (taps[static_cast<std::size_t>(tap - 1)].at("on_surface") == on)
-        out.push_back({100 * at(tap, "x"), 100 * at(tap, "y"), 100 * at(tap, "height"), static_cast<double>(tap)});
-    }
-    return out;
-  }
-};
-
-void expect_equal(const Lines& plotted, const Lines& recorded, const std::string& what) {
-  ASSERT_EQ(plotted.size(), recorded.size()) << what;
-  for (std::size_t i = 0; i < plotted.size(); ++i) {
-    ASSERT_EQ(plotted[i].size(), recorded[i].size()) << what;
-    for (std::size_t j = 0; j < plotted[i].size(); ++j) EXPECT_NEAR(plotted[i][j], recorded[i][j], 1e-7) << what;
-  }
-}
-
-/// The value of a map at a place given in centimetres, the area being 23 by 23 of them.
-double value_at(const Lines& matrix, double x, double y) {
-  const auto cells = static_cast<double>(matrix.size());
-  return matrix.at(static_cast<std::size_t>(y / 23 * cells)).at(static_cast<std::size_t>(x / 23 * cells));
-}
-
-/// The runs behind the paper's figures, made and drawn once.
-class PaperFigures : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    const Ended swept = test::palpate({"sweep", config("paper/figures.yaml"), "--quiet"}, folder_->path());
-    ASSERT_EQ(swept.status, 0) << swept.err;
-    const Ended drawn = test::palpate({"report", sweep().string(), "--paper"}, folder_->path());
-    ASSERT_EQ(drawn.status, 0) << drawn.err;
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  static fs::path sweep() { return test::only_run(folder_->path() / "runs"); }
-  static fs::path script(const std::string& figure) { return sweep() / "figures" / (figure + ".gnuplot"); }
-
-  static Recorded job(const std::string& scene, const std::string& acquisition) {
-    for (const Cells& row : csv_rows(text_of(sweep() / "results.csv"))) {
-      if (row.at("scene") == scene && row.at("acquisition") == acquisition)
-        return Recorded(sweep() / "jobs" / row.at("id"));
-    }
-    throw std::runtime_error("no job of " + scene + " with " + acquisition);
-  }
-
-  /// Where the strategy taps after all taps of a run: its next tap when the budget is larger by one.
-  static std::vector<double> next_after_all(const Recorded& run) {
-    const TemporaryFolder folder;
-    const Ended ended = test::palpate(
-        {"run", (run.directory / "config.yaml").string(), "taps=" + std::to_string(run.count() + 1), "--quiet"},
-        folder.path());
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    const Recorded longer(test::only_run(folder.path() / "runs"));
-    return {100 * longer.at(run.count() + 1, "x"), 100 * longer.at(run.count() + 1, "y")};
-  }
-
-  /// Compares one panel with the record of its run, and its map with what taps.csv says of the next tap.
-  static void expect_panel(const std::string& figure, const Recorded& run, const std::string& strategy, int iteration,
-                           const std::string& map, const char* field) {
-    const std::string key = strategy + "_" + std::to_string(iteration);
-    const std::string what = figure + " " + key;
-    const auto blocks = blocks_of(script(figure));
-    const int last = std::min(iteration + 2, run.count());
-    const Lines on = block_or_none(blocks, "on_" + key);
-    const Lines off = block_or_none(blocks, "off_" + key);
-    expect_equal(on, run.marks(last, "true"), what);
-    expect_equal(off, run.marks(last, "false"), what);
-    EXPECT_EQ(on.size() + off.size(), static_cast<std::size_t>(last)) << "no more taps than the iteration says";
-    const std::string text = text_of(script(figure));
-    EXPECT_NE(text.find("'iteration " + std::to_string(iteration) + ", after tap " + std::to_string(last) + "'"),
-              std::string::npos)
-        << what;
-    EXPECT_NE(
-        text.find("'" + std::to_string(on.size()) + " on the object, " + std::to_string(off.size()) + " on the desk'"),
-        std::string::npos)
-        << what;
-    const Lines next = block_or_none(blocks, "next_" + key);
-    ASSERT_EQ(next.size(), 1U) << what;
-    if (last < run.count()) {
-      expect_equal(next, {{100 * run.at(last + 1, "x"), 100 * run.at(last + 1, "y")}}, what);
-      EXPECT_NEAR(value_at(blocks.at(map + key), next[0][0], next[0][1]), run.at(last + 1, field), 2e-6) << what;
-    } else {
-      expect_equal(next, {next_after_all(run)}, what);
-      const std::string summary = text_of(run.directory / "summary.json");
-      EXPECT_THAT(summary, HasSubstr("\"on_surface_taps\": " + std::to_string(on.size()) + ","));
-      EXPECT_THAT(summary, HasSubstr("\"off_surface_taps\": " + std::to_string(off.size()) + ","));
-    }
-  }
-
-  /// A surface passes through the taps it was made from, and is sure of itself there.
-  static void expect_surface(const std::string& figure, int iteration) {
-    const std::string key = "weighted_" + std::to_string(iteration);
-    const auto blocks = blocks_of(script(figure));
-    const Lines surface = blocks.at("surface_" + key);
-    ASSERT_EQ(surface.size(), 47U * 47U);
-    for (const char* kind : {"on_", "off_"}) {
-      for (const std::vector<double>& tap : block_or_none(blocks, kind + key)) {
-        const auto cell = std::find_if(surface.begin(), surface.end(), [&](const std::vector<double>& one) {
-          return std::abs(one[0] - tap[0]) < 1e-3 && std::abs(one[1] - tap[1]) < 1e-3;
-        });
-        ASSERT_NE(cell, surface.end());
-        EXPECT_NEAR((*cell)[2], tap[2], 0.05) << "the height at tap " << tap[3];
-        EXPECT_LT((*cell)[3], 0.02) << "cm: the noise of a tap is 0.01";
-      }
-    }
-  }
-
-  static std::unique_ptr<TemporaryFolder> folder_;
-};
-std::unique_ptr<TemporaryFolder> PaperFigures::folder_;
-
-TEST_F(PaperFigures, Figure2ShowsObjectIAsItsRunWasRecorded) {
-  const Recorded run = job("object_i", "weighted");
-  EXPECT_EQ(run.count(), 17);
-  for (const int iteration : {1, 8, 10, 14}) {
-    expect_panel("figure_2", run, "weighted", iteration, "scores_", "score");
-    expect_surface("figure_2", iteration);
-  }
-}
-
-TEST_F(PaperFigures, Figure3ShowsObjectIIUpToItsNineteenthTap) {
-  const Recorded run = job("object_ii", "weighted");
-  EXPECT_EQ(run.count(), 19);
-  for (const int iteration : {1, 6, 12, 17}) {
-    expect_panel("figure_3", run, "weighted", iteration, "scores_", "score");
-    expect_surface("figure_3", iteration);
-  }
-}
-
-TEST_F(PaperFigures, Figures4And5ShowBothStrategiesFromTheSameStartWithThePapersCounts) {
-  const Recorded rival = job("object_i_right", "uncertainty");
-  const Recorded explorer = job("object_i_right", "weighted");
-  EXPECT_THAT(rival.marks(17, "true"), SizeIs(2));
-  EXPECT_THAT(explorer.marks(17, "true"), SizeIs(12));
-  expect_equal(rival.marks(3, "true"), explorer.marks(3, "true"), "the same start");
-  EXPECT_THAT(rival.marks(3, "true"), Not(IsEmpty())) << "a live one";
-  for (const int iteration : {1, 10, 16}) {
-    for (const Recorded* run : {&rival, &explorer}) {
-      const std::string strategy = run == &rival ? "uncertainty" : "weighted";
-      expect_panel("figure_4", *run, strategy, iteration, "scores_", "score");
-      expect_panel("figure_5", *run, strategy, iteration, "u_", "u");
-    }
-  }
-}
-
-TEST_F(PaperFigures, HaveNoOtherTapsThanThoseOfTheirPanels) {
-  const std::map<std::string, int> panels{{"figure_2", 4}, {"figure_3", 4}, {"figure_4", 6}, {"figure_5", 6}};
-  for (const auto& [figure, count] : panels) {
-    int next = 0;
-    int taps = 0;
-    for (const auto& [name, lines] : blocks_of(script(figure))) {
-      next += name.rfind("next_", 0) == 0 ? 1 : 0;
-      taps += name.rfind("on_", 0) == 0 || name.rfind("off_", 0) == 0 ? 1 : 0;
-      EXPECT_NE(name.rfind("failed_", 0), 0U) << figure;
-    }
-    EXPECT_EQ(next, count) << figure;
-    EXPECT_LE(taps, 2 * count) << figure;
-  }
-}
-
-TEST_F(PaperFigures, EachScriptDrawsTheSamePictureAgainWhereverItIs) {
-  const TemporaryFolder elsewhere;
-  for (const std::string figure : {"figure_2", "figure_3", "figure_4", "figure_5"}) {
-    const Ended drawn = test::run_program(
-        {"gnuplot", elsewhere.write(figure + ".gnuplot", text_of(script(figure))).string()}, elsewhere.path());
-    EXPECT_EQ(drawn.status, 0) << drawn.err;
-    const std::string again = text_of(elsewhere.path() / (figure + ".png"));
-    EXPECT_EQ(again.compare(0, 8, "\x89PNG\r\n\x1a\n"), 0) << figure;
-    EXPECT_TRUE(again == text_of(sweep() / "figures" / (figure + ".png"))) << figure;
-  }
-}
-
-TEST_F(PaperFigures, AreWrittenForARunAloneInTheLayoutOfFigure2) {
-  const Recorded run = job("object_i", "weighted");
-  const Ended drawn = test::palpate({"report", run.directory.string(), "--paper"}, run.directory);
-  ASSERT_EQ(drawn.status, 0) << drawn.err;
-  const auto alone = blocks_of(run.directory / "figures/paper_progress.gnuplot");
-  for (const auto& [name, lines] : blocks_of(script("figure_2"))) EXPECT_TRUE(alone.at(name) == lines) << name;
-}
 
 TEST(Figures, OfASweepWithoutTheJobsSaysInALineEachWhatIsMissing) {
   const TemporaryFolder folder;
