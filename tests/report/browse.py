@@ -67,8 +67,7 @@ def main():
     arguments = sys.argv[1:]
     webgl = "--no-webgl" not in arguments
     page, *steps = [one for one in arguments if one != "--no-webgl"]
-    # Under another name Chromium would take this for a terminal's colours and the like.
-    os.environ.setdefault("HOME", tempfile.gettempdir())
+    os.environ.setdefault("HOME", tempfile.gettempdir())  # Chromium wants one to write to
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = open_browser(profile, webgl)
         try:
