@@ -44,6 +44,7 @@ def picture(browser, file):
     width = browser.execute_script("return document.documentElement.clientWidth")
     height = browser.execute_script("return document.documentElement.scrollHeight")
     browser.set_window_size(width, height + 100)
+    browser.execute_script("return new Promise((done) => setTimeout(done, 1000))")  # plots follow a moment later
     pathlib.Path(file).write_bytes(browser.get_screenshot_as_png())
 
 

@@ -74,7 +74,8 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
                   "document.getElementById('truth').click()",
                   GetParam() ? "await document.getElementById('surface').data.length === 4"
                              : "await JSON.stringify(document.getElementById('surface').data[0].z) !== window.before",
-                  "document.getElementById('truth').focus()", "key ARROW_RIGHT", drawn(1)});
+                  "document.getElementById('truth').focus()", "key ARROW_RIGHT", drawn(1),
+                  "return document.getElementById('map_deviation') !== null"});
   ASSERT_EQ(seen.trouble, "");
   EXPECT_THAT(seen.severe, IsEmpty());
   const json& last = seen.values.at(0);
@@ -88,6 +89,7 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
   EXPECT_EQ(seen.values.at(2), "after tap 15 of 17");
   EXPECT_THAT(seen.values.at(4).get<std::string>(), HasSubstr("Before the first tap."));
   EXPECT_EQ(seen.values.at(5).at(0), GetParam() ? "surface" : "heatmap");
+  EXPECT_EQ(seen.values.back(), !GetParam()) << "what the colours of the surface say is a map where there is none";
 }
 
 TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {

@@ -56,6 +56,8 @@ class Slider {
     this.data = data;
     this.surface = new SurfaceView(data, maps);
     this.panels = mapPanels(data, maps);
+    // The surface shows it by its colours, where there is one.
+    if (!this.surface.spatial) this.panels.unshift(this.surface.deviationPanel());
     this.curves = curves(data);
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });

@@ -199,6 +199,12 @@ class SurfaceView {
     return out;
   }
 
+  /// What the colours of the surface say, as a map over the plane.
+  deviationPanel() {
+    const range = [0, extent(this.deviations)[1]];
+    return { id: "deviation", title: "Standard deviation of the height", bar: "cm", frames: this.deviations, range, colours: kUnknown };
+  }
+
   wireframe() {
     const lines = (values) => ({ show: true, color: "#000000", width: 1, start: values[0], end: values[values.length - 1], size: 2 * (values[1] - values[0]) });
     return {
