@@ -11,6 +11,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <functional>
 
 namespace palpate::cli {
 namespace {
@@ -47,8 +48,9 @@ void show(const Figures& figures) {
 
 void report_run(const Workshop& workshop, const ReportArguments& arguments) {
   const Recording recording = read_recording(workshop, arguments.directory);
-  const History history = make_history(workshop, recording, Patience("taps"));
-  write_page(recording.directory, run_page(recording, history));
+  Patience patience("taps");
+  const History history = make_history(workshop, recording, std::ref(patience));
+  write_page(recording.directory, run_page(recording, history, std::ref(patience)));
   if (arguments.figures) show(write_run_figures(workshop, recording, history));
   if (arguments.paper) show(write_paper_figures(workshop, recording));
 }

@@ -132,7 +132,7 @@ TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{}, {"taps=60"}, {"taps=200"}, {"taps=40", "candidates.count=128"}}) {
     const Recorded run("paper/object_i.yaml", words);
-    const std::string page = run_page(run.recording(), run.history());
+    const std::string page = run_page(run.recording(), run.history(), [](int, int) {});
     EXPECT_LE(page.size(), kMostPageBytes);
     EXPECT_GT(page.size(), 1'900'000U);  // plotly is in it
   }

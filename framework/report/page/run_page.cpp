@@ -122,7 +122,7 @@ std::vector<int> every(int stride, int last) {
 
 }  // namespace
 
-std::string run_page(const Recording& recording, const History& history) {
+std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
   const fs::path& directory = recording.directory;
   const Tree manifest = is_there(directory / "manifest.json") ? read_yaml(directory / "manifest.json") : Tree::map();
   std::vector<std::pair<std::string, std::string>> data{
@@ -138,7 +138,13 @@ std::string run_page(const Recording& recording, const History& history) {
       {"build", json_of_build(manifest)},
       {"warnings", json_texts(warnings_of(recording, history))}};
   const int last = history.moments.back().taps;
-  for (int stride = 1;; stride += 1 + stride / 4) {
+  // Maps never pack to a tenth of their bytes: with more than these the page would surely be too large.
+  constexpr double kMostRaw = 8e6;
+  double raw = 0.0;
+  for (const MapSeries& one : history.maps)
+    raw += 2.0 * static_cast<double>(one.frames.size()) * static_cast<double>(one.frames.front().size());
+  for (int stride = std::max(1, static_cast<int>(raw / kMostRaw));; stride += 1 + stride / 4) {
+    progress(last, last);
     const std::vector<int> shown = every(stride, last);
     const PackedMaps maps = pack_maps(thinned(history.maps, shown));
     std::vector<std::pair<std::string, std::string>> all = data;

@@ -12,7 +12,8 @@ namespace palpate {
 /// third, fifth, ... moment has maps; its page says so.
 inline constexpr std::size_t kMostPageBytes = 2'900'000;
 
-/// The page of a run: HTML, complete in itself.
-std::string run_page(const Recording& recording, const History& history);
+/// The page of a run: HTML, complete in itself. Packing the maps of a long run takes as long as computing them:
+/// `progress` hears of it, too.
+std::string run_page(const Recording& recording, const History& history, const OnProgress& progress);
 
 }  // namespace palpate
