@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kGroups{"kernel", "acquisition", "fitting", "backend", "scene", "expect"};
+constexpr std::array<std::string_view, 7> kGroups{"kernel",  "acquisition", "fitting", "footprint",
+                                                  "backend", "scene",       "expect"};
 
 /// These groups are no plugins: they have no type, and a missing file is an error at once.
 bool is_plain(const std::string& group) { return group == "scene" || group == "expect"; }

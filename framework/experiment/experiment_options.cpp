@@ -112,7 +112,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.choice(
       surface, Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it"),
       {{"single", "one process for the heights of object and desk, as the paper has it", {}},
-       {"two_part", "heights from the taps on an object alone, where the weight is at least 1/2; else desk", {}}});
+       {"two_part", "heights from the taps on an object alone, where the footprint is at least 1/2; else desk", {}}});
   fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),
                 {{"auto", "the fastest that is exact enough: see accuracy", {}},
                  {"dense", "any kernel; time and memory grow with taps times candidates", {}},
@@ -121,6 +121,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(lowrank, Field("lowrank", "the posterior engine of that name"));
   fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate"));
   fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both processes"));
+  fields.plugin(footprint, Field("footprint", "where the objects are, as a probability at every place"));
   fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive"),
                 {{"uncertainty", "tap where the height is least known", {}},
                  {"none", "tap the first candidate, as the paper's rule does: it stalls", {}}});

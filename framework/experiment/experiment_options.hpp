@@ -89,6 +89,7 @@ struct ExperimentOptions : Options {
   LowrankOptions lowrank;
   PluginChoice acquisition{"acquisition", {}, nullptr};
   PluginChoice fitting{"fitting", "fixed", nullptr};
+  PluginChoice footprint{"footprint", "regression", nullptr};
   Fallback fallback = Fallback::uncertainty;
   Repeat repeat = Repeat::forbid;
   double tie_tolerance = 1e-8;

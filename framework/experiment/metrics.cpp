@@ -43,31 +43,31 @@ double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
 
 Eigen::VectorXd reconstruction(const TapBelief& belief) {
   if (!belief.two_part()) return belief.height_mean();
-  return (belief.weight_mean().array() >= 0.5)
-      .select(belief.height_mean(), Eigen::VectorXd::Constant(belief.weight_mean().size(), belief.desk()));
+  const Eigen::VectorXd& on = belief.probability();
+  return (on.array() >= 0.5).select(belief.height_mean(), Eigen::VectorXd::Constant(on.size(), belief.desk()));
 }
 
 Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
   Errors out;
-  const bool knows_weight = static_cast<bool>(belief.weight_process());
+  const bool knows_outline = belief.outline_known();
   if (belief.surface_process()) {
     out.rmse_height = rmse(belief.height_mean(), truth, true);
     if (!belief.two_part()) {  // the reconstruction is the height mean
       out.rmse = rmse(belief.height_mean(), truth, false);
       out.rmse_on_surface = out.rmse_height;
-    } else if (knows_weight) {
+    } else if (knows_outline) {
       const Eigen::VectorXd surface = reconstruction(belief);
       out.rmse = rmse(surface, truth, false);
       out.rmse_on_surface = rmse(surface, truth, true);
     }
   }
-  if (knows_weight) out.footprint_iou = footprint_iou(belief.weight_mean(), truth);
+  if (knows_outline) out.footprint_iou = footprint_iou(belief.probability(), truth);
   return out;
 }
 
 Errors final_errors(const TapBelief& belief, const Truth& truth) {
   belief.height_mean();
-  belief.weight_mean();
+  belief.probability();
   return errors_so_far(belief, truth);
 }
 

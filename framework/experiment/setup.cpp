@@ -135,6 +135,10 @@ void Experiment::describe_state(TapRecord& tap) {
     tap.max_weight = belief_.weight_mean().maxCoeff();
     tap.weight_process = state_of(weight);
   }
+  if (const Footprint* footprint = belief_.footprint()) {
+    tap.probability = belief_.probability()(tap.candidate);
+    tap.footprint = FootprintState{footprint->numbers(), footprint->remark()};
+  }
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* known = truth()) {
     tap.true_on_surface = known->on(tap.candidate);
@@ -162,6 +166,8 @@ RunResult Experiment::result() {
   take(belief_.height_process(), out.height_process);
   take(belief_.weight_process(), out.weight_process);
   if (belief_.two_part()) take(belief_.surface_process(), out.surface_process);
+  if (const Footprint* footprint = belief_.footprint())
+    out.footprint = FootprintState{footprint->numbers(), footprint->remark()};
   out.interventions["fit_failed"] = belief_.failed_fits();
   return out;
 }

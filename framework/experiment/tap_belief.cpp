@@ -90,6 +90,8 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     label.noise = height.noise / height.signal * label.signal;
     heights_.outputs.push_back(label);
   }
+  footprint_ = context.create<Footprint>(options.footprint);
+  if (footprint_->is_weight()) footprint_.reset();
   if (two_part_) {
     object_ =
         make_model("fitting/surface", height_kernel, height_fitting, {height.signal, height.noise, 0.0, kFreeLevel});
@@ -110,7 +112,9 @@ void TapBelief::observe(const Target& place, const Contact& contact) {
   ++taps_;
   if (contact.outcome != Outcome::contact) return;
   const bool on = context_.scene.on_surface(contact.height);
+  hits_ += on ? 1 : 0;
   const Datum datum{place, contact.height - desk_, on ? 1.0 : 0.0};
+  if (footprint_) touches_.push_back({place, datum.height, on});
   heights_.data.push_back(datum);
   if (!joined_) labels_.data.push_back(datum);
   if (on) object_.data.push_back(datum);
@@ -194,6 +198,35 @@ const Eigen::VectorXd& TapBelief::weight() const {
     process.read_mean(label_output(), out);
     out = out.cwiseMax(0.0).cwiseMin(1.0);
   });
+}
+
+Footprint& TapBelief::ready_footprint() const {
+  for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
+  return *footprint_;
+}
+
+const Footprint* TapBelief::footprint() const {
+  if (!footprint_read_) return nullptr;
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  return &ready_footprint();
+}
+
+const Eigen::VectorXd& TapBelief::probability() const {
+  if (!footprint_) {
+    return read(probability_map_, labels(), label_output(), [this](const Process& process, Eigen::VectorXd& out) {
+      process.read_mean(label_output(), out);
+      out = out.cwiseMax(0.0).cwiseMin(1.0);
+    });
+  }
+  const int known = static_cast<int>(touches_.size());
+  if (probability_map_.taps != known) {
+    const PhaseClock::Scope infer(clock_, Phase::infer);
+    probability_map_.values.resize(candidates_.size());
+    ready_footprint().probability(candidates_.points, probability_map_.values);
+    probability_map_.taps = known;
+    footprint_read_ = true;
+  }
+  return probability_map_.values;
 }
 
 const Eigen::VectorXd& TapBelief::height_mean() const {

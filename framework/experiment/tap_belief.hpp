@@ -10,6 +10,7 @@
 #include "gp/process.hpp"
 
 #include <palpate/acquisition.hpp>
+#include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
 
 #include <memory>
@@ -36,8 +37,10 @@ class TapBelief final : public Belief {
   Area area() const override { return context_.scene.area(); }
   int taps() const override { return taps_; }
   int initial_taps() const override { return initial_taps_; }
+  int hits() const override { return hits_; }
   const Eigen::VectorXd& uncertainty() const override;
   const Eigen::VectorXd& weight() const override;
+  const Eigen::VectorXd& probability() const override;
   const Eigen::VectorXd& height_mean() const override;
   const Eigen::VectorXd& height_variance() const override;
 
@@ -67,6 +70,10 @@ class TapBelief final : public Belief {
   Quantity weight_process() const { return quantity(labels(), label_output()); }
   Quantity surface_process() const { return quantity(surface(), 0); }
   bool two_part() const { return two_part_; }
+  /// Whether the outline is known without building anything: the probability was read, or the weight that it is.
+  bool outline_known() const { return footprint_ ? footprint_read_ : static_cast<bool>(weight_process()); }
+  /// The footprint, up to date with all taps, if it is not the weight and was read; else null.
+  const Footprint* footprint() const;
 
   /// Fits that found nothing better and kept the old values.
   int failed_fits() const { return failed_fits_; }
@@ -110,6 +117,7 @@ class TapBelief final : public Belief {
   Quantity quantity(Model& model, int output) const;
   Process& ready(Model& model, int output) const;
   void fit(Model& model) const;
+  Footprint& ready_footprint() const;
   template <class Read>
   const Eigen::VectorXd& read(Map& map, Model& model, int output, Read read) const;
 
@@ -123,12 +131,18 @@ class TapBelief final : public Belief {
   bool joined_ = false;  ///< heights and labels are two outputs of one process
   int taps_ = 0;
   int initial_taps_;
+  int hits_ = 0;
   // Lazily filled by const readers: a belief is used by one thread.
   mutable Model heights_;
-  mutable Model labels_;  ///< unless joined
-  mutable Model object_;  ///< heights of the taps on an object
+  mutable Model labels_;                  ///< unless joined
+  mutable Model object_;                  ///< heights of the taps on an object
+  std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
+  std::vector<Touch> touches_;            ///< of the footprint
+  mutable std::size_t touches_taken_ = 0;
+  mutable bool footprint_read_ = false;
   mutable int failed_fits_ = 0;
-  mutable Map uncertainty_map_, weight_map_, weight_mean_map_, mean_map_, variance_map_, all_taps_map_;
+  mutable Map uncertainty_map_, weight_map_, weight_mean_map_, probability_map_, mean_map_, variance_map_,
+      all_taps_map_;
 };
 
 }  // namespace palpate

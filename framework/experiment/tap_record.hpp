@@ -6,6 +6,7 @@
 #include "experiment/phases.hpp"
 
 #include <palpate/backend.hpp>
+#include <palpate/footprint.hpp>
 #include <palpate/types.hpp>
 
 #include <array>
@@ -32,6 +33,12 @@ struct ProcessState {
   std::optional<FitSummary> fit;  ///< the fit after the latest of its taps; absent if none was due then
 };
 
+/// A footprint as it stood when a tap was chosen, where it is not the weight.
+struct FootprintState {
+  std::vector<FootprintNumber> numbers;
+  std::string remark;
+};
+
 /// One tap: the choice, the state it was made from, and what came of it. Everything about the models is absent where
 /// the loop had not built them.
 struct TapRecord {
@@ -43,12 +50,14 @@ struct TapRecord {
 
   // At the choice.
   std::optional<double> score, uncertainty, weight, exploration;
+  std::optional<double> probability;  ///< where the footprint is not the weight
   std::optional<int> ties;
   std::optional<Target> runner_up;
   std::optional<double> runner_up_score;
   std::optional<double> max_standard_deviation, mean_standard_deviation, min_weight, max_weight;
   std::optional<ProcessState> height_process, weight_process;
   std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
+  std::optional<FootprintState> footprint;
   Errors errors;
 
   std::optional<Prediction> predicted;  ///< of the height at the target; only for a backend that wants it
@@ -75,6 +84,7 @@ struct RunResult {
   std::map<std::string, int> interventions;  ///< by kind, zeros included
   /// The final models, as far as they were built; that of the surface only for `surface: two_part`.
   std::optional<ProcessState> height_process, weight_process, surface_process;
+  std::optional<FootprintState> footprint;
 };
 
 /// Learns of every tap, in time.

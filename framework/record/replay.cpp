@@ -22,10 +22,12 @@ struct Built {
   bool heights = false;
   bool labels = false;
   bool surface = false;
+  bool footprint = false;
 };
 
 Built built_at(const Row& row) {
-  return {has(row, "height_process.signal"), has(row, "weight_process.signal"), has(row, "surface_process.signal")};
+  return {has(row, "height_process.signal"), has(row, "weight_process.signal"), has(row, "surface_process.signal"),
+          has(row, "p")};
 }
 
 /// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
@@ -46,6 +48,7 @@ class Recorded final : public Backend {
     if (built.heights) belief.uncertainty();
     if (built.labels) belief.weight();
     if (built.surface) belief.height_mean();
+    if (built.footprint) belief.probability();
   }
 
  private:

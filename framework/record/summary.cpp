@@ -112,6 +112,7 @@ Row summary_row(const ResolvedConfig& config, const RunResult& result, const std
   add("height_process", result.height_process);
   add("weight_process", result.weight_process);
   if (result.surface_process) add("surface_process", result.surface_process);
+  add_footprint(row, result.footprint);
   row.add("peak_rss_bytes", peak_rss_bytes());
   return row;
 }
@@ -129,7 +130,7 @@ std::string surface_csv(Experiment& experiment) {
   return grid_csv(experiment.candidates(),
                   {{"height_mean", &belief.height_mean()},
                    {"height_standard_deviation", &deviation},
-                   {"on_surface_probability", &belief.weight_mean()},
+                   {"on_surface_probability", &belief.probability()},
                    {"reconstructed_height", belief.two_part() ? &gated : &belief.height_mean()},
                    {"true_height", truth != nullptr ? &truth->height : nullptr}});
 }

@@ -35,6 +35,7 @@ void add_state(Row& row, const TapRecord& tap) {
   row.add("u", tap.uncertainty);
   row.add("w", tap.weight);
   row.add("e", tap.exploration);
+  if (tap.footprint) row.add("p", tap.probability);
   row.add("ties", tap.ties);
   row.add("runner_up.x", tap.runner_up ? std::optional<double>(tap.runner_up->x) : std::nullopt);
   row.add("runner_up.y", tap.runner_up ? std::optional<double>(tap.runner_up->y) : std::nullopt);
@@ -50,6 +51,7 @@ void add_state(Row& row, const TapRecord& tap) {
   add_process(row, "height_process", tap.height_process);
   add_process(row, "weight_process", tap.weight_process);
   if (tap.surface_process) add_process(row, "surface_process", tap.surface_process);
+  add_footprint(row, tap.footprint);
   row.add("true_on_surface", tap.true_on_surface);
   row.add("rmse_m", tap.errors.rmse);
   row.add("rmse_on_surface_m", tap.errors.rmse_on_surface);
@@ -102,6 +104,12 @@ void add_process(Row& row, const std::string& name, const std::optional<ProcessS
     row.add(name + ".fit.evaluations", state->fit->evaluations);
     row.add(name + ".fit.reason", state->fit->reason);
   }
+}
+
+void add_footprint(Row& row, const std::optional<FootprintState>& state) {
+  if (!state) return;
+  for (const FootprintNumber& one : state->numbers) row.add("footprint." + one.name, one.value);
+  row.add("footprint.remark", state->remark.empty() ? std::nullopt : std::optional(state->remark));
 }
 
 const char* outcome_name(Outcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }

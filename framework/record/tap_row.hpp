@@ -28,6 +28,9 @@ PastTap past_tap(const Row& row, const std::string& where);
 /// Adds the fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
 void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state);
 
+/// Adds the fields of a footprint, "footprint.<number>" and "footprint.remark"; none where there is none.
+void add_footprint(Row& row, const std::optional<FootprintState>& state);
+
 const char* outcome_name(Outcome outcome);
 const char* source_name(Source source);
 

@@ -29,21 +29,24 @@ class ScriptedBelief final : public Belief {
       mean_(i) = 0.1 * random.uniform();
       variance_(i) = uncertainty_(i);
     }
+    probability_ = weight_.cwiseMax(0.0).cwiseMin(1.0);
   }
 
   const Points& candidates() const override { return points_; }
   Area area() const override { return {0.23, 0.23}; }
   int taps() const override { return taps_; }
   int initial_taps() const override { return 3; }
+  int hits() const override { return taps_ / 4; }
   const Eigen::VectorXd& uncertainty() const override { return uncertainty_; }
   const Eigen::VectorXd& weight() const override { return weight_; }
+  const Eigen::VectorXd& probability() const override { return probability_; }
   const Eigen::VectorXd& height_mean() const override { return mean_; }
   const Eigen::VectorXd& height_variance() const override { return variance_; }
 
  private:
   int taps_;
   Points points_;
-  Eigen::VectorXd uncertainty_, weight_, mean_, variance_;
+  Eigen::VectorXd uncertainty_, weight_, probability_, mean_, variance_;
 };
 
 /// Beliefs that a run meets: nothing known, the usual, weights far outside [0, 1], all known, one candidate.

@@ -21,12 +21,16 @@ class Belief {
   /// Taps made so far, failed ones included, and how many of them the initial design chose.
   virtual int taps() const = 0;
   virtual int initial_taps() const = 0;
+  /// Taps so far that touched an object.
+  virtual int hits() const = 0;
 
   /// u: variance of the height process relative to its prior, noise excluded; M values in [0, 1].
   virtual const Eigen::VectorXd& uncertainty() const = 0;
   /// w: mean of the weight process, or that mean clipped to [0, 1] if the config says `weight: {clip: true}`.
   /// Unclipped it leaves [0, 1] in nearly every run.
   virtual const Eigen::VectorXd& weight() const = 0;
+  /// p: the probability that a candidate is on an object, by the config's footprint; M values in [0, 1].
+  virtual const Eigen::VectorXd& probability() const = 0;
   /// Mean of the height process, metres.
   virtual const Eigen::VectorXd& height_mean() const = 0;
   /// Variance of the height process, noise excluded, square metres.

@@ -3,9 +3,9 @@
 //
 //     PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared-exponential kernel")
 //
-// where Rbf implements one of the interfaces (Kernel, Acquisition, Fitting, Backend, Shape), has a type `Options`, and
-// is constructed as Rbf(options, context). The library is <kind>/<name>.so; palpate_add_plugin() of the CMake package
-// names and places it.
+// where Rbf implements one of the interfaces (Kernel, Acquisition, Fitting, Footprint, Backend, Shape), has a type
+// `Options`, and is constructed as Rbf(options, context). The library is <kind>/<name>.so; palpate_add_plugin() of the
+// CMake package names and places it.
 #pragma once
 
 #include <palpate/error.hpp>
@@ -24,7 +24,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 6;
+constexpr std::uint32_t kPluginAbi = 7;
 
 struct Context;
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Plugin kind `footprint`: where on the desk the objects are, as a probability at every place.
+#pragma once
+
+#include <palpate/options.hpp>
+#include <palpate/types.hpp>
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A contact as the models see it.
+struct Touch {
+  Target place;
+  double height = 0.0;  ///< above the desk, metres
+  bool on = false;      ///< on an object, by the scene's rule (`on_surface_above`)
+};
+
+/// A number that a footprint tells of itself, for the record.
+struct FootprintNumber {
+  std::string name;  ///< "length_scale", "effective_particles", ...
+  double value = 0.0;
+};
+
+/// What is believed of the outlines after some touches.
+///
+/// Laws, checked by the contract tests for every footprint found: probabilities are finite and in [0, 1] whatever the
+/// touches (none, all alike, contradictory ones at one place, a thousand); the same touches in the same order give the
+/// same bytes, however often and where the probability was asked for in between. Anything drawn at random comes from
+/// the context's streams.
+class Footprint {
+ public:
+  static constexpr const char* kKind = "footprint";
+
+  virtual ~Footprint() = default;
+
+  /// Whether the probability is the mean of the weight process, clipped to [0, 1], which the framework has already:
+  /// then none of the methods below is called.
+  virtual bool is_weight() const { return false; }
+
+  /// Takes in the next touch. Never throws for numerical reasons.
+  virtual void add(const Touch& touch) = 0;
+
+  /// The probability that each of `places`, M x 2 metres, is on an object: M values in [0, 1]. What is set up for one
+  /// set of places may be kept for the next call.
+  virtual void probability(const PointsView& places, VectorOut out) = 0;
+
+  /// What it has come to, in numbers; the same names at every touch.
+  virtual std::vector<FootprintNumber> numbers() const { return {}; }
+
+  /// What somebody who reads the record should know of how it came to this, one line; "" for nothing.
+  virtual std::string remark() const { return {}; }
+};
+
+}  // namespace palpate

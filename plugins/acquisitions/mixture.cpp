@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// A sum of scores: what several strategies want at once.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace palpate::acquisitions {
+
+struct MixtureOptions : Options {
+  std::vector<PluginChoice> acquisitions;
+  void list(Fields& fields) override {
+    fields.plugins(acquisitions, "acquisition", Field("acquisitions", "the parts, each {type: ..., ...}").needed());
+    fields.require(!acquisitions.empty(), "acquisitions", "needs at least one acquisition");
+  }
+};
+
+class Mixture final : public Acquisition {
+ public:
+  using Options = MixtureOptions;
+  Mixture(const Options& options, const Context& context) {
+    for (const PluginChoice& one : options.acquisitions) parts_.push_back(context.create<Acquisition>(one));
+  }
+
+  void score(const Belief& belief, VectorOut out) const override {
+    Eigen::VectorXd part(out.size());
+    out.setZero();
+    for (const auto& one : parts_) {
+      one->score(belief, part);
+      out += part;
+    }
+  }
+  double prior_scale() const override {
+    double sum = 0.0;
+    for (const auto& one : parts_) sum += one->prior_scale();
+    return sum;
+  }
+
+ private:
+  std::vector<std::shared_ptr<Acquisition>> parts_;
+};
+
+PALPATE_PLUGIN(Acquisition, Mixture, "mixture", "sum of the scores of several acquisitions")
+
+}  // namespace palpate::acquisitions

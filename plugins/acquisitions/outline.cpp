@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Outline information: the entropy of the footprint, bits. A tap there tells most about whether the place is on an
+// object; where the footprint is a belief over whole outlines, that is the edge of what is not settled.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+#include <cmath>
+
+namespace palpate::acquisitions {
+
+class Outline final : public Acquisition {
+ public:
+  using Options = NoOptions;
+  Outline(const Options&, const Context&) {}
+
+  void score(const Belief& belief, VectorOut out) const override {
+    const auto bits = [](double p) { return p > 0.0 ? -p * std::log2(p) : 0.0; };
+    out = belief.probability().unaryExpr([&](double p) { return bits(p) + bits(1.0 - p); });
+  }
+  double prior_scale() const override { return 1.0; }
+};
+
+PALPATE_PLUGIN(Acquisition, Outline, "outline", "tap where it is least sure whether there is an object")
+
+}  // namespace palpate::acquisitions

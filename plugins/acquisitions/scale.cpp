@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// A score times a factor: a part's share in a mixture.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+#include <memory>
+
+namespace palpate::acquisitions {
+
+struct ScaleOptions : Options {
+  double factor = 1.0;
+  PluginChoice acquisition{"acquisition", {}, nullptr};
+  void list(Fields& fields) override {
+    fields.real(factor, Field("factor", "that the score is multiplied by").above(0).needed());
+    fields.plugin(acquisition, Field("acquisition", "whose score it is"));
+  }
+};
+
+class Scale final : public Acquisition {
+ public:
+  using Options = ScaleOptions;
+  Scale(const Options& options, const Context& context)
+      : factor_(options.factor), part_(context.create<Acquisition>(options.acquisition)) {}
+
+  void score(const Belief& belief, VectorOut out) const override {
+    part_->score(belief, out);
+    out *= factor_;
+  }
+  double prior_scale() const override { return factor_ * part_->prior_scale(); }
+
+ private:
+  double factor_;
+  std::shared_ptr<Acquisition> part_;
+};
+
+PALPATE_PLUGIN(Acquisition, Scale, "scale", "the score of another acquisition times a factor")
+
+}  // namespace palpate::acquisitions

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Gaussian process classification of the labels: a probability that stays in [0, 1] and falls back to the prior where
+// nothing was touched.
+#include "laplace.hpp"
+
+#include <palpate/footprint.hpp>
+#include <palpate/plugin.hpp>
+
+#include <optional>
+
+namespace palpate::footprints {
+
+struct ClassifierOptions : Options {
+  PluginChoice kernel{"kernel", {}, nullptr};
+  double signal = 2.0;
+  double prior_mean = -1.0;
+  void list(Fields& fields) override {
+    fields.plugin(kernel, Field("kernel", "shape of the covariance of the latent function"));
+    fields.real(signal, Field("signal", "prior standard deviation of the latent function").above(0).at_most(100));
+    fields.real(prior_mean, Field("prior_mean",
+                                  "of the latent function; below 0 says that most of the area is desk: at -1, with "
+                                  "a signal of 2, a third of it is an object"));
+  }
+};
+
+class Classifier final : public Footprint {
+ public:
+  using Options = ClassifierOptions;
+  Classifier(const Options& options, const Context& context)
+      : kernel_(context.create<Kernel>(options.kernel)), settings_{options.signal, options.prior_mean} {}
+
+  void add(const Touch& touch) override {
+    points_.conservativeResize(points_.rows() + 1, 2);
+    points_.bottomRows<1>() << touch.place.x, touch.place.y;
+    on_.push_back(touch.on);
+    posterior_.reset();
+  }
+
+  void probability(const PointsView& places, VectorOut out) override { posterior().probability(places, out); }
+
+  std::vector<FootprintNumber> numbers() const override { return {{"log_evidence", posterior().log_evidence()}}; }
+
+ private:
+  const Laplace& posterior() const {
+    if (!posterior_) posterior_.emplace(*kernel_, settings_, points_, on_);
+    return *posterior_;
+  }
+
+  std::shared_ptr<Kernel> kernel_;
+  LaplaceSettings settings_;
+  Points points_{0, 2};
+  std::vector<bool> on_;
+  mutable std::optional<Laplace> posterior_;  ///< made when it is first asked for after a touch
+};
+
+PALPATE_PLUGIN(Footprint, Classifier, "classifier",
+               "Gaussian process classification (Laplace's approximation, probit), for outlines of any form")
+
+}  // namespace palpate::footprints

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "laplace.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+
+namespace palpate::footprints {
+namespace {
+
+constexpr double kRootHalf = 0.70710678118654752440;
+constexpr double kLogRootTwoPi = 0.91893853320467274178;
+
+/// Phi(z) / phi(z) for z far below 0, by the asymptotic series of Mills' ratio: from -10 on the terms shrink to less
+/// than 1e-9 of the first before they grow.
+double mills(double z) {
+  const double inverse = 1.0 / (z * z);
+  double term = 1.0;
+  double sum = 1.0;
+  for (int k = 1; k <= 8; ++k) {
+    term *= -(2 * k - 1) * inverse;
+    sum += term;
+  }
+  return -sum / z;
+}
+
+}  // namespace
+
+double normal_cdf(double z) { return 0.5 * std::erfc(-z * kRootHalf); }
+
+Probit probit(double z) {
+  constexpr double kFar = -10.0;
+  Probit out;
+  const double log_density = -0.5 * z * z - kLogRootTwoPi;
+  if (z > kFar) {
+    out.log = std::log(normal_cdf(z));
+    out.slope = std::exp(log_density - out.log);
+    out.weight = out.slope * (z + out.slope);
+  } else {
+    const double ratio = mills(z);
+    out.log = log_density + std::log(ratio);
+    out.slope = 1.0 / ratio;
+    // slope + z would cancel: 1 / ratio + z = (1 + z ratio) / ratio, and the series of 1 + z ratio begins at 1 / z^2.
+    const double inverse = 1.0 / (z * z);
+    double term = 1.0;
+    double rest = 0.0;
+    for (int k = 1; k <= 8; ++k) {
+      term *= -(2 * k - 1) * inverse;
+      rest -= term;
+    }
+    out.weight = out.slope * rest / ratio;
+  }
+  return out;
+}
+
+Laplace::Laplace(const Kernel& kernel, const LaplaceSettings& settings, const PointsView& points,
+                 const std::vector<bool>& on)
+    : kernel_(kernel), settings_(settings), points_(points), sign_(points.rows()) {
+  for (Eigen::Index i = 0; i < sign_.size(); ++i) sign_(i) = on[static_cast<std::size_t>(i)] ? 1.0 : -1.0;
+  Eigen::MatrixXd covariance(points_.rows(), points_.rows());
+  kernel_.covariance(points_, points_, covariance);
+  covariance *= settings_.signal * settings_.signal;
+  find_mode(covariance);
+}
+
+/// Psi of algorithm 3.1: log likelihood minus half of (f - mean)^T K^-1 (f - mean), with dual = K^-1 (f - mean).
+double Laplace::objective(const Eigen::VectorXd& latent, const Eigen::VectorXd& dual) const {
+  double sum = -0.5 * dual.dot((latent.array() - settings_.mean).matrix());
+  for (Eigen::Index i = 0; i < latent.size(); ++i) sum += probit(sign_(i) * latent(i)).log;
+  return sum;
+}
+
+void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
+  constexpr int kMostSteps = 60;
+  constexpr double kEnough = 1e-10;
+  const Eigen::Index n = sign_.size();
+  Eigen::VectorXd dual = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd latent = Eigen::VectorXd::Constant(n, settings_.mean);
+  Eigen::VectorXd weight(n);
+  gradient_.resize(n);
+  double best = objective(latent, dual);
+  for (steps_ = 0;; ++steps_) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Probit at = probit(sign_(i) * latent(i));
+      gradient_(i) = sign_(i) * at.slope;
+      weight(i) = at.weight;
+    }
+    root_weight_ = weight.cwiseSqrt();
+    factor_ = root_weight_.asDiagonal() * covariance * root_weight_.asDiagonal();
+    factor_.diagonal().array() += 1.0;
+    factor_ = Eigen::LLT<Eigen::MatrixXd>(factor_).matrixL();
+    if (steps_ == kMostSteps) break;
+    // Newton: K^-1 (f_new - mean) = b - W^1/2 B^-1 W^1/2 K b, with b = W (f - mean) + gradient.
+    const Eigen::VectorXd b = weight.cwiseProduct((latent.array() - settings_.mean).matrix()) + gradient_;
+    Eigen::VectorXd inner = root_weight_.cwiseProduct(covariance * b);
+    factor_.triangularView<Eigen::Lower>().solveInPlace(inner);
+    factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(inner);
+    const Eigen::VectorXd direction = b - root_weight_.cwiseProduct(inner) - dual;
+    const Eigen::VectorXd change = covariance * direction;
+    double step = 1.0;
+    double reached = objective(latent + change, dual + direction);
+    for (int halvings = 0; !(reached >= best) && halvings < 40; ++halvings) {
+      step /= 2;
+      reached = objective(latent + step * change, dual + step * direction);
+    }
+    if (!(reached > best + kEnough * (1.0 + std::abs(best)))) break;
+    best = reached;
+    latent += step * change;
+    dual += step * direction;
+  }
+  log_evidence_ = best - factor_.diagonal().array().log().sum();
+}
+
+void Laplace::probability(const PointsView& places, VectorOut out) const {
+  const double variance = settings_.signal * settings_.signal;
+  Eigen::VectorXd prior(places.rows());
+  kernel_.variance(places, prior);
+  Eigen::MatrixXd cross(points_.rows(), places.rows());
+  kernel_.covariance(points_, places, cross);
+  const Eigen::VectorXd mean = variance * (cross.transpose() * gradient_);
+  cross = (variance * root_weight_).asDiagonal() * cross;
+  factor_.triangularView<Eigen::Lower>().solveInPlace(cross);
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    const double spread = std::max(variance * prior(i) - cross.col(i).squaredNorm(), 0.0);
+    out(i) = normal_cdf((settings_.mean + mean(i)) / std::sqrt(1.0 + spread));
+  }
+}
+
+}  // namespace palpate::footprints

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Gaussian process classification with a probit likelihood by Laplace's approximation (Rasmussen and Williams 2006,
+// sections 3.4 and 3.9): a latent function f ~ GP(mean, signal^2 k), and p(on | x) = Phi(f(x)).
+#pragma once
+
+#include <palpate/kernel.hpp>
+
+#include <vector>
+
+namespace palpate::footprints {
+
+/// log Phi(z), and its first two derivatives: r = phi(z) / Phi(z) and -w = -r (z + r). Finite for all finite z; w lies
+/// in (0, 1).
+struct Probit {
+  double log = 0.0;
+  double slope = 0.0;
+  double weight = 0.0;  ///< minus the second derivative
+};
+Probit probit(double z);
+
+/// Phi(z), the standard normal distribution.
+double normal_cdf(double z);
+
+struct LaplaceSettings {
+  double signal = 1.0;  ///< prior standard deviation of f, > 0
+  double mean = 0.0;    ///< prior mean of f
+};
+
+/// The posterior after n labels. The mode is found by damped Newton steps: the log posterior is concave, so there is
+/// one, and contradictory labels at one place do no harm, as only I + W^1/2 K W^1/2 is ever factorised.
+class Laplace {
+ public:
+  /// `kernel` must outlive it. `points` n x 2, `on` n.
+  Laplace(const Kernel& kernel, const LaplaceSettings& settings, const PointsView& points, const std::vector<bool>& on);
+
+  /// p(on) at each of `places`: Phi(mean / sqrt(1 + variance)) of f there.
+  void probability(const PointsView& places, VectorOut out) const;
+
+  /// Approximate log p(labels), natural logarithm.
+  double log_evidence() const { return log_evidence_; }
+  /// Newton steps that it took.
+  int steps() const { return steps_; }
+
+ private:
+  void find_mode(const Eigen::MatrixXd& covariance);
+  double objective(const Eigen::VectorXd& latent, const Eigen::VectorXd& dual) const;
+
+  const Kernel& kernel_;
+  LaplaceSettings settings_;
+  Points points_;
+  Eigen::VectorXd sign_;         ///< +1 on an object, -1 off
+  Eigen::VectorXd gradient_;     ///< of the log likelihood at the mode
+  Eigen::VectorXd root_weight_;  ///< W^1/2 at the mode
+  Eigen::MatrixXd factor_;       ///< lower, of I + W^1/2 K W^1/2
+  double log_evidence_ = 0.0;
+  int steps_ = 0;
+};
+
+}  // namespace palpate::footprints

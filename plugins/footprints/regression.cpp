@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// The paper's weight process taken for a probability (Sun and Min 2021, section III): the regression on the labels 0
+// and 1 that the framework keeps for the weight w, clipped to [0, 1].
+#include <palpate/footprint.hpp>
+#include <palpate/plugin.hpp>
+
+namespace palpate::footprints {
+
+class Regression final : public Footprint {
+ public:
+  using Options = NoOptions;
+  Regression(const Options&, const Context&) {}
+
+  bool is_weight() const override { return true; }
+  void add(const Touch&) override {}
+  void probability(const PointsView&, VectorOut out) override { out.setZero(); }
+};
+
+PALPATE_PLUGIN(Footprint, Regression, "regression", "the weight process, the paper's")
+
+}  // namespace palpate::footprints

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// A Bayesian belief over outlines of simple objects: the probability of a place is the share of outlines that hold it.
+// Where the touches contradict all simple outlines, the classifier takes over.
+#include "../classifier/laplace.hpp"
+#include "particles.hpp"
+
+#include <palpate/footprint.hpp>
+#include <palpate/plugin.hpp>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace palpate::footprints {
+
+struct ShapeOptions : Options {
+  double smallest = 0.02;
+  double largest = 0.22;
+  double mistaken = 0.02;
+  double contradictions = 0.8;
+  std::int64_t particles = 2000;
+  PluginChoice kernel{"kernel", {}, nullptr};
+  double signal = 2.0;
+  double prior_mean = -1.0;
+  void list(Fields& fields) override {
+    fields.real(smallest, Field("smallest", "least width of an object").in(Unit::metre).above(0));
+    fields.real(largest, Field("largest", "greatest length of an object").in(Unit::metre).above(0));
+    fields.real(mistaken, Field("mistaken", "probability that the label of a touch is wrong").above(0).at_most(0.4));
+    fields.real(contradictions, Field("contradictions",
+                                      "hand over to the classifier when the outlines have more touches than this "
+                                      "wrong, on average")
+                                    .above(0));
+    fields.integer(particles, Field("particles", "outlines that stand for the belief").at_least(100).at_most(100000));
+    fields.plugin(kernel, Field("kernel", "of the classifier"));
+    fields.real(signal, Field("signal", "of the classifier").above(0).at_most(100));
+    fields.real(prior_mean, Field("prior_mean", "of the classifier"));
+    fields.require(smallest < largest, "largest", "is not larger than smallest");
+  }
+};
+
+class Shape final : public Footprint {
+ public:
+  using Options = ShapeOptions;
+  Shape(const Options& options, const Context& context)
+      : contradictions_(options.contradictions),
+        kernel_(context.create<Kernel>(options.kernel)),
+        settings_{options.signal, options.prior_mean},
+        particles_({context.scene.area(), options.smallest, options.largest},
+                   {static_cast<int>(options.particles), 3, options.mistaken}, context.random("footprint/shape")) {}
+
+  void add(const Touch& touch) override {
+    points_.conservativeResize(points_.rows() + 1, 2);
+    points_.bottomRows<1>() << touch.place.x, touch.place.y;
+    on_.push_back(touch.on);
+    particles_.add(touch.place, touch.on);
+    if (handed_over_at_ == 0 && particles_.mean_mistakes() > contradictions_)
+      handed_over_at_ = static_cast<int>(on_.size());
+  }
+
+  void probability(const PointsView& places, VectorOut out) override {
+    if (handed_over_at_ > 0) {
+      Laplace(*kernel_, settings_, points_, on_).probability(places, out);
+      return;
+    }
+    particles_.count_inside(places, columns_of(places), out);
+    out /= particles_.size();
+  }
+
+  std::vector<FootprintNumber> numbers() const override {
+    return {{"mistakes", particles_.mean_mistakes()},
+            {"acceptance", particles_.acceptance()},
+            {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
+  }
+
+  std::string remark() const override {
+    if (handed_over_at_ == 0) return {};
+    return "the classifier has taken over at touch " + std::to_string(handed_over_at_) +
+           ": no box or ellipse agrees with the touches";
+  }
+
+ private:
+  /// Places on a lattice stand row by row; others are rows of one.
+  static int columns_of(const PointsView& places) {
+    Eigen::Index columns = 1;
+    while (columns < places.rows() && places(columns, 1) == places(0, 1)) ++columns;
+    return static_cast<int>(places.rows() % columns == 0 ? columns : 1);
+  }
+
+  double contradictions_;
+  std::shared_ptr<Kernel> kernel_;
+  LaplaceSettings settings_;
+  Particles particles_;
+  Points points_{0, 2};
+  std::vector<bool> on_;
+  int handed_over_at_ = 0;  ///< touches; 0: not yet
+};
+
+PALPATE_PLUGIN(Footprint, Shape, "shape", "a belief over boxes and ellipses, given up where the touches contradict it")
+
+}  // namespace palpate::footprints
