@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Height variance where an object is: u weighted by the footprint's probability, as the paper weighs it by w.
+// Uncertainty of the height where an object is: the standard deviation, relative to the prior, weighted by the
+// footprint's probability. The paper weighs the variance; beside the entropy of an outline that one fades too soon.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -11,7 +12,7 @@ class Inside final : public Acquisition {
   Inside(const Options&, const Context&) {}
 
   void score(const Belief& belief, VectorOut out) const override {
-    out = belief.uncertainty().cwiseProduct(belief.probability());
+    out = belief.uncertainty().cwiseMax(0.0).cwiseSqrt().cwiseProduct(belief.probability());
   }
   double prior_scale() const override { return 1.0; }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A Bayesian belief over outlines of simple objects: the probability of a place is the share of outlines that hold it.
-// Where the touches contradict all simple outlines, the classifier takes over.
+// A Bayesian belief over outlines of one or two simple pieces: the probability of a place is the share of outlines that
+// hold it. Where the touches contradict all of these, the classifier takes over.
 #include "../classifier/laplace.hpp"
 #include "particles.hpp"
 
@@ -16,15 +16,21 @@ namespace palpate::footprints {
 struct ShapeOptions : Options {
   double smallest = 0.02;
   double largest = 0.22;
-  double mistaken = 0.02;
-  double contradictions = 0.8;
+  double one_piece = 0.3;
+  double mistaken = 0.01;
+  double contradictions = 1.5;
   std::int64_t particles = 2000;
   PluginChoice kernel{"kernel", {}, nullptr};
   double signal = 2.0;
   double prior_mean = -1.0;
   void list(Fields& fields) override {
-    fields.real(smallest, Field("smallest", "least width of an object").in(Unit::metre).above(0));
-    fields.real(largest, Field("largest", "greatest length of an object").in(Unit::metre).above(0));
+    fields.real(smallest, Field("smallest", "least width of a piece").in(Unit::metre).above(0));
+    fields.real(largest, Field("largest", "greatest length of a piece").in(Unit::metre).above(0));
+    fields.real(one_piece, Field("one_piece",
+                                 "probability that an outline is one box or ellipse; others are two of them, or one "
+                                 "without the other, with equal probability")
+                               .above(0)
+                               .at_most(1));
     fields.real(mistaken, Field("mistaken", "probability that the label of a touch is wrong").above(0).at_most(0.4));
     fields.real(contradictions, Field("contradictions",
                                       "hand over to the classifier when the outlines have more touches than this "
@@ -45,8 +51,8 @@ class Shape final : public Footprint {
       : contradictions_(options.contradictions),
         kernel_(context.create<Kernel>(options.kernel)),
         settings_{options.signal, options.prior_mean},
-        particles_({context.scene.area(), options.smallest, options.largest},
-                   {static_cast<int>(options.particles), 3, options.mistaken}, context.random("footprint/shape")) {}
+        particles_(prior(options, context.scene.area()), {static_cast<int>(options.particles), options.mistaken},
+                   context.random("footprint/shape")) {}
 
   void add(const Touch& touch) override {
     points_.conservativeResize(points_.rows() + 1, 2);
@@ -68,6 +74,7 @@ class Shape final : public Footprint {
 
   std::vector<FootprintNumber> numbers() const override {
     return {{"mistakes", particles_.mean_mistakes()},
+            {"one_piece", particles_.share_of_one()},
             {"acceptance", particles_.acceptance()},
             {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
   }
@@ -75,10 +82,19 @@ class Shape final : public Footprint {
   std::string remark() const override {
     if (handed_over_at_ == 0) return {};
     return "the classifier has taken over at touch " + std::to_string(handed_over_at_) +
-           ": no box or ellipse agrees with the touches";
+           ": no outline of one or two pieces agrees with the touches";
   }
 
  private:
+  static OutlinePrior prior(const Options& options, const Area& area) {
+    OutlinePrior::Settings settings;
+    settings.area = area;
+    settings.smallest = options.smallest;
+    settings.largest = options.largest;
+    settings.two = settings.without = 0.5 * (1.0 - options.one_piece);
+    return OutlinePrior(settings);
+  }
+
   /// Places on a lattice stand row by row; others are rows of one.
   static int columns_of(const PointsView& places) {
     Eigen::Index columns = 1;
@@ -95,6 +111,7 @@ class Shape final : public Footprint {
   int handed_over_at_ = 0;  ///< touches; 0: not yet
 };
 
-PALPATE_PLUGIN(Footprint, Shape, "shape", "a belief over boxes and ellipses, given up where the touches contradict it")
+PALPATE_PLUGIN(Footprint, Shape, "shape",
+               "a belief over outlines of one or two boxes or ellipses, given up where the touches contradict it")
 
 }  // namespace palpate::footprints
