@@ -8,6 +8,7 @@
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
 #include <palpate/fitting.hpp>
+#include <palpate/footprint.hpp>
 #include <palpate/kernel.hpp>
 #include <palpate/shape.hpp>
 
@@ -210,7 +211,7 @@ bool PluginHost::one_at_a_time(const std::set<std::pair<std::string, std::string
 }
 
 std::vector<std::string> PluginHost::kinds() {
-  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Backend::kKind, Shape::kKind};
+  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Footprint::kKind, Backend::kKind, Shape::kKind};
 }
 
 std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::string& kind) const {

@@ -12,7 +12,7 @@ struct ScaleOptions : Options {
   PluginChoice acquisition{"acquisition", {}, nullptr};
   void list(Fields& fields) override {
     fields.real(factor, Field("factor", "that the score is multiplied by").above(0).needed());
-    fields.plugin(acquisition, Field("acquisition", "whose score it is"));
+    fields.plugin(acquisition, Field("acquisition", "whose score it is").needed());
   }
 };
 

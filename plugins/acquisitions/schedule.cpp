@@ -12,8 +12,8 @@ struct ScheduleOptions : Options {
   PluginChoice find{"acquisition", {}, nullptr};
   PluginChoice then{"acquisition", {}, nullptr};
   void list(Fields& fields) override {
-    fields.plugin(find, Field("find", "used until a tap has hit an object"));
-    fields.plugin(then, Field("then", "used from then on"));
+    fields.plugin(find, Field("find", "used until a tap has hit an object").needed());
+    fields.plugin(then, Field("then", "used from then on").needed());
   }
 };
 
