@@ -47,8 +47,8 @@ struct Calibration {
 };
 Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped);
 
-/// The surface as the config's `surface` reconstructs it, metres: the height mean; for `two_part` only where the weight
-/// is at least 1/2, else the desk. Builds the models that it needs.
+/// The surface as the config's `surface` reconstructs it, metres: the height mean; for `two_part` only where the
+/// footprint's probability is at least 1/2, else the desk. Builds the models that it needs.
 Eigen::VectorXd reconstruction(const TapBelief& belief);
 
 }  // namespace palpate

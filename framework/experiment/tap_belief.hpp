@@ -72,6 +72,8 @@ class TapBelief final : public Belief {
   bool two_part() const { return two_part_; }
   /// Whether the outline is known without building anything: the probability was read, or the weight that it is.
   bool outline_known() const { return footprint_ ? footprint_read_ : static_cast<bool>(weight_process()); }
+  /// Whether the probability is the weight, clipped: then what is shown of the outline is w, else p.
+  bool footprint_is_weight() const { return !footprint_; }
   /// The footprint, up to date with all taps, if it is not the weight and was read; else null.
   const Footprint* footprint() const;
 

@@ -143,6 +143,7 @@ std::string maps_csv(const Candidates& candidates, const TapBelief& belief) {
   }
   if (belief.height_process()) columns.emplace_back("u", &belief.uncertainty());
   if (belief.weight_process()) columns.emplace_back("w", &belief.weight());
+  if (belief.footprint() != nullptr) columns.emplace_back("p", &belief.probability());
   return columns.empty() ? std::string() : grid_csv(candidates, columns);
 }
 

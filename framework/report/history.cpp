@@ -45,6 +45,12 @@ class Shown {
   int step_ = 1;
 };
 
+/// Whether the scores are a map of their own, beside those that are shown anyhow.
+bool own_scores(const Snapshot& now) {
+  if (now.scores == now.uncertainty) return false;
+  return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
+}
+
 }  // namespace
 
 History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
@@ -54,25 +60,28 @@ History make_history(const Workshop& workshop, const Recording& recording, const
   History out;
   out.x = shown.x();
   out.y = shown.y();
-  out.maps = {{"height", {}}, {"deviation", {}}, {"u", {}}, {"w", {}}, {"score", {}}};
-  bool own_scores = false;
+  const bool weight = experiment.belief().footprint_is_weight();
+  out.maps = {{"height", {}}, {"deviation", {}}, {"u", {}}, {weight ? "w" : "p", {}}, {"score", {}}};
+  bool scores = false;
   const auto all = static_cast<int>(recording.taps.size());
   for (int taps = 0; taps <= all; ++taps) {
     playback.advance_to(taps);
     const Snapshot now = snapshot_of(playback, recording);
-    const std::array<const Eigen::VectorXd*, 5> maps{&now.surface, &now.deviation, &now.uncertainty, &now.weight,
-                                                     &now.scores};
+    const std::array<const Eigen::VectorXd*, 5> maps{&now.surface, &now.deviation, &now.uncertainty,
+                                                     weight ? &now.weight : &now.probability, &now.scores};
     for (std::size_t i = 0; i < maps.size(); ++i) out.maps[i].frames.push_back(shown.of(*maps[i]));
-    own_scores = own_scores || (now.scores != now.uncertainty && now.scores != now.exploration());
-    const Eigen::VectorXd& weight = experiment.belief().weight_mean();
-    out.moments.push_back(
-        {taps, experiment.result(), now.next, now.largest_deviation, weight.minCoeff(), weight.maxCoeff()});
+    scores = scores || own_scores(now);
+    out.moments.push_back({taps, experiment.result(), now.next, now.largest_deviation, {}, {}});
+    if (weight) {
+      out.moments.back().least_weight = experiment.belief().weight_mean().minCoeff();
+      out.moments.back().most_weight = experiment.belief().weight_mean().maxCoeff();
+    }
     progress(taps, all);
   }
   double largest = 0.0;
   for (const Moment& moment : out.moments) largest = std::max(largest, moment.largest_deviation);
   for (Eigen::VectorXf& frame : out.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest));
-  if (!own_scores) out.maps.pop_back();
+  if (!scores) out.maps.pop_back();
   if (const Truth* truth = experiment.truth()) out.maps.push_back({"truth", {shown.of(truth->height)}});
   return out;
 }

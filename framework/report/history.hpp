@@ -19,15 +19,16 @@ struct Moment {
   RunResult result;                ///< what summary.json would say if the run had ended here
   std::optional<TapRecord> next;   ///< what would be tapped next; absent if no candidate is left
   double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres
-  double least_weight = 0.0;       ///< of the candidates, as the weight process has it
-  double most_weight = 0.0;
+  /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.
+  std::optional<double> least_weight, most_weight;
 };
 
 struct History {
   std::vector<Moment> moments;  ///< before the first tap, and after each
   /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres, at most
   /// the largest that the height process has at any moment: that of an object's level before it is touched means
-  /// nothing), "u", "w", and, where the acquisition's score is neither u nor u w, "score": a frame for each moment.
+  /// nothing), "u", "w" or, where the footprint is not the weight, "p", and "score" where the acquisition's is none of
+  /// these nor u w: a frame for each moment.
   /// Last, where truth is known, "truth" in one frame, metres.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row

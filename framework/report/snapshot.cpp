@@ -35,7 +35,11 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   out.surface = reconstruction(belief);
   out.deviation = belief.height_variance().cwiseSqrt();
   out.uncertainty = belief.uncertainty();
-  out.weight = belief.weight();
+  if (belief.footprint_is_weight()) {
+    out.weight = belief.weight();
+  } else {
+    out.probability = belief.probability();
+  }
   out.largest_deviation = std::sqrt(belief.all_taps_variance().maxCoeff());
   return out;
 }

@@ -28,15 +28,19 @@ struct Snapshot {
   int on = 0;  ///< taps on an object, on the desk, without a contact
   int off = 0;
   int failed = 0;
-  std::vector<TapMark> marks;      ///< of these taps, in their order
-  std::optional<TapRecord> next;   ///< that would be chosen now; none if no candidate is left
-  Eigen::VectorXd surface;         ///< as reconstructed, metres
-  Eigen::VectorXd deviation;       ///< standard deviation of the height, metres
-  Eigen::VectorXd uncertainty;     ///< u
-  Eigen::VectorXd weight;          ///< w, as the strategy reads it
+  std::vector<TapMark> marks;     ///< of these taps, in their order
+  std::optional<TapRecord> next;  ///< that would be chosen now; none if no candidate is left
+  Eigen::VectorXd surface;        ///< as reconstructed, metres
+  Eigen::VectorXd deviation;      ///< standard deviation of the height, metres
+  Eigen::VectorXd uncertainty;    ///< u
+  /// What speaks for an object, one of the two: w, as the strategy reads it, where the footprint is the weight, or
+  /// else the footprint's p. The other is empty.
+  Eigen::VectorXd weight;
+  Eigen::VectorXd probability;
   Eigen::VectorXd scores;          ///< what the strategy gives each candidate
   double largest_deviation = 0.0;  ///< of the height process, all taps seen, metres
-  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e
+  bool has_weight() const { return weight.size() > 0; }
+  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, where there is w
 };
 
 /// The run as `playback` has it now, after as many of the taps of `recording`.

@@ -118,11 +118,18 @@ class Explain : public ::testing::Test {
     EXPECT_THAT(text, HasSubstr(tap["on_surface"] == true ? ", on an object" : ", on the desk"));
   }
 
-  /// u, w and e of the record are said as they are, and what the record has not is marked.
-  static void expect_maps(const std::string& text, const json& tap) {
-    for (const char* name : {"u", "w", "e"}) {
+  /// u, w and e of the record, or u and p where a footprint is named, are said as they are, and what the record has
+  /// not is marked.
+  static void expect_maps(const std::string& text, const json& tap, const std::string& footprint) {
+    if (!footprint.empty()) {
+      EXPECT_THAT(text, HasSubstr("(the probability that an object is there, by footprint/" + footprint + ")"));
+      EXPECT_THAT(text, HasSubstr("Footprint: " + footprint));
+      EXPECT_THAT(text, Not(HasSubstr("Weight process")));
+    }
+    for (const char* name : {"u", "w", "e", "p"}) {
+      if (*name != 'u' && (*name == 'p') == footprint.empty()) continue;
       const std::string begin = *name == 'e' ? "e = u w = " : name + std::string(" = ");
-      if (tap[name].is_null()) {
+      if (!tap.contains(name) || tap[name].is_null()) {
         EXPECT_THAT(text, ContainsRegex(begin + "[-0-9.e]+\\*"));
       } else {
         EXPECT_THAT(text, HasSubstr(begin + printed("%.6g", tap[name]) + (*name == 'e' ? "." : " ")));
@@ -138,7 +145,7 @@ class Explain : public ::testing::Test {
   }
 
   /// Every tap of a run; under the sanitizers, some.
-  void expect_explained(const fs::path& directory) {
+  void expect_explained(const fs::path& directory, const std::string& footprint = "") {
     const std::vector<json> taps = taps_of(directory);
     for (std::size_t i = 0; i < taps.size(); i += test::kSanitized ? 5 : 1) {
       SCOPED_TRACE(directory.string() + " tap " + std::to_string(i + 1));
@@ -148,7 +155,7 @@ class Explain : public ::testing::Test {
       EXPECT_THAT(text, Not(HasSubstr("would choose"))) << "it is this build that made the run";
       expect_source(text, taps[i]);
       expect_outcome(text, taps[i]);
-      expect_maps(text, taps[i]);
+      expect_maps(text, taps[i], footprint);
       expect_whole_words(text);
     }
   }
@@ -168,6 +175,19 @@ TEST_F(Explain, TellsEveryTapOfFitsAndOfASurfaceOfTwoParts) {
   expect_explained(run({"fitting=ceres", "height.signal=5cm", "surface=two_part", "fitting.every=3"}));
   expect_explained(run({"fitting=ceres", "height.signal=5cm", "weight.hyperparameters=shared", "kernel=matern52"}));
   expect_explained(run({"kernel=swell_and_texture", "weight.clip=true", "initial.design=sobol"}));
+}
+
+TEST_F(Explain, TellsEveryTapOfAFootprintByItsProbability) {
+  expect_explained(run({}, config("default.yaml")), "shape");
+  expect_explained(run({"footprint=classifier", "acquisition=random", "taps=6"}), "classifier");
+}
+
+TEST_F(Explain, TellsWhatTheFootprintRemarks) {
+  const fs::path directory = run({"footprint.contradictions=0.01", "taps=20"}, config("default.yaml"));
+  const json last = taps_of(directory).back();
+  ASSERT_TRUE(last["footprint"]["remark"].is_string());
+  EXPECT_THAT(explain(directory, 20), HasSubstr("Its remark: " + last["footprint"]["remark"].get<std::string>() + "."));
+  EXPECT_THAT(explain(directory, 1), Not(HasSubstr("Its remark")));
 }
 
 TEST_F(Explain, TellsEveryTapOfARuleThatStallsOrMayRepeatItself) {

@@ -48,6 +48,24 @@ class Export : public ::testing::Test {
     return palpate(all);
   }
 
+  /// The surface that is exported is that of the record, to the last bit.
+  void expect_numbers_of_record(const fs::path& directory) const {
+    ASSERT_EQ(exported(directory, "csv").status, 0);
+    const std::vector<Cells> recorded = csv_rows(text_of(directory / "surface.csv"));
+    const std::vector<Cells> surface = csv_rows(text_of(directory / "export" / "surface.csv"));
+    ASSERT_EQ(surface.size(), recorded.size());
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+      for (const auto& [name, column] : {std::pair{"x", "x"},
+                                         {"y", "y"},
+                                         {"z", "reconstructed_height"},
+                                         {"standard_deviation", "height_standard_deviation"},
+                                         {"on_surface_probability", "on_surface_probability"},
+                                         {"true_height", "true_height"}}) {
+        ASSERT_EQ(std::stod(surface[i].at(name)), std::stod(recorded[i].at(column))) << name << " of candidate " << i;
+      }
+    }
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -92,22 +110,12 @@ TEST_F(Export, WritesASurfaceThatAssimpReadsVertexByVertex) {
   }
 }
 
-TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) {
-  const fs::path directory = run({"surface=two_part"});
-  ASSERT_EQ(exported(directory, "csv").status, 0);
-  const std::vector<Cells> recorded = csv_rows(text_of(directory / "surface.csv"));
-  const std::vector<Cells> surface = csv_rows(text_of(directory / "export" / "surface.csv"));
-  ASSERT_EQ(surface.size(), recorded.size());
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    for (const auto& [name, column] : {std::pair{"x", "x"},
-                                       {"y", "y"},
-                                       {"z", "reconstructed_height"},
-                                       {"standard_deviation", "height_standard_deviation"},
-                                       {"on_surface_probability", "on_surface_probability"},
-                                       {"true_height", "true_height"}}) {
-      ASSERT_EQ(std::stod(surface[i].at(name)), std::stod(recorded[i].at(column))) << name << " of candidate " << i;
-    }
-  }
+TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) { expect_numbers_of_record(run({"surface=two_part"})); }
+
+TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
+  const fs::path directory = run({"surface=two_part", "footprint=shape"});
+  expect_numbers_of_record(directory);
+  EXPECT_THAT(text_of(directory / "summary.json"), HasSubstr("\"mistakes\": ")) << "it is not the weight";
 }
 
 TEST_F(Export, WritesContactsAsPointsAndFailedTapsInTheTableAlone) {

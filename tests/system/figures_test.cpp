@@ -98,6 +98,20 @@ TEST(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThem) {
   }
 }
 
+TEST(Figures, OfAFootprintHaveItsProbabilityAndTheScoreInPlaceOfTheWeight) {
+  const TemporaryFolder folder;
+  const fs::path directory =
+      drawn_run(folder, {"seed=3", "footprint=shape", "acquisition=outline_first", "surface=two_part"});
+  const auto maps = blocks_of(directory / "figures/maps.gnuplot");
+  EXPECT_EQ(maps.count("w") + maps.count("e"), 0U);
+  EXPECT_EQ(maps.count("score"), 1U);
+  EXPECT_THAT(text_of(directory / "figures/maps.gnuplot"), HasSubstr("by footprint/shape"));
+  for (const Cells& cell : csv_rows(text_of(directory / "surface.csv"))) {
+    EXPECT_NEAR(value_at(maps.at("p"), 100 * std::stod(cell.at("x")), 100 * std::stod(cell.at("y"))),
+                std::stod(cell.at("on_surface_probability")), 1e-5);
+  }
+}
+
 TEST(Figures, OfARunHaveCurvesThatEndWithItsSummary) {
   const TemporaryFolder folder;
   const fs::path directory = drawn_run(folder, {"seed=3"});

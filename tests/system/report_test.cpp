@@ -88,6 +88,30 @@ TEST(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   EXPECT_TRUE(text_of(directory / "taps.jsonl") == taps);
 }
 
+TEST(Report, OfAFootprintNamesItAndShowsWhatItTells) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(
+      test::palpate({"run", test::config("default.yaml"), "footprint.contradictions=0.01", "log.maps=true", "--quiet"},
+                    folder.path())
+          .status,
+      0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  ASSERT_EQ(test::palpate({"report", directory.string()}, folder.path()).status, 0);
+  const json data = data_of(directory / "report.html", folder);
+  EXPECT_EQ(data.at("run").at("footprint"), "shape");
+  std::vector<std::string> names;
+  for (const json& map : data.at("maps")) names.push_back(map.at("name"));
+  EXPECT_THAT(names, ::testing::ElementsAre("height", "deviation", "u", "p", "score", "truth"));
+  const json summary = json::parse(text_of(directory / "summary.json"));
+  EXPECT_EQ(data.at("moments").back().at("footprint"), summary.at("footprint"));
+  EXPECT_TRUE(data.at("moments").back().at("least_weight").is_null());
+  const std::string remark = summary.at("footprint").at("remark");
+  EXPECT_THAT(data.at("warnings").dump(), HasSubstr("The footprint, shape, says: " + remark + "."));
+  const auto maps = test::csv_rows(text_of(directory / "maps/tap_030.csv"));
+  EXPECT_EQ(maps.at(0).count("p"), 1U) << "the maps that log.maps keeps have it, too";
+  EXPECT_EQ(maps.at(0).count("w"), 0U);
+}
+
 TEST(Report, OfASweepNamedOnTheCommandLineHasThatName) {
   const TemporaryFolder folder;
   ASSERT_EQ(

@@ -52,14 +52,16 @@ std::string cell(const Row& row, const char* name) {
   return value != nullptr ? csv_cell(*value) : "absent";
 }
 
+/// A shipped config, and words behind it.
 class RunHistory : public ::testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
-  const Recorded run("paper/object_i.yaml", GetParam());
+  const Recorded run(GetParam().front(), {GetParam().begin() + 1, GetParam().end()});
   const Recording recording = run.recording();
   const History history = run.history();
   ASSERT_EQ(history.moments.size(), recording.rows.size() + 1);
   int compared = 0;
+  int compared_footprint = 0;
   for (std::size_t made = 0; made < recording.rows.size(); ++made) {
     const Row& row = recording.rows[made];
     const Moment& moment = history.moments[made];
@@ -67,6 +69,15 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
     const Row next = tap_row(*moment.next);
     for (const char* field : {"x", "y", "source", "score", "ties", "runner_up.x"}) {
       EXPECT_EQ(cell(next, field), cell(row, field)) << field << " of tap " << made + 1;
+    }
+    for (const auto& [name, value] : row.fields) {
+      const bool of_footprint = name == "p" || name == "footprint_iou" || name.compare(0, 10, "footprint.") == 0;
+      if (!of_footprint || csv_cell(value).empty()) continue;
+      // Errors are of the state that the tap was chosen from, whatever the next choice would build beyond it.
+      const std::string now =
+          name == "footprint_iou" ? csv_cell(*moment.result.errors.footprint_iou) : cell(next, name.c_str());
+      EXPECT_EQ(now, csv_cell(value)) << name << " of tap " << made + 1;
+      compared_footprint += name == "p" ? 1 : 0;
     }
     if (cell(row, "rmse_m").empty()) continue;
     ++compared;
@@ -77,6 +88,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   const bool reads_surface =
       options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single;
   EXPECT_EQ(compared > 0, reads_surface);
+  EXPECT_EQ(compared_footprint > 10, options.footprint.type != "regression");
   RunResult last = history.moments.back().result;
   last.stop_reason = cell(*recording.summary, "stop_reason");
   for (const auto& [name, value] : summary_row(recording.config, last, "", Stopwatch(), {}).fields) {
@@ -88,11 +100,17 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfEveryKind, RunHistory,
-    ::testing::Values(std::vector<std::string>{}, std::vector<std::string>{"acquisition=uncertainty", "seed=4"},
-                      std::vector<std::string>{"surface=two_part", "fitting=ceres", "fitting.every=4", "seed=4"},
-                      std::vector<std::string>{"acquisition=random", "weight.clip=true", "posterior=dense"},
-                      std::vector<std::string>{"backend=continuous",
-                                               "scene.effects={missed_contacts: {probability: 0.3}}"}));
+    ::testing::Values(std::vector<std::string>{"paper/object_i.yaml"},
+                      std::vector<std::string>{"paper/object_i.yaml", "acquisition=uncertainty", "seed=4"},
+                      std::vector<std::string>{"paper/object_i.yaml", "surface=two_part", "fitting=ceres",
+                                               "fitting.every=4", "seed=4"},
+                      std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "weight.clip=true",
+                                               "posterior=dense"},
+                      std::vector<std::string>{"paper/object_i.yaml", "backend=continuous",
+                                               "scene.effects={missed_contacts: {probability: 0.3}}"},
+                      std::vector<std::string>{"default.yaml"},
+                      std::vector<std::string>{"default.yaml", "footprint.contradictions=0.01", "seed=2"},
+                      std::vector<std::string>{"default.yaml", "footprint=classifier", "scene=object_ii"}));
 
 TEST(History, KeepsAScoreOfItsOwnOnlyWhereItIsNeitherUNorE) {
   const auto names = [](const std::vector<std::string>& words) {
@@ -104,6 +122,21 @@ TEST(History, KeepsAScoreOfItsOwnOnlyWhereItIsNeitherUNorE) {
   EXPECT_THAT(names({"taps=6"}), ElementsAre("height", "deviation", "u", "w", "truth"));
   EXPECT_THAT(names({"taps=6", "acquisition=uncertainty"}), ElementsAre("height", "deviation", "u", "w", "truth"));
   EXPECT_THAT(names({"taps=6", "acquisition=random"}), ElementsAre("height", "deviation", "u", "w", "score", "truth"));
+}
+
+TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
+  const Recorded run("default.yaml", {"taps=12"});
+  const History history = run.history();
+  std::vector<std::string> names;
+  for (const MapSeries& one : history.maps) names.push_back(one.name);
+  EXPECT_THAT(names, ::testing::ElementsAre("height", "deviation", "u", "p", "score", "truth"));
+  const Recording recording = run.recording();
+  Playback last(run.workshop, recording);
+  last.advance_to(12);
+  const TapBelief& belief = last.experiment().belief();
+  EXPECT_EQ(history.maps.at(3).frames.back(), Eigen::VectorXf(belief.probability().cast<float>()));
+  EXPECT_FALSE(history.moments.back().least_weight.has_value());
+  EXPECT_EQ(belief.weight_process().process, nullptr) << "nobody has asked for it";
 }
 
 TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
@@ -143,6 +176,13 @@ TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   EXPECT_THAT(said, Contains(HasSubstr("5 of 17 taps were chosen by the fallback")));
   EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("weight.clip=true"))));
+}
+
+TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
+  const Recorded run("default.yaml", {"footprint.contradictions=0.01"});
+  const std::vector<std::string> said = warnings_of(run.recording(), run.history());
+  EXPECT_THAT(said, Contains(AllOf(HasSubstr("The footprint, shape, says: "), HasSubstr("has taken over at touch"))));
+  EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("weight"))));
 }
 
 TEST(Warnings, TellOfARuleThatStalls) {

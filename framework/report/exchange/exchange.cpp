@@ -43,7 +43,7 @@ std::string header_text(const std::string& text) {
 ReconstructedSurface reconstruct(Experiment& experiment) {
   const TapBelief& belief = experiment.belief();
   ReconstructedSurface out{surface_mesh(experiment.candidates(), reconstruction(belief)),
-                           belief.height_variance().cwiseSqrt(), belief.weight_mean(), std::nullopt};
+                           belief.height_variance().cwiseSqrt(), belief.probability(), std::nullopt};
   if (const Truth* truth = experiment.truth()) out.true_height = truth->height;
   return out;
 }

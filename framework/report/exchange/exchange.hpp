@@ -15,7 +15,7 @@ namespace palpate {
 struct ReconstructedSurface {
   SurfaceMesh mesh;
   Eigen::VectorXd standard_deviation;      ///< of the height, metres
-  Eigen::VectorXd on_surface_probability;  ///< the weight as it comes, which may leave [0, 1]
+  Eigen::VectorXd on_surface_probability;  ///< by the config's footprint
   std::optional<Eigen::VectorXd> true_height;
 };
 

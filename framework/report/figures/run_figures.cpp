@@ -42,7 +42,6 @@ Figure maps_figure(const Recording& recording, const Experiment& experiment, con
   const Raster raster(experiment.candidates(), area);
   const Box first = map_box(area, kLeft, kTop, kSide);
   Sheet sheet(static_cast<int>(kLeft + 2 * kStep + kSide + 90), static_cast<int>(kTop + first.height + 96));
-  const Eigen::VectorXd e = last.exploration();
   struct Panel {
     const char* name;
     const Eigen::VectorXd& values;
@@ -53,14 +52,28 @@ Figure maps_figure(const Recording& recording, const Experiment& experiment, con
     if (values.minCoeff() >= low - 5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nit goes from {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
   };
+  // The strategy's score is u w only where there is a w.
+  const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
-  const std::vector<Panel> panels{
-      {"u", last.uncertainty, {Palette::cividis, 0.0, 1.0, ""}, "u: what is not known of the height"},
-      {"w",
-       last.weight,
-       {Palette::viridis, 0.0, 1.0, ""},
-       "w: whether there is an object" + outside(last.weight, 0, 1)},
-      {"e", e, {Palette::viridis, 0.0, most, ""}, "e = u w: the exploration function" + outside(e, 0, most)}};
+  std::vector<Panel> panels{
+      {"u", last.uncertainty, {Palette::cividis, 0.0, 1.0, ""}, "u: what is not known of the height"}};
+  if (last.has_weight()) {
+    panels.push_back({"w",
+                      last.weight,
+                      {Palette::viridis, 0.0, 1.0, ""},
+                      "w: whether there is an object" + outside(last.weight, 0, 1)});
+    panels.push_back(
+        {"e", e, {Palette::viridis, 0.0, most, ""}, "e = u w: the exploration function" + outside(e, 0, most)});
+  } else {
+    panels.push_back({"p",
+                      last.probability,
+                      {Palette::viridis, 0.0, 1.0, ""},
+                      fmt::format("p: the probability of an object,\nby footprint/{}", options.footprint.type)});
+    panels.push_back({"score",
+                      e,
+                      {Palette::viridis, 0.0, most, ""},
+                      fmt::format("score of acquisition/{}", options.acquisition.type) + outside(e, 0, most)});
+  }
   sheet.text(options.name, kLeft, 14, 15);
   sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kLeft, 42, 11);
   for (const Panel& panel : panels) sheet.data(panel.name, raster.matrix(panel.values));

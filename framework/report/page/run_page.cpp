@@ -35,6 +35,7 @@ std::string json_of_run(const Recording& recording) {
   row.add("stop_reason", status.stop_reason);
   row.add("budget", options.taps);
   row.add("acquisition", options.acquisition.type);
+  row.add("footprint", options.footprint.type);
   row.add("width", options.scene.area.width);
   row.add("depth", options.scene.area.depth);
   row.add("desk", options.scene.desk);
@@ -60,6 +61,7 @@ std::string json_of_moment(const Moment& moment) {
   add_process(row, "height_process", result.height_process);
   add_process(row, "weight_process", result.weight_process);
   if (result.surface_process) add_process(row, "surface_process", result.surface_process);
+  add_footprint(row, result.footprint);
   if (moment.next) {
     row.add("next.x", moment.next->target.x);
     row.add("next.y", moment.next->target.y);

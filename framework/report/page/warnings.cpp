@@ -78,17 +78,24 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
   }
 }
 
+void warn_of_footprint(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
+  if (!last.footprint || last.footprint->remark.empty()) return;
+  out.push_back(
+      fmt::format("The footprint, {}, says: {}.", recording.config.options.footprint.type, last.footprint->remark));
+}
+
 void warn_of_weights(const Recording& recording, const History& history, std::vector<std::string>& out) {
+  if (!history.moments.back().least_weight) return;
   const auto least = std::min_element(history.moments.begin(), history.moments.end(),
                                       [](const Moment& a, const Moment& b) { return a.least_weight < b.least_weight; });
   const auto most = std::max_element(history.moments.begin(), history.moments.end(),
                                      [](const Moment& a, const Moment& b) { return a.most_weight < b.most_weight; });
   constexpr double kRounding = 1e-6;
-  if (least->least_weight >= -kRounding && most->most_weight <= 1.0 + kRounding) return;
+  if (*least->least_weight >= -kRounding && *most->most_weight <= 1.0 + kRounding) return;
   out.push_back(
       fmt::format("The weight leaves [0, 1]: from {:.2g} after tap {} to {:.2g} after tap {}. It is a regression on "
                   "labels, no probability; {}.",
-                  least->least_weight, least->taps, most->most_weight, most->taps,
+                  *least->least_weight, least->taps, *most->most_weight, most->taps,
                   recording.config.options.weight.clip ? "the strategy sees it clipped (weight.clip)"
                                                        : "weight.clip=true would clip it for the strategy"));
 }
@@ -119,6 +126,7 @@ std::vector<std::string> warnings_of(const Recording& recording, const History& 
   std::vector<std::string> out;
   warn_of_end(recording, last, out);
   warn_of_choices(recording, history, out);
+  warn_of_footprint(recording, last, out);
   warn_of_weights(recording, history, out);
   warn_of_numbers(last, out);
   if (!recording.truth_known()) out.push_back("The truth is not known here: there are no errors to show.");

@@ -28,6 +28,7 @@ void Evidence::take(const Row& row, bool recorded) {
   for (const char* process : kProcesses) {
     if (has(std::string(process) + "signal")) complete.emplace_back(process);
   }
+  if (has("p")) complete.emplace_back("footprint.");
   for (const auto& [name, value] : row.fields) {
     const auto in_name = [&field = name](const std::string& process) { return begins_with(field, process); };
     if (is_null(value) || has(name) || std::any_of(complete.begin(), complete.end(), in_name)) continue;

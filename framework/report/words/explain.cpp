@@ -47,8 +47,12 @@ class Explanation {
     const TapBelief& belief = experiment.belief();
     // All three, so that the choice describes them whatever the strategy reads.
     belief.uncertainty();
-    belief.weight_mean();
     belief.height_mean();
+    if (belief.footprint_is_weight()) {
+      belief.weight_mean();
+    } else {
+      belief.probability();
+    }
     candidate_ = experiment.candidates().nearest(tap_.target.x, tap_.target.y, experiment.scene().area());
     now_ = experiment.choose_next();
     const Evidence evidence(row_, computed_row());
@@ -60,7 +64,8 @@ class Explanation {
     explain_choice(evidence);
     page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
                               counted(contacts_before(), "contact"), hits_before()));
-    if (!evidence.recorded("height_process.signal") && !evidence.recorded("weight_process.signal"))
+    if (!evidence.recorded("height_process.signal") && !evidence.recorded("weight_process.signal") &&
+        !evidence.recorded("p"))
       page_.say("This choice read no model. What the models would have said:");
     if (now_) explain_models(page_, evidence, options_, belief, *now_);
     page_.heading("What was expected and what was found");
@@ -82,8 +87,14 @@ class Explanation {
     // The state is that of any choice now; what is said of a place must be of the recorded one.
     at.target = tap_.target;
     at.uncertainty = belief.uncertainty()(candidate_);
-    at.weight = belief.weight()(candidate_);
-    at.exploration = *at.uncertainty * *at.weight;
+    if (belief.weight_process()) {
+      at.weight = belief.weight()(candidate_);
+      at.exploration = *at.uncertainty * *at.weight;
+    }
+    if (const Footprint* footprint = belief.footprint()) {
+      at.footprint = FootprintState{footprint->numbers(), footprint->remark()};
+      at.probability = belief.probability()(candidate_);
+    }
     at.predicted = Prediction{belief.height_mean()(candidate_), std::sqrt(belief.height_variance()(candidate_))};
     at.score.reset();
     at.ties.reset();
@@ -123,7 +134,7 @@ class Explanation {
         explain_score(evidence, 1.0);  // that of u
         break;
     }
-    explain_place(evidence);
+    explain_place(page_, evidence, options_.footprint.type);
     explain_repeats();
     explain_other_choice();
   }
@@ -248,17 +259,6 @@ class Explanation {
                         : fmt::format("{:.3g} % {}", 100.0 * std::abs(less / score), sense);
     }
     page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second), by));
-  }
-
-  void explain_place(const Evidence& evidence) {
-    const auto u = evidence.number("u");
-    const auto w = evidence.number("w");
-    const auto e = evidence.number("e");
-    if (!u || !w || !e) return;
-    page_.say(fmt::format(
-        "There u = {}{} (how little is known of the height: 0 all, 1 nothing), w = {}{} (what speaks "
-        "for an object: 0 desk, 1 object), e = u w = {}{}.",
-        plain_words(*u), evidence.star("u"), plain_words(*w), evidence.star("w"), plain_words(*e), evidence.star("e")));
   }
 
   void explain_repeats() {

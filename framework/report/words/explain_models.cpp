@@ -174,7 +174,40 @@ void explain_range_of_weight(Page& page, const Evidence& evidence, bool clipped)
   page.say(out + (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
 }
 
+/// Of a footprint that is not the weight: what it is, what it tells of itself, and its remark.
+void explain_footprint(Page& page, const Evidence& evidence, const std::string& type) {
+  const std::string prefix = "footprint.";
+  std::vector<std::string> numbers;
+  for (const std::string& name : evidence.below(prefix)) {
+    if (const auto value = evidence.number(prefix + name))
+      numbers.push_back(
+          fmt::format("{} {}{}", parameter_words(name), plain_words(*value), evidence.star(prefix + name)));
+  }
+  page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
+                       numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
+  if (const std::string remark = evidence.text("footprint.remark"); !remark.empty())
+    page.say(fmt::format("Its remark: {}{}.", remark, evidence.star("footprint.remark")));
+}
+
 }  // namespace
+
+void explain_place(Page& page, const Evidence& evidence, const std::string& footprint) {
+  const auto u = evidence.number("u");
+  if (!u) return;
+  std::string text = fmt::format("There u = {}{} (how little is known of the height: 0 all, 1 nothing)",
+                                 plain_words(*u), evidence.star("u"));
+  if (const auto p = evidence.number("p")) {
+    text += fmt::format(", p = {}{} (the probability that an object is there, by footprint/{})", plain_words(*p),
+                        evidence.star("p"), footprint);
+  }
+  const auto w = evidence.number("w");
+  const auto e = evidence.number("e");
+  if (w && e) {
+    text += fmt::format(", w = {}{} (what speaks for an object: 0 desk, 1 object), e = u w = {}{}", plain_words(*w),
+                        evidence.star("w"), plain_words(*e), evidence.star("e"));
+  }
+  page.say(text + ".");
+}
 
 void explain_models(Page& page, const Evidence& evidence, const ExperimentOptions& options, const TapBelief& belief,
                     const TapRecord& now) {
@@ -189,13 +222,16 @@ void explain_models(Page& page, const Evidence& evidence, const ExperimentOption
       page, evidence,
       {"Height process", "height_process.", true, height_kernel, height_fitting, heights.process, now.height_process});
   explain_deviation(page, evidence);
-  explain_process(page, evidence,
-                  {"Weight process", "weight_process.", false,
-                   weight.kernel && !shared ? *weight.kernel : (shared ? height_kernel : options.kernel),
-                   weight.fitting && !shared ? *weight.fitting : (shared ? height_fitting : options.fitting),
-                   labels.process, now.weight_process},
-                  labels.process == heights.process);
-  explain_range_of_weight(page, evidence, weight.clip);
+  if (labels) {
+    explain_process(page, evidence,
+                    {"Weight process", "weight_process.", false,
+                     weight.kernel && !shared ? *weight.kernel : (shared ? height_kernel : options.kernel),
+                     weight.fitting && !shared ? *weight.fitting : (shared ? height_fitting : options.fitting),
+                     labels.process, now.weight_process},
+                    labels.process == heights.process);
+    explain_range_of_weight(page, evidence, weight.clip);
+  }
+  if (now.footprint) explain_footprint(page, evidence, options.footprint.type);
   if (!belief.two_part()) return;
   explain_process(page, evidence,
                   {"Surface process (of the taps on an object alone, whose level is free)", "surface_process.", true,

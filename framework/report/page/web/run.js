@@ -43,6 +43,7 @@ function story(data, moment, drawn) {
   } else {
     out.push("No candidate is left. ");
   }
+  if (moment.footprint?.remark) out.push(`The footprint, ${data.run.footprint}, says: ${moment.footprint.remark}. `);
   if (moment.least_weight < -1e-6 || moment.most_weight > 1 + 1e-6) {
     out.push(`w leaves [0, 1] here: ${shown(moment.least_weight, 3)} to ${shown(moment.most_weight, 3)}; its colours end at 0 and 1.`);
   }
@@ -121,7 +122,7 @@ function drawRun(data, bytes) {
   document.title = `${run.name} ${run.id} – palpate`;
   const state = run.state === "done" ? `stopped by: ${run.stop_reason}` : run.state;
   const thinned = data.shown.length < data.moments.length ? ` There are maps of ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
-  const strategy = element("p", { class: "sub" }, "id ", run.id, `, seed ${run.seed}, acquisition `, foreign(run.acquisition), ", ", foreign(state), ".");
+  const strategy = element("p", { class: "sub" }, "id ", run.id, `, seed ${run.seed}, acquisition `, foreign(run.acquisition), ", footprint ", foreign(run.footprint), ", ", foreign(state), ".");
   document.body.append(
     element("h1", {}, foreign(run.name)),
     strategy,

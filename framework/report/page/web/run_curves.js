@@ -58,6 +58,8 @@ function curves(data) {
     const lines = names.map((name) => line(name, (m) => hyperparameters(process(kind)(m))[name]));
     out.push({ title: `Hyperparameters, ${label} (SI units)`, axis: "value", logarithmic: true, lines });
   }
+  const told = Object.keys(moments[moments.length - 1].footprint ?? {}).filter((name) => name !== "remark");
+  out.push({ title: `What footprint/${data.run.footprint} tells`, axis: "value", lines: told.map((name) => line(name.replaceAll("_", " "), (m) => m.footprint?.[name])) });
   out.push(timeCurves(data));
   return out
     .map((one) => ({ ...one, lines: one.lines.filter(({ values }) => values.some((value) => value !== null)) }))

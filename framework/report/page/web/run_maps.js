@@ -92,14 +92,17 @@ function marks(data, moment) {
 
 /// The panels over the plane: what each shows, in which colours and range.
 function mapPanels(data, maps) {
-  const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
-  const largest = extent(exploration)[1];
-  const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
-  const panels = [
-    { id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: kUnknown },
-    { id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: kWhere },
-    { id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: kWhere },
-  ];
+  const panels = [{ id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: kUnknown }];
+  if (maps.p) {
+    const title = `Probability p of an object, by footprint/${data.run.footprint}`;
+    panels.push({ id: "p", title, bar: "p", frames: maps.p, range: [0, 1], colours: kWhere });
+  } else {
+    const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
+    const largest = extent(exploration)[1];
+    const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
+    panels.push({ id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: kWhere });
+    panels.push({ id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: kWhere });
+  }
   if (maps.score) {
     const title = `Score of the acquisition, ${data.run.acquisition}`;
     panels.push({ id: "score", title, bar: "score", frames: maps.score, range: extent(maps.score), colours: kWhere });
