@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// The extremes of the footprints: labels all alike, labels that contradict each other at one place, labels without any
+// order, a thousand of each; alone, and in whole runs.
+#include "support/plugins.hpp"
+#include "support/runs.hpp"
+#include "support/sanitizers.hpp"
+#include "support/touches.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+using test::all_probabilities;
+
+constexpr int kMany = test::kSanitized ? 60 : 1000;
+
+const std::vector<std::pair<std::string, std::string>>& footprints() {
+  static const std::vector<std::pair<std::string, std::string>> all{
+      {"classifier", "{kernel: {type: rbf, length_scale: 3 cm}}"},
+      {"shape", "{kernel: {type: rbf, length_scale: 3.5 cm}}"}};
+  return all;
+}
+
+std::vector<Touch> touches_of(const std::string& labels, int count) {
+  if (labels == "all on an object") return test::alike_touches(count, true);
+  if (labels == "all on the desk") return test::alike_touches(count, false);
+  if (labels == "contradictory at one place") return test::contradictory_touches(count);
+  return test::disorderly_touches(count);
+}
+
+class FootprintExtremes : public ::testing::TestWithParam<const char*> {};
+
+/// Seconds that a piece of work takes, for the record; how long is nobody's failure.
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto begun = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+TEST_P(FootprintExtremes, AloneGiveProbabilitiesFromOneTouchToAThousand) {
+  const std::vector<Touch> touches = touches_of(GetParam(), kMany);
+  for (const auto& [name, options] : footprints()) {
+    const auto footprint = test::make<Footprint>(test::shared_host(), name, options);
+    int taken = 0;
+    const double adding = seconds_of([&] {
+      for (const Touch& touch : touches) {
+        footprint->add(touch);
+        ++taken;
+        if (taken != 1 && taken != 10 && taken != 100 && taken != kMany) continue;
+        EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, test::lattice(47, 47)))) << name << taken;
+        const Points touched{{touch.place.x, touch.place.y}};
+        EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, touched))) << name << taken;
+        for (const FootprintNumber& one : footprint->numbers()) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
+      }
+    });
+    RecordProperty(name + "_seconds", fmt::format("{:.2f}", adding));
+    const Eigen::VectorXd last = test::probability_of(*footprint, test::lattice(47, 47));
+    const std::string labels = GetParam();
+    if (labels == "all on an object") {
+      EXPECT_GT(last.mean(), 0.9) << name;
+    }
+    if (labels == "all on the desk") {
+      EXPECT_LT(last.mean(), 0.1) << name;
+    }
+    if (labels == "contradictory at one place") {
+      EXPECT_NEAR(test::probability_of(*footprint, Points{{0.1, 0.12}})(0), 0.5, 0.1) << name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfLabels, FootprintExtremes,
+                         ::testing::Values("all on an object", "all on the desk", "contradictory at one place",
+                                           "without order"),
+                         [](const auto& one) {
+                           std::string name = one.param;
+                           for (char& letter : name) letter = letter == ' ' ? '_' : letter;
+                           return name;
+                         });
+
+/// What a backend answers that reports such labels.
+std::vector<Contact> answers(const std::string& labels, int count) {
+  std::vector<Contact> out;
+  for (const Touch& touch : touches_of(labels, count))
+    out.push_back({Outcome::contact, touch.on ? 0.05 : 0.0, 8.0, 1.0, {}});
+  return out;
+}
+
+/// A run of the loop over such answers, every number of the footprint that it recorded checked.
+void expect_sound_run(const std::string& labels, int taps, std::vector<std::string> words) {
+  words.insert(words.end(), {fmt::format("taps={}", taps), "repeat=allow"});
+  const ResolvedConfig config = test::shipped_config("default.yaml", words);
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<test::ScriptedBackend>(answers(labels, taps)));
+  test::Collector collector;
+  experiment.run(collector);
+  ASSERT_EQ(collector.taps.size(), static_cast<std::size_t>(taps));
+  for (const TapRecord& tap : collector.taps) {
+    EXPECT_TRUE(std::isfinite(tap.score.value_or(0.0))) << tap.number;
+    if (!tap.footprint) continue;
+    EXPECT_TRUE(*tap.probability >= 0.0 && *tap.probability <= 1.0) << tap.number;
+    for (const FootprintNumber& one : tap.footprint->numbers) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
+  }
+  EXPECT_TRUE(all_probabilities(experiment.belief().probability()));
+  EXPECT_TRUE(experiment.belief().height_mean().allFinite());
+}
+
+// All taps go to one place where there is only one candidate.
+const std::vector<std::pair<std::string, std::string>> kRuns{{"all on an object", "candidates.count=47"},
+                                                             {"all on the desk", "candidates.count=47"},
+                                                             {"without order", "candidates.count=47"},
+                                                             {"contradictory at one place", "candidates.count=1"}};
+
+class FootprintRuns : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FootprintRuns, ThatReadItAtEveryTapRecordProbabilities) {
+  for (const auto& [labels, candidates] : kRuns) {
+    SCOPED_TRACE(labels);
+    expect_sound_run(labels, test::kSanitized ? 15 : 80, {std::string("footprint=") + GetParam(), candidates});
+  }
+}
+
+// A strategy that asks for the outline at every tap would have the classifier factorise a thousand matrices of up to a
+// thousand rows: minutes, for what one at the end shows as well.
+void expect_sound_long_run(const std::string& footprint, std::size_t which) {
+  const auto& [labels, candidates] = kRuns.at(which);
+  const double seconds = seconds_of([&, &labels = labels, &candidates = candidates] {
+    expect_sound_run(labels, kMany, {"footprint=" + footprint, candidates, "acquisition=uncertainty"});
+  });
+  testing::Test::RecordProperty("seconds", fmt::format("{:.2f}", seconds));
+}
+
+TEST_P(FootprintRuns, OfAThousandTapsOnTheDeskEndWithProbabilities) { expect_sound_long_run(GetParam(), 1); }
+
+TEST_P(FootprintRuns, OfAThousandContradictoryTapsAtOnePlaceEndWithProbabilities) {
+  expect_sound_long_run(GetParam(), 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, FootprintRuns, ::testing::Values("classifier", "shape"),
+                         [](const auto& one) { return std::string(one.param); });
+
+}  // namespace
+}  // namespace palpate
