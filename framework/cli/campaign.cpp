@@ -42,7 +42,9 @@ int conclude_whole(const Campaign& campaign, const SweepReport& report) {
                                   [](const std::string& key) { return key.substr(0, key.find('.')) == "initial"; });
   const std::vector<std::optional<Row>> summaries = write_results(sweep);
   print_sweep(sweep, sweep_results(sweep, summaries), report, [&](std::size_t job) {
-    return static_cast<int>(varies ? campaign.config_of(job).options.initial.count : config.options.initial.count);
+    const ExperimentOptions options = varies ? campaign.config_of(job).options : config.options;
+    // All taps until the first hit are the search's: its dead starts are those that never hit.
+    return static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
   });
   if (report.interrupted) return kInterrupted;
   const bool all_hold =

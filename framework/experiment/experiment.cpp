@@ -33,8 +33,8 @@ void Experiment::run(Journal& journal, int most_taps) {
 std::optional<TapRecord> Experiment::choose_next() {
   TapRecord tap;
   tap.number = result_.taps + 1;
-  if (result_.taps < static_cast<int>(initial_.size())) {
-    tap.candidate = initial_[static_cast<std::size_t>(result_.taps)];
+  if (starting()) {
+    tap.candidate = search_ ? search_->next(allowed_) : initial_[static_cast<std::size_t>(result_.taps)];
   } else {
     choose_by_score(tap);
     if (tap.candidate < 0) return std::nullopt;
@@ -71,8 +71,9 @@ void Experiment::perform(TapRecord& tap) {
 }
 
 void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
-  belief_.observe(target, contact);
+  belief_.observe(target, contact, source == Source::initial);
   count(contact, source);
+  if (search_) search_->look(target);
   previous_ = target;
   const auto candidate = static_cast<std::size_t>(candidates_.nearest(target.x, target.y, scene_->area()));
   const bool touched = contact.outcome == Outcome::contact;
@@ -85,7 +86,7 @@ std::optional<std::string> Experiment::stop_reason() const {
   if (result_.taps >= budget_) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";
-  if (stop.max_standard_deviation && result_.taps >= options_.initial.count &&
+  if (stop.max_standard_deviation && !starting() &&
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
   }

@@ -4,6 +4,7 @@
 
 #include "experiment/experiment_options.hpp"
 #include "experiment/policy.hpp"
+#include "experiment/search.hpp"
 #include "experiment/tap_belief.hpp"
 #include "experiment/tap_record.hpp"
 
@@ -61,6 +62,9 @@ class Experiment {
 
  private:
   std::optional<std::string> stop_reason() const;
+  /// Whether the next tap is the initial design's. A search is over with the first hit, or when it has looked
+  /// everywhere.
+  bool starting() const;
   void choose_by_score(TapRecord& tap);
   Pick pick_best();
   void describe_state(TapRecord& tap);
@@ -76,7 +80,8 @@ class Experiment {
   std::unique_ptr<const Scene> scene_;
   Context context_;
   Candidates candidates_;
-  std::vector<int> initial_;
+  std::vector<int> initial_;      ///< of a design that counts its taps
+  std::optional<Search> search_;  ///< the other one
   PhaseClock clock_;
   TapBelief belief_;
   std::shared_ptr<Acquisition> acquisition_;

@@ -17,11 +17,17 @@ constexpr double kMostSignal = 1e12;
 }  // namespace
 
 void InitialOptions::list(Fields& fields) {
+  const auto counted = [this](Fields& inner) {
+    inner.integer(count, Field("count", "how many").at_least(1).from("Sun and Min 2021: 3"));
+  };
+  const auto until_hit = [this](Fields& inner) {
+    inner.real(smallest, Field("smallest", "least width of the object that is looked for").in(Unit::metre).above(0));
+  };
   fields.choice(design, Field("design", "how the first taps are spread; always over different candidates"),
-                {{"random", "uniformly, from the seed alone", {}},
-                 {"sobol", "by a Sobol sequence, shifted by the seed", {}},
-                 {"grid", "on a square lattice", {}}});
-  fields.integer(count, Field("count", "how many").at_least(1).from("Sun and Min 2021: 3"));
+                {{"random", "uniformly, from the seed alone", counted},
+                 {"sobol", "by a Sobol sequence, shifted by the seed", counted},
+                 {"grid", "on a square lattice", counted},
+                 {"search", "to find an object in the fewest taps: as many as the first hit takes", until_hit}});
 }
 
 void CandidateOptions::list(Fields& fields) {
@@ -148,7 +154,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.plugin(backend, Field("backend", "what is tapped"));
   fields.section(log, Field("log", "what is written"));
   fields.require(
-      initial.count <= taps, "taps",
+      initial.searches() || initial.count <= taps, "taps",
       fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
   const auto cells = [this](double side) {
     return candidates.spacing ? cells_along(side, *candidates.spacing) : static_cast<double>(*candidates.count);
@@ -158,7 +164,9 @@ void ExperimentOptions::list(Fields& fields) {
   fields.require(
       std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
       fmt::format("cuts the area into {} x {} cells, at most {} a side are possible", columns, rows, kMaxCellsPerSide));
-  fields.require(static_cast<double>(initial.count) <= columns * rows, "initial.count",
+  fields.require(!initial.searches() || initial.smallest < std::min(scene.area.width, scene.area.depth),
+                 "initial.smallest", "is not below the sides of the area, name the least width of the object");
+  fields.require(initial.searches() || static_cast<double>(initial.count) <= columns * rows, "initial.count",
                  fmt::format("{} taps, but there are only {} candidates, take fewer first taps or more candidates",
                              initial.count, columns * rows));
 }

@@ -13,9 +13,11 @@
 namespace palpate {
 
 struct InitialOptions : Options {
-  enum class Design { random, sobol, grid };
+  enum class Design { random, sobol, grid, search };
   Design design = Design::random;
-  std::int64_t count = 3;
+  std::int64_t count = 3;  ///< of all designs but the search
+  double smallest = 0.02;  ///< of the search
+  bool searches() const { return design == Design::search; }
   void list(Fields& fields) override;
 };
 

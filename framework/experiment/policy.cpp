@@ -68,7 +68,7 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
 std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
                                 std::uint64_t seed) {
   const auto count = static_cast<std::size_t>(options.count);
-  if (options.count > candidates.size()) {
+  if (!options.searches() && options.count > candidates.size()) {
     throw Error("initial.count", fmt::format("{} taps, but there are only {} candidates", count, candidates.size()),
                 "take fewer first taps or more candidates");
   }
@@ -83,6 +83,8 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
     case InitialOptions::Design::grid:
       design = draw_lattice(count, candidates, area);
       break;
+    case InitialOptions::Design::search:
+      return {};  // one at a time: see Search
   }
   // A design nearly as fine as the candidates themselves meets some of them twice: the free ones follow in order.
   for (int i = 0; design.size() < count; ++i) {

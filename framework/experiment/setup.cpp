@@ -48,6 +48,8 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),
       allowed_(static_cast<std::size_t>(candidates_.size()), true),
       tapped_(allowed_.size(), false) {
+  if (options.initial.searches())
+    search_.emplace(options.initial.smallest, candidates_, scene_->area(), Random(context_.seed, "initial"));
   belief_.form(acquisition_->product());
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
@@ -61,6 +63,11 @@ Eigen::VectorXd Experiment::scores() const {
   Eigen::VectorXd out(candidates_.size());
   acquisition_->score(belief_, out);
   return out;
+}
+
+bool Experiment::starting() const {
+  if (search_) return !result_.first_hit_tap && result_.taps < candidates_.size();
+  return result_.taps < static_cast<int>(initial_.size());
 }
 
 Pick Experiment::pick_best() {

@@ -72,8 +72,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       posterior_(posterior_settings(options)),
       desk_(context.scene.desk()),
       clip_(options.weight.clip),
-      two_part_(options.surface == ExperimentOptions::Surface::two_part),
-      initial_taps_(static_cast<int>(options.initial.count)) {
+      two_part_(options.surface == ExperimentOptions::Surface::two_part) {
   const HeightOptions& height = options.height;
   const WeightOptions& weight = options.weight;
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
@@ -108,8 +107,9 @@ bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
   return true;
 }
 
-void TapBelief::observe(const Target& place, const Contact& contact) {
+void TapBelief::observe(const Target& place, const Contact& contact, bool initial) {
   ++taps_;
+  initial_taps_ += initial ? 1 : 0;
   if (contact.outcome != Outcome::contact) return;
   const bool on = context_.scene.on_surface(contact.height);
   hits_ += on ? 1 : 0;

@@ -28,9 +28,9 @@ class TapBelief final : public Belief {
   /// `candidates`, `context` and `clock` must outlive the belief.
   TapBelief(const ExperimentOptions& options, const Candidates& candidates, const Context& context, PhaseClock& clock);
 
-  /// Takes a tap to the record of the belief; a process absorbs it when next read. Only contacts reach the models:
-  /// heights above the desk, and labels 1 or 0 by the scene's rule.
-  void observe(const Target& place, const Contact& contact);
+  /// Takes a tap, `initial` if the initial design chose it, to the record of the belief; a process absorbs it when next
+  /// read. Only contacts reach the models: heights above the desk, and labels 1 or 0 by the scene's rule.
+  void observe(const Target& place, const Contact& contact, bool initial = false);
 
   // Belief, for acquisitions.
   const Points& candidates() const override { return candidates_.points; }
@@ -132,7 +132,7 @@ class TapBelief final : public Belief {
   bool two_part_;
   bool joined_ = false;  ///< heights and labels are two outputs of one process
   int taps_ = 0;
-  int initial_taps_;
+  int initial_taps_ = 0;
   int hits_ = 0;
   // Lazily filled by const readers: a belief is used by one thread.
   mutable Model heights_;

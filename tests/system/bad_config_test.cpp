@@ -206,6 +206,12 @@ std::vector<Case> cases() {
       whole("MoreInitialTapsThanCandidates", without("candidates") + "candidates: {count: 1}\ninitial: {count: 2}\n",
             "bad.yaml:10:18: initial.count: 2 taps, but there are only 1 candidates, take fewer first taps or more "
             "candidates"),
+      line("ASearchOfSomeTaps", "initial: {design: search, count: 3}",
+           "bad.yaml:10:27: unknown option 'count', known: design, smallest"),
+      line("ASearchForWhatIsTooLarge", "initial: {design: search, smallest: 23 cm}",
+           "bad.yaml:10:37: initial.smallest: is not below the sides of the area, name the least width of the object"),
+      line("ASearchForNothing", "initial: {design: search, smallest: 0 cm}",
+           "bad.yaml:10:37: initial.smallest: 0 cm is out of range, it must be above 0 m"),
       line("WaveBelowTheDesk", "scene: {objects: [{type: wave, height: 1 cm, amplitude: 2 cm}]}",
            "bad.yaml:10:57: scene.objects.0.amplitude: is larger than the mean height, the top would dip below the "
            "desk"),

@@ -33,6 +33,16 @@ TEST(Replay, FindsEveryNumberEqual) {
   }
 }
 
+TEST(Replay, SearchesAgainWhereTheRunDid) {
+  const TemporaryFolder folder;
+  test::palpate({"run", config("paper/object_ii.yaml"), "--quiet", "initial.design=search", "scene.placement=random",
+                 "scene.objects=[{type: block, length: 4 cm, width: 4 cm, height: 4 cm}]"},
+                folder.path());
+  const Ended ended = test::palpate({"replay", only_run(folder.path() / "runs").string()}, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.out;
+  EXPECT_THAT(ended.out, HasSubstr(" numbers, all equal"));
+}
+
 TEST(Replay, NoticesANumberThatWasTamperedWith) {
   const TemporaryFolder folder;
   test::palpate({"run", config("paper/object_i_right.yaml"), "seed=3", "--quiet"}, folder.path());

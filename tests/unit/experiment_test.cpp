@@ -231,9 +231,19 @@ TEST(Experiment, StrategiesWithEqualSeedsStartAlike) {
 }
 
 TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
-  for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {
-    const ResolvedConfig config =
-        shipped_config("paper/object_i_right.yaml", {std::string("acquisition=") + acquisition, "seed=3"});
+  // The search does not find the cube in the corner with these taps: cut anywhere, the last run is cut in its search.
+  const std::vector<std::vector<std::string>> cases{
+      {"acquisition=random"},
+      {"acquisition=grid"},
+      {"acquisition=uncertainty"},
+      {"acquisition=weighted"},
+      {"initial.design=search"},
+      {"initial.design=search",
+       "scene.objects=[{type: block, length: 2 cm, width: 2 cm, height: 2 cm, at: [2 cm, 2 cm]}]"}};
+  for (const std::vector<std::string>& words : cases) {
+    std::vector<std::string> overrides = words;
+    overrides.emplace_back("seed=3");
+    const ResolvedConfig config = shipped_config("paper/object_i_right.yaml", overrides);
     Experiment whole(config.options, test::shared_host(), nullptr);
     Collector unbroken;
     whole.run(unbroken);
@@ -248,7 +258,7 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
       ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
       for (std::size_t i = 0; i < rest.taps.size(); ++i) {
         EXPECT_EQ(rest.taps[i].candidate, unbroken.taps[cut + i].candidate)
-            << acquisition << " cut " << cut << " tap " << i;
+            << words.back() << " cut " << cut << " tap " << i;
         EXPECT_EQ(rest.taps[i].score, unbroken.taps[cut + i].score);
         EXPECT_EQ(rest.taps[i].contact.seconds, unbroken.taps[cut + i].contact.seconds);
       }

@@ -106,6 +106,15 @@ TEST(ResolvedConfig, RefusesMoreInitialTapsThanCandidates) {
   EXPECT_EQ(refused_config({"candidates.count=2", "initial.count=4"}), "accepted");
 }
 
+TEST(ResolvedConfig, TakesASearchInPlaceOfCountedTaps) {
+  EXPECT_EQ(refused_config({"initial.design=search"}), "accepted") << "the count of the config goes with its design";
+  EXPECT_EQ(refused_config({"initial.design=search", "taps=1"}), "accepted") << "it ends when the budget does";
+  EXPECT_EQ(refused_config({"initial.design=search", "initial.smallest=22.9 cm"}), "accepted");
+  EXPECT_EQ(refused_config({"initial.design=search", "initial.smallest=23 cm"}),
+            "command line: initial.smallest: is not below the sides of the area, name the least width of the object");
+  EXPECT_EQ(refused_config({"initial.smallest=1 cm"}), "command line: unknown option 'smallest', known: design, count");
+}
+
 TEST(Slug, KeepsLettersDigitsAndThreeSigns) { EXPECT_EQ(slug("Object_I-2.b"), "Object_I-2.b"); }
 
 TEST(Slug, PutsOneDashForAllElse) { EXPECT_EQ(slug("a /\\ b\nc"), "a-b-c"); }

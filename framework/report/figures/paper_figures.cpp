@@ -74,11 +74,13 @@ std::string key_of(const Progress& progress, std::size_t column) {
 Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations) {
   const ExperimentOptions& options = recording.config.options;
   const int all = static_cast<int>(recording.taps.size());
+  const auto initial = static_cast<int>(std::count_if(
+      recording.taps.begin(), recording.taps.end(), [](const PastTap& tap) { return tap.source == Source::initial; }));
   Playback playback(workshop, recording);
   std::vector<int> shown;
   std::vector<int> taps;
   for (const int one : iterations) {
-    const int at = taps_at(one, static_cast<int>(options.initial.count), all);
+    const int at = taps_at(one, initial, all);
     if (!taps.empty() && at == taps.back()) break;  // beyond the end there is but one last tap
     shown.push_back(one);
     taps.push_back(at);

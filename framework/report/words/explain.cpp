@@ -140,6 +140,13 @@ class Explanation {
   }
 
   void explain_design() {
+    if (options_.initial.searches()) {
+      page_.say(
+          fmt::format("It is tap {} of the search for an object, before any model has a say: the place where most "
+                      "of what nobody has looked at yet could be hidden (seed {}).",
+                      number_, options_.seed));
+      return;
+    }
     const char* how = "";
     switch (options_.initial.design) {
       case InitialOptions::Design::random:
@@ -150,6 +157,8 @@ class Explanation {
         break;
       case InitialOptions::Design::grid:
         how = "grid: a lattice over the area";
+        break;
+      case InitialOptions::Design::search:
         break;
     }
     page_.say(fmt::format("It is initial tap {} of {}, placed by the design before any model has a say ({}, seed {}).",

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Where to look for an object of which nothing is known but how small it may be: the initial design `search`.
+#pragma once
+
+#include "gp/candidates.hpp"
+
+#include <palpate/random.hpp>
+#include <palpate/scene.hpp>
+#include <palpate/types.hpp>
+
+#include <vector>
+
+namespace palpate {
+
+/// A greedy search. Some thousand discs, each a place where the object could be hidden, are drawn; the next tap goes
+/// where most of them are, and those that hold it drop out. Of places that as many hold, as of all once no disc is
+/// left, it takes the middle of the largest gap: the one farthest from all taps and from the edge of the area.
+///
+/// Diameters run from the smallest object to the area's shorter side, uniformly in their logarithms: of the smallest
+/// alone, the search would comb the area in narrow rows and meet a large object late; the large discs send the first
+/// taps to the middle, where there is most of every object that must fit into the area. Discs do for boxes and rods:
+/// outlines of all angles and proportions find none of them sooner by more than the noise of 1000 placements.
+///
+/// Whoever misses in the same places is sent to the same next one: its state is the seed and the places looked at.
+class Search {
+ public:
+  /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
+  Search(double smallest, const Candidates& candidates, const Area& area, Random random);
+
+  /// There was a tap that hit nothing. One that failed counts, too: where the arm cannot go it need not try the
+  /// neighbours at once, and the discs beside it stay.
+  void look(const Target& place);
+
+  /// The candidate to tap next, one of the `allowed`; of equals the first. At least one must be allowed.
+  int next(const std::vector<bool>& allowed) const;
+
+ private:
+  struct Disc {
+    double x, y, radius;
+  };
+
+  /// How many discs hold each candidate.
+  std::vector<int> counts() const;
+  /// Radius of the largest disc around a place that lies on the area and has no tap in it.
+  double room(const Target& place) const;
+
+  const Candidates& candidates_;
+  Area area_;
+  std::vector<Disc> discs_;  ///< in which nobody has looked
+  std::vector<Target> looked_;
+};
+
+}  // namespace palpate

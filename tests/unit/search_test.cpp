@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// The initial design `search`: where it looks, when it ends, and that it is no worse for what happens on the way.
+#include "experiment/search.hpp"
+#include "support/runs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace palpate {
+namespace {
+
+using test::Collector;
+using test::ScriptedBackend;
+using test::shipped_config;
+
+const Area kArea{0.23, 0.23};
+
+Contact desk() { return {Outcome::contact, 0.0, 8.0, 1.0, {}}; }
+Contact object() { return {Outcome::contact, 0.05, 8.0, 1.0, {}}; }
+Contact refused() { return {Outcome::unreachable, 0.0, 0.0, 0.0, "because the test says so"}; }
+
+/// The first `count` places of a search that meets nothing.
+std::vector<int> sequence(double smallest, const Candidates& candidates, std::uint64_t seed, int count) {
+  Search search(smallest, candidates, kArea, Random(seed, "initial"));
+  std::vector<int> out;
+  for (int i = 0; i < count; ++i) {
+    out.push_back(search.next(std::vector<bool>(static_cast<std::size_t>(candidates.size()), true)));
+    search.look(candidates.target(out.back()));
+  }
+  return out;
+}
+
+/// Taps until a `length` x `width` box was hit, drawn anywhere on the area: the mean over `boxes`, whatever the tap.
+template <class Sequence>
+double mean_first_hit(double length, double width, const Candidates& candidates, const Sequence& places_of) {
+  constexpr int kBoxes = 300;
+  double sum = 0.0;
+  for (int i = 0; i < kBoxes; ++i) {
+    const std::vector<int> places = places_of(static_cast<std::uint64_t>(i % 20));
+    Random random(static_cast<std::uint64_t>(i), "search_test/box");
+    double x, y, c, s;
+    do {
+      x = kArea.width * random.uniform();
+      y = kArea.depth * random.uniform();
+      const double angle = 3.14159265358979 * random.uniform();
+      c = std::cos(angle);
+      s = std::sin(angle);
+    } while (std::min(x, kArea.width - x) < 0.5 * (std::abs(c) * length + std::abs(s) * width) ||
+             std::min(y, kArea.depth - y) < 0.5 * (std::abs(s) * length + std::abs(c) * width));
+    const auto hit = std::find_if(places.begin(), places.end(), [&](int place) {
+      const Target at = candidates.target(place);
+      return std::abs(c * (at.x - x) + s * (at.y - y)) <= 0.5 * length &&
+             std::abs(c * (at.y - y) - s * (at.x - x)) <= 0.5 * width;
+    });
+    sum += static_cast<double>(hit - places.begin()) + 1.0;
+  }
+  return sum / kBoxes;
+}
+
+TEST(Search, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanChance) {
+  const Candidates candidates = grid_by_count(kArea, 47);
+  std::vector<std::vector<int>> searches;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) searches.push_back(sequence(0.02, candidates, seed, 60));
+  const auto searched = [&](std::uint64_t seed) { return searches[seed]; };
+  const auto drawn = [&](std::uint64_t seed) {
+    InitialOptions options;
+    options.count = 60;
+    return initial_design(options, candidates, kArea, seed);
+  };
+  EXPECT_LE(mean_first_hit(0.16, 0.06, candidates, searched), 2.5);
+  EXPECT_LE(mean_first_hit(0.03, 0.03, candidates, searched), 0.8 * mean_first_hit(0.03, 0.03, candidates, drawn));
+  EXPECT_LE(mean_first_hit(0.12, 0.02, candidates, searched), 0.6 * mean_first_hit(0.12, 0.02, candidates, drawn));
+}
+
+TEST(Search, TakesThePlaceThatMostDiscsHold) {
+  // The discs anew, from the same stream by the rule of the header, and counted one by one.
+  const double smallest = 0.04;
+  const Candidates candidates = grid_by_spacing({0.23, 0.10}, 0.01);
+  const Area area{0.23, 0.10};
+  Random random(9, "initial");
+  std::vector<std::array<double, 3>> discs;
+  for (int i = 0; i < 4000; ++i) {
+    const double radius = smallest / 2 * std::pow(0.10 / smallest, random.uniform());
+    const double x = radius + (area.width - 2 * radius) * random.uniform();
+    const double y = radius + (area.depth - 2 * radius) * random.uniform();
+    discs.push_back({x, y, radius});
+  }
+  Search search(smallest, candidates, area, Random(9, "initial"));
+  const std::vector<bool> all(static_cast<std::size_t>(candidates.size()), true);
+  for (int tap = 0; tap < 12; ++tap) {
+    std::vector<int> held(all.size(), 0);
+    const auto holds = [&](const std::array<double, 3>& disc, int i) {
+      return std::hypot(candidates.target(i).x - disc[0], candidates.target(i).y - disc[1]) <= disc[2];
+    };
+    for (int i = 0; i < candidates.size(); ++i) {
+      for (const auto& disc : discs) held[static_cast<std::size_t>(i)] += holds(disc, i) ? 1 : 0;
+    }
+    const int most = *std::max_element(held.begin(), held.end());
+    const int next = search.next(all);
+    ASSERT_GT(most, 0);
+    ASSERT_EQ(held[static_cast<std::size_t>(next)], most) << "tap " << tap + 1;
+    search.look(candidates.target(next));
+    discs.erase(std::remove_if(discs.begin(), discs.end(), [&](const auto& disc) { return holds(disc, next); }),
+                discs.end());
+  }
+}
+
+TEST(Search, GoesIntoTheLargestGapOnceNoDiscIsLeft) {
+  // Objects of 22 cm and more hold the middle of the area: one tap there, and only what is smaller can be left.
+  const Candidates candidates = grid_by_count(kArea, 23);
+  const std::vector<int> places = sequence(0.22, candidates, 1, 6);
+  std::vector<Target> taps{candidates.target(places[0])};
+  EXPECT_DOUBLE_EQ(taps[0].x, 0.115);
+  EXPECT_DOUBLE_EQ(taps[0].y, 0.115);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const auto room = [&](const Target& at) {
+      double out = std::min({at.x, 0.23 - at.x, at.y, 0.23 - at.y});
+      for (const Target& tap : taps) out = std::min(out, std::hypot(at.x - tap.x, at.y - tap.y));
+      return out;
+    };
+    double most = 0.0;
+    for (int j = 0; j < candidates.size(); ++j) most = std::max(most, room(candidates.target(j)));
+    EXPECT_DOUBLE_EQ(room(candidates.target(places[i])), most) << "tap " << i + 1;
+    taps.push_back(candidates.target(places[i]));
+  }
+}
+
+TEST(Search, LooksEverywhereOnceAndOnlyWhereItMay) {
+  const Candidates candidates = grid_by_count(kArea, 6);
+  const std::vector<int> places = sequence(0.02, candidates, 4, candidates.size());
+  EXPECT_EQ(std::set<int>(places.begin(), places.end()).size(), 36U);
+  Search search(0.02, candidates, kArea, Random(4, "initial"));
+  std::vector<bool> allowed(36, true);
+  allowed[static_cast<std::size_t>(places[0])] = false;
+  EXPECT_NE(search.next(allowed), places[0]);
+}
+
+TEST(InitialSearch, EndsWithTheFirstHitAndLeavesTheRestToTheAcquisition) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"initial.design=search", "taps=8"});
+  const auto backend = std::make_shared<ScriptedBackend>(
+      std::vector<Contact>{desk(), desk(), refused(), desk(), object(), desk(), desk(), desk()});
+  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
+  Collector collector;
+  experiment.run(collector);
+  ASSERT_EQ(collector.taps.size(), 8U);
+  std::set<int> places;
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(collector.taps[i].source, i < 5 ? Source::initial : Source::acquisition) << "tap " << i + 1;
+    places.insert(collector.taps[i].candidate);
+  }
+  EXPECT_EQ(places.size(), 8U);
+  EXPECT_EQ(experiment.belief().initial_taps(), 5);
+  EXPECT_EQ(*experiment.counts().first_hit_tap, 5);
+  const std::vector<int> expected = sequence(0.02, experiment.candidates(), config.options.seed, 5);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(collector.taps[i].candidate, expected[i]) << "a failed tap was a look";
+}
+
+TEST(InitialSearch, ThatMeetsNothingSpendsTheBudgetOrLooksEverywhere) {
+  const ResolvedConfig config =
+      shipped_config("paper/object_i.yaml", {"initial.design=search", "taps=12", "candidates.count=3", "repeat=allow"});
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
+  Collector collector;
+  experiment.run(collector);
+  ASSERT_EQ(collector.taps.size(), 12U);
+  std::set<int> places;
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(collector.taps[i].source, Source::initial);
+    places.insert(collector.taps[i].candidate);
+  }
+  EXPECT_EQ(places.size(), 9U);
+  EXPECT_NE(collector.taps[9].source, Source::initial) << "it has looked everywhere";
+  EXPECT_EQ(experiment.counts().stop_reason, "tap budget");
+}
+
+TEST(InitialSearch, StopsForADeviationOnlyOnceItIsOver) {
+  const ResolvedConfig config =
+      shipped_config("paper/object_i.yaml", {"initial.design=search", "stop.max_standard_deviation=100 m"});
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<ScriptedBackend>(std::vector<Contact>{desk(), desk(), object()}));
+  Collector collector;
+  experiment.run(collector);
+  EXPECT_EQ(experiment.counts().stop_reason, "max_standard_deviation");
+  EXPECT_EQ(experiment.counts().taps, 3);
+}
+
+}  // namespace
+}  // namespace palpate
