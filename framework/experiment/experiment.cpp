@@ -70,17 +70,6 @@ void Experiment::perform(TapRecord& tap) {
   absorb(tap.target, tap.contact, tap.source);
 }
 
-void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
-  belief_.observe(target, contact, source == Source::initial);
-  count(contact, source);
-  if (search_) search_->look(target);
-  previous_ = target;
-  const auto candidate = static_cast<std::size_t>(candidates_.nearest(target.x, target.y, scene_->area()));
-  const bool touched = contact.outcome == Outcome::contact;
-  if (touched) tapped_[candidate] = true;
-  if (!touched || options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
-}
-
 std::optional<std::string> Experiment::stop_reason() const {
   if (context_.interrupted != nullptr && context_.interrupted->load()) return "interrupted";
   if (result_.taps >= budget_) return "tap budget";
@@ -89,6 +78,10 @@ std::optional<std::string> Experiment::stop_reason() const {
   if (stop.max_standard_deviation && !starting() &&
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
+  }
+  if (stop.expected_rmse && result_.taps >= options_.initial.count &&
+      good_enough(forecaster_->forecast(belief_), *stop.expected_rmse, stop.unsearched)) {
+    return "expected_rmse";
   }
   return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "experiment/experiment_options.hpp"
+#include "experiment/forecast.hpp"
 #include "experiment/policy.hpp"
 #include "experiment/search.hpp"
 #include "experiment/tap_belief.hpp"
@@ -84,6 +85,7 @@ class Experiment {
   std::optional<Search> search_;  ///< the other one
   PhaseClock clock_;
   TapBelief belief_;
+  std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
   std::shared_ptr<Acquisition> acquisition_;
   std::shared_ptr<Backend> backend_;
 

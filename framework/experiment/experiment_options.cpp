@@ -93,6 +93,18 @@ void StopOptions::list(Fields& fields) {
             "stop when no candidate's height is less certain than this, all taps seen; builds the height process")
           .in(Unit::metre)
           .above(0));
+  fields.real(expected_rmse,
+              Field("expected_rmse",
+                    "stop when the error of the reconstructed scene, desk included, is most probably below this; never "
+                    "before an object is touched; builds what the reconstruction needs")
+                  .in(Unit::metre)
+                  .above(0));
+  fields.real(unsearched,
+              Field("unsearched",
+                    "for expected_rmse, at most this share of the area may lie farther than 3 cm from every "
+                    "tap; 1 where there surely is one object alone, of an outline that the footprint knows")
+                  .at_least(0)
+                  .at_most(1));
   fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
 }
 

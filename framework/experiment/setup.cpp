@@ -51,12 +51,28 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates_, scene_->area(), Random(context_.seed, "initial"));
   belief_.form(acquisition_->product());
+  if (options_.stop.expected_rmse) forecaster_.emplace(candidates_);
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
 
 void Experiment::resume(const std::vector<PastTap>& past) {
   for (const PastTap& tap : past) absorb(tap.target, tap.contact, tap.source);
+}
+
+void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
+  belief_.observe(target, contact, source == Source::initial);
+  count(contact, source);
+  if (search_) search_->look(target);
+  previous_ = target;
+  const auto candidate = static_cast<std::size_t>(candidates_.nearest(target.x, target.y, scene_->area()));
+  const bool touched = contact.outcome == Outcome::contact;
+  if (touched) tapped_[candidate] = true;
+  if (touched && forecaster_) {
+    const bool hit = scene_->on_surface(contact.height);
+    forecaster_->observe(target, hit ? std::optional(contact.height - belief_.desk()) : std::nullopt);
+  }
+  if (!touched || options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
 }
 
 Eigen::VectorXd Experiment::scores() const {
@@ -126,6 +142,7 @@ const Truth* Experiment::truth() {
 
 void Experiment::describe_state(TapRecord& tap) {
   const PhaseClock::Scope log(clock_, Phase::log);
+  if (forecaster_) tap.forecast = forecaster_->forecast(belief_);
   if (const TapBelief::Quantity height = belief_.height_process()) {
     tap.uncertainty = belief_.uncertainty()(tap.candidate);
     const Eigen::VectorXd& variance = belief_.all_taps_variance();
@@ -155,6 +172,7 @@ void Experiment::describe_state(TapRecord& tap) {
 
 RunResult Experiment::result() {
   RunResult out = result_;
+  if (forecaster_) out.forecast = forecaster_->forecast(belief_);
   out.interrupted = out.stop_reason == "interrupted";
   if (const Truth* known = truth()) {
     out.errors = final_errors(belief_, *known);

@@ -2,6 +2,7 @@
 // What one tap leaves behind, and what a whole run does.
 #pragma once
 
+#include "experiment/forecast.hpp"
 #include "experiment/metrics.hpp"
 #include "experiment/phases.hpp"
 
@@ -58,6 +59,7 @@ struct TapRecord {
   std::optional<ProcessState> height_process, weight_process;
   std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
+  std::optional<Forecast> forecast;  ///< where a stop rule asks for it
   Errors errors;
 
   std::optional<Prediction> predicted;  ///< of the height at the target; only for a backend that wants it
@@ -77,6 +79,7 @@ struct RunResult {
   int off_surface_taps = 0;
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
+  std::optional<Forecast> forecast;  ///< where a stop rule asks for it
   Errors errors;
   Calibration calibration;
   double robot_seconds = 0.0;

@@ -333,18 +333,19 @@ int Process::variances_clamped() const {
   return static_cast<int>(clamped);
 }
 
+double Process::misfit(int output) const {
+  const auto reduced = reduced_.col(output).head(factor_.size());
+  if (!with_constant()) return reduced.squaredNorm();
+  const double common = reduced_.col(targets_.cols()).head(factor_.size()).dot(reduced);
+  return reduced.squaredNorm() - common * common / constant_precision();
+}
+
 double Process::log_marginal_likelihood(int output) const {
   const int n = factor_.size();
   if (n == 0) return 0.0;
-  const auto reduced = reduced_.col(output).head(n);
-  double square = reduced.squaredNorm();
   double log_determinant = factor_.log_determinant();
-  if (with_constant()) {
-    const double common = reduced_.col(targets_.cols()).head(n).dot(reduced);
-    square -= common * common / constant_precision();
-    log_determinant += std::log(constant_precision() * prior_of_constant());
-  }
-  return -0.5 * (square + log_determinant + n * kLogTwoPi) - n * std::log(outputs_at(output).signal);
+  if (with_constant()) log_determinant += std::log(constant_precision() * prior_of_constant());
+  return -0.5 * (misfit(output) + log_determinant + n * kLogTwoPi) - n * std::log(outputs_at(output).signal);
 }
 
 }  // namespace palpate

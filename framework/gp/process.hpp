@@ -85,6 +85,11 @@ class Process final : public Scores {
   /// log p(targets), natural logarithm, targets in their unit. 0 without taps.
   double log_marginal_likelihood(int output = 0) const;
 
+  /// r^T K^-1 r of the standardised targets r of an output, an unknown constant integrated out: about the number of
+  /// taps (less one for the constant) where the signal is that of the data, and by the ratio of variances more or less
+  /// where it is not. 0 without taps.
+  double misfit(int output = 0) const;
+
   /// The variance added to the diagonal by need, square of the unit of the targets.
   double jitter(int output = 0) const { return jitter_ * outputs_at(output).signal * outputs_at(output).signal; }
   /// How often jitter was raised, and how often pivoting was the last resort.

@@ -113,6 +113,7 @@ Row summary_row(const ResolvedConfig& config, const RunResult& result, const std
   add("weight_process", result.weight_process);
   if (result.surface_process) add("surface_process", result.surface_process);
   add_footprint(row, result.footprint);
+  add_forecast(row, result.forecast);
   row.add("peak_rss_bytes", peak_rss_bytes());
   return row;
 }

@@ -52,6 +52,7 @@ void add_state(Row& row, const TapRecord& tap) {
   add_process(row, "weight_process", tap.weight_process);
   if (tap.surface_process) add_process(row, "surface_process", tap.surface_process);
   add_footprint(row, tap.footprint);
+  add_forecast(row, tap.forecast);
   row.add("true_on_surface", tap.true_on_surface);
   row.add("rmse_m", tap.errors.rmse);
   row.add("rmse_on_surface_m", tap.errors.rmse_on_surface);
@@ -110,6 +111,12 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
   if (!state) return;
   for (const FootprintNumber& one : state->numbers) row.add("footprint." + one.name, one.value);
   row.add("footprint.remark", state->remark.empty() ? std::nullopt : std::optional(state->remark));
+}
+
+void add_forecast(Row& row, const std::optional<Forecast>& forecast) {
+  if (!forecast) return;
+  row.add("expected_rmse_m", forecast->rmse);
+  row.add("unsearched", forecast->unsearched);
 }
 
 const char* outcome_name(Outcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }

@@ -155,6 +155,7 @@ void Particles::move(Particle& particle) {
   // many mistakes are allowed, and most outlines are given up before all labels are looked at: the latest are the
   // nearest to the edge.
   const double allowed = particle.mistakes + std::log(proposal.correction / (1.0 - random_.uniform())) / log_odds_;
+  if (allowed < 0.0) return;
   int mistakes = 0;
   for (auto label = labels_.rbegin(); label != labels_.rend(); ++label) {
     mistakes += proposal.outline.contains(label->place.x, label->place.y) != label->on ? 1 : 0;

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// `stop.expected_rmse` as a user meets it.
+#include "support/support.hpp"
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+#include <string>
+
+namespace palpate {
+namespace {
+
+using test::config;
+using test::Ended;
+using test::only_run;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+
+namespace fs = std::filesystem;
+
+TEST(Stop, AtTheExpectedErrorIsInTheRecordAndReplayed) {
+  const TemporaryFolder folder;
+  const Ended run = test::palpate(
+      {"run", config("default.yaml"), "scene=dome", "taps=60", "stop.expected_rmse=1.5 cm", "--quiet"}, folder.path());
+  ASSERT_EQ(run.status, 0) << run.err;
+  const fs::path directory = only_run(folder.path() / "runs");
+  const nlohmann::json summary = nlohmann::json::parse(text_of(directory / "summary.json"));
+  EXPECT_EQ(summary["stop_reason"], "expected_rmse");
+  EXPECT_LT(summary["taps"], 60);
+  EXPECT_LT(summary["expected_rmse_m"], 0.015);
+  EXPECT_LE(summary["unsearched"], 0.5);
+
+  std::istringstream taps(text_of(directory / "taps.jsonl"));
+  double before = 1.0;
+  for (std::string line; std::getline(taps, line);) {
+    const nlohmann::json tap = nlohmann::json::parse(line);
+    ASSERT_TRUE(tap.contains("expected_rmse_m"));
+    EXPECT_EQ(tap["expected_rmse_m"].is_null(), tap["tap"] <= summary["first_hit_tap"]);
+    EXPECT_LE(tap["unsearched"], before);
+    before = tap["unsearched"];
+  }
+  EXPECT_LT(before, 1.0);
+
+  const Ended replay = test::palpate({"replay", directory.string()}, folder.path());
+  EXPECT_THAT(replay.out, MatchesRegex("[0-9]+ taps, [0-9]+ numbers, all equal\n")) << replay.err;
+}
+
+TEST(Stop, AddsNothingToTheRecordOfOtherRuns) {
+  const TemporaryFolder folder;
+  test::palpate({"run", config("default.yaml"), "taps=5", "--quiet"}, folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  for (const char* file : {"taps.jsonl", "taps.csv", "summary.json"})
+    EXPECT_THAT(text_of(directory / file), Not(HasSubstr("expected_rmse_m"))) << file;
+}
+
+TEST(Stop, RefusesBoundsThatMeanNothing) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& word) {
+    const Ended ended = test::palpate({"run", config("default.yaml"), word}, folder.path());
+    EXPECT_EQ(ended.status, 2) << word;
+    return ended.err;
+  };
+  EXPECT_EQ(refusal("stop.expected_rmse=0 cm"),
+            "command line: stop.expected_rmse: 0 cm is out of range, it must be above 0 m\n");
+  EXPECT_EQ(refusal("stop.expected_rmse=1"),
+            "command line: stop.expected_rmse: '1' lacks its unit, write a length like '1.7 cm'\n");
+  EXPECT_EQ(refusal("stop.expected_rmse=1 s"),
+            "command line: stop.expected_rmse: '1 s' is a time, not a length, write a length like '1.7 cm'\n");
+  EXPECT_EQ(refusal("stop.unsearched=1.5"),
+            "command line: stop.unsearched: 1.5 is out of range, it must be at most 1\n");
+  EXPECT_EQ(refusal("stop.expected_rms=1 cm"),
+            "command line: unknown option 'expected_rms', did you mean 'expected_rmse'?\n");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// What error is expected, and whether a run that stops for it was right to.
+#include "experiment/forecast.hpp"
+#include "support/runs.hpp"
+#include "support/stopping.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <random>
+
+namespace palpate {
+namespace {
+
+using test::Collector;
+using test::ScriptedBackend;
+using test::shipped_config;
+
+TEST(ExpectedSquare, IsTheMeanOverScenesDrawnFromTheBelief) {
+  const Eigen::VectorXd probability = (Eigen::VectorXd(6) << 0.0, 0.2, 0.499, 0.5, 0.8, 1.0).finished();
+  const Eigen::VectorXd mean = (Eigen::VectorXd(6) << 9.0, 7.0, -2.0, 3.0, 5.0, 4.0).finished();
+  const Eigen::VectorXd variance = (Eigen::VectorXd(6) << 4.0, 9.0, 1.0, 0.5, 0.0, 2.0).finished();
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform;
+  std::normal_distribution<double> normal;
+  constexpr int kScenes = 400000;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int scene = 0; scene < kScenes; ++scene) {
+    double error = 0.0;
+    for (Eigen::Index i = 0; i < mean.size(); ++i) {
+      const bool on = uniform(generator) < probability(i);
+      const double truth = on ? mean(i) + std::sqrt(variance(i)) * normal(generator) : 0.0;
+      const double reconstructed = probability(i) < 0.5 ? 0.0 : mean(i);
+      error += (reconstructed - truth) * (reconstructed - truth) / 6.0;
+    }
+    sum += error;
+    squares += error * error;
+  }
+  const double drawn = sum / kScenes;
+  const double standard_error = std::sqrt((squares / kScenes - drawn * drawn) / kScenes);
+  EXPECT_NEAR(expected_square(probability, mean, variance), drawn, 4 * standard_error);
+  EXPECT_LT(standard_error, 0.02 * drawn);
+}
+
+/// Heights at five places, of a process with an rbf kernel and, where `level` > 0, a level as uncertain.
+struct Bench {
+  Bench(double signal, double level)
+      : config(shipped_config("default.yaml", {"kernel.length_scale=3 cm"})),
+        candidates(grid_by_count({0.23, 0.23}, 5)),
+        scene(build_scene(config.options.scene, 1, test::shared_host())),
+        context{test::shared_host(), *scene, 1, nullptr, {}},
+        process(context.create<Kernel>(config.options.kernel), {signal, 1e-4 * signal, 0.0, level}, candidates) {
+    for (Eigen::Index i = 0; i < 5; ++i) process.add({places(i, 0), places(i, 1)}, heights(i));
+  }
+  const Points places = (Points(5, 2) << 0.05, 0.05, 0.07, 0.05, 0.09, 0.06, 0.06, 0.1, 0.1, 0.1).finished();
+  const Eigen::VectorXd heights = (Eigen::VectorXd(5) << 0.05, 0.055, 0.04, 0.06, 0.05).finished();
+  ResolvedConfig config;
+  Candidates candidates;
+  std::unique_ptr<const Scene> scene;
+  Context context;
+  Process process;
+};
+
+TEST(VarianceRatio, IsTheLikeliestOneWithTheHeightItselfForOneMoreTap) {
+  const Bench bench(1.0, 1000.0);
+  Eigen::MatrixXd covariance(5, 5);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    for (Eigen::Index j = 0; j < 5; ++j)
+      covariance(i, j) = std::exp(-0.5 * (bench.places.row(i) - bench.places.row(j)).squaredNorm() / (0.03 * 0.03)) +
+                         (i == j ? 1e-8 : 0.0);
+  }
+  // The level by generalised least squares, which a level of a thousand signals comes down to.
+  const Eigen::MatrixXd inverse = covariance.inverse();
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(5);
+  const double level = ones.dot(inverse * bench.heights) / ones.dot(inverse * ones);
+  const Eigen::VectorXd rest = bench.heights - level * ones;
+  const double square = bench.heights.squaredNorm() / 5;
+  const double wanted = (square + rest.dot(inverse * rest)) / 5;
+  EXPECT_NEAR(variance_ratio(bench.process, square), wanted, 1e-5 * wanted);
+
+  const Bench known(1.0, 0.0);
+  const double without = (square + bench.heights.dot(inverse * bench.heights)) / 6;
+  EXPECT_NEAR(variance_ratio(known.process, square), without, 1e-5 * without);
+}
+
+TEST(VarianceRatio, MakesTheSignalOfTheConfigAConvention) {
+  const Bench large(1.0, 1000.0);
+  const Bench small(0.02, 1000.0);
+  const Eigen::VectorXd a = large.process.variance() * variance_ratio(large.process, 0.0025);
+  const Eigen::VectorXd b = small.process.variance() * variance_ratio(small.process, 0.0025);
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-5 * a.maxCoeff());
+}
+
+TEST(GoodEnough, WantsAnExpectationAMarginAndASearchedArea) {
+  EXPECT_TRUE(good_enough({0.01 / kCaution, 0.5}, 0.01, 0.5));
+  EXPECT_FALSE(good_enough({0.0101 / kCaution, 0.5}, 0.01, 0.5));
+  EXPECT_FALSE(good_enough({0.0, 0.51}, 0.01, 0.5));
+  EXPECT_FALSE(good_enough({std::nullopt, 0.0}, 0.01, 1.0));
+}
+
+TEST(Forecaster, CountsTheCandidatesThatNoContactIsNear) {
+  const Candidates candidates = grid_by_count({0.2, 0.2}, 10);  // centres 1, 3, 5 ... cm
+  const Bench bench(1.0, 0.0);
+  PhaseClock clock;
+  const TapBelief belief(bench.config.options, candidates, bench.context, clock);
+  Forecaster forecaster(candidates);
+  EXPECT_EQ(forecaster.forecast(belief).unsearched, 1.0);
+  forecaster.observe({0.11, 0.11}, std::nullopt);  // at most 3 cm off: itself, four at 2 cm, four at 2.8 cm
+  EXPECT_NEAR(forecaster.forecast(belief).unsearched, 0.91, 1e-12);
+  forecaster.observe({0.11, 0.11}, std::nullopt);
+  EXPECT_NEAR(forecaster.forecast(belief).unsearched, 0.91, 1e-12);
+  forecaster.observe({0.01, 0.01}, std::nullopt);  // in a corner: itself, two and one
+  EXPECT_NEAR(forecaster.forecast(belief).unsearched, 0.87, 1e-12);
+  EXPECT_FALSE(forecaster.forecast(belief).rmse.has_value());
+}
+
+TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
+  const ResolvedConfig config =
+      shipped_config("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "stop.unsearched=1"});
+  std::vector<Contact> answers(20, Contact{Outcome::contact, 0.0, 8.0, 1.0, {}});
+  answers.push_back({Outcome::contact, 0.05, 8.0, 1.0, {}});
+  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
+  Collector collector;
+  experiment.run(collector);
+  EXPECT_EQ(collector.taps.size(), 21U) << "the hit is the 21st";
+  for (const TapRecord& tap : collector.taps) {
+    ASSERT_TRUE(tap.forecast.has_value());
+    EXPECT_FALSE(tap.forecast->rmse.has_value());
+  }
+  const RunResult result = experiment.result();
+  EXPECT_EQ(result.stop_reason, "expected_rmse");
+  EXPECT_GT(*result.forecast->rmse, 0.0);
+}
+
+TEST(Forecast, NeverCutsTheInitialTapsShort) {
+  const ResolvedConfig config =
+      shipped_config("default.yaml", {"taps=25", "initial.count=12", "stop.expected_rmse=1 m", "stop.unsearched=1"});
+  std::vector<Contact> answers(25, Contact{Outcome::contact, 0.05, 8.0, 1.0, {}});
+  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
+  Collector collector;
+  experiment.run(collector);
+  EXPECT_EQ(collector.taps.size(), 12U);
+}
+
+TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
+  const ResolvedConfig config = shipped_config("default.yaml", {"taps=12"});
+  Experiment experiment(config.options, test::shared_host(), nullptr);
+  Collector collector;
+  experiment.run(collector);
+  for (const TapRecord& tap : collector.taps) EXPECT_FALSE(tap.forecast || tap.surface_process);
+  EXPECT_FALSE(experiment.result().forecast.has_value());
+}
+
+TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {
+  for (const char* surface : {"single", "two_part"}) {
+    for (const char* footprint : {"regression", "classifier", "shape"}) {
+      const ResolvedConfig config =
+          shipped_config("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("surface=") + surface,
+                                          std::string("footprint=") + footprint});
+      Experiment experiment(config.options, test::shared_host(), nullptr);
+      Collector collector;
+      experiment.run(collector);
+      for (const TapRecord& tap : collector.taps)
+        EXPECT_EQ(tap.forecast->rmse.has_value(), *experiment.counts().first_hit_tap < tap.number) << tap.number;
+      EXPECT_GT(*experiment.result().forecast->rmse, 0.0) << surface << footprint;
+    }
+  }
+}
+
+// In short what stopping_table says at length; other seeds than those that the constants come from.
+TEST(Forecast, IsRightMoreOftenThanItPromises) {
+  int stopped = 0;
+  int wrong = 0;
+  for (const std::string& scene : test::stopping_scenes()) {
+    for (int seed = 5000; seed < 5006; ++seed) {
+      const ResolvedConfig config =
+          shipped_config("default.yaml", {"scene=" + scene, "scene.placement=random", "taps=45",
+                                          "seed=" + std::to_string(seed), "stop.expected_rmse=1.5 cm"});
+      Experiment experiment(config.options, test::shared_host(), nullptr);
+      Collector collector;
+      experiment.run(collector);
+      const RunResult result = experiment.result();
+      if (result.stop_reason != "expected_rmse") continue;
+      ++stopped;
+      wrong += *result.errors.rmse > 0.015 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(stopped, 12);
+  EXPECT_LE(wrong, 0.2 * stopped);
+}
+
+}  // namespace
+}  // namespace palpate
