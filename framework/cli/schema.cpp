@@ -108,10 +108,18 @@ int schema(Program& program) {
   Tree scene = properties.at("scene");
   Tree scene_name = Tree::map();
   scene_name.at("type") = quoted("string");
+  Tree& effects = scene.at("properties").at("effects");
+  Tree either_effects = Tree::map();
+  either_effects.at("anyOf") = Tree::list();
+  either_effects.at("anyOf").items = {of_type("string", "the name of a set: standard reads effects/standard.yaml"),
+                                      std::move(effects)};
+  effects = std::move(either_effects);
   properties.at("scene") = Tree::map();
   Tree& either = properties.at("scene").at("anyOf");
   either = Tree::list();
   either.items = {std::move(scene_name), std::move(scene)};
+  properties.at("strategy") = of_type(
+      "string", "what decides where to tap and what is believed, by name: strategy/NAME.yaml, or a whole config");
 
   Tree defaults = Tree::map();
   defaults.at("description") =

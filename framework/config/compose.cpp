@@ -20,15 +20,30 @@ namespace {
 constexpr std::array<std::string_view, 7> kGroups{"kernel",  "acquisition", "fitting", "footprint",
                                                   "backend", "scene",       "expect"};
 
+/// Groups that stand in one place only.
+constexpr const char* kStrategy = "strategy";
+constexpr const char* kEffects = "scene.effects";
+
 /// These groups are no plugins: they have no type, and a missing file is an error at once.
-bool is_plain(const std::string& group) { return group == "scene" || group == "expect"; }
+bool is_plain(const std::string& group) { return group == "scene" || group == "expect" || group == "effects"; }
+
+/// What a strategy has no say in: the world and how it is divided, the budget, and what is kept of a run.
+constexpr std::array<std::string_view, 11> kNotOfStrategy{
+    "name", "seed", "taps", "candidates", "scene", "backend", "threads", "instruction_set", "log", "expect", "sweep"};
+
+std::string first_key(const std::string& path) { return path.substr(0, path.find('.')); }
 
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 }  // namespace
 
 bool is_group(const std::string& path) {
-  return std::find(kGroups.begin(), kGroups.end(), last_key(path)) != kGroups.end();
+  return path == kStrategy || path == kEffects ||
+         std::find(kGroups.begin(), kGroups.end(), last_key(path)) != kGroups.end();
+}
+
+bool is_of_strategy(const std::string& path) {
+  return std::find(kNotOfStrategy.begin(), kNotOfStrategy.end(), first_key(path)) == kNotOfStrategy.end();
 }
 
 namespace {
@@ -51,6 +66,22 @@ bool is_name(const std::string& text) {
 fs::path shown(const fs::path& path) {
   const fs::path near = path.lexically_proximate(fs::current_path());
   return near.empty() || *near.begin() == ".." ? path : near;
+}
+
+/// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
+/// name, and for a file that is being read already.
+void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
+  if (!is_name(name)) {
+    throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group),
+                "a name has letters, digits, '_' and '-', and no path");
+  }
+  const std::string link = group + "/" + name;
+  const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
+  chain.push_back(link);
+  if (!cyclic) return;
+  std::string text;
+  for (const std::string& one : chain) text += (text.empty() ? "" : " -> ") + one;
+  throw Error(place.text(), "defaults form a cycle", text);
 }
 
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
@@ -109,12 +140,17 @@ std::vector<fs::path> Composer::roots(const fs::path& beside) const {
 fs::path Composer::find_group(const std::string& group, const std::string& name, const fs::path& beside) const {
   const auto [place, is_new] = found_.try_emplace({group, name, beside.string()});
   if (!is_new) return place->second;
+  // A whole config is a strategy, too: configs/default.yaml is the strategy `default`.
+  const std::vector<fs::path> folders =
+      group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
   for (const fs::path& root : roots(beside)) {
-    std::error_code ignored;
-    const fs::path file = root / group / (name + ".yaml");
-    if (!fs::exists(file, ignored)) continue;
-    place->second = shown(file);
-    break;
+    for (const fs::path& folder : folders) {
+      std::error_code ignored;
+      const fs::path file = root / folder / (name + ".yaml");
+      if (!fs::exists(file, ignored)) continue;
+      place->second = shown(file);
+      return place->second;
+    }
   }
   return place->second;
 }
@@ -130,28 +166,20 @@ std::vector<std::string> Composer::group_names(const std::string& group, const f
   return {names.begin(), names.end()};
 }
 
+Error Composer::no_file(const std::string& group, const std::string& name, const Place& place,
+                        const fs::path& beside) const {
+  const std::vector<std::string> names = group_names(group, beside);
+  return {place.text(), fmt::format("no file {}/{}.yaml", group, name),
+          !names.empty() ? suggestion(name, names)
+                         : "looked in the folders above the config, ./configs and the program's configs"};
+}
+
 Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
                              const fs::path& beside, std::vector<std::string>& chain) {
-  if (!is_name(name)) {
-    throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group),
-                "a name has letters, digits, '_' and '-', and no path");
-  }
-  const std::string link = group + "/" + name;
-  const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
-  chain.push_back(link);
-  if (cyclic) {
-    std::string text;
-    for (const std::string& one : chain) text += (text.empty() ? "" : " -> ") + one;
-    throw Error(place.text(), "defaults form a cycle", text);
-  }
+  add_link(group, name, place, chain);
   const fs::path file = find_group(group, name, beside);
   if (file.empty()) {
-    if (is_plain(group)) {
-      const std::vector<std::string> names = group_names(group, beside);
-      throw Error(place.text(), fmt::format("no file {}/{}.yaml", group, name),
-                  !names.empty() ? suggestion(name, names)
-                                 : "looked in the folders above the config, ./configs and the program's configs");
-    }
+    if (is_plain(group)) throw no_file(group, name, place, beside);
     Tree content = Tree::map();
     content.place = place;
     content.at("type") = Tree::scalar(name);
@@ -208,8 +236,9 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
     }
     const Tree::Entry& entry = item.entries.front();
     if (!is_group(entry.key)) {
-      throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key),
-                  suggestion(entry.key, {kGroups.begin(), kGroups.end()}));
+      std::vector<std::string> known{kGroups.begin(), kGroups.end()};
+      known.insert(known.end(), {kEffects, kStrategy});
+      throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key), suggestion(entry.key, known));
     }
     choices.push_back({entry.key, entry.value.text, entry.value.place, kGroupLayer});
   }
@@ -225,11 +254,57 @@ void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choic
     if (is_group(here) && entry.value.is_scalar()) {
       choices.push_back({here, entry.value.text, entry.value.place, entry.value.layer});
       taken.push_back(entry.key);
-    } else if (entry.value.is_map() && !is_group(here)) {
+    } else if (entry.value.is_map() && (!is_group(here) || here == "scene")) {
       take_names(entry.value, here, choices);
     }
   }
   for (const std::string& key : taken) tree.erase(key);
+}
+
+void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
+  const auto lay = [&](const Choice& choice) {
+    std::vector<std::string> chain;
+    Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+    content.shift_layer(layer);
+    set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
+    layer += kLayersOfGroup;
+    Tree& slot = tree.at_path(choice.path, choice.place);
+    if (slot.kind == Tree::Kind::null || choice.path == kEffects) slot = Tree::map();
+    if (slot.place.line == 0) slot.place = content.place;
+    slot.merge(content);
+  };
+  for (const Choice& choice : choices) {
+    if (choice.path != kEffects) lay(choice);
+  }
+  // Behind every scene: they take the place of the effects that it has.
+  for (const Choice& choice : choices) {
+    if (choice.path == kEffects) lay(choice);
+  }
+}
+
+Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs::path& beside, Layer& layer,
+                             std::vector<std::string>& chain) {
+  const auto is_strategy = [](const Choice& choice) { return choice.path == kStrategy; };
+  const auto last = std::find_if(choices.rbegin(), choices.rend(), is_strategy);
+  if (last == choices.rend()) return kGroupLayer;
+  const Choice choice = *last;
+  choices.erase(std::remove_if(choices.begin(), choices.end(), is_strategy), choices.end());
+  add_link(kStrategy, choice.name, choice.place, chain);
+  const fs::path file = find_group(kStrategy, choice.name, beside);
+  if (file.empty()) throw no_file(kStrategy, choice.name, choice.place, beside);
+  Tree own = load(file);
+  own.set_layer(kGroupLayer);
+  std::vector<Choice> inner = take_defaults(own);
+  for (const std::string_view key : kNotOfStrategy) own.erase(key);
+  take_names(own, "", inner);
+  const auto is_else = [](const Choice& one) { return !is_of_strategy(one.path); };
+  inner.erase(std::remove_if(inner.begin(), inner.end(), is_else), inner.end());
+  lay_strategy(tree, inner, file.parent_path(), layer, chain);
+  lay_groups(tree, inner, file.parent_path(), layer);
+  own.set_layer(layer);
+  layer += kLayersOfGroup;
+  tree.merge(own);
+  return choice.layer;
 }
 
 Tree Composer::compose(const fs::path& file, const std::vector<Override>& overrides) {
@@ -247,17 +322,15 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   Tree tree = Tree::map();
   tree.place = own.place;
   Layer layer = kGroupLayer;
-  for (const Choice& choice : choices) {
-    std::vector<std::string> chain;
-    Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
-    content.shift_layer(layer);
-    set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
-    layer += kLayersOfGroup;
-    Tree& slot = tree.at_path(choice.path, choice.place);
-    if (slot.kind == Tree::Kind::null) slot = Tree::map();
-    if (slot.place.line == 0) slot.place = content.place;
-    slot.merge(content);
+  std::vector<std::string> chain;
+  if (lay_strategy(tree, choices, beside, layer, chain) >= kSweepLayer) {
+    const auto is_older = [&](const Choice& choice) {
+      return choice.layer < kSweepLayer && tree.find(first_key(choice.path)) != nullptr;
+    };
+    choices.erase(std::remove_if(choices.begin(), choices.end(), is_older), choices.end());
+    for (const Tree::Entry& entry : tree.entries) own.erase(entry.key);
   }
+  lay_groups(tree, choices, beside, layer);
   tree.merge(own);
   for (const Override& one : overrides) {
     if (is_group(one.path) && one.value.is_scalar()) {
@@ -265,7 +338,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
       continue;
     }
     Tree& slot = tree.at_path(one.path, one.value.place);
-    if (is_group(one.path) && slot.is_map() && one.value.is_map()) {
+    if (is_group(one.path) && one.path != kEffects && slot.is_map() && one.value.is_map()) {
       slot.merge(one.value);
     } else {
       slot = one.value;
@@ -281,6 +354,10 @@ void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& be
   Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
   content.shift_layer(kFileLayer - 1);
   set_layer_of_type(content, choice.layer, choice.place);
+  if (choice.path == kEffects) {
+    slot = std::move(content);
+    return;
+  }
   const Tree* type = content.find("type");
   const Tree chosen = type != nullptr ? *type : Tree{};
   if (slot.is_map()) content.merge(slot);

@@ -5,6 +5,8 @@
 
 #include "config/tree.hpp"
 
+#include <palpate/error.hpp>
+
 #include <array>
 #include <filesystem>
 #include <map>
@@ -28,18 +30,27 @@ void check_path(const std::string& path, const std::string& place);
 /// Whether a dotted path ends in the name of a group: see Composer.
 bool is_group(const std::string& path);
 
+/// Whether the value at a dotted path may come from a strategy: see Composer.
+bool is_of_strategy(const std::string& path);
+
 /// Reads config files, once each, and composes them.
 ///
-/// Groups are the keys `kernel`, `acquisition`, `fitting`, `backend`, `scene` and `expect`, wherever they stand
-/// (`height.kernel` too). A plain name there, in the file or as an override, chooses the file
+/// Groups are the keys `kernel`, `acquisition`, `fitting`, `footprint`, `backend`, `scene` and `expect`, wherever they
+/// stand (`height.kernel` too). A plain name there, in the file or as an override, chooses the file
 /// <folder>/<group>/<name>.yaml, in the first folder that has it of: the folders above the config, ./configs, and the
 /// program's own configs. A name without such a file is taken as the type of a plugin with default options.
+///
+/// Two groups stand in one place. `scene.effects` is a set of effects, which takes the place of those that the scene
+/// has. `strategy` bundles settings of any keys that decide where to tap and what is believed: its file is a config
+/// like any other, in strategy/ or in the folder itself, so that a whole config is a strategy as well. Named by the
+/// config it is laid below the groups that the config names; as an override it takes the place of each top-level key
+/// that it has. What it says of the world, the candidates, the budget and the record of a run is left out.
 class Composer {
  public:
   /// `shipped` is the program's own folder of configs; it need not exist.
   explicit Composer(std::filesystem::path shipped) : shipped_(std::move(shipped)) {}
 
-  /// Groups in the order of `defaults`, then the file, then `overrides` in order.
+  /// The strategy, groups in the order of `defaults`, then the file, then `overrides` in order.
   ///
   /// A group chosen by an override takes the place of the group chosen before at that path; what the file itself says
   /// there stays, as far as the new type has that option (see resolve()). A map given for a group is laid over it; any
@@ -62,6 +73,14 @@ class Composer {
   void take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const;
   std::filesystem::path find_group(const std::string& group, const std::string& name,
                                    const std::filesystem::path& beside) const;
+  Error no_file(const std::string& group, const std::string& name, const Place& place,
+                const std::filesystem::path& beside) const;
+  /// Lays the groups over `tree`, each on layers of its own from `layer` on, which becomes the next free one.
+  void lay_groups(Tree& tree, const std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer);
+  /// The same for the strategy among `choices`, if there is one, which is taken out of them. Returns the layer of its
+  /// choice.
+  Layer lay_strategy(Tree& tree, std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer,
+                     std::vector<std::string>& chain);
   std::vector<std::string> group_names(const std::string& group, const std::filesystem::path& beside) const;
   std::vector<std::filesystem::path> roots(const std::filesystem::path& beside) const;
   /// What a group's file says, on layer 0, laid over what it builds on, on the layers below.

@@ -281,9 +281,11 @@ Combination SweepDescription::at(std::size_t number) const {
   return out;
 }
 
-/// Whether what `name` stands for is decided by a choice: kernel.alpha by kernel, scene.objects.0.length by its type.
+/// Whether what `name` stands for is decided by a choice: kernel.alpha by kernel, scene.objects.0.length by its type,
+/// and nearly all by a strategy.
 bool SweepDescription::depends(const std::string& name, const std::string& choice) const {
   if (!is_choice(choice)) return false;
+  if (choice == "strategy") return name != choice && is_of_strategy(name);
   const std::string scope = is_group(choice) ? choice : choice.substr(0, choice.rfind('.'));
   return name != choice && is_below(name, scope);
 }
@@ -299,6 +301,8 @@ bool SweepDescription::wanted(const Combination& combination, const Condition::V
     for (const std::string& choice : keys_) {
       if (!depends(name, choice)) continue;
       if (swept) return "";  // another item of the list has it
+      // Nearly any word could be an option of a strategy; one that nobody knows is a value.
+      if (choice == "strategy" && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
                   fmt::format("sweep it too, or compare '{}'", choice));
     }

@@ -29,6 +29,7 @@ std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
 bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
   return std::any_of(swept.begin(), swept.end(), [&](const std::string& key) {
     const std::string other = head(key);
+    if (key == "strategy") return true;
     if (top == "height" || top == "weight") {
       if (other == "kernel" || other == "fitting") return true;  // they take over what they do not say themselves
     }
@@ -66,13 +67,20 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const S
   Tree out = Tree::map();
   const Tree* name = base.find("name");
   out.at("name") = Tree::scalar(name != nullptr ? name->text : first.options.name, true);
+  // What of the groups below is a strategy's cannot be told any more: where any of it is needed all of it is.
+  const bool needs_strategy = !whole || std::any_of(description.keys().begin(), description.keys().end(), is_choice);
+  Tree kept = Tree::list();
   if (const Tree* defaults = own.find("defaults")) {
-    Tree kept = Tree::list();
     for (const Tree& item : defaults->items) {
-      if (is_own(item.entries.front().key)) kept.items.push_back(item);
+      const std::string group = head(item.entries.front().key);
+      if (group == "strategy" ? needs_strategy : is_own(group)) kept.items.push_back(item);
     }
-    if (!kept.items.empty()) out.at("defaults") = std::move(kept);
   }
+  if (const Tree* strategy = own.find("strategy"); strategy != nullptr && needs_strategy) {
+    kept.items.push_back(Tree::map());
+    kept.items.back().at("strategy") = *strategy;
+  }
+  if (!kept.items.empty()) out.at("defaults") = std::move(kept);
   for (const std::string& top : ordered_keys(base, first.tree)) {
     const Tree* said = is_own(top) ? own.find(top) : (whole ? *whole : base).find(top);
     if (said != nullptr) out.at(top) = *said;

@@ -241,8 +241,10 @@ TEST_F(Compose, RefusesANameWithAPathInIt) {
 
 TEST_F(Compose, RefusesAnUnknownGroup) {
   EXPECT_EQ(refusal("defaults:\n  - kernl: rbf\n"), "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?");
-  EXPECT_EQ(refusal("defaults:\n  - posterior: dense\n"),
-            "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, backend, scene, expect");
+  EXPECT_EQ(
+      refusal("defaults:\n  - posterior: dense\n"),
+      "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, footprint, backend, scene, expect, "
+      "scene.effects, strategy");
 }
 
 TEST_F(Compose, RefusesASceneWithoutFileAndNamesANearOne) {

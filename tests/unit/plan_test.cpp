@@ -205,6 +205,13 @@ TEST(Plan, AsksTheConfigForNamesThatAreNotSwept) {
             "command line: in the condition 'surfaces == single' the name 'surfaces' is not known, know");
 }
 
+TEST(Plan, DoesNotAskTheConfigForWhatASweptStrategyDecides) {
+  const fs::path file = kConfigs / "paper/object_i.yaml";
+  EXPECT_EQ(refusal(file, {"strategy=random,weighted", "sweep.where=surface == single"}),
+            "command line: 'surface' depends on 'strategy', which is swept, sweep it too, or compare 'strategy'");
+  EXPECT_EQ(rows(planned(file, {"strategy=random,weighted", "sweep.where=taps == 17"}).plan).size(), 2U);
+}
+
 TEST(Plan, RefusesASweepOfNothing) {
   const fs::path file = kConfigs / "paper/object_i.yaml";
   EXPECT_EQ(refusal(file, {}), file.string() + ": nothing to sweep, give KEY=V1,V2 or a 'sweep:' in the config");
@@ -248,6 +255,8 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
       {"sweep/trade_compute.yaml", {"seed=4"}},
       {"sweep/trade_motion.yaml", {"seed=4", "taps=17"}},
       {"ci/strategy.yaml", {}},
+      {"benchmark/strategies.yaml", {"seed=1000,1001", "scene=ring,rod"}},
+      {"paper/object_i.yaml", {"strategy=weighted_two_part,default", "scene.effects=none,standard"}},
   };
   for (const RoundTrip& one : cases) {
     const test::TemporaryFolder folder;
@@ -285,6 +294,28 @@ TEST(Plan, WritesAConfigOfABaseThatIsNoneWithoutItsSweepOrLeavesOptionsOut) {
     EXPECT_EQ(ids(again), ids(first)) << to_yaml(first.config);
     EXPECT_EQ(again.sweep.directory, first.sweep.directory);
   }
+}
+
+TEST(Plan, WritesAConfigThatKeepsTheStrategyBelowWhatIsSwept) {
+  const test::TemporaryFolder folder;
+  const std::string rest = "defaults: [backend: simulator, scene: object_i, scene.effects: standard]\n";
+  const std::vector<std::string> texts{rest + "strategy: weighted\n",
+                                       "defaults: [strategy: weighted, backend: simulator, scene: object_i]\n"};
+  for (const std::string& text : texts) {
+    const SweepPlan first = planned(folder.write("c.yaml", text), {"kernel=rbf,matern52", "scene=ring,rod"}).plan;
+    const SweepPlan again = planned(folder.write("config.yaml", to_yaml(first.config)), {}).plan;
+    EXPECT_EQ(first.sweep.jobs.size(), 4U);
+    EXPECT_EQ(ids(again), ids(first)) << to_yaml(first.config);
+    EXPECT_EQ(again.sweep.directory, first.sweep.directory);
+  }
+}
+
+TEST(Plan, NamesAStrategyAndASetOfEffectsInItsTable) {
+  const auto plan =
+      planned(kConfigs / "paper/object_i.yaml", {"strategy=random,default", "scene.effects=standard"}).plan;
+  ASSERT_EQ(plan.sweep.jobs.size(), 2U);
+  EXPECT_EQ(plan.sweep.keys, (std::vector<std::string>{"strategy", "scene.effects"}));
+  EXPECT_EQ(plan.sweep.jobs[1].values, (std::vector<std::string>{"default", "standard"}));
 }
 
 TEST(Plan, TakesASurfaceThatIsAskedFor) {

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// The two groups that are more than one option: a strategy, and a set of effects.
+#include "config/compose.hpp"
+#include "config/yaml.hpp"
+#include "support/support.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+class ComposeStrategy : public ::testing::Test {
+ protected:
+  ComposeStrategy() {
+    folder_.write("kernel/rbf.yaml", "kernel: {type: rbf, length_scale: 1.7 cm}\n");
+    folder_.write("kernel/rough.yaml", "kernel: {type: matern, length_scale: 2.5 cm, nu: 1.5}\n");
+    folder_.write("scene/desk.yaml", "scene: {desk: 0 cm, effects: {reach: {radius: 1 m}}}\n");
+    folder_.write("effects/noisy.yaml", "effects: {force_noise: {deviation: 1 N}}\n");
+    folder_.write("effects/none.yaml", "effects: {}\n");
+    folder_.write("strategy/bold.yaml",
+                  "defaults:\n  - kernel: rough\n  - acquisition: weighted\n"
+                  "kernel: {length_scale: 4 cm}\nsurface: two_part\ntaps: 99\nscene: {desk: 5 cm}\n");
+    folder_.write("strategy/bolder.yaml", "defaults:\n  - strategy: bold\nkernel: {length_scale: 6 cm}\n");
+  }
+
+  Tree compose(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    std::vector<Override> parsed;
+    for (const std::string& one : overrides) parsed.push_back(parse_override(one));
+    return Composer("/nonexistent").compose(folder_.write("c.yaml", text), parsed);
+  }
+
+  /// The value at `path` of what `text` composes to; "-" if there is none.
+  std::string value(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {}) {
+    const Tree tree = compose(text, overrides);
+    const Tree* found = tree.find_path(path);
+    return found == nullptr ? "-" : found->canonical();
+  }
+
+  std::string of(const std::string& written) { return parse_value(written, "").canonical(); }
+
+  std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    try {
+      compose(text, overrides);
+    } catch (const Error& error) {
+      std::string what = error.what();
+      const std::string prefix = folder_.path().string() + "/";
+      for (auto at = what.find(prefix); at != std::string::npos; at = what.find(prefix)) what.erase(at, prefix.size());
+      return what;
+    }
+    return "accepted";
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ComposeStrategy, LiesBelowAllThatTheConfigSays) {
+  const std::string text = "defaults:\n  - strategy: bold\n";
+  EXPECT_EQ(value(text, "kernel.length_scale"), of("4 cm"));
+  EXPECT_EQ(value(text, "kernel.nu"), of("1.5"));
+  EXPECT_EQ(value(text, "acquisition.type"), of("weighted"));
+  EXPECT_EQ(value(text + "surface: single\n", "surface"), of("single"));
+  EXPECT_EQ(value("strategy: bold\nkernel: {length_scale: 9 cm}\n", "kernel.length_scale"), of("9 cm"));
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n  - strategy: bold\n", "kernel.type"), of("rbf"))
+      << "wherever it stands among the defaults";
+}
+
+TEST_F(ComposeStrategy, HasNoSayInTheWorldAndTheBudget) {
+  EXPECT_EQ(value("strategy: bold\n", "taps"), "-");
+  EXPECT_EQ(value("strategy: bold\n", "scene"), "-");
+  EXPECT_EQ(value("strategy: bold\n", "strategy"), "-") << "the name itself is no option";
+}
+
+TEST_F(ComposeStrategy, BuildsOnAnother) {
+  EXPECT_EQ(value("strategy: bolder\n", "kernel.length_scale"), of("6 cm"));
+  EXPECT_EQ(value("strategy: bolder\n", "kernel.nu"), of("1.5"));
+  EXPECT_EQ(value("strategy: bolder\n", "surface"), of("two_part"));
+}
+
+TEST_F(ComposeStrategy, AsAnOverrideTakesThePlaceOfEveryKeyThatItHas) {
+  const std::string text =
+      "defaults:\n  - kernel: rbf\n  - fitting: ceres\nkernel: {length_scale: 1 cm, alpha: 3}\n"
+      "surface: single\nrepeat: allow\ntaps: 5\n";
+  const std::vector<std::string> bold{"strategy=bold"};
+  EXPECT_EQ(value(text, "kernel", bold), of("{type: matern, length_scale: 4 cm, nu: 1.5}"));
+  EXPECT_EQ(value(text, "surface", bold), of("two_part"));
+  EXPECT_EQ(value(text, "repeat", bold), of("allow")) << "of which it says nothing";
+  EXPECT_EQ(value(text, "fitting.type", bold), of("ceres"));
+  EXPECT_EQ(value(text, "taps", bold), of("5"));
+  EXPECT_EQ(value("strategy: bolder\n", "kernel.length_scale", bold), of("4 cm"));
+}
+
+TEST_F(ComposeStrategy, GivesWayToWhatIsSaidBesideIt) {
+  EXPECT_EQ(value("", "kernel.type", {"strategy=bold", "kernel=rbf"}), of("rbf"));
+  EXPECT_EQ(value("", "kernel.length_scale", {"kernel.length_scale=2cm", "strategy=bold"}), of("2cm"));
+}
+
+TEST_F(ComposeStrategy, MayBeAWholeConfig) {
+  folder_.write("whole.yaml",
+                "name: whole\nseed: 3\ndefaults:\n  - scene: desk\n  - kernel: rough\nsweep: {grid: {seed: 1}}\n");
+  EXPECT_EQ(value("strategy: whole\n", "kernel.nu"), of("1.5"));
+  for (const char* key : {"name", "seed", "scene", "sweep"}) EXPECT_EQ(value("strategy: whole\n", key), "-") << key;
+}
+
+TEST_F(ComposeStrategy, RefusesAnUnknownOneAndACycle) {
+  EXPECT_EQ(refusal("strategy: bald\n"), "c.yaml:1:11: no file strategy/bald.yaml, did you mean 'bold'?");
+  EXPECT_EQ(refusal("", {"strategy=../x"}),
+            "command line: '../x' is not the name of a strategy, a name has letters, digits, '_' and '-', and no path");
+  folder_.write("strategy/egg.yaml", "strategy: hen\n");
+  folder_.write("strategy/hen.yaml", "strategy: egg\n");
+  EXPECT_EQ(refusal("strategy: hen\n"),
+            "strategy/egg.yaml:1:11: defaults form a cycle, strategy/hen -> strategy/egg -> strategy/hen");
+}
+
+TEST_F(ComposeStrategy, DecidesWhatIsNotOfTheWorld) {
+  EXPECT_TRUE(is_of_strategy("kernel.length_scale"));
+  EXPECT_TRUE(is_of_strategy("initial.count"));
+  EXPECT_FALSE(is_of_strategy("scene.effects"));
+  EXPECT_FALSE(is_of_strategy("taps"));
+}
+
+TEST_F(ComposeStrategy, EffectsTakeThePlaceOfThoseOfTheScene) {
+  const std::string text = "defaults:\n  - scene: desk\n";
+  EXPECT_EQ(value(text, "scene.effects"), of("{reach: {radius: 1 m}}"));
+  EXPECT_EQ(value(text, "scene.effects", {"scene.effects=noisy"}), of("{force_noise: {deviation: 1 N}}"));
+  EXPECT_EQ(value(text, "scene.effects", {"scene.effects=none"}), of("{}"));
+  EXPECT_EQ(value(text + "scene: {effects: noisy}\n", "scene.effects"), of("{force_noise: {deviation: 1 N}}"));
+  EXPECT_EQ(value("defaults:\n  - scene.effects: noisy\n  - scene: desk\n", "scene.effects"),
+            of("{force_noise: {deviation: 1 N}}"));
+  EXPECT_EQ(value(text, "scene.effects", {"scene.effects={}"}), of("{}")) << "a map takes their place, too";
+  EXPECT_EQ(refusal(text, {"scene.effects=nosy"}), "command line: no file effects/nosy.yaml, did you mean 'noisy'?");
+}
+
+}  // namespace
+}  // namespace palpate
