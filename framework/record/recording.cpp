@@ -31,6 +31,17 @@ class Absent final : public Backend {
 
 }  // namespace
 
+void read_as_recorded(const Row& row, const Belief& belief) {
+  const auto has = [&](const char* field) {
+    const Scalar* value = row.find(field);
+    return value != nullptr && !std::holds_alternative<std::monostate>(*value);
+  };
+  if (has("height_process.signal")) belief.uncertainty();
+  if (has("weight_process.signal")) belief.weight();
+  if (has("surface_process.signal")) belief.height_mean();
+  if (has("p")) belief.probability();
+}
+
 bool Recording::truth_known() const {
   const Scalar* value = rows.front().find("true_on_surface");
   return value != nullptr && !std::holds_alternative<std::monostate>(*value);

@@ -16,44 +16,23 @@ bool has(const Row& row, const char* field) {
   return value != nullptr && !std::holds_alternative<std::monostate>(*value);
 }
 
-/// What a row tells of the loop that wrote it: the models that were built, perhaps only because the backend showed
-/// them.
-struct Built {
-  bool heights = false;
-  bool labels = false;
-  bool surface = false;
-  bool footprint = false;
-};
-
-Built built_at(const Row& row) {
-  return {has(row, "height_process.signal"), has(row, "weight_process.signal"), has(row, "surface_process.signal"),
-          has(row, "p")};
-}
-
 /// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
 class Recorded final : public Backend {
  public:
-  /// `built`: for each tap, what was built when the next one was chosen.
-  Recorded(const Recording& recording, std::vector<Built> built, bool predicted)
-      : recording_(recording), built_(std::move(built)), predicted_(predicted) {}
+  Recorded(const Recording& recording, bool predicted) : recording_(recording), predicted_(predicted) {}
   Contact tap(const TapRequest& request) override {
     return recording_.taps.at(static_cast<std::size_t>(request.number - 1)).contact;
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return recording_.truth_known(); }
   bool wants_prediction() const override { return predicted_; }
-  /// Reading more than was built would fill fields that the record leaves empty; reading less, leave some empty.
   void show(const Belief& belief) override {
-    const Built& built = built_.at(static_cast<std::size_t>(belief.taps() - 1));
-    if (built.heights) belief.uncertainty();
-    if (built.labels) belief.weight();
-    if (built.surface) belief.height_mean();
-    if (built.footprint) belief.probability();
+    const auto next = std::min(static_cast<std::size_t>(belief.taps()), recording_.rows.size() - 1);
+    read_as_recorded(recording_.rows[next], belief);
   }
 
  private:
   const Recording& recording_;
-  std::vector<Built> built_;
   bool predicted_;
 };
 
@@ -89,14 +68,10 @@ void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& re
 ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const Recording recording = read_recording(workshop, directory);
   const std::vector<Row>& recorded = recording.rows;
-  std::vector<Built> built;
-  for (std::size_t i = 0; i < recorded.size(); ++i)
-    built.push_back(built_at(recorded[std::min(i + 1, recorded.size() - 1)]));
   const auto made = static_cast<int>(recorded.size());
   const bool cut = made < recording.config.options.taps;
-  Experiment experiment(
-      recording.config.options, workshop.host, workshop.interrupted,
-      std::make_shared<Recorded>(recording, std::move(built), has(recorded.front(), "predicted.height")));
+  Experiment experiment(recording.config.options, workshop.host, workshop.interrupted,
+                        std::make_shared<Recorded>(recording, has(recorded.front(), "predicted.height")));
   Collector collector;
   experiment.run(collector, made);
 

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// What a run had come to after fewer taps is what a run with that budget comes to.
+#include "record/earlier.hpp"
+#include "record/session.hpp"
+#include "record/summary.hpp"
+#include "support/support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Runs of configs/default.yaml with overrides, in one folder.
+class Earlier : public ::testing::TestWithParam<std::vector<std::string>> {
+ protected:
+  RunReport run(int taps) {
+    Composer composer(test::source_folder() / "configs");
+    std::vector<Override> overrides;
+    for (const std::string& word : GetParam()) overrides.push_back(parse_override(word));
+    overrides.push_back(parse_override("taps=" + std::to_string(taps)));
+    const ResolvedConfig config =
+        load_experiment(composer, test::shared_host(), test::source_folder() / "configs/default.yaml", overrides);
+    return start_run(workshop_, config, folder_.path() / std::to_string(taps), false, nullptr);
+  }
+
+  test::TemporaryFolder folder_;
+  Installation installation_;
+  Workshop workshop_{test::shared_host(), installation_, {}, nullptr};
+};
+
+std::string cell(const Row& row, const std::string& name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? csv_cell(*value) : "absent";
+}
+
+/// Of an engine that was chosen for as many taps as the budget has.
+bool tells_the_budget(const std::string& name) { return name.find("engine_reason") != std::string::npos; }
+
+double number(const Row& row, const std::string& name) { return std::get<double>(*row.find(name)); }
+
+TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
+  const RunReport whole = run(14);
+  const Recording recording = read_recording(workshop_, whole.directory);
+  const std::vector<Row> earlier = summaries_after(workshop_, recording, {5, 9});
+  ASSERT_EQ(earlier.size(), 2U);
+  for (const int taps : {5, 9}) {
+    const Row& row = earlier[taps == 5 ? 0 : 1];
+    const RunReport shorter = run(taps);
+    for (const Row* fields : {&row, &shorter.summary}) {
+      for (const auto& [name, value] : fields->fields) {
+        if (name == "id" || depends_on_machine(name) || tells_the_budget(name)) continue;
+        EXPECT_EQ(cell(row, name), cell(shorter.summary, name)) << name << " after " << taps << " taps";
+      }
+    }
+    EXPECT_EQ(cell(row, "id"), cell(whole.summary, "id")) << "of the run that it was";
+  }
+  EXPECT_EQ(summaries_after(workshop_, recording, {9}).front().find("nlpd") != nullptr, true);
+  EXPECT_EQ(cell(summaries_after(workshop_, recording, {9}).front(), "rmse_m"), cell(earlier[1], "rmse_m"))
+      << "reading the models at 5 taps changes nothing";
+}
+
+TEST_P(Earlier, HasItsShareOfTheTimes) {
+  const RunReport whole = run(14);
+  const std::vector<Row> earlier = summaries_after(workshop_, read_recording(workshop_, whole.directory), {5, 9});
+  for (const char* name : {"wall_seconds", "compute_seconds", "robot_seconds"}) {
+    EXPECT_GT(number(earlier[0], name), 0.0) << name;
+    EXPECT_LT(number(earlier[0], name), number(earlier[1], name)) << name;
+    EXPECT_LT(number(earlier[1], name), number(whole.summary, name)) << name;
+  }
+  double before = 0.0;
+  double all = 0.0;
+  for (const char* phase : kPhaseNames) {
+    before += number(earlier[1], std::string("compute.") + phase);
+    all += number(whole.summary, std::string("compute.") + phase);
+  }
+  EXPECT_NEAR(number(earlier[1], "compute_seconds"), number(whole.summary, "compute_seconds") * before / all, 1e-9);
+  EXPECT_EQ(cell(earlier[1], "peak_rss_bytes"), "") << "nobody measured it then";
+  // Without its times a run is as good as before, but for those.
+  fs::resize_file(whole.directory / "timings.csv", 30);
+  const Row untimed = summaries_after(workshop_, read_recording(workshop_, whole.directory), {9}).front();
+  EXPECT_EQ(cell(untimed, "rmse_m"), cell(earlier[1], "rmse_m"));
+  EXPECT_EQ(cell(untimed, "compute_seconds"), "");
+  EXPECT_EQ(cell(untimed, "compute.infer"), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryKind, Earlier,
+                         ::testing::Values(std::vector<std::string>{"scene.placement=random"},
+                                           std::vector<std::string>{"scene=ring", "scene.effects=standard", "seed=3"},
+                                           std::vector<std::string>{"strategy=weighted", "seed=4"},
+                                           std::vector<std::string>{"strategy=weighted_two_part", "fitting=ceres",
+                                                                    "fitting.every=4"},
+                                           std::vector<std::string>{"strategy=random", "footprint=classifier"}));
+
+}  // namespace
+}  // namespace palpate
