@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -37,20 +39,24 @@ Centred centre(const std::vector<double>& values, double mean) {
 /// which costs no more than a large one does.
 std::size_t resamples_of(std::size_t count) { return std::clamp(10'000'000 / count, kResamples, 10 * kResamples); }
 
+/// Calls `take` with the place of each of `count` draws with replacement.
+template <class Take>
+void draw(Random& random, std::uint64_t count, const Take& take) {
+  // 32 bits an index: it favours none by more than count / 2^32, and two come from one draw.
+  const auto at = [&](std::uint64_t bits) { take(static_cast<std::size_t>((bits * count) >> 32)); };
+  for (std::uint64_t i = 0; i + 1 < count; i += 2) {
+    const std::uint64_t bits = random.bits();
+    at(bits >> 32);
+    at(bits & 0xffffffffU);
+  }
+  if (count % 2 == 1) at(random.bits() >> 32);
+}
+
 /// The sums of samples drawn from `distances` with replacement.
 std::vector<double> resampled_sums(const std::vector<double>& distances) {
   Random random(0, "bootstrap");
-  const std::uint64_t count = distances.size();
-  // 32 bits an index: it favours none by more than count / 2^32, and two come from one draw.
-  const auto at = [&](std::uint64_t bits) { return distances[static_cast<std::size_t>((bits * count) >> 32)]; };
   std::vector<double> sums(resamples_of(distances.size()));
-  for (double& sum : sums) {
-    for (std::uint64_t i = 0; i + 1 < count; i += 2) {
-      const std::uint64_t bits = random.bits();
-      sum += at(bits >> 32) + at(bits & 0xffffffffU);
-    }
-    if (count % 2 == 1) sum += at(random.bits() >> 32);
-  }
+  for (double& sum : sums) draw(random, distances.size(), [&](std::size_t i) { sum += distances[i]; });
   return sums;
 }
 
@@ -64,16 +70,35 @@ double quantile_of(std::vector<double>& sums, double share) {
 
 double normal_share(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-/// How far the median of the sums is from 0, their centre, in standard deviations.
-double bias_of(const std::vector<double>& sums, double count) {
-  // Sums that are 0 but for rounding count as half below.
-  const double rounding = 1e-12 * count;
-  const auto below = std::count_if(sums.begin(), sums.end(), [&](double sum) { return sum < -rounding; });
-  const auto above = std::count_if(sums.begin(), sums.end(), [&](double sum) { return sum > rounding; });
-  const auto resamples = static_cast<double>(sums.size());
+/// How far the median of resampled values is from their centre, in standard deviations. Those within `rounding` of it
+/// count as half below.
+double bias_of(const std::vector<double>& values, double centre, double rounding) {
+  const auto below = std::count_if(values.begin(), values.end(), [&](double one) { return one < centre - rounding; });
+  const auto above = std::count_if(values.begin(), values.end(), [&](double one) { return one > centre + rounding; });
+  const auto resamples = static_cast<double>(values.size());
   const double share = 0.5 + 0.5 * static_cast<double>(below - above) / resamples;
   const double least = 0.5 / resamples;
   return normal_quantile(std::clamp(share, least, 1.0 - least));
+}
+
+/// The skewness of the influence of each value on what is estimated, as BCa takes it in.
+double acceleration_of(const std::vector<double>& influences) {
+  double squares = 0.0;
+  double cubes = 0.0;
+  for (const double one : influences) {
+    squares += one * one;
+    cubes += one * one * one;
+  }
+  return cubes / (6.0 * squares * std::sqrt(squares));
+}
+
+/// The share of the resampled values that lie below an end of the interval: the lower one with `side` -1, else the
+/// upper.
+double share_below_end(double side, std::size_t count, double bias, double acceleration) {
+  const auto n = static_cast<double>(count);
+  const double z = student_factor(count - 1) * std::sqrt(n / (n - 1.0));
+  const double shifted = bias + side * z;
+  return normal_share(bias + shifted / (1.0 - acceleration * shifted));
 }
 
 }  // namespace
@@ -86,24 +111,58 @@ MeanEstimate bootstrap_mean(const std::vector<double>& values) {
   if (centred.unit == 0.0 || !std::isfinite(centred.unit)) return out;
   const auto count = static_cast<double>(values.size());
   std::vector<double> sums = resampled_sums(centred.distances);
-  double squares = 0.0;
-  double cubes = 0.0;
-  for (const double distance : centred.distances) {
-    squares += distance * distance;
-    cubes += distance * distance * distance;
-  }
-  const double acceleration = cubes / (6.0 * squares * std::sqrt(squares));
-  const double bias = bias_of(sums, count);
-  const double z = student_factor(values.size() - 1) * std::sqrt(count / (count - 1.0));
+  const double acceleration = acceleration_of(centred.distances);
+  const double bias = bias_of(sums, 0.0, 1e-12 * count);
   const auto end = [&](double side) {
-    const double shifted = bias + side * z;
-    const double share = normal_share(bias + shifted / (1.0 - acceleration * shifted));
-    return quantile_of(sums, share) * centred.unit / count;
+    return quantile_of(sums, share_below_end(side, values.size(), bias, acceleration)) * centred.unit / count;
   };
   const double low = end(-1.0);
   const double high = end(1.0);
   out.interval =
       centred.mirrored ? MeanInterval{out.mean - high, out.mean - low} : MeanInterval{out.mean + low, out.mean + high};
+  return out;
+}
+
+std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, const std::vector<double>& below) {
+  std::vector<std::pair<double, double>> pairs;
+  for (std::size_t i = 0; i < above.size(); ++i) pairs.emplace_back(above[i], below[i]);
+  // Sorted: the order of the pairs decides nothing, neither draws nor rounding.
+  std::sort(pairs.begin(), pairs.end());
+  double top = 0.0;
+  double bottom = 0.0;
+  for (const auto& [a, b] : pairs) {
+    if (!std::isfinite(a) || !std::isfinite(b) || a < 0.0 || b < 0.0) return std::nullopt;
+    top += a;
+    bottom += b;
+  }
+  if (!(bottom > 0.0) || !std::isfinite(top / bottom)) return std::nullopt;
+  RatioEstimate out{pairs.size(), top / bottom, std::nullopt};
+  if (pairs.size() < kLeastForInterval) return out;
+  std::vector<double> influences;
+  for (const auto& [a, b] : pairs) influences.push_back((a - out.ratio * b) / bottom);
+  const double largest = std::abs(*std::max_element(influences.begin(), influences.end(),
+                                                    [](double x, double y) { return std::abs(x) < std::abs(y); }));
+  constexpr double kRounding = 1e-12;
+  if (largest <= kRounding * out.ratio) return out;
+  Random random(0, "bootstrap of a ratio");
+  std::vector<double> ratios(resamples_of(pairs.size()));
+  for (double& ratio : ratios) {
+    double a = 0.0;
+    double b = 0.0;
+    draw(random, pairs.size(), [&](std::size_t i) {
+      a += pairs[i].first;
+      b += pairs[i].second;
+    });
+    // 0 over 0 says no more of how large the ratio may be than a positive number over 0.
+    ratio = b > 0.0 ? a / b : std::numeric_limits<double>::infinity();
+  }
+  const double bias = bias_of(ratios, out.ratio, kRounding * out.ratio);
+  const double acceleration = acceleration_of(influences);
+  const auto end = [&](double side) {
+    return quantile_of(ratios, share_below_end(side, pairs.size(), bias, acceleration));
+  };
+  const double low = end(-1.0);
+  out.interval = MeanInterval{low, end(1.0)};
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include "analysis/statistics.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace palpate {
@@ -28,5 +29,23 @@ inline constexpr std::size_t kLeastForInterval = 5;
 /// The same values give the same interval in any order, and their negatives its negative. About 30 ms for up to a
 /// thousand values.
 MeanEstimate bootstrap_mean(const std::vector<double>& values);
+
+/// A ratio of two means, and the two-sided 95 % interval of what it estimates.
+struct RatioEstimate {
+  std::size_t count = 0;  ///< of pairs
+  double ratio = 0.0;
+  std::optional<MeanInterval> interval;
+};
+
+/// The mean of `above` over the mean of `below`, of pairs at the same places, and its interval by the bootstrap over
+/// the pairs: whole pairs are drawn, so that what makes both values of a pair large is no spread. BCa and widened as
+/// bootstrap_mean() is; the acceleration from the influence of each pair, (above - ratio below) / mean below (Efron and
+/// Tibshirani 1993, An Introduction to the Bootstrap, sections 14.3 and 22.5).
+///
+/// None unless all values are finite, none is negative and some value below is positive: of other quantities a ratio
+/// says nothing. No interval of fewer than kLeastForInterval pairs, nor of pairs that all have the same ratio. An end
+/// is infinite where so many values below are 0 that a sample like this one may have no other. The order of the pairs
+/// does not matter.
+std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, const std::vector<double>& below);
 
 }  // namespace palpate

@@ -152,15 +152,17 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
 }
 
 /// An option that the plugin of a group does not have is named as such: nothing would look like a slip.
-std::string name_of(const Values& values) {
-  Values shown = values;
-  std::replace(shown.begin(), shown.end(), std::string(), std::string("(none)"));
-  return one_line(fmt::format("{}", fmt::join(shown, ", ")));
+Values shown(const Values& values) {
+  Values out = values;
+  std::replace(out.begin(), out.end(), std::string(), std::string("(none)"));
+  for (std::string& one : out) one = one_line(one);
+  return out;
 }
 
-ComparedGroup summarise(const Collected& collected) {
+ComparedGroup summarise(const Collected& collected, bool only_mean) {
   ComparedGroup out;
-  out.name = name_of(collected.values);
+  out.values = shown(collected.values);
+  out.name = fmt::format("{}", fmt::join(out.values, ", "));
   std::vector<double> values;
   for (const auto& [pairing, outcome] : collected.outcomes) {
     ++out.counts.jobs;
@@ -182,7 +184,8 @@ ComparedGroup summarise(const Collected& collected) {
         break;
     }
   }
-  out.mean = bootstrap_mean(values);
+  out.mean = only_mean ? estimate_mean(values) : bootstrap_mean(values);
+  if (only_mean) out.mean.interval.reset();
   if (values.empty()) return out;
   std::sort(values.begin(), values.end());
   out.median = quantile(values, 0.5);
@@ -207,7 +210,7 @@ void count_lost(LostPairs& lost, const Outcome* a, const Outcome* b) {
   }
 }
 
-ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second) {
+ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second, bool ratio) {
   ComparedPair out;
   out.first = first;
   out.second = second;
@@ -231,6 +234,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
     if (a.find(pairing) == a.end()) count_lost(out.lost, nullptr, &outcome);
   }
   out.difference = bootstrap_mean(differences);
+  if (ratio) out.ratio = bootstrap_ratio(values_a, values_b);
   out.test = signed_rank_test(values_a, values_b);
   return out;
 }
@@ -328,7 +332,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.jobs = static_cast<int>(sweep.jobs.size());
   out.pairing = varying(sweep, others(sweep.keys, query.by));
   const std::vector<Collected> groups = collect(sweep, results, columns, query, out);
-  for (const Collected& group : groups) out.groups.push_back(summarise(group));
+  for (const Collected& group : groups) out.groups.push_back(summarise(group, query.only_groups));
   check_values(out, sweep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -336,11 +340,13 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   }
   const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : kept.front();
   out.compared = kept.size();
+  out.ratios = query.ratios;
+  if (query.only_groups) return out;
   out.one_baseline = query.baseline || kept.size() > kMostGroupsInPairs;
   for (auto second = kept.begin(); second != kept.end(); ++second) {
     if (out.one_baseline && *second != baseline) continue;
     for (auto first = out.one_baseline ? kept.begin() : second + 1; first != kept.end(); ++first) {
-      if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second));
+      if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second, query.ratios));
     }
   }
   adjust(out.pairs);

@@ -3,6 +3,7 @@
 // are equal in all but what makes the groups. analysis/compare_report.hpp shows it.
 #pragma once
 
+#include "analysis/bootstrap.hpp"
 #include "analysis/column.hpp"
 #include "analysis/signed_rank.hpp"
 #include "analysis/statistics.hpp"
@@ -22,6 +23,8 @@ struct CompareQuery {
   std::string metric;                   ///< a column of results.csv
   const Condition* where = nullptr;     ///< on the columns of results.csv: other jobs are left out; null for none
   std::optional<std::string> baseline;  ///< the group that all others are compared with: "weighted, rbf"
+  bool ratios = false;                  ///< of the means of each pair, too
+  bool only_groups = false;             ///< no pairs, and no intervals, which are what takes time
 };
 
 /// The jobs of a group. What is left out counts as that alone, however it ended.
@@ -35,6 +38,7 @@ struct JobCounts {
 
 struct ComparedGroup {
   std::string name;  ///< its values, in the order of the keys: "weighted, rbf"; "(none)" of a key that its jobs lack
+  std::vector<std::string> values;  ///< the same one by one
   JobCounts counts;
   MeanEstimate mean;  ///< over the jobs that have a value; interval by the bootstrap
   double median = 0.0;
@@ -59,6 +63,7 @@ struct ComparedPair {
   std::size_t second = 0;
   LostPairs lost;
   MeanEstimate difference;
+  std::optional<RatioEstimate> ratio;  ///< mean of the first over that of the second; if asked for, and it makes sense
   SignedRank test;
   std::optional<double> p_holm;  ///< adjusted for all pairs of this comparison; none if there is but one
 };
@@ -73,10 +78,12 @@ struct Comparison {
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
   std::size_t compared = 0;           ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
-  int jobs = 0;                 ///< of the sweep
-  int left_out = 0;             ///< of them, by the condition
-  int left_out_failed = 0;      ///< of those
-  int left_out_unfinished = 0;  ///< of those
+  bool ratios = false;            ///< asked for
+  std::optional<int> after_taps;  ///< the jobs as they were after so many taps; none: as they ended
+  int jobs = 0;                   ///< of the sweep
+  int left_out = 0;               ///< of them, by the condition
+  int left_out_failed = 0;        ///< of those
+  int left_out_unfinished = 0;    ///< of those
 };
 
 /// Of more groups only those pairs are compared that have the first one in them, unless a baseline is named.

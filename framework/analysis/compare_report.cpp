@@ -96,11 +96,19 @@ std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const Si
   return {test.higher, test.lower};
 }
 
+/// "0.85 [0.79, 0.91]"
+std::string ratio_text(const ComparedPair& pair) {
+  if (!pair.ratio) return "-";
+  const auto& ends = pair.ratio->interval;
+  return fmt::format("{:.3f} {}", pair.ratio->ratio,
+                     ends ? fmt::format("[{:.3f}, {:.3f}]", ends->low, ends->high) : "[-]");
+}
+
 std::string pair_table(const Comparison& comparison, const Scale& scale) {
   const bool many = comparison.pairs.size() > 1;
   const Words words = words_of(comparison.metric);
-  Lines lines{{"difference", "pairs", "lost", "mean [95 % interval]", fmt::format("{}/equal/{}", words.up, words.down),
-               "p", many ? "p (Holm)" : "", "effect"}};
+  Lines lines{{"difference", "pairs", "lost", "mean [95 % interval]", comparison.ratios ? "ratio [95 % interval]" : "",
+               fmt::format("{}/equal/{}", words.up, words.down), "p", many ? "p (Holm)" : "", "effect"}};
   for (const ComparedPair& pair : comparison.pairs) {
     const auto [up, down] = sides(comparison, pair.test);
     const auto& ends = pair.difference.interval;
@@ -109,10 +117,11 @@ std::string pair_table(const Comparison& comparison, const Scale& scale) {
     lines.push_back(
         {pair_name(comparison, pair), std::to_string(pair.difference.count), std::to_string(pair.lost.all()),
          pair.difference.count > 0 ? fmt::format("{} {}", scale.difference(pair.difference.mean), interval) : "-",
-         fmt::format("{}/{}/{}", up, pair.test.equal, down), p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
+         comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
+         p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
          pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
   }
-  return aligned(lines, "lrrrrrrr");
+  return aligned(lines, "lrrrrrrrr");
 }
 
 std::string keys_text(const std::vector<std::string>& keys) {
@@ -181,7 +190,8 @@ std::string compare_tables(const Comparison& comparison) {
                                 : comparison.metric.better == Better::less ? "; less is better"
                                                                            : "";
   std::string out =
-      fmt::format("{} by {}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by), direction);
+      fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
+                  comparison.after_taps ? fmt::format(" after {} taps", *comparison.after_taps) : "", direction);
   out += group_table(comparison, scale);
   if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale));
   const std::string notes = remarks(comparison);
@@ -204,6 +214,12 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
   const std::vector<std::string>& pairing = comparisons.front().pairing;
   out += pairing.empty() ? "pair: one job of each group.\n"
                          : fmt::format("pair: two jobs that are equal in {}.\n", keys_text(pairing));
+  if (comparisons.front().ratios) {
+    out +=
+        "ratio: the mean of the first over that of the second, over the same pairs, which are drawn whole for its "
+        "interval\n"
+        "(bootstrap, BCa); '-' of what may be negative.\n";
+  }
   if (pairing.size() > 1) out += "Pairs that share one of these are taken as independent all the same.\n";
   out += fmt::format(
       "p: how often, were it chance which of a pair is the larger, the signed ranks of the differences would lie as "
@@ -222,6 +238,7 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     row.add("by", fmt::format("{}", fmt::join(comparison.by, ",")));
     row.add("metric", comparison.metric.name);
     row.add("where", where.empty() ? std::nullopt : std::optional(where));
+    if (comparison.after_taps) row.add("at", *comparison.after_taps);
     rows.push_back(std::move(row));
     return rows.back();
   };
@@ -250,6 +267,12 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     row.add("group", comparison.groups[one.first].name);
     row.add("minus", comparison.groups[one.second].name);
     add_mean(row, one.difference);
+    if (comparison.ratios) {
+      const std::optional<MeanInterval> ends = one.ratio ? one.ratio->interval : std::nullopt;
+      row.add("ratio", one.ratio ? std::optional(one.ratio->ratio) : std::nullopt);
+      row.add("ratio_low_95", ends ? std::optional(ends->low) : std::nullopt);
+      row.add("ratio_high_95", ends ? std::optional(ends->high) : std::nullopt);
+    }
     row.add("lost_left_out", one.lost.left_out);
     row.add("lost_without_partner", one.lost.without_partner);
     row.add("lost_unfinished", one.lost.unfinished);

@@ -103,8 +103,12 @@ struct CompareArguments {
   std::vector<std::string> metrics;
   std::optional<std::string> where;
   std::optional<std::string> baseline;
+  std::vector<int> at;  ///< numbers of taps; none: as the jobs ended
+  bool ratio = false;
+  bool table = false;
+  std::optional<int> workers;
 };
-int compare(const CompareArguments& arguments);
+int compare(Program& program, const CompareArguments& arguments);
 
 struct ReportArguments {
   std::string directory;

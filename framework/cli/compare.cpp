@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/compare_report.hpp"
+#include "analysis/means_table.hpp"
 #include "cli/commands.hpp"
+#include "cli/earlier.hpp"
 #include "config/hash.hpp"
 #include "experiment/resolved.hpp"
 #include "record/files.hpp"
@@ -23,34 +25,62 @@ Condition read_condition(const std::string& text) {
   return Condition(tree);
 }
 
-/// Beside results.csv. Comparisons on other conditions have files of their own.
+/// Beside results.csv. Comparisons on other conditions, or after fewer taps, have files of their own.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
   constexpr std::size_t kDigits = 6;
   std::string name = fmt::format("compare_{}_{}", slug(fmt::format("{}", fmt::join(comparison.by, "_"))),
                                  slug(comparison.metric.name));
+  if (comparison.after_taps) name += fmt::format("_at_{}", *comparison.after_taps);
   if (!where.empty()) name += "_where_" + hash_of(where).substr(0, kDigits);
   return sweep.directory / (name + ".csv");
 }
 
+/// All that is asked, of the jobs as they ended or as they were after so many taps; none if it was interrupted. Made as
+/// a whole before anything is shown: an unknown metric is no reason for half of an answer.
+std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
+                                                   const CompareArguments& arguments) {
+  std::optional<Condition> where;
+  if (arguments.where) where.emplace(read_condition(*arguments.where));
+  std::vector<Comparison> comparisons;
+  const auto add = [&](const std::vector<Row>& results, std::optional<int> after_taps) {
+    for (const std::string& metric : arguments.metrics) {
+      const CompareQuery query{arguments.by,       metric,          where ? &*where : nullptr,
+                               arguments.baseline, arguments.ratio, arguments.table};
+      comparisons.push_back(palpate::compare(sweep, results, query));
+      comparisons.back().after_taps = after_taps;
+    }
+  };
+  if (arguments.at.empty()) {
+    add(sweep_results(sweep), std::nullopt);
+    return comparisons;
+  }
+  // What cannot be compared is found out before anything is computed.
+  for (const std::string& metric : arguments.metrics) {
+    palpate::compare(sweep, sweep_results(sweep),
+                     {arguments.by, metric, where ? &*where : nullptr, arguments.baseline, false, true});
+  }
+  const auto results = results_at(program, sweep, arguments.at, arguments.workers);
+  if (!results) return std::nullopt;
+  for (std::size_t i = 0; i < results->size(); ++i) add((*results)[i], arguments.at[i]);
+  return comparisons;
+}
+
 }  // namespace
 
-int compare(const CompareArguments& arguments) {
+int compare(Program& program, const CompareArguments& arguments) {
   if (!is_sweep(arguments.directory))
     throw Error(arguments.directory, "is not the directory of a sweep", "it has no manifest.jsonl");
   const Sweep sweep = read_sweep(arguments.directory);
-  const std::vector<Row> results = sweep_results(sweep);
-  std::optional<Condition> where;
-  if (arguments.where) where.emplace(read_condition(*arguments.where));
-  // All first: an unknown metric is no reason for half of an answer.
-  std::vector<Comparison> comparisons;
-  for (const std::string& metric : arguments.metrics) {
-    comparisons.push_back(
-        palpate::compare(sweep, results, {arguments.by, metric, where ? &*where : nullptr, arguments.baseline}));
+  const auto comparisons = compare_all(program, sweep, arguments);
+  if (!comparisons) return kInterrupted;
+  if (arguments.table) {
+    fmt::print("{}", means_table(*comparisons));
+    return kDone;
   }
-  for (const Comparison& one : comparisons) fmt::print("{}\n", compare_tables(one));
-  fmt::print("{}", compare_legend(comparisons));
+  for (const Comparison& one : *comparisons) fmt::print("{}\n", compare_tables(one));
+  fmt::print("{}", compare_legend(*comparisons));
   const std::string condition = arguments.where.value_or("");
-  for (const Comparison& one : comparisons) {
+  for (const Comparison& one : *comparisons) {
     const fs::path file = table_file(sweep, one, condition);
     try {
       write_file(file, to_csv(compare_rows(one, condition)));

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// configs/benchmark in its short form, two objects and two seeds: the sweep, its rows after fewer taps, the table.
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace palpate {
+namespace {
+
+using test::Cells;
+using test::csv_rows;
+using test::Ended;
+using test::only_run;
+using test::TemporaryFolder;
+using test::text_of;
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+/// The sweep with fewer taps and some of its keys narrowed.
+fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& narrowed, int taps = 20) {
+  std::vector<std::string> words{"sweep", test::config("benchmark/strategies.yaml"), "taps=" + std::to_string(taps),
+                                 "--quiet", "seed=1000,1001"};
+  words.insert(words.end(), narrowed.begin(), narrowed.end());
+  const Ended ended = test::palpate(words, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  return only_run(folder.path() / "runs");
+}
+
+Ended compare(const TemporaryFolder& folder, const fs::path& directory, const std::vector<std::string>& more) {
+  std::vector<std::string> words{"compare", directory.string(), "-j", "2"};
+  words.insert(words.end(), more.begin(), more.end());
+  return test::palpate(words, folder.path());
+}
+
+TEST(Benchmark, ComparesSixStrategiesOnTwelveObjectsWithAndWithoutEffects) {
+  const TemporaryFolder folder;
+  const Ended list =
+      test::palpate({"sweep", test::config("benchmark/strategies.yaml"), "--list", "seed=1000"}, folder.path());
+  EXPECT_EQ(list.status, 0) << list.err;
+  EXPECT_EQ(test::lines(list.out), 6 * 12 * 2);
+}
+
+TEST(Benchmark, RunsTheDefaultAsItIsShipped) {
+  const TemporaryFolder folder;
+  const Ended in_sweep = test::palpate({"run", test::config("benchmark/strategies.yaml"), "strategy=default",
+                                        "scene=object_i", "name=x", "--print-config"},
+                                       folder.path());
+  const Ended shipped = test::palpate(
+      {"run", test::config("default.yaml"), "scene.placement=random", "taps=60", "name=x", "--print-config"},
+      folder.path());
+  EXPECT_EQ(in_sweep.status, 0) << in_sweep.err;
+  EXPECT_EQ(in_sweep.out.substr(in_sweep.out.find("\ntaps:")), shipped.out.substr(shipped.out.find("\ntaps:")));
+}
+
+TEST(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"scene=object_i,ring"});
+  const std::vector<std::string> words{
+      "--by", "strategy,scene.effects", "--metric", "found,rmse_m,first_hit_tap", "--at", "8,20", "--table"};
+  const Ended ended = compare(folder, directory, words);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("| strategy | scene.effects | taps | found | rmse_m [mm] | first_hit_tap |\n"
+                                   "|---|---|---:|---:|---:|---:|\n"
+                                   "| random | none | 8 | "));
+  EXPECT_THAT(ended.out, HasSubstr("\n| default | standard | 20 | "));
+  EXPECT_THAT(ended.err, HasSubstr("48 of 48 jobs done"));
+
+  const std::vector<Cells> whole = csv_rows(text_of(directory / "results.csv"));
+  const std::vector<Cells> earlier = csv_rows(text_of(directory / "results_at_8.csv"));
+  ASSERT_EQ(whole.size(), 48U);
+  ASSERT_EQ(earlier.size(), 48U);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const auto& [column, value] : whole[i]) ASSERT_EQ(earlier[i].count(column), 1U) << column;
+    EXPECT_EQ(earlier[i].size(), whole[i].size());
+    for (const char* same : {"job", "id", "strategy", "scene", "scene.effects", "seed", "status"})
+      EXPECT_EQ(earlier[i].at(same), whole[i].at(same)) << same;
+    int taps = 0;
+    for (const char* kind : {"on_surface_taps", "off_surface_taps", "failed_taps"})
+      taps += std::stoi(earlier[i].at(kind));
+    EXPECT_EQ(taps, 8);
+    EXPECT_LT(std::stod(earlier[i].at("robot_seconds")), std::stod(whole[i].at("robot_seconds")));
+  }
+  EXPECT_EQ(text_of(directory / "results_at_20.csv"), text_of(directory / "results.csv")) << "all taps are the run";
+
+  const Ended again = compare(folder, directory, words);
+  EXPECT_EQ(again.out, ended.out);
+  EXPECT_EQ(again.err, "") << "nothing is computed twice";
+}
+
+TEST(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
+  const TemporaryFolder folder;
+  const TemporaryFolder shorter;
+  const std::vector<std::string> narrowed{"scene=two_blocks", "strategy=weighted_two_part,default"};
+  const fs::path directory = swept(folder, narrowed);
+  const std::vector<std::string> words{"--by", "strategy", "--metric", "rmse_m,on_surface_taps,robot_seconds"};
+  std::vector<std::string> at = words;
+  at.insert(at.end(), {"--at", "8"});
+  EXPECT_EQ(compare(folder, directory, at).status, 0);
+  EXPECT_EQ(compare(shorter, swept(shorter, narrowed, 8), words).status, 0);
+  const fs::path there = only_run(shorter.path() / "runs");
+  const std::vector<Cells> earlier = csv_rows(text_of(directory / "results_at_8.csv"));
+  const std::vector<Cells> budgeted = csv_rows(text_of(there / "results.csv"));
+  ASSERT_EQ(earlier.size(), budgeted.size());
+  for (std::size_t i = 0; i < earlier.size(); ++i) {
+    for (const auto& [column, value] : budgeted[i]) {
+      const bool of_machine = column.find("compute") == 0 || column == "wall_seconds" || column == "peak_rss_bytes";
+      const bool of_budget = column == "id" || column == "taps" || column.find("engine_reason") != std::string::npos;
+      if (of_machine || of_budget) continue;
+      EXPECT_EQ(earlier[i].at(column), value) << column;
+    }
+  }
+  for (const char* metric : {"rmse_m", "on_surface_taps", "robot_seconds"}) {
+    const std::string stem = std::string("compare_strategy_") + metric;
+    const std::vector<Cells> here = csv_rows(text_of(directory / (stem + "_at_8.csv")));
+    const std::vector<Cells> other = csv_rows(text_of(there / (stem + ".csv")));
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      EXPECT_EQ(here[i].at("at"), "8");
+      EXPECT_EQ(here[i].at("mean"), other[i].at("mean"));
+      EXPECT_EQ(here[i].at("high_95"), other[i].at("high_95"));
+    }
+  }
+}
+
+TEST(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"});
+  const std::vector<std::string> words{"--by", "strategy", "--metric", "rmse_m", "--at", "8"};
+  const Ended before = compare(folder, directory, words);
+  EXPECT_THAT(before.err, HasSubstr("4 of 4 jobs done"));
+  // As after a job that was run again: its summary is another.
+  const fs::path job = directory / "jobs" / csv_rows(text_of(directory / "results.csv")).front().at("id");
+  const std::string kept = text_of(job / "summary_at_8.json");
+  std::string summary = text_of(job / "summary.json");
+  const auto at = summary.find("\"wall_seconds\": ") + 16;
+  summary.replace(at, summary.find(',', at) - at, "123.5");
+  std::ofstream(job / "summary.json") << summary;
+  const Ended after = compare(folder, directory, words);
+  EXPECT_THAT(after.err, HasSubstr("1 of 1 jobs done"));
+  EXPECT_EQ(after.out, before.out);
+  EXPECT_NE(text_of(job / "summary_at_8.json"), kept);
+}
+
+TEST(Benchmark, ShowsRatiosOfPairsIfAskedFor) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"strategy=weighted,default", "scene=object_i,dome,ring"}, 12);
+  const Ended ended = compare(folder, directory, {"--by", "strategy", "--metric", "rmse_m,nlpd", "--ratio"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("  ratio [95 % interval]  "));
+  EXPECT_THAT(ended.out, HasSubstr("\nratio: the mean of the first over that of the second, "));
+  const std::vector<Cells> rows = csv_rows(text_of(directory / "compare_strategy_rmse_m.csv"));
+  ASSERT_EQ(rows.size(), 3U);
+  const double ratio = std::stod(rows[2].at("ratio"));
+  EXPECT_NEAR(ratio, std::stod(rows[1].at("mean")) / std::stod(rows[0].at("mean")), 1e-12);
+  EXPECT_LT(std::stod(rows[2].at("ratio_low_95")), ratio);
+  EXPECT_GT(std::stod(rows[2].at("ratio_high_95")), ratio);
+}
+
+TEST(Benchmark, RefusesWhatCannotBeShown) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"}, 8);
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"--by", "strategy", "--metric", "rmse_m"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = compare(folder, directory, words);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(ended.out, "");
+    return ended.err;
+  };
+  EXPECT_EQ(refusal({"--at", "4,9"}), "command line: --at: no job made 9 taps, the most are 8\n");
+  EXPECT_THAT(refusal({"--at", "0"}), HasSubstr("--at"));
+  EXPECT_THAT(refusal({"--table", "--ratio"}), HasSubstr("--ratio excludes --table"));
+  EXPECT_THAT(refusal({"--at", "4", "--metric", "rmse"}), HasSubstr("results.csv has no column 'rmse'"));
+  EXPECT_FALSE(fs::exists(directory / "results_at_4.csv")) << "found out before anything is computed";
+}
+
+}  // namespace
+}  // namespace palpate

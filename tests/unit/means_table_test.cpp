@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Means of several metrics and numbers of taps, as Markdown.
+#include "analysis/means_table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+ComparedGroup group(const std::string& name, std::size_t count, double mean) {
+  ComparedGroup out;
+  out.name = name;
+  out.values = {name};
+  out.counts.jobs = 4;
+  out.counts.without_value = 4 - static_cast<int>(count);
+  out.mean.count = count;
+  out.mean.mean = mean;
+  return out;
+}
+
+Comparison comparison(const char* metric, Unit unit, std::optional<int> taps, std::vector<ComparedGroup> groups) {
+  Comparison out;
+  out.metric = {metric, unit, SummaryField::Better::less};
+  out.by = {"strategy"};
+  out.groups = std::move(groups);
+  out.after_taps = taps;
+  return out;
+}
+
+TEST(MeansTable, HasARowAGroupAndNumberOfTapsAndAColumnAMetric) {
+  EXPECT_EQ(means_table({comparison("rmse_m", Unit::metre, 17, {group("bold", 4, 0.0261), group("shy", 4, 0.0412)}),
+                         comparison("first_hit_tap", Unit::none, 17, {group("bold", 3, 4.5), group("shy", 0, 0.0)}),
+                         comparison("rmse_m", Unit::metre, 30, {group("bold", 4, 0.00915), group("shy", 4, 0.034)}),
+                         comparison("first_hit_tap", Unit::none, 30, {group("bold", 4, 6.25), group("shy", 4, 21)})}),
+            "| strategy | taps | rmse_m [mm] | first_hit_tap |\n"
+            "|---|---:|---:|---:|\n"
+            "| bold | 17 | 26.1 | 4.5 |\n"
+            "| shy | 17 | 41.2 | - |\n"
+            "| bold | 30 | 9.2 | 6.2 |\n"
+            "| shy | 30 | 34.0 | 21.0 |\n"
+            "\nfirst_hit_tap: mean over the runs that have one (else the object was not found).\n");
+}
+
+TEST(MeansTable, OfJobsAsTheyEndedHasNoTaps) {
+  EXPECT_EQ(means_table({comparison("footprint_iou", Unit::none, {}, {group("a|b", 4, 0.734)})}),
+            "| strategy | footprint_iou |\n|---|---:|\n| a\\|b | 0.73 |\n");
+}
+
+TEST(MeansTable, SaysWhatIsInNoMeanAndLeavesOutWhatIsLeftOut) {
+  Comparison one = comparison("rmse_m", Unit::metre, {}, {group("bold", 4, 0.02), group("shy", 4, 0.03)});
+  one.groups[0].counts.failed = 2;
+  one.groups[0].counts.unfinished = 1;
+  one.groups[1].counts.left_out = 4;
+  EXPECT_EQ(means_table({one}),
+            "| strategy | rmse_m [mm] |\n|---|---:|\n| bold | 20 |\n"
+            "\n2 jobs failed and 1 have not ended: they are in no mean.\n");
+}
+
+}  // namespace
+}  // namespace palpate
