@@ -101,7 +101,7 @@ TEST(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThem) {
 TEST(Figures, OfAFootprintHaveItsProbabilityAndTheScoreInPlaceOfTheWeight) {
   const TemporaryFolder folder;
   const fs::path directory =
-      drawn_run(folder, {"seed=3", "footprint=shape", "acquisition=outline_first", "surface=two_part"});
+      drawn_run(folder, {"seed=3", "footprint=shape", "acquisition=outline_and_fill", "surface=two_part"});
   const auto maps = blocks_of(directory / "figures/maps.gnuplot");
   EXPECT_EQ(maps.count("w") + maps.count("e"), 0U);
   EXPECT_EQ(maps.count("score"), 1U);

@@ -60,12 +60,13 @@ testing::Matcher<std::vector<double>> near(const std::vector<double>& expected) 
 // -p log2 p - (1 - p) log2 (1 - p), to 16 digits.
 const std::vector<double> kBits{0.0, 0.8112781244591328, 1.0, 0.0, 0.4689955935892812};
 
+// Square roots of the uncertainties, to 16 digits.
+const std::vector<double> kDeep{1.0, 0.7071067811865476, 0.4472135954999579, 0.0, 0.8944271909999159};
+
 TEST(AcquisitionValues, OutlineIsTheEntropyOfTheFootprintInBits) { EXPECT_THAT(scores("outline"), near(kBits)); }
 
-TEST(AcquisitionValues, LikelyIsTheProbability) { EXPECT_THAT(scores("likely"), near({0.0, 0.25, 0.5, 1.0, 0.9})); }
-
-TEST(AcquisitionValues, InsideIsTheVarianceTimesTheProbabilityNotTimesTheWeight) {
-  EXPECT_THAT(scores("inside"), near({0.0, 0.125, 0.1, 0.0, 0.72}));
+TEST(AcquisitionValues, InsideIsTheStandardDeviationTimesTheProbabilityNotTimesTheWeight) {
+  EXPECT_THAT(scores("inside"), near({0.0, kDeep[1] * 0.25, kDeep[2] * 0.5, 0.0, kDeep[4] * 0.9}));
   EXPECT_THAT(scores("weighted"), near({0.1, 0.6, -0.06, 0.0, 0.0}));
 }
 
@@ -73,17 +74,11 @@ TEST(AcquisitionValues, AMixtureIsTheSumOfItsPartsAndAScaleATimesItsPart) {
   const std::string parts =
       "{acquisitions: [{type: scale, factor: 0.7, acquisition: {type: outline}}, "
       "{type: scale, factor: 0.3, acquisition: {type: inside}}]}";
-  EXPECT_THAT(scores("mixture", parts), near({0.0, 0.7 * kBits[1] + 0.0375, 0.73, 0.0, 0.7 * kBits[4] + 0.216}));
+  EXPECT_THAT(scores("mixture", parts), near({0.0, 0.7 * kBits[1] + 0.3 * kDeep[1] * 0.25, 0.7 + 0.3 * kDeep[2] * 0.5,
+                                              0.0, 0.7 * kBits[4] + 0.3 * kDeep[4] * 0.9}));
   EXPECT_DOUBLE_EQ(scale_of("mixture", parts), 1.0);
   EXPECT_THAT(scores("scale", "{factor: 2.5, acquisition: {type: uncertainty}}"), near({2.5, 1.25, 0.5, 0.0, 2.0}));
   EXPECT_DOUBLE_EQ(scale_of("scale", "{factor: 2.5, acquisition: {type: uncertainty}}"), 2.5);
-}
-
-TEST(AcquisitionValues, AScheduleTakesTheSecondFromTheFirstHitOn) {
-  const std::string both = "{find: {type: likely}, then: {type: scale, factor: 3, acquisition: {type: inside}}}";
-  EXPECT_EQ(scores("schedule", both, 0), scores("likely"));
-  for (const int hits : {1, 2, 60}) EXPECT_THAT(scores("schedule", both, hits), near({0.0, 0.375, 0.3, 0.0, 2.16}));
-  EXPECT_DOUBLE_EQ(scale_of("schedule", both), 3.0) << "the larger of both";
 }
 
 }  // namespace

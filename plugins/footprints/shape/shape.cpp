@@ -18,7 +18,7 @@ struct ShapeOptions : Options {
   double largest = 0.22;
   double one_piece = 0.3;
   double mistaken = 0.01;
-  double contradictions = 1.5;
+  double contradictions = 4.0;
   std::int64_t particles = 2000;
   PluginChoice kernel{"kernel", {}, nullptr};
   double signal = 2.0;
@@ -33,8 +33,8 @@ struct ShapeOptions : Options {
                                .at_most(1));
     fields.real(mistaken, Field("mistaken", "probability that the label of a touch is wrong").above(0).at_most(0.4));
     fields.real(contradictions, Field("contradictions",
-                                      "hand over to the classifier when the outlines have more touches than this "
-                                      "wrong, on average")
+                                      "hand over to the classifier when an outline has so many more touches wrong, on "
+                                      "average, than mistaken lets expect")
                                     .above(0));
     fields.integer(particles, Field("particles", "outlines that stand for the belief").at_least(100).at_most(100000));
     fields.plugin(kernel, Field("kernel", "of the classifier").needed());
@@ -48,7 +48,8 @@ class Shape final : public Footprint {
  public:
   using Options = ShapeOptions;
   Shape(const Options& options, const Context& context)
-      : contradictions_(options.contradictions),
+      : mistaken_(options.mistaken),
+        contradictions_(options.contradictions),
         kernel_(context.create<Kernel>(options.kernel)),
         settings_{options.signal, options.prior_mean},
         particles_(prior(options, context.scene.area()), {static_cast<int>(options.particles), options.mistaken},
@@ -59,8 +60,9 @@ class Shape final : public Footprint {
     points_.bottomRows<1>() << touch.place.x, touch.place.y;
     on_.push_back(touch.on);
     particles_.add(touch.place, touch.on);
-    if (handed_over_at_ == 0 && particles_.mean_mistakes() > contradictions_)
-      handed_over_at_ = static_cast<int>(on_.size());
+    const auto touches = static_cast<int>(on_.size());
+    const double unexpected = particles_.mean_mistakes() - mistaken_ * touches;
+    if (handed_over_at_ == 0 && unexpected > contradictions_) handed_over_at_ = touches;
   }
 
   void probability(const PointsView& places, VectorOut out) override {
@@ -123,6 +125,7 @@ class Shape final : public Footprint {
     return static_cast<int>(columns);
   }
 
+  double mistaken_;
   double contradictions_;
   std::shared_ptr<Kernel> kernel_;
   LaplaceSettings settings_;
