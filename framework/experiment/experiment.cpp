@@ -79,8 +79,8 @@ std::optional<std::string> Experiment::stop_reason() const {
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
   }
-  if (stop.expected_rmse && result_.taps >= options_.initial.count &&
-      good_enough(forecaster_->forecast(belief_), *stop.expected_rmse, stop.unsearched)) {
+  const bool begun = options_.initial.searches() || result_.taps >= options_.initial.count;
+  if (stop.expected_rmse && begun && good_enough(forecaster_->forecast(belief_), *stop.expected_rmse, stop.unsearched)) {
     return "expected_rmse";
   }
   return std::nullopt;

@@ -135,8 +135,8 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
 }
 
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
-  const ResolvedConfig config =
-      shipped_config("default.yaml", {"taps=25", "initial.count=12", "stop.expected_rmse=1 m", "stop.unsearched=1"});
+  const ResolvedConfig config = shipped_config("default.yaml", {"taps=25", "initial={design: random, count: 12}",
+                                                                "stop.expected_rmse=1 m", "stop.unsearched=1"});
   std::vector<Contact> answers(25, Contact{Outcome::contact, 0.05, 8.0, 1.0, {}});
   Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
   Collector collector;

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 class WithoutRos : public ::testing::Test {
  protected:
   WithoutRos() {
-    for (const char* kind : {"kernel", "acquisition", "fitting", "shape"}) {
+    for (const char* kind : {"kernel", "acquisition", "footprint", "fitting", "shape"}) {
       fs::create_directory_symlink(test::plugin_folder() / kind, folder_.path() / kind);
     }
     fs::create_directory_symlink(test::bad_plugin_folder("without_ros") / "backend", folder_.path() / "backend");
