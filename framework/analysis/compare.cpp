@@ -308,7 +308,7 @@ void check_values(const Comparison& made, const Sweep& sweep) {
   if (values > 0) return;
   if (made.left_out == made.jobs) {
     throw Error(kCommandLine, fmt::format("--where: leaves none of the {} jobs", made.jobs),
-                "results.csv has the values it is compared with");
+                "results.csv, or results_at_N.csv with --at, has the values it is compared with");
   }
   if (all.without_value == 0) {
     throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace palpate::cli {
@@ -54,14 +55,17 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
     add(sweep_results(sweep), std::nullopt);
     return comparisons;
   }
-  // What cannot be compared is found out before anything is computed.
-  for (const std::string& metric : arguments.metrics) {
-    palpate::compare(sweep, sweep_results(sweep),
-                     {arguments.by, metric, where ? &*where : nullptr, arguments.baseline, false, true});
+  std::vector<int> taps;  // each once, in the order given
+  for (const int count : arguments.at) {
+    if (std::find(taps.begin(), taps.end(), count) == taps.end()) taps.push_back(count);
   }
-  const auto results = results_at(program, sweep, arguments.at, arguments.workers);
+  // What cannot be compared is found out before anything is computed; of which jobs a condition holds is not known yet.
+  for (const std::string& metric : arguments.metrics) {
+    palpate::compare(sweep, sweep_results(sweep), {arguments.by, metric, nullptr, arguments.baseline, false, true});
+  }
+  const auto results = results_at(program, sweep, taps, arguments.workers);
   if (!results) return std::nullopt;
-  for (std::size_t i = 0; i < results->size(); ++i) add((*results)[i], arguments.at[i]);
+  for (std::size_t i = 0; i < results->size(); ++i) add((*results)[i], taps[i]);
   return comparisons;
 }
 

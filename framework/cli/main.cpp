@@ -148,16 +148,19 @@ void add_compare(CLI::App& app, Arguments& a, Action& action) {
   list("--metric", a.compare.metrics, "the columns of results.csv to compare: on_surface_taps,rmse_m");
   sub->add_option("--where", a.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
   sub->add_option("--baseline", a.compare.baseline, "compare all groups with this one only: uncertainty");
-  sub->add_option("--at", a.compare.at,
-                  "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, and kept")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::Range(1, 1000000));
+  CLI::Option* at =
+      sub->add_option(
+             "--at", a.compare.at,
+             "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, and kept")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(CLI::Range(1, 1000000));
   CLI::Option* ratio = sub->add_flag("--ratio", a.compare.ratio, "of every pair also the ratio of the means");
   sub->add_flag("--table", a.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
       ->excludes(ratio);
   sub->add_option("-j", a.compare.workers, "with --at, jobs at a time; if not given, the number of cores")
-      ->check(CLI::Range(1, 1024));
+      ->check(CLI::Range(1, 1024))
+      ->needs(at);
   sub->callback([&] { action = [&](Program& program) { return compare(program, a.compare); }; });
 }
 

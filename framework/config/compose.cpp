@@ -140,11 +140,12 @@ std::vector<fs::path> Composer::roots(const fs::path& beside) const {
 fs::path Composer::find_group(const std::string& group, const std::string& name, const fs::path& beside) const {
   const auto [place, is_new] = found_.try_emplace({group, name, beside.string()});
   if (!is_new) return place->second;
-  // A whole config is a strategy, too: configs/default.yaml is the strategy `default`.
+  // A whole config is a strategy, too: configs/default.yaml is the strategy `default`. It comes last, so that a user's
+  // weighted.yaml may build on the strategy of its name.
   const std::vector<fs::path> folders =
       group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
-  for (const fs::path& root : roots(beside)) {
-    for (const fs::path& folder : folders) {
+  for (const fs::path& folder : folders) {
+    for (const fs::path& root : roots(beside)) {
       std::error_code ignored;
       const fs::path file = root / folder / (name + ".yaml");
       if (!fs::exists(file, ignored)) continue;

@@ -79,8 +79,7 @@ std::optional<std::string> Experiment::stop_reason() const {
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
   }
-  const bool begun = options_.initial.searches() || result_.taps >= options_.initial.count;
-  if (stop.expected_rmse && begun && good_enough(forecaster_->forecast(belief_), *stop.expected_rmse, stop.unsearched)) {
+  if (stop.expected_rmse && !starting() && good_enough(forecaster_->forecast(belief_), *stop.expected_rmse)) {
     return "expected_rmse";
   }
   return std::nullopt;

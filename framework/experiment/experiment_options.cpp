@@ -99,12 +99,6 @@ void StopOptions::list(Fields& fields) {
                     "before an object is touched; builds what the reconstruction needs")
                   .in(Unit::metre)
                   .above(0));
-  fields.real(unsearched,
-              Field("unsearched",
-                    "for expected_rmse, at most this share of the area may lie farther than 3 cm from every "
-                    "tap; 1 where there surely is one object alone, of an outline that the footprint knows")
-                  .at_least(0)
-                  .at_most(1));
   fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
 }
 

@@ -60,7 +60,6 @@ struct LowrankOptions : Options {
 struct StopOptions : Options {
   std::optional<double> max_standard_deviation;
   std::optional<double> expected_rmse;
-  double unsearched = 0.5;
   std::optional<double> robot_time;
   void list(Fields& fields) override;
 };

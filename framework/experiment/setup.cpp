@@ -51,7 +51,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates_, scene_->area(), Random(context_.seed, "initial"));
   belief_.form(acquisition_->product());
-  if (options_.stop.expected_rmse) forecaster_.emplace(candidates_);
+  if (options_.stop.expected_rmse) forecaster_.emplace();
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
@@ -68,10 +68,7 @@ void Experiment::absorb(const Target& target, const Contact& contact, Source sou
   const auto candidate = static_cast<std::size_t>(candidates_.nearest(target.x, target.y, scene_->area()));
   const bool touched = contact.outcome == Outcome::contact;
   if (touched) tapped_[candidate] = true;
-  if (touched && forecaster_) {
-    const bool hit = scene_->on_surface(contact.height);
-    forecaster_->observe(target, hit ? std::optional(contact.height - belief_.desk()) : std::nullopt);
-  }
+  if (touched && forecaster_ && scene_->on_surface(contact.height)) forecaster_->hit(contact.height - belief_.desk());
   if (!touched || options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
 }
 

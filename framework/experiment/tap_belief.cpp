@@ -112,7 +112,6 @@ void TapBelief::observe(const Target& place, const Contact& contact, bool initia
   initial_taps_ += initial ? 1 : 0;
   if (contact.outcome != Outcome::contact) return;
   const bool on = context_.scene.on_surface(contact.height);
-  hits_ += on ? 1 : 0;
   const Datum datum{place, contact.height - desk_, on ? 1.0 : 0.0};
   if (footprint_) touches_.push_back({place, datum.height, on});
   heights_.data.push_back(datum);

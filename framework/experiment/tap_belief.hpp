@@ -37,7 +37,6 @@ class TapBelief final : public Belief {
   Area area() const override { return context_.scene.area(); }
   int taps() const override { return taps_; }
   int initial_taps() const override { return initial_taps_; }
-  int hits() const override { return hits_; }
   const Eigen::VectorXd& uncertainty() const override;
   const Eigen::VectorXd& weight() const override;
   const Eigen::VectorXd& probability() const override;
@@ -133,7 +132,6 @@ class TapBelief final : public Belief {
   bool joined_ = false;  ///< heights and labels are two outputs of one process
   int taps_ = 0;
   int initial_taps_ = 0;
-  int hits_ = 0;
   // Lazily filled by const readers: a belief is used by one thread.
   mutable Model heights_;
   mutable Model labels_;                  ///< unless joined

@@ -56,6 +56,10 @@ Scalar share_of(const std::optional<Row>& summary, const char* name, const std::
 }  // namespace
 
 std::vector<Row> summaries_after(const Workshop& workshop, const Recording& recording, const std::vector<int>& taps) {
+  if (!taps.empty() && static_cast<std::size_t>(*std::max_element(taps.begin(), taps.end())) > recording.rows.size()) {
+    throw Error(recording.directory.string(), "its taps.jsonl holds fewer taps than its summary says",
+                "the file is damaged, run the job again");
+  }
   const std::vector<Seconds> seconds = seconds_until(recording.directory);
   Playback playback(workshop, recording);
   std::vector<Row> rows;

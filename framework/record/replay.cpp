@@ -27,8 +27,14 @@ class Recorded final : public Backend {
   bool scene_is_truth() const override { return recording_.truth_known(); }
   bool wants_prediction() const override { return predicted_; }
   void show(const Belief& belief) override {
-    const auto next = std::min(static_cast<std::size_t>(belief.taps()), recording_.rows.size() - 1);
-    read_as_recorded(recording_.rows[next], belief);
+    // After the last tap: a run that found no further candidate has looked for one.
+    const auto taps = static_cast<std::size_t>(belief.taps());
+    if (taps < recording_.rows.size()) {
+      read_as_recorded(recording_.rows[taps], belief);
+    } else {
+      read_as_recorded(recording_.rows.back(), belief);
+      if (recording_.summary) read_as_recorded(*recording_.summary, belief);
+    }
   }
 
  private:

@@ -114,9 +114,7 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
 }
 
 void add_forecast(Row& row, const std::optional<Forecast>& forecast) {
-  if (!forecast) return;
-  row.add("expected_rmse_m", forecast->rmse);
-  row.add("unsearched", forecast->unsearched);
+  if (forecast) row.add("expected_rmse_m", forecast->rmse);
 }
 
 const char* outcome_name(Outcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }

@@ -53,8 +53,8 @@ int table(int first, int last, const std::vector<std::string>& overrides) {
       const test::Forecasts run = test::forecasts(scene, seed, overrides);
       for (std::size_t i = 0; i < std::size(kBounds); ++i) {
         const test::Stop stop = test::stop_of(run, kBounds[i]);
-        here[i].add(stop, static_cast<int>(run.moments.size()));
-        all[i].add(stop, static_cast<int>(run.moments.size()));
+        here[i].add(stop, static_cast<int>(run.size()));
+        all[i].add(stop, static_cast<int>(run.size()));
       }
     }
     for (std::size_t i = 0; i < std::size(kBounds); ++i) print(scene, kBounds[i], here[i]);

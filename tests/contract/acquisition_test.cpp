@@ -36,7 +36,6 @@ class ScriptedBelief final : public Belief {
   Area area() const override { return {0.23, 0.23}; }
   int taps() const override { return taps_; }
   int initial_taps() const override { return 3; }
-  int hits() const override { return taps_ / 4; }
   const Eigen::VectorXd& uncertainty() const override { return uncertainty_; }
   const Eigen::VectorXd& weight() const override { return weight_; }
   const Eigen::VectorXd& probability() const override { return probability_; }

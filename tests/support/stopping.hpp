@@ -19,12 +19,9 @@ struct Moment {
 };
 
 /// All moments of a run, the one before the first tap included.
-struct Forecasts {
-  double unsearched = 0.0;  ///< the option
-  std::vector<Moment> moments;
-};
+using Forecasts = std::vector<Moment>;
 
-/// Objects that the belief over outlines knows, and two that it does not: l and two_blocks.
+/// Objects of one piece, and two of two pieces: l and two_blocks.
 inline const std::vector<std::string>& stopping_scenes() {
   static const std::vector<std::string> scenes{"object_i",     "object_ii", "dome",      "cylinder",
                                                "tilted_block", "l",         "two_blocks"};
@@ -40,11 +37,11 @@ inline Forecasts forecasts(const std::string& scene, int seed, const std::vector
   Experiment experiment(config.options, shared_host(), nullptr);
   Collector collector;
   experiment.run(collector);
-  Forecasts out{config.options.stop.unsearched, {}};
+  Forecasts out;
   for (const TapRecord& tap : collector.taps)
-    out.moments.push_back({tap.number - 1, *tap.forecast, tap.errors.rmse.value_or(0)});
+    out.push_back({tap.number - 1, *tap.forecast, tap.errors.rmse.value_or(0)});
   const RunResult last = experiment.result();
-  out.moments.push_back({last.taps, *last.forecast, *last.errors.rmse});
+  out.push_back({last.taps, *last.forecast, *last.errors.rmse});
   return out;
 }
 
@@ -59,13 +56,13 @@ struct Stop {
 inline Stop stop_of(const Forecasts& run, double bound) {
   Stop out;
   out.bound = bound;
-  for (const Moment& one : run.moments) {
+  for (const Moment& one : run) {
     if (!one.forecast.rmse || one.rmse > bound) {
       out.good_from.reset();
     } else if (!out.good_from) {
       out.good_from = one.taps;
     }
-    if (!out.tap && &one != &run.moments.back() && good_enough(one.forecast, bound, run.unsearched)) {
+    if (!out.tap && &one != &run.back() && good_enough(one.forecast, bound)) {
       out.tap = one.taps;
       out.rmse = one.rmse;
     }

@@ -17,7 +17,7 @@ namespace {
 /// Five candidates, of which only what the scores here read is known.
 class Maps final : public Belief {
  public:
-  explicit Maps(int hits) : hits_(hits), places_(Points::Zero(5, 2)), u_(5), w_(5), p_(5) {
+  Maps() : places_(Points::Zero(5, 2)), u_(5), w_(5), p_(5) {
     u_ << 1.0, 0.5, 0.2, 0.0, 0.8;
     w_ << 0.1, 1.2, -0.3, 0.5, 0.0;
     p_ << 0.0, 0.25, 0.5, 1.0, 0.9;
@@ -26,7 +26,6 @@ class Maps final : public Belief {
   Area area() const override { return {0.23, 0.23}; }
   int taps() const override { return 4; }
   int initial_taps() const override { return 1; }
-  int hits() const override { return hits_; }
   const Eigen::VectorXd& uncertainty() const override { return u_; }
   const Eigen::VectorXd& weight() const override { return w_; }
   const Eigen::VectorXd& probability() const override { return p_; }
@@ -34,16 +33,15 @@ class Maps final : public Belief {
   const Eigen::VectorXd& height_variance() const override { return u_; }
 
  private:
-  int hits_;
   Points places_;
   Eigen::VectorXd u_, w_, p_;
 };
 
 /// The scores of `name`, which leaves what stands beside them alone.
-std::vector<double> scores(const std::string& name, const std::string& options = "{}", int hits = 1) {
+std::vector<double> scores(const std::string& name, const std::string& options = "{}") {
   const auto acquisition = make<Acquisition>(shared_host(), name, options);
   Eigen::VectorXd around = Eigen::VectorXd::Constant(7, 7.25);
-  acquisition->score(Maps(hits), around.segment(1, 5));
+  acquisition->score(Maps(), around.segment(1, 5));
   EXPECT_EQ(around(0), 7.25);
   EXPECT_EQ(around(6), 7.25);
   return {around.data() + 1, around.data() + 6};

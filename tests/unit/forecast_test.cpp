@@ -93,32 +93,14 @@ TEST(VarianceRatio, MakesTheSignalOfTheConfigAConvention) {
   EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-5 * a.maxCoeff());
 }
 
-TEST(GoodEnough, WantsAnExpectationAMarginAndASearchedArea) {
-  EXPECT_TRUE(good_enough({0.01 / kCaution, 0.5}, 0.01, 0.5));
-  EXPECT_FALSE(good_enough({0.0101 / kCaution, 0.5}, 0.01, 0.5));
-  EXPECT_FALSE(good_enough({0.0, 0.51}, 0.01, 0.5));
-  EXPECT_FALSE(good_enough({std::nullopt, 0.0}, 0.01, 1.0));
-}
-
-TEST(Forecaster, CountsTheCandidatesThatNoContactIsNear) {
-  const Candidates candidates = grid_by_count({0.2, 0.2}, 10);  // centres 1, 3, 5 ... cm
-  const Bench bench(1.0, 0.0);
-  PhaseClock clock;
-  const TapBelief belief(bench.config.options, candidates, bench.context, clock);
-  Forecaster forecaster(candidates);
-  EXPECT_EQ(forecaster.forecast(belief).unsearched, 1.0);
-  forecaster.observe({0.11, 0.11}, std::nullopt);  // at most 3 cm off: itself, four at 2 cm, four at 2.8 cm
-  EXPECT_NEAR(forecaster.forecast(belief).unsearched, 0.91, 1e-12);
-  forecaster.observe({0.11, 0.11}, std::nullopt);
-  EXPECT_NEAR(forecaster.forecast(belief).unsearched, 0.91, 1e-12);
-  forecaster.observe({0.01, 0.01}, std::nullopt);  // in a corner: itself, two and one
-  EXPECT_NEAR(forecaster.forecast(belief).unsearched, 0.87, 1e-12);
-  EXPECT_FALSE(forecaster.forecast(belief).rmse.has_value());
+TEST(GoodEnough, WantsAnExpectationAndAMargin) {
+  EXPECT_TRUE(good_enough({0.01 / kCaution}, 0.01));
+  EXPECT_FALSE(good_enough({0.0101 / kCaution}, 0.01));
+  EXPECT_FALSE(good_enough({std::nullopt}, 1.0));
 }
 
 TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
-  const ResolvedConfig config =
-      shipped_config("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "stop.unsearched=1"});
+  const ResolvedConfig config = shipped_config("default.yaml", {"taps=25", "stop.expected_rmse=1 m"});
   std::vector<Contact> answers(20, Contact{Outcome::contact, 0.0, 8.0, 1.0, {}});
   answers.push_back({Outcome::contact, 0.05, 8.0, 1.0, {}});
   Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
@@ -135,8 +117,8 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
 }
 
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
-  const ResolvedConfig config = shipped_config("default.yaml", {"taps=25", "initial={design: random, count: 12}",
-                                                                "stop.expected_rmse=1 m", "stop.unsearched=1"});
+  const ResolvedConfig config =
+      shipped_config("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"});
   std::vector<Contact> answers(25, Contact{Outcome::contact, 0.05, 8.0, 1.0, {}});
   Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
   Collector collector;

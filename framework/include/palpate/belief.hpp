@@ -21,8 +21,6 @@ class Belief {
   /// Taps made so far, failed ones included, and how many of them the initial design chose.
   virtual int taps() const = 0;
   virtual int initial_taps() const = 0;
-  /// Taps so far that touched an object.
-  virtual int hits() const = 0;
 
   /// u: variance of the height process relative to its prior, noise excluded; M values in [0, 1].
   virtual const Eigen::VectorXd& uncertainty() const = 0;

@@ -19,7 +19,7 @@ struct Touch {
 
 /// A number that a footprint tells of itself, for the record.
 struct FootprintNumber {
-  std::string name;  ///< "length_scale", "effective_particles", ...
+  std::string name;  ///< "mistakes", "acceptance", ...
   double value = 0.0;
 };
 

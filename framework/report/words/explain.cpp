@@ -143,7 +143,7 @@ class Explanation {
     if (options_.initial.searches()) {
       page_.say(
           fmt::format("It is tap {} of the search for an object, before any model has a say: the place where most "
-                      "of what nobody has looked at yet could be hidden (seed {}).",
+                      "of what nobody has looked at yet could be hidden, or the middle of the widest gap (seed {}).",
                       number_, options_.seed));
       return;
     }

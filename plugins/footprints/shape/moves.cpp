@@ -26,11 +26,12 @@ double some_scale(Random& random) {
   return scales[static_cast<std::size_t>(random.bits() % kScales)];
 }
 
-constexpr double kNear = 0.03;  // metres: standard deviation of the distance between a wrong label and a new piece
+constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of a new piece from a wrong label
 
 /// Standard normal (Box and Muller 1958).
 double normal(Random& random) {
-  return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(2.0 * kPi * random.uniform());
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+  return radius * std::cos(2.0 * kPi * random.uniform());
 }
 
 /// Uniform in (-1, 1]: as good as a normal step where steps are of all sizes anyway, and quicker.

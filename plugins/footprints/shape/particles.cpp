@@ -150,7 +150,7 @@ void Particles::resample(const std::vector<double>& weights) {
 void Particles::move(Particle& particle) {
   ++tried_;
   const Proposal proposal = propose(particle.outline, particle.density, prior_, labels_, random_);
-  if (proposal.correction <= 0.0) return;
+  if (!(proposal.correction > 0.0)) return;
   // Metropolis and Hastings: taken if a uniform number is below the ratio of the likelihoods times the correction. So
   // many mistakes are allowed, and most outlines are given up before all labels are looked at: the latest are the
   // nearest to the edge.

@@ -26,11 +26,13 @@ Piece OutlinePrior::draw_piece(Random& random) const {
   constexpr int kPatience = 100000;
   const double width = settings_.area.width;
   const double depth = settings_.area.depth;
+  // What is longer than the diagonal would never fit, so it need not be drawn.
+  const double longest = 0.5 * std::min(settings_.largest, std::hypot(width, depth));
   for (int tries = 0; tries < kPatience; ++tries) {
     Piece out;
     out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
-    const double one = half_axis(0.5 * settings_.largest, random);
-    const double two = half_axis(0.5 * settings_.largest, random);
+    const double one = half_axis(longest, random);
+    const double two = half_axis(longest, random);
     out.a = std::max(one, two);
     out.b = std::min(one, two);
     out.turn(kPi * random.uniform());
@@ -42,7 +44,7 @@ Piece OutlinePrior::draw_piece(Random& random) const {
     out.y = reach_y + (depth - 2.0 * reach_y) * random.uniform();
     return out;
   }
-  throw Error("footprint", "no outline of this prior fits into the area", "make footprint.smallest smaller");
+  throw Error("footprint", "hardly any outline of this prior fits into the area", "make smallest and largest smaller");
 }
 
 Piece OutlinePrior::draw_second(Outline::Kind kind, const Piece& first, Random& random) const {

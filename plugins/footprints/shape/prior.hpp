@@ -33,7 +33,7 @@ class OutlinePrior {
   /// A second piece by the prior, given the first.
   Piece draw_second(Outline::Kind kind, const Piece& first, Random& random) const;
 
-  /// The density of an outline up to a constant factor, in the centres, angles and logarithms of the half axes of its
+  /// The density of an outline up to a factor that depends on its kind alone, in the centres, angles and logarithms of the half axes of its
   /// pieces; 0 where it is impossible.
   double density(const Outline& outline) const;
 

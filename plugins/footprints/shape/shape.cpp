@@ -8,7 +8,6 @@
 #include <palpate/plugin.hpp>
 
 #include <cmath>
-#include <optional>
 #include <string>
 
 namespace palpate::footprints {
@@ -29,9 +28,10 @@ struct ShapeOptions : Options {
     fields.real(one_piece, Field("one_piece",
                                  "probability that an outline is one box or ellipse; others are two of them, or one "
                                  "without the other, with equal probability")
-                               .above(0)
+                               .at_least(1e-3)
                                .at_most(1));
-    fields.real(mistaken, Field("mistaken", "probability that the label of a touch is wrong").above(0).at_most(0.4));
+    fields.real(mistaken,
+                Field("mistaken", "probability that the label of a touch is wrong").at_least(1e-6).at_most(0.4));
     fields.real(contradictions, Field("contradictions",
                                       "hand over to the classifier when an outline has so many more touches wrong, on "
                                       "average, than mistaken lets expect")
@@ -59,10 +59,11 @@ class Shape final : public Footprint {
     points_.conservativeResize(points_.rows() + 1, 2);
     points_.bottomRows<1>() << touch.place.x, touch.place.y;
     on_.push_back(touch.on);
+    if (handed_over_at_ > 0) return;
     particles_.add(touch.place, touch.on);
     const auto touches = static_cast<int>(on_.size());
     const double unexpected = particles_.mean_mistakes() - mistaken_ * touches;
-    if (handed_over_at_ == 0 && unexpected > contradictions_) handed_over_at_ = touches;
+    if (unexpected > contradictions_) handed_over_at_ = touches;
   }
 
   void probability(const PointsView& places, VectorOut out) override {
