@@ -80,7 +80,8 @@ std::vector<Case> cases() {
            "bad.yaml:10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
            "bad.yaml:10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, "
-           "weight, surface, posterior, lowrank, acquisition, fitting, fallback, repeat, tie_tolerance, accuracy, "
+           "weight, surface, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, tie_tolerance, "
+           "accuracy, "
            "threads, "
            "instruction_set, stop, scene, backend, log"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",

@@ -86,7 +86,7 @@ TEST(BadPlugin, WithAnotherMagicIsNamed) {
 }
 
 TEST(BadPlugin, OfAnotherAbiIsRefusedBeforeAnythingElseIsRead) {
-  expect_broken("other_abi", "comparing the ABI: built for ABI 47, the program has 7");
+  expect_broken("other_abi", "comparing the ABI: built for ABI 48, the program has 7");
 }
 
 TEST(BadPlugin, OfAnotherAlignmentNamesWhatDiffers) {

@@ -31,7 +31,7 @@ fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& na
 }
 
 Ended compare(const TemporaryFolder& folder, const fs::path& directory, const std::vector<std::string>& more) {
-  std::vector<std::string> words{"compare", directory.string(), "-j", "2"};
+  std::vector<std::string> words{"compare", directory.string()};
   words.insert(words.end(), more.begin(), more.end());
   return test::palpate(words, folder.path());
 }
@@ -144,6 +144,33 @@ TEST(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
   EXPECT_NE(text_of(job / "summary_at_8.json"), kept);
 }
 
+TEST(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"}, 8);
+  const std::vector<std::string> words{
+      "--by", "strategy", "--metric", "rmse_m,found", "--table", "--where", "off_surface_taps <= 3"};
+  std::vector<std::string> once = words;
+  once.insert(once.end(), {"--at", "3"});
+  std::vector<std::string> twice = words;
+  twice.insert(twice.end(), {"--at", "3,3", "-j", "1"});
+  const Ended expected = compare(folder, directory, once);
+  EXPECT_EQ(expected.status, 0) << expected.err;
+  EXPECT_EQ(test::lines(expected.out), 4) << expected.out;
+  EXPECT_EQ(compare(folder, directory, twice).out, expected.out);
+}
+
+TEST(Benchmark, NamesAJobWhoseRecordIsCutShort) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"scene=cube", "strategy=grid", "scene.effects=none"}, 8);
+  const fs::path job = directory / "jobs" / csv_rows(text_of(directory / "results.csv")).front().at("id");
+  const std::string taps = text_of(job / "taps.jsonl");
+  std::ofstream(job / "taps.jsonl") << taps.substr(0, taps.size() / 2);
+  const Ended ended = compare(folder, directory, {"--by", "strategy", "--metric", "rmse_m", "--at", "8,7"});
+  EXPECT_NE(ended.status, 0);
+  EXPECT_THAT(ended.err, HasSubstr(job.filename().string()));
+  EXPECT_THAT(ended.err, HasSubstr("damaged"));
+}
+
 TEST(Benchmark, ShowsRatiosOfPairsIfAskedFor) {
   const TemporaryFolder folder;
   const fs::path directory = swept(folder, {"strategy=weighted,default", "scene=object_i,dome,ring"}, 12);
@@ -170,6 +197,7 @@ TEST(Benchmark, RefusesWhatCannotBeShown) {
     EXPECT_EQ(ended.out, "");
     return ended.err;
   };
+  EXPECT_THAT(refusal({"-j", "2"}), HasSubstr("-j requires --at"));
   EXPECT_EQ(refusal({"--at", "4,9"}), "command line: --at: no job made 9 taps, the most are 8\n");
   EXPECT_THAT(refusal({"--at", "0"}), HasSubstr("--at"));
   EXPECT_THAT(refusal({"--table", "--ratio"}), HasSubstr("--ratio excludes --table"));

@@ -80,6 +80,16 @@ TEST(Replay, OfARunThatEndedEarlyTakesTheEngineOfItsWholeBudget) {
   EXPECT_EQ(ended.status, 0) << ended.out;
 }
 
+TEST(Replay, OfASearchThatFoundNothingAgrees) {
+  const TemporaryFolder folder;
+  test::palpate({"run", test::config("default.yaml"), "scene.objects=[]", "taps=60", "candidates.count=5", "--quiet"},
+                folder.path());
+  const fs::path directory = only_run(folder.path() / "runs");
+  ASSERT_THAT(text_of(directory / "summary.json"), HasSubstr("\"stop_reason\": \"no candidate is left\""));
+  const Ended ended = test::palpate({"replay", directory.string()}, folder.path());
+  EXPECT_EQ(ended.status, 0) << ended.out;
+}
+
 TEST(Replay, FollowsEveryFit) {
   const TemporaryFolder folder;
   for (const char* extra : {"surface=two_part", "weight.hyperparameters=shared", "fitting.every=5"}) {

@@ -103,6 +103,12 @@ TEST_F(ComposeStrategy, MayBeAWholeConfig) {
   for (const char* key : {"name", "seed", "scene", "sweep"}) EXPECT_EQ(value("strategy: whole\n", key), "-") << key;
 }
 
+TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {
+  folder_.write("bold.yaml", "strategy: bold\nsurface: single\n");
+  EXPECT_EQ(value("strategy: bold\n", "kernel.nu"), of("1.5"));
+  EXPECT_EQ(value("strategy: bold\n", "surface"), of("two_part"));
+}
+
 TEST_F(ComposeStrategy, RefusesAnUnknownOneAndACycle) {
   EXPECT_EQ(refusal("strategy: bald\n"), "c.yaml:1:11: no file strategy/bald.yaml, did you mean 'bold'?");
   EXPECT_EQ(refusal("", {"strategy=../x"}),

@@ -5,6 +5,8 @@
 #include "shape/particles.hpp"
 #include "support/touches.hpp"
 
+#include <palpate/error.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -206,6 +208,16 @@ TEST(Outline, HoldsWhatItsPiecesSay) {
     }
   }
   for (const int count : seen) EXPECT_GT(count, 10) << "outlines of each kind";
+}
+
+TEST(OutlinePrior, FindsRoomOnAnAreaThatIsHardlyLargerThanTheSmallestPiece) {
+  OutlinePrior::Settings settings;
+  settings.area = {0.0207, 0.0207};
+  Particles belief(OutlinePrior(settings), {200, 0.01}, Random(1, "outline test"));
+  for (int i = 0; i < 3; ++i) belief.add({0.01, 0.01}, true);
+  for (const Particle& one : belief.particles()) EXPECT_GT(OutlinePrior(settings).density(one.outline), 0.0);
+  settings.area = {0.019, 0.2};
+  EXPECT_THROW(Particles(OutlinePrior(settings), {}, Random(1, "outline test")), Error);
 }
 
 TEST(Particles, CountOutlinesOverPlacesAsOneByOne) {
