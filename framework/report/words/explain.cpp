@@ -147,20 +147,11 @@ class Explanation {
                       number_, options_.seed));
       return;
     }
-    const char* how = "";
-    switch (options_.initial.design) {
-      case InitialOptions::Design::random:
-        how = "random: drawn from the candidates by the seed alone";
-        break;
-      case InitialOptions::Design::sobol:
-        how = "sobol: a sequence that spreads evenly, shifted by the seed";
-        break;
-      case InitialOptions::Design::grid:
-        how = "grid: a lattice over the area";
-        break;
-      case InitialOptions::Design::search:
-        break;
-    }
+    // By InitialOptions::Design.
+    constexpr const char* kHow[] = {"random: drawn from the candidates by the seed alone",
+                                    "sobol: a sequence that spreads evenly, shifted by the seed",
+                                    "grid: a lattice over the area"};
+    const char* how = kHow[static_cast<std::size_t>(options_.initial.design)];
     page_.say(fmt::format("It is initial tap {} of {}, placed by the design before any model has a say ({}, seed {}).",
                           number_, options_.initial.count, how, options_.seed));
   }

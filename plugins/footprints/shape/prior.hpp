@@ -33,8 +33,8 @@ class OutlinePrior {
   /// A second piece by the prior, given the first.
   Piece draw_second(Outline::Kind kind, const Piece& first, Random& random) const;
 
-  /// The density of an outline up to a factor that depends on its kind alone, in the centres, angles and logarithms of the half axes of its
-  /// pieces; 0 where it is impossible.
+  /// The density of an outline up to a factor that depends on its kind alone, in the centres, angles and logarithms of
+  /// the half axes of its pieces; 0 where it is impossible.
   double density(const Outline& outline) const;
 
   /// The part of it that is the density of the second piece's centre, per square metre; 0 where that is impossible.
