@@ -73,7 +73,7 @@ TEST_P(FootprintContract, GivesProbabilitiesWhateverTheTouches) {
 }
 
 TEST_P(FootprintContract, GivesProbabilitiesAfterAThousandTouches) {
-  const int count = kSanitized ? 150 : 1000;  // what is drawn at random weighs every touch so far at each
+  const int count = kSanitized ? 500 : 1000;  // what is drawn at random weighs every touch so far at each
   const auto footprint = fresh();
   take(*footprint, disc_touches(count));
   for (const auto& [where, places] : trying_places())
