@@ -33,6 +33,12 @@ constexpr std::array<std::string_view, 11> kNotOfStrategy{
 
 std::string first_key(const std::string& path) { return path.substr(0, path.find('.')); }
 
+/// Where the files of a group are, the first first. A whole config is a strategy, too: configs/default.yaml is the
+/// strategy `default`. It comes last, so that a user's weighted.yaml may build on the strategy of its name.
+std::vector<fs::path> folders_of(const std::string& group) {
+  return group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
+}
+
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 }  // namespace
@@ -140,11 +146,7 @@ std::vector<fs::path> Composer::roots(const fs::path& beside) const {
 fs::path Composer::find_group(const std::string& group, const std::string& name, const fs::path& beside) const {
   const auto [place, is_new] = found_.try_emplace({group, name, beside.string()});
   if (!is_new) return place->second;
-  // A whole config is a strategy, too: configs/default.yaml is the strategy `default`. It comes last, so that a user's
-  // weighted.yaml may build on the strategy of its name.
-  const std::vector<fs::path> folders =
-      group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
-  for (const fs::path& folder : folders) {
+  for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots(beside)) {
       std::error_code ignored;
       const fs::path file = root / folder / (name + ".yaml");
@@ -158,10 +160,12 @@ fs::path Composer::find_group(const std::string& group, const std::string& name,
 
 std::vector<std::string> Composer::group_names(const std::string& group, const fs::path& beside) const {
   std::set<std::string> names;
-  for (const fs::path& root : roots(beside)) {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(root / group, none)) {
-      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
+  for (const fs::path& folder : folders_of(group)) {
+    for (const fs::path& root : roots(beside)) {
+      std::error_code none;
+      for (const auto& entry : fs::directory_iterator(root / folder, none)) {
+        if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
+      }
     }
   }
   return {names.begin(), names.end()};

@@ -101,6 +101,7 @@ TEST_F(ComposeStrategy, MayBeAWholeConfig) {
                 "name: whole\nseed: 3\ndefaults:\n  - scene: desk\n  - kernel: rough\nsweep: {grid: {seed: 1}}\n");
   EXPECT_EQ(value("strategy: whole\n", "kernel.nu"), of("1.5"));
   for (const char* key : {"name", "seed", "scene", "sweep"}) EXPECT_EQ(value("strategy: whole\n", key), "-") << key;
+  EXPECT_EQ(refusal("strategy: wohle\n"), "c.yaml:1:11: no file strategy/wohle.yaml, did you mean 'whole'?");
 }
 
 TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {
