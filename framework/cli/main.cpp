@@ -147,7 +147,8 @@ void add_compare(CLI::App& app, Arguments& a, Action& action) {
   list("--by", a.compare.by, "the swept keys that make the groups: acquisition or acquisition,kernel");
   list("--metric", a.compare.metrics, "the columns of results.csv to compare: on_surface_taps,rmse_m");
   sub->add_option("--where", a.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
-  sub->add_option("--baseline", a.compare.baseline, "compare all groups with this one only: uncertainty");
+  CLI::Option* baseline =
+      sub->add_option("--baseline", a.compare.baseline, "compare all groups with this one only: uncertainty");
   CLI::Option* at =
       sub->add_option(
              "--at", a.compare.at,
@@ -157,6 +158,7 @@ void add_compare(CLI::App& app, Arguments& a, Action& action) {
           ->check(CLI::Range(1, 1000000));
   CLI::Option* ratio = sub->add_flag("--ratio", a.compare.ratio, "of every pair also the ratio of the means");
   sub->add_flag("--table", a.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
+      ->excludes(baseline)
       ->excludes(ratio);
   sub->add_option("-j", a.compare.workers, "with --at, jobs at a time; if not given, the number of cores")
       ->check(CLI::Range(1, 1024))

@@ -201,6 +201,7 @@ TEST(Benchmark, RefusesWhatCannotBeShown) {
   EXPECT_EQ(refusal({"--at", "4,9"}), "command line: --at: no job made 9 taps, the most are 8\n");
   EXPECT_THAT(refusal({"--at", "0"}), HasSubstr("--at"));
   EXPECT_THAT(refusal({"--table", "--ratio"}), HasSubstr("--ratio excludes --table"));
+  EXPECT_THAT(refusal({"--table", "--baseline", "grid"}), HasSubstr("--baseline excludes --table"));
   EXPECT_THAT(refusal({"--at", "4", "--metric", "rmse"}), HasSubstr("results.csv has no column 'rmse'"));
   EXPECT_FALSE(fs::exists(directory / "results_at_4.csv")) << "found out before anything is computed";
 }
