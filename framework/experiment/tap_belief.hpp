@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What the taps so far say: the height process and the weight process over the candidates, each built when it is first
-// read and never before. Where both have the same kernel and the same ratio of noise to signal they are two outputs of
-// one process, with one factorisation.
+// What the taps so far say: the height process and the weight process over the candidates, the footprint, and of
+// `surface: two_part` the process of the heights on an object; each built when it is first read and never before. Where
+// heights and labels have the same kernel and the same ratio of noise to signal they are two outputs of one process,
+// with one factorisation.
 #pragma once
 
 #include "experiment/experiment_options.hpp"
