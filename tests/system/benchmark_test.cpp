@@ -56,6 +56,27 @@ TEST(Benchmark, RunsTheDefaultAsItIsShipped) {
   EXPECT_EQ(in_sweep.out.substr(in_sweep.out.find("\ntaps:")), shipped.out.substr(shipped.out.find("\ntaps:")));
 }
 
+TEST(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
+  const TemporaryFolder folder;
+  const fs::path directory = swept(folder, {"strategy=default", "scene=object_i,tall_cone"}, 60);
+  const std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
+  ASSERT_EQ(rows.size(), 8U);
+  double covered = 0.0;
+  for (const Cells& row : rows) {
+    EXPECT_EQ(row.at("found"), "true");
+    const bool ideal = row.at("scene.effects") == "none";
+    if (ideal) {
+      EXPECT_LT(std::stod(row.at("rmse_m")), 0.003);
+      EXPECT_GT(std::stod(row.at("footprint_iou")), 0.95);
+      EXPECT_GT(std::stod(row.at("coverage_95")), 0.95);
+    } else {
+      covered += std::stod(row.at("coverage_95")) / 4.0;
+      EXPECT_LT(std::stod(row.at("nlpd")), 0.0) << "with noise of a millimetre tens: sure of heights that a lag shifts";
+    }
+  }
+  EXPECT_GT(covered, 0.75);
+}
+
 TEST(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
   const TemporaryFolder folder;
   const fs::path directory = swept(folder, {"scene=object_i,ring"});
