@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <map>
 #include <numeric>
 #include <set>
 #include <thread>
+#include <utility>
 
 namespace palpate::cli {
 namespace {
@@ -34,18 +36,41 @@ int conclude_part(const Sweep& sweep, const SweepReport& report) {
   return report.unfinished > 0 ? kBusy : kDone;
 }
 
+/// How many taps of a job are initial ones. Jobs with the same strategy, design and budget have as many: one config
+/// is read for all of them.
+class InitialTaps {
+ public:
+  explicit InitialTaps(const Campaign& campaign) : campaign_(campaign) {
+    const std::vector<std::string>& keys = campaign.sweep.keys;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const std::string first = keys[i].substr(0, keys[i].find('.'));
+      if (first == "strategy" || first == "initial" || first == "taps") deciding_.push_back(i);
+    }
+  }
+
+  int operator()(std::size_t job) {
+    std::vector<std::string> values;
+    for (const std::size_t i : deciding_) values.push_back(campaign_.sweep.jobs[job].values[i]);
+    const auto [known, is_new] = known_.try_emplace(std::move(values), 0);
+    if (is_new) {
+      const ExperimentOptions options = campaign_.config_of(job).options;
+      // All taps until the first hit are the search's: its dead starts are those that never hit.
+      known->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+    }
+    return known->second;
+  }
+
+ private:
+  const Campaign& campaign_;
+  std::vector<std::size_t> deciding_;  ///< of the swept keys
+  std::map<std::vector<std::string>, int> known_;
+};
+
 int conclude_whole(const Campaign& campaign, const SweepReport& report) {
   const Sweep& sweep = campaign.sweep;
   const ResolvedConfig config = campaign.config_of(0);
-  // Otherwise all jobs have as many, and none of their configs need be read.
-  const bool varies = std::any_of(sweep.keys.begin(), sweep.keys.end(),
-                                  [](const std::string& key) { return key.substr(0, key.find('.')) == "initial"; });
   const std::vector<std::optional<Row>> summaries = write_results(sweep);
-  print_sweep(sweep, sweep_results(sweep, summaries), report, [&](std::size_t job) {
-    const ExperimentOptions options = varies ? campaign.config_of(job).options : config.options;
-    // All taps until the first hit are the search's: its dead starts are those that never hit.
-    return static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
-  });
+  print_sweep(sweep, sweep_results(sweep, summaries), report, InitialTaps(campaign));
   if (report.interrupted) return kInterrupted;
   const bool all_hold =
       conclude(config.expectations, outcomes_of(sweep, summaries), {config.options.name, campaign.launch.junit, true});

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
@@ -19,6 +20,7 @@ using test::only_run;
 using test::paper;
 using test::TemporaryFolder;
 using test::text_of;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -123,6 +125,29 @@ TEST(Sweep, CountsDeadStartsByTheInitialTapsOfEachGroup) {
     EXPECT_EQ(dead_starts(made, "1"), dead_starts(one, "1"));
     EXPECT_EQ(dead_starts(made, "11"), dead_starts(eleven, "11"));
   }
+}
+
+TEST(Sweep, CountsAsDeadStartsOfASearchWhatItNeverFound) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words{"sweep",
+                                       test::config("benchmark/strategies.yaml"),
+                                       "strategy=random,default",
+                                       "scene=cube",
+                                       "scene.effects=none",
+                                       "taps=12",
+                                       "seed=range(0,10)",
+                                       "--quiet"};
+  const std::string table = test::palpate(words, folder.path()).out;
+  const std::vector<test::Cells> rows = test::csv_rows(text_of(only_run(folder.path() / "runs") / "results.csv"));
+  const auto never = std::count_if(rows.begin(), rows.end(), [](const test::Cells& row) {
+    return row.at("strategy") == "default" && row.at("found") == "false";
+  });
+  const auto late = std::count_if(rows.begin(), rows.end(), [](const test::Cells& row) {
+    return row.at("strategy") == "default" && row.at("found") == "true" && std::stoi(row.at("first_hit_tap")) > 3;
+  });
+  EXPECT_GT(never, 0) << "else this tests nothing";
+  EXPECT_GT(late, 0) << "else this tests nothing";
+  EXPECT_THAT(table, ContainsRegex(" 10 +" + std::to_string(10 * never) + ".0% .* strategy=default,"));
 }
 
 TEST(Sweep, CarriesOnWithWhatIsMissing) {
