@@ -190,6 +190,28 @@ TEST_F(Explain, TellsWhatTheFootprintRemarks) {
   EXPECT_THAT(explain(directory, 1), Not(HasSubstr("Its remark")));
 }
 
+TEST_F(Explain, ExpectsOfTheSurfaceOfAnObjectNothingBeforeOneIsTouchedNorOfTheDesk) {
+  const fs::path directory = run({"scene=l", "taps=12"}, config("default.yaml"));
+  bool hit = false;
+  int compared = 0;
+  int on_the_desk = 0;
+  for (const json& tap : taps_of(directory)) {
+    const std::string text = explain(directory, tap["tap"]);
+    SCOPED_TRACE(text);
+    EXPECT_EQ(text.find("Expected: nothing, no tap has been on an object yet.") != std::string::npos, !hit);
+    EXPECT_EQ(text.find("Expected: a height of ") != std::string::npos, hit);
+    const bool on = tap["on_surface"];
+    if (!on || !hit) {
+      EXPECT_THAT(text, Not(HasSubstr("than expected")));
+    }
+    compared += text.find("than expected") != std::string::npos ? 1 : 0;
+    on_the_desk += hit && !on ? 1 : 0;
+    hit = hit || on;
+  }
+  EXPECT_GT(compared, 0) << "else this tests nothing";
+  EXPECT_GT(on_the_desk, 0) << "else this tests nothing";
+}
+
 TEST_F(Explain, TellsEveryTapOfARuleThatStallsOrMayRepeatItself) {
   expect_explained(run({"fallback=none", "repeat=allow"}));
   expect_explained(run({"fallback=none", "initial.design=grid"}));

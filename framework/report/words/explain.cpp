@@ -101,8 +101,7 @@ class Explanation {
     at.runner_up.reset();
     at.runner_up_score.reset();
     if (const Truth* truth = experiment.truth()) at.errors = final_errors(belief, *truth);
-    Row row = tap_row(at);
-    return row;
+    return tap_row(at);
   }
 
   int contacts_before() const {
@@ -293,11 +292,12 @@ class Explanation {
     const auto deviation = evidence.number("predicted.standard_deviation");
     if (!height || !deviation) return;
     const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
+    if (two_part && hits_before() == 0) return page_.say("Expected: nothing, no tap has been on an object yet.");
     page_.say(fmt::format("Expected: a height of {}{} with a standard deviation of {}{}{}.", length_words(*height),
                           evidence.star("predicted.height"), length_words(*deviation),
                           evidence.star("predicted.standard_deviation"),
                           two_part ? ", if an object is there (the surface process)" : ""));
-    expected_ = *height;
+    if (!two_part || playback_.experiment().scene().on_surface(tap_.contact.height)) expected_ = *height;
     star_of_expected_ = evidence.star("predicted.height");
   }
 
@@ -313,7 +313,7 @@ class Explanation {
     const bool on = playback_.experiment().scene().on_surface(contact.height);
     std::string text =
         fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
-    if (const double more = contact.height - expected_; more != 0.0)
+    if (const double more = contact.height - expected_.value_or(contact.height); more != 0.0)
       text += fmt::format(", {}{} {} than expected", length_words(std::abs(more)), star_of_expected_,
                           more > 0.0 ? "higher" : "lower");
     text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
@@ -380,7 +380,7 @@ class Explanation {
   Playback playback_;
   int candidate_ = 0;
   std::optional<TapRecord> now_;
-  double expected_ = 0.0;
+  std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
   std::string star_of_expected_;
   bool starred_ = false;
   Page page_;
