@@ -31,7 +31,7 @@ void add_process(Row& row, const std::string& name, const std::optional<ProcessS
 /// Adds the fields of a footprint, "footprint.<number>" and "footprint.remark"; none where there is none.
 void add_footprint(Row& row, const std::optional<FootprintState>& state);
 
-/// Adds "expected_rmse_m" and "unsearched"; none where there is no forecast.
+/// Adds "expected_rmse_m"; nothing where there is no forecast.
 void add_forecast(Row& row, const std::optional<Forecast>& forecast);
 
 const char* outcome_name(Outcome outcome);
