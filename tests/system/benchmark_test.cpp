@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 using test::Cells;
+using test::compare;
 using test::csv_rows;
 using test::Ended;
 using test::only_run;
@@ -28,12 +29,6 @@ fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& na
   const Ended ended = test::palpate(words, folder.path());
   EXPECT_EQ(ended.status, 0) << ended.err;
   return only_run(folder.path() / "runs");
-}
-
-Ended compare(const TemporaryFolder& folder, const fs::path& directory, const std::vector<std::string>& more) {
-  std::vector<std::string> words{"compare", directory.string()};
-  words.insert(words.end(), more.begin(), more.end());
-  return test::palpate(words, folder.path());
 }
 
 TEST(Benchmark, ComparesSixStrategiesOnTwelveObjectsWithAndWithoutEffects) {

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The two groups that are more than one option: a strategy, and a set of effects.
-#include "config/compose.hpp"
-#include "config/yaml.hpp"
-#include "support/support.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
+#include "unit/compose_fixture.hpp"
 
 namespace palpate {
 namespace {
 
-class ComposeStrategy : public ::testing::Test {
+class ComposeStrategy : public test::ComposeFixture {
  protected:
   ComposeStrategy() {
     folder_.write("kernel/rbf.yaml", "kernel: {type: rbf, length_scale: 1.7 cm}\n");
@@ -25,12 +19,6 @@ class ComposeStrategy : public ::testing::Test {
     folder_.write("strategy/bolder.yaml", "defaults:\n  - strategy: bold\nkernel: {length_scale: 6 cm}\n");
   }
 
-  Tree compose(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    std::vector<Override> parsed;
-    for (const std::string& one : overrides) parsed.push_back(parse_override(one));
-    return Composer("/nonexistent").compose(folder_.write("c.yaml", text), parsed);
-  }
-
   /// The value at `path` of what `text` composes to; "-" if there is none.
   std::string value(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {}) {
     const Tree tree = compose(text, overrides);
@@ -39,20 +27,6 @@ class ComposeStrategy : public ::testing::Test {
   }
 
   std::string of(const std::string& written) { return parse_value(written, "").canonical(); }
-
-  std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    try {
-      compose(text, overrides);
-    } catch (const Error& error) {
-      std::string what = error.what();
-      const std::string prefix = folder_.path().string() + "/";
-      for (auto at = what.find(prefix); at != std::string::npos; at = what.find(prefix)) what.erase(at, prefix.size());
-      return what;
-    }
-    return "accepted";
-  }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(ComposeStrategy, LiesBelowAllThatTheConfigSays) {

@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "config/compose.hpp"
-
-#include "config/yaml.hpp"
-#include "support/support.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
+#include "unit/compose_fixture.hpp"
 
 namespace palpate {
 namespace {
@@ -14,7 +7,7 @@ namespace {
 using test::TemporaryFolder;
 
 /// Files in a folder of their own, and what composing them gives.
-class Compose : public ::testing::Test {
+class Compose : public test::ComposeFixture {
  protected:
   Compose() {
     folder_.write("kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scale: 1.7 cm\n");
@@ -23,34 +16,12 @@ class Compose : public ::testing::Test {
     folder_.write("scene/table.yaml", "scene:\n  desk: 70 cm\n");
   }
 
-  Tree compose(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    const auto file = folder_.write("c.yaml", text);
-    std::vector<Override> parsed;
-    for (const std::string& one : overrides) parsed.push_back(parse_override(one));
-    return Composer("/nonexistent").compose(file, parsed);
-  }
-
   /// The value at `path` of what `text` composes to; "-" if there is none.
   std::string value(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {}) {
     const Tree tree = compose(text, overrides);
     const Tree* found = tree.find_path(path);
     return found == nullptr ? "-" : found->text;
   }
-
-  /// The error with the folder's name left out.
-  std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    try {
-      compose(text, overrides);
-    } catch (const Error& error) {
-      std::string what = error.what();
-      const std::string prefix = folder_.path().string() + "/";
-      for (auto at = what.find(prefix); at != std::string::npos; at = what.find(prefix)) what.erase(at, prefix.size());
-      return what;
-    }
-    return "accepted";
-  }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Compose, ReadsTheGroupsThatDefaultsName) {
