@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include "baxter/ros/arm_part.hpp"
 #include "baxter/ros/bag.hpp"
 #include "baxter/ros/link.hpp"
+#include "baxter/ros/solver.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +14,6 @@
 #include <baxter_core_msgs/CollisionDetectionState.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
-#include <baxter_core_msgs/SolvePositionIK.h>
 #include <pthread.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
@@ -35,15 +36,10 @@ constexpr seconds kStandstill(2);
 constexpr microseconds kSimulatedNap(150);
 /// A simulated clock goes in steps, and who waits for the next must not miss it by the rounding of sums, seconds.
 constexpr double kRounding = 1e-6;
-/// For an answer of the robot's inverse kinematics, with room in the promised second.
-constexpr milliseconds kSolve(900);
-
 /// In simulated time the clock may overtake the messages of an instant, on a busy machine by far; so much real time
 /// they are given to catch up, to within so much simulated time.
 constexpr milliseconds kCatchUp(50);
 constexpr double kAlmostNow = 0.03;
-
-constexpr std::size_t kArm = kJointNames.size();
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -69,41 +65,9 @@ class Clock {
   Steady::time_point steady_begin_ = Steady::now();
 };
 
-/// The arm's joints among named ones: all of them, or none; a message with only some of them is malformed.
-struct ArmPart {
-  std::size_t count = 0;
-  Joints position = Joints::Zero();
-};
-
-ArmPart arm_part(const sensor_msgs::JointState& message) {
-  ArmPart part;
-  for (std::size_t joint = 0; joint < kArm; ++joint) {
-    const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[joint]);
-    if (found == message.name.end()) continue;
-    ++part.count;
-    const auto at = static_cast<std::size_t>(found - message.name.begin());
-    if (at < message.position.size()) part.position[static_cast<Eigen::Index>(joint)] = message.position[at];
-  }
-  return part;
-}
-
-std::string counts(const sensor_msgs::JointState& message) {
-  return std::to_string(message.name.size()) + " names and " + std::to_string(message.position.size()) + " positions";
-}
-
-/// ROS' bytes of a message, without the length before them.
-template <class Message>
-std::string bytes_of(const Message& message) {
-  std::string bytes(ros::serialization::serializationLength(message), '\0');
-  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
-                                     static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, message);
-  return bytes;
-}
-
 class RosRobot final : public Link {
  public:
-  RosRobot(const Network& network, bool commands) : master_(network.master), bag_(std::make_shared<Bag>()) {
+  RosRobot(const Network& network, bool commands) : bag_(std::make_shared<Bag>()), solver_(network.master) {
     set_current_bag(bag_);
     handle_.setCallbackQueue(&queue_);
     // Of joint_states two nodes send, and the one's message must not push out the other's.
@@ -171,7 +135,7 @@ class RosRobot final : public Link {
 
   void record(const std::string& file) override { bag_->open(file); }
 
-  Answer solve(const Pose& gripper, const Joints& seed) override;
+  Answer solve(const Pose& gripper, const Joints& seed) override { return solver_.solve(gripper, seed); }
 
   std::array<bool, 3> heard() override {
     const std::lock_guard lock(mutex_);
@@ -274,9 +238,6 @@ class RosRobot final : public Link {
     while (!there() && Steady::now() - begin < kCatchUp) std::this_thread::sleep_for(kSimulatedNap);
   }
 
-  std::string asked_solver(const std::string& request, Deadline deadline);
-
-  Master master_;
   Clock clock_;
   std::shared_ptr<Bag> bag_;
   ros::CallbackQueue queue_;
@@ -284,74 +245,12 @@ class RosRobot final : public Link {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher command_publisher_;
   msgs::JointCommand command_;
-  std::optional<Address> solver_;  ///< where IKService was found
+  Solver solver_;
   std::mutex mutex_;
   Snapshot latest_;  ///< guarded by mutex_; its `now` is not used
   std::atomic<bool> stop_{false};
   std::thread spinner_;
 };
-
-std::string RosRobot::asked_solver(const std::string& request, Deadline deadline) {
-  const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
-  if (solver_) {
-    try {
-      return call_service(*solver_, kSolverService, md5, request, deadline);
-    } catch (const Unreached& reason) {
-      solver_.reset();
-      if (reason.why() != Unreached::Why::refused) throw;
-      // It may have been started again, elsewhere.
-    }
-  }
-  const auto uri = master_.service(kSolverService, deadline);
-  if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
-  const auto place = parse_uri(*uri, "rosrpc");
-  if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
-  solver_ = look_up(place->host, place->port, deadline);
-  return call_service(*solver_, kSolverService, md5, request, deadline);
-}
-
-Robot::Answer RosRobot::solve(const Pose& gripper, const Joints& seed) {
-  msgs::SolvePositionIKRequest request;
-  request.seed_mode = msgs::SolvePositionIKRequest::SEED_USER;
-  request.pose_stamp.resize(1);
-  geometry_msgs::PoseStamped& pose = request.pose_stamp[0];
-  pose.header.stamp = ros::Time::now();
-  pose.header.frame_id = "base";
-  pose.pose.position.x = gripper.position.x();
-  pose.pose.position.y = gripper.position.y();
-  pose.pose.position.z = gripper.position.z();
-  pose.pose.orientation.x = gripper.rotation.x();
-  pose.pose.orientation.y = gripper.rotation.y();
-  pose.pose.orientation.z = gripper.rotation.z();
-  pose.pose.orientation.w = gripper.rotation.w();
-  request.seed_angles.resize(1);
-  request.seed_angles[0].header = pose.header;
-  request.seed_angles[0].name.assign(kJointNames.begin(), kJointNames.end());
-  request.seed_angles[0].position.assign(seed.begin(), seed.end());
-
-  const auto trouble = [](const std::string& words) { return Answer{{}, std::string(kSolverService) + ": " + words}; };
-  msgs::SolvePositionIKResponse response;
-  try {
-    std::string bytes = asked_solver(bytes_of(request), Steady::now() + kSolve);
-    ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
-                                       static_cast<std::uint32_t>(bytes.size()));
-    ros::serialization::deserialize(stream, response);
-  } catch (const Unreached& reason) {
-    return trouble(reason.what());
-  } catch (const ros::Exception& exception) {
-    return trouble(std::string("its answer cannot be read: ") + exception.what());
-  }
-  if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
-    return trouble("its answer has not one part for one pose");
-  }
-  const sensor_msgs::JointState& joints = response.joints[0];
-  if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
-  const ArmPart part = arm_part(joints);
-  if (part.count != kArm || joints.position.size() != joints.name.size()) {
-    return trouble("its answer has " + std::to_string(part.count) + " of the seven joints, " + counts(joints));
-  }
-  return {part.position, {}};
-}
 
 }  // namespace
 
