@@ -30,6 +30,9 @@ struct Pose {
 struct Arrival {
   double received = 0.0;
   double stamp = 0.0;
+  /// How many of its stream have come so far, itself included. Who reads the same count twice reads the same message
+  /// twice; where it went on by more than one, the messages in between are not seen.
+  long count = 0;
 };
 
 /// The joints of the left arm, from whichever of the robot's joint_states has them. Numbers are as they came: they may
@@ -54,11 +57,32 @@ struct StateReading {
   bool error = false;
   enum class Button { unpressed, pressed, unknown, released } estop_button = Button::unpressed;
   enum class Source { none, user, unknown, fault, brain } estop_source = Source::none;
+  long count = 0;  ///< as in Arrival
 };
 
 /// Whether the arm's firmware feels a collision: it then holds for two seconds and goes on by itself.
 struct CollisionReading : Arrival {
   bool collision = false;
+};
+
+/// What the arm's own collision avoidance keeps away from at this moment. It pushes the arm aside meanwhile.
+struct AvoidanceReading : Arrival {
+  bool other_arm = false;            ///< the right arm
+  std::vector<std::string> objects;  ///< what else, in the robot's words: its torso, its pedestal
+};
+
+/// What a program told the robot that the robot keeps when that program has gone. It can be heard only while its sender
+/// is there: what is absent may be set all the same.
+struct Setting {
+  double value = 0.0;
+  std::string sender;  ///< the node
+};
+
+/// What the robot takes to be fixed to its flange; with its mass it compensates gravity, and from that comes the zero
+/// of its force.
+struct EndEffector {
+  std::string product;         ///< maker and name of the gripper that it has recognised; empty if it says none
+  std::optional<double> mass;  ///< kg, of all that its description has beyond left_hand; absent without a description
 };
 
 /// The latest of every stream, and who has been sending. A stream that has not been heard is absent.
@@ -68,6 +92,13 @@ struct Snapshot {
   std::optional<EndpointReading> endpoint;
   std::optional<StateReading> state;
   std::optional<CollisionReading> collision;
+  std::optional<AvoidanceReading> avoidance;
+  std::optional<Setting> speed_ratio;      ///< by which the robot slows set-points down, 0 to 1; its own is 0.3
+  std::optional<Setting> command_timeout;  ///< s for which it follows a set-point; its own is 0.2
+  EndEffector end_effector;
+  /// The longest time, of those that ended within the last second and the one that is going on, for which this program
+  /// did not get to receive anything, seconds of real time. A stream that is silent for no longer may have been sent.
+  double own_gap = 0.0;
   std::vector<std::string> joint_senders;  ///< the nodes that have sent joints of the left arm
   std::vector<std::string> state_senders;  ///< the nodes that have sent /robot/state
   std::vector<std::string> commanders;     ///< the nodes other than this one that have sent set-points of the left arm

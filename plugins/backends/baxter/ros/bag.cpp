@@ -8,13 +8,16 @@
 #include <vector>
 
 #include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionAvoidanceState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
 #include <ros/this_node.h>
 #include <rosbag/bag.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/Float64.h>
 #include <visualization_msgs/MarkerArray.h>
 
 namespace palpate::baxter {
@@ -130,8 +133,11 @@ void Bag::write_own(const std::string& topic, const Message& message, bool latch
 PALPATE_RECORDED(baxter_core_msgs::EndpointState)
 PALPATE_RECORDED(baxter_core_msgs::AssemblyState)
 PALPATE_RECORDED(baxter_core_msgs::CollisionDetectionState)
+PALPATE_RECORDED(baxter_core_msgs::CollisionAvoidanceState)
+PALPATE_RECORDED(baxter_core_msgs::EndEffectorProperties)
 PALPATE_RECORDED(baxter_core_msgs::JointCommand)
 PALPATE_RECORDED(sensor_msgs::JointState)
+PALPATE_RECORDED(std_msgs::Float64)
 #undef PALPATE_RECORDED
 template void Bag::write_own(const std::string&, const baxter_core_msgs::JointCommand&, bool);
 template void Bag::write_own(const std::string&, const sensor_msgs::PointCloud2&, bool);

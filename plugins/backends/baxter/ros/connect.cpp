@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/connect.hpp"
 
+#include "baxter/description.hpp"
 #include "baxter/ros/link.hpp"
 
 #include <palpate/error.hpp>
@@ -28,6 +29,7 @@ constexpr milliseconds kAskAgain(100);      ///< the master, which serves one qu
 constexpr milliseconds kLook(2);
 
 constexpr const char* kVersionParameter = "/rethink/software_version";
+constexpr const char* kDescriptionParameter = "/robot_description";
 constexpr const char* kOldState = "d7ff2b9fa7d5f688665ce44db4ee2af8";  ///< AssemblyState before 1.2
 
 Error trouble(const std::string& where, const std::string& reason, const std::string& hint) {
@@ -55,7 +57,7 @@ class Visit {
       expect_all_listed();
       expect_one_robot_and_its_hosts();
       start_node(network_);
-      std::unique_ptr<Link> link = make_link(network_, wishes_.commands);
+      std::unique_ptr<Link> link = make_link(network_, wishes_.commands, tool_mass());
       if (wishes_.commands) expect_no_other_driver();
       expect_all_heard(*link);
       return link;
@@ -118,7 +120,8 @@ class Visit {
     const Graph graph = network_.master.graph(until(kTold));
     std::vector<std::string> topics;
     for (const Stream& stream : Link::needed()) topics.emplace_back(stream.topic);
-    topics.insert(topics.end(), {kCollisionTopic, kCommandTopic, "/clock"});
+    topics.insert(topics.end(), {kCollisionTopic, kAvoidanceTopic, kEndEffectorTopic, kSpeedRatioTopic,
+                                 kCommandTimeoutTopic, kCommandTopic, "/clock"});
     std::set<std::string> found;
     for (const std::string& topic : topics) {
       for (const std::string& node : Graph::of(graph.publishers, topic)) {
@@ -144,6 +147,13 @@ class Visit {
                    "its publisher " + node + " is on the host " + place.host + ", which does not resolve here (" +
                        reason.what() + ")",
                    "add it to /etc/hosts, or install libnss-mdns for names in .local");
+  }
+
+  /// Beyond the flange, kg. The robot's own description is kept up to date: with what is mounted, and with what it has
+  /// been told that it holds.
+  std::optional<double> tool_mass() const {
+    const auto urdf = network_.master.parameter(kDescriptionParameter, until(kTold));
+    return urdf ? mass_beyond(*urdf, "left_hand") : std::nullopt;
   }
 
   /// Two that command one arm pull it to and fro. Each looks once it has said itself that it sends: of two that come at

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 namespace palpate::baxter {
 
@@ -22,6 +23,10 @@ constexpr const char* kJointTopic = "/robot/joint_states";
 constexpr const char* kEndpointTopic = "/robot/limb/left/endpoint_state";
 constexpr const char* kStateTopic = "/robot/state";
 constexpr const char* kCollisionTopic = "/robot/limb/left/collision_detection_state";
+constexpr const char* kAvoidanceTopic = "/robot/limb/left/collision_avoidance_state";
+constexpr const char* kEndEffectorTopic = "/robot/end_effector/left_gripper/properties";
+constexpr const char* kSpeedRatioTopic = "/robot/limb/left/set_speed_ratio";
+constexpr const char* kCommandTimeoutTopic = "/robot/limb/left/joint_command_timeout";
 constexpr const char* kCommandTopic = "/robot/limb/left/joint_command";
 constexpr const char* kSolverService = "/ExternalTools/left/PositionKinematicsNode/IKService";
 
@@ -35,7 +40,8 @@ class Link : public Robot {
   virtual bool listened_to() = 0;  ///< somebody receives the set-points
 };
 
-/// Subscribes and advertises. The node must have been started.
-std::unique_ptr<Link> make_link(const Network& network, bool commands);
+/// Subscribes and advertises. `tool_mass` is what the robot's description has beyond the flange, kg. The node must have
+/// been started.
+std::unique_ptr<Link> make_link(const Network& network, bool commands, std::optional<double> tool_mass);
 
 }  // namespace palpate::baxter

@@ -2,6 +2,7 @@
 #include "baxter/ros/arm_part.hpp"
 #include "baxter/ros/bag.hpp"
 #include "baxter/ros/link.hpp"
+#include "baxter/ros/pulse.hpp"
 #include "baxter/ros/solver.hpp"
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include <thread>
 
 #include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionAvoidanceState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
 #include <pthread.h>
@@ -19,6 +22,7 @@
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
 
 namespace palpate::baxter {
 namespace {
@@ -40,6 +44,11 @@ constexpr double kRounding = 1e-6;
 /// they are given to catch up, to within so much simulated time.
 constexpr milliseconds kCatchUp(50);
 constexpr double kAlmostNow = 0.03;
+
+/// What came while this program did not get to it is counted, not dropped: at 100 Hz that of half a second.
+constexpr std::uint32_t kBacklog = 50;
+/// Without messages the spinner looks up so often.
+const ros::WallDuration kSpin(0.5 * Pulse::kNoted);
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -65,18 +74,25 @@ class Clock {
   Steady::time_point steady_begin_ = Steady::now();
 };
 
+double steady_seconds() { return std::chrono::duration<double>(Steady::now().time_since_epoch()).count(); }
+
 class RosRobot final : public Link {
  public:
-  RosRobot(const Network& network, bool commands) : bag_(std::make_shared<Bag>()), solver_(network.master) {
+  RosRobot(const Network& network, bool commands, std::optional<double> tool_mass)
+      : bag_(std::make_shared<Bag>()), solver_(network.master), pulse_(steady_seconds()) {
+    latest_.end_effector.mass = tool_mass;
     set_current_bag(bag_);
     handle_.setCallbackQueue(&queue_);
-    // Of joint_states two nodes send, and the one's message must not push out the other's.
-    subscribe<sensor_msgs::JointState>(kJointTopic, 10, &RosRobot::on_joints);
-    subscribe<msgs::EndpointState>(kEndpointTopic, 1, &RosRobot::on_endpoint);
-    subscribe<msgs::AssemblyState>(kStateTopic, 1, &RosRobot::on_state);
-    subscribe<msgs::CollisionDetectionState>(kCollisionTopic, 1, &RosRobot::on_collision);
+    subscribe<sensor_msgs::JointState>(kJointTopic, &RosRobot::on_joints);
+    subscribe<msgs::EndpointState>(kEndpointTopic, &RosRobot::on_endpoint);
+    subscribe<msgs::AssemblyState>(kStateTopic, &RosRobot::on_state);
+    subscribe<msgs::CollisionDetectionState>(kCollisionTopic, &RosRobot::on_collision);
+    subscribe<msgs::CollisionAvoidanceState>(kAvoidanceTopic, &RosRobot::on_avoidance);
+    subscribe<msgs::EndEffectorProperties>(kEndEffectorTopic, &RosRobot::on_end_effector);
+    subscribe<std_msgs::Float64>(kSpeedRatioTopic, &RosRobot::on_speed_ratio);
+    subscribe<std_msgs::Float64>(kCommandTimeoutTopic, &RosRobot::on_command_timeout);
     if (commands) {
-      subscribe<msgs::JointCommand>(kCommandTopic, 10, &RosRobot::on_command);
+      subscribe<msgs::JointCommand>(kCommandTopic, &RosRobot::on_command);
       command_publisher_ = handle_.advertise<msgs::JointCommand>(kCommandTopic, 1);
       command_.mode = msgs::JointCommand::POSITION_MODE;
       command_.names.assign(kJointNames.begin(), kJointNames.end());
@@ -103,6 +119,7 @@ class RosRobot final : public Link {
     const std::lock_guard lock(mutex_);
     Snapshot snapshot = latest_;
     snapshot.now = clock_.now();
+    snapshot.own_gap = pulse_.longest(steady_seconds());
     return snapshot;
   }
 
@@ -151,16 +168,31 @@ class RosRobot final : public Link {
   using Event = ros::MessageEvent<const Message>;
 
   template <class Message>
-  void subscribe(const char* topic, std::uint32_t queue, void (RosRobot::*take)(const Event<Message>&, Snapshot&)) {
+  void subscribe(const char* topic, void (RosRobot::*take)(const Event<Message>&, Snapshot&)) {
     const boost::function<void(const Event<Message>&)> heard = [this, topic, take](const Event<Message>& event) {
-      if (event.getReceiptTime().isZero()) return;  // before a simulated clock was heard nothing has an age
       if (event.getPublisherName() == ros::this_node::getName()) return;
-      bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
+      // Before a simulated clock was heard nothing has an age, and what was latched comes then and never again.
+      const bool timed = !event.getReceiptTime().isZero();
+      if (timed) {
+        bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
+      } else if (traits::HasHeader<Message>::value || std::is_same_v<Message, msgs::AssemblyState>) {
+        return;
+      }
       const std::lock_guard lock(mutex_);
       (this->*take)(event, latest_);
     };
-    subscribers_.push_back(handle_.subscribe<const Event<Message>&>(topic, queue, heard, ros::VoidConstPtr(),
+    subscribers_.push_back(handle_.subscribe<const Event<Message>&>(topic, kBacklog, heard, ros::VoidConstPtr(),
                                                                     ros::TransportHints().tcpNoDelay()));
+  }
+
+  /// That of a stream's next message.
+  template <class Message>
+  Arrival arrival(const Event<Message>& event, long before) const {
+    return {clock_.received(event.getReceiptTime()), event.getConstMessage()->header.stamp.toSec(), before + 1};
+  }
+  template <class Reading>
+  static long count_of(const std::optional<Reading>& latest) {
+    return latest ? latest->count : 0;
   }
 
   void on_joints(const Event<sensor_msgs::JointState>& event, Snapshot& latest) {
@@ -172,8 +204,7 @@ class RosRobot final : public Link {
                             " of the left arm's seven joints, " + counts(message));
       return;
     }
-    latest.joints =
-        JointReading{{clock_.received(event.getReceiptTime()), message.header.stamp.toSec()}, part.position};
+    latest.joints = JointReading{arrival(event, count_of(latest.joints)), part.position};
     add_once(latest.joint_senders, event.getPublisherName());
   }
 
@@ -182,7 +213,7 @@ class RosRobot final : public Link {
     const auto& position = message.pose.position;
     const auto& turn = message.pose.orientation;
     const auto& force = message.wrench.force;
-    latest.endpoint = EndpointReading{{clock_.received(event.getReceiptTime()), message.header.stamp.toSec()},
+    latest.endpoint = EndpointReading{arrival(event, count_of(latest.endpoint)),
                                       {{position.x, position.y, position.z}, {turn.w, turn.x, turn.y, turn.z}},
                                       {force.x, force.y, force.z}};
   }
@@ -198,6 +229,7 @@ class RosRobot final : public Link {
     }
     StateReading state;
     state.received = clock_.received(event.getReceiptTime());
+    state.count = count_of(latest.state) + 1;
     state.ready = message.ready != 0;
     state.enabled = message.enabled != 0;
     state.stopped = message.stopped != 0;
@@ -208,9 +240,28 @@ class RosRobot final : public Link {
   }
 
   void on_collision(const Event<msgs::CollisionDetectionState>& event, Snapshot& latest) {
-    const msgs::CollisionDetectionState& message = *event.getConstMessage();
-    latest.collision = CollisionReading{{clock_.received(event.getReceiptTime()), message.header.stamp.toSec()},
-                                        message.collision_state != 0};
+    latest.collision =
+        CollisionReading{arrival(event, count_of(latest.collision)), event.getConstMessage()->collision_state != 0};
+  }
+
+  void on_avoidance(const Event<msgs::CollisionAvoidanceState>& event, Snapshot& latest) {
+    const msgs::CollisionAvoidanceState& message = *event.getConstMessage();
+    latest.avoidance =
+        AvoidanceReading{arrival(event, count_of(latest.avoidance)), message.other_arm != 0, message.collision_object};
+  }
+
+  void on_end_effector(const Event<msgs::EndEffectorProperties>& event, Snapshot& latest) {
+    const msgs::EndEffectorProperties& message = *event.getConstMessage();
+    const bool both = !message.manufacturer.empty() && !message.product.empty();
+    latest.end_effector.product = message.manufacturer + (both ? " " : "") + message.product;
+  }
+
+  void on_speed_ratio(const Event<std_msgs::Float64>& event, Snapshot& latest) {
+    latest.speed_ratio = Setting{event.getConstMessage()->data, event.getPublisherName()};
+  }
+
+  void on_command_timeout(const Event<std_msgs::Float64>& event, Snapshot& latest) {
+    latest.command_timeout = Setting{event.getConstMessage()->data, event.getPublisherName()};
   }
 
   /// Whoever else sends set-points drives the same arm elsewhere.
@@ -222,9 +273,13 @@ class RosRobot final : public Link {
     if (latest.malformed.empty()) latest.malformed = words;
   }
 
+  /// Woken by every message and by the end.
   void spin() {
-    // Woken by every message and by the end; the time-out only matters if that wake-up falls between two waits.
-    while (!stop_) queue_.callAvailable(ros::WallDuration(0.05));
+    while (!stop_) {
+      queue_.callAvailable(kSpin);
+      const std::lock_guard lock(mutex_);
+      pulse_.beat(steady_seconds());
+    }
   }
 
   void await_messages() {
@@ -247,7 +302,8 @@ class RosRobot final : public Link {
   msgs::JointCommand command_;
   Solver solver_;
   std::mutex mutex_;
-  Snapshot latest_;  ///< guarded by mutex_; its `now` is not used
+  Snapshot latest_;  ///< guarded by mutex_; its `now` and `own_gap` are not used
+  Pulse pulse_;      ///< of the spinner; guarded by mutex_
   std::atomic<bool> stop_{false};
   std::thread spinner_;
 };
@@ -265,8 +321,8 @@ const std::array<Stream, 3>& Link::needed() {
   return streams;
 }
 
-std::unique_ptr<Link> make_link(const Network& network, bool commands) {
-  return std::make_unique<RosRobot>(network, commands);
+std::unique_ptr<Link> make_link(const Network& network, bool commands, std::optional<double> tool_mass) {
+  return std::make_unique<RosRobot>(network, commands, tool_mass);
 }
 
 }  // namespace palpate::baxter
