@@ -195,6 +195,47 @@ TEST(FakeBody, AnEmergencyStopNeedsItsButtonReleasedThenAResetAndThenEnable) {
   EXPECT_EQ(bench.body.mode(), Body::Mode::following);
 }
 
+TEST(FakeBody, IsReadyOnlyWhileItIsEnabled) {
+  BodyBench bench;
+  const auto state = [&] { return *bench.body.said().state; };
+  EXPECT_TRUE(state().enabled && state().ready);
+  bench.body.enable(false);
+  EXPECT_FALSE(state().enabled || state().ready);
+  bench.body.enable(true);
+  EXPECT_TRUE(state().enabled && state().ready);
+  inject(bench.body, "error");
+  EXPECT_FALSE(state().enabled || state().ready);
+  bench.body.reset();
+  EXPECT_FALSE(state().ready) << "a reset leaves it disabled";
+}
+
+TEST(FakeBody, StoppedByAnythingButItsButtonItDoesNotKnowTheButton) {
+  for (const auto& [fault, source] : {std::pair("stop", State::Source::unknown), {"error", State::Source::fault}}) {
+    BodyBench bench;
+    inject(bench.body, fault);
+    const State state = *bench.body.said().state;
+    EXPECT_TRUE(state.stopped && !state.enabled) << fault;
+    EXPECT_EQ(state.estop_button, State::Button::unknown) << fault;
+    EXPECT_EQ(state.estop_source, source) << fault;
+    bench.hold(0.1);
+    EXPECT_EQ(bench.body.mode(), Body::Mode::stopped) << fault;
+  }
+}
+
+TEST(FakeBody, AComplaintStopsNothingAndOutlastsAReset) {
+  BodyBench bench(kBare, kQuiet);
+  inject(bench.body, "complaint");
+  bench.lead({0.115, 0.115, 0.10}, 0.05);
+  bench.hold(2.0);
+  EXPECT_NEAR(bench.body.tip().z(), 0.10, 1e-4) << "it goes on";
+  const auto state = [&] { return *bench.body.said().state; };
+  EXPECT_TRUE(state().error && state().enabled && state().ready && !state().stopped);
+  bench.body.reset();
+  EXPECT_TRUE(state().error) << "Rethink's tools call it non-fatal";
+  bench.body.enable(true);
+  EXPECT_TRUE(state().enabled);
+}
+
 TEST(FakeBody, TuckedItRefusesToBeEnabled) {
   fake_baxter::BodyOptions options = fake_options();
   options.start = Start::tucked;

@@ -70,10 +70,10 @@ TEST(FakeRobot, StopsResetsAndIsEnabledLikeARealOne) {
   RobotLab lab;
   lab.start_robot(robot_words());
   EXPECT_EQ(lab.probe({"switches"}).out,
-            "stop: enabled 0 stopped 1 error 0 button 0 source 2\n"
-            "enable: enabled 0 stopped 1 error 0 button 0 source 2\n"
-            "reset: enabled 0 stopped 0 error 0 button 0 source 0\n"
-            "enable: enabled 1 stopped 0 error 0 button 0 source 0\n");
+            "stop: ready 0 enabled 0 stopped 1 error 0 button 2 source 2\n"
+            "enable: ready 0 enabled 0 stopped 1 error 0 button 2 source 2\n"
+            "reset: ready 0 enabled 0 stopped 0 error 0 button 0 source 0\n"
+            "enable: ready 1 enabled 1 stopped 0 error 0 button 0 source 0\n");
 }
 
 TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {

@@ -141,8 +141,14 @@ void Body::begin(Armed& armed) {
     case FaultKind::estop:
       assembly_.press();
       break;
+    case FaultKind::stop:
+      assembly_.stop();
+      break;
     case FaultKind::error:
       assembly_.fail();
+      break;
+    case FaultKind::complaint:
+      assembly_.complain();
       break;
     case FaultKind::squish:
       held_until_ = now() + kHeld;
@@ -179,7 +185,7 @@ void Body::watch_faults(double height_before) {
 
 Body::Mode Body::choose_mode() const {
   const Assembly::State& state = assembly_.state();
-  if (!state.enabled) return state.stopped || state.error ? Mode::stopped : Mode::disabled;
+  if (!state.enabled) return state.stopped ? Mode::stopped : Mode::disabled;
   if (now() < held_until_ - kSlack) return Mode::reflex;
   return now() - commanded_ > timeout_ + kSlack ? Mode::timed_out : Mode::following;
 }

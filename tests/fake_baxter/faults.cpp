@@ -23,7 +23,9 @@ struct Known {
 
 constexpr Known kKnown[] = {
     {"estop", FaultKind::estop, Takes::number, 2.0},
+    {"stop", FaultKind::stop},
     {"error", FaultKind::error},
+    {"complaint", FaultKind::complaint},
     {"squish", FaultKind::squish},
     {"freeze_endpoint", FaultKind::freeze_endpoint},
     {"kill_endpoint", FaultKind::kill_endpoint},

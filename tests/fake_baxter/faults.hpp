@@ -11,7 +11,9 @@ namespace palpate::fake_baxter {
 /// to begin.
 enum class FaultKind {
   estop,            ///< somebody presses the emergency stop, and lets go after VALUE seconds (2)
-  error,            ///< the robot reports an error and disables itself
+  stop,             ///< a program stops the robot by /robot/set_super_stop
+  error,            ///< a joint has a fault: the robot reports an error and stops itself
+  complaint,        ///< the robot reports an error of a component, which stops nothing and outlasts a reset
   squish,           ///< the firmware feels a collision, whatever the force
   freeze_endpoint,  ///< endpoint_state goes on with fresh stamps, but pose and force stay the same
   kill_endpoint,    ///< endpoint_state stops

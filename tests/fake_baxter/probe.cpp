@@ -140,8 +140,8 @@ void flip(Probe& probe, const char* word, const std::string& topic, const Messag
     probe.wait(0.05);
   }
   const AssemblyState& s = *probe.state;
-  fmt::print("{}: enabled {} stopped {} error {} button {} source {}\n", word, s.enabled, s.stopped, s.error,
-             s.estop_button, s.estop_source);
+  fmt::print("{}: ready {} enabled {} stopped {} error {} button {} source {}\n", word, s.ready, s.enabled, s.stopped,
+             s.error, s.estop_button, s.estop_source);
 }
 
 int switches(Probe& probe) {
