@@ -35,6 +35,7 @@ class BodyRobot final : public Robot {
 
   bool wait_until(double time) override {
     if (body.active(FaultKind::freeze_clock) != nullptr) return false;
+    if (late) time += late();
     while (body.now() < time - 1e-9) {
       body.step();
       hear();
@@ -46,6 +47,7 @@ class BodyRobot final : public Robot {
 
   void command(const Joints& target) override {
     commands.push_back(target);
+    commanded.push_back(body.now());
     body.command(target);
   }
 
@@ -59,10 +61,12 @@ class BodyRobot final : public Robot {
 
   Body body;
   std::vector<Joints> commands;
+  std::vector<double> commanded;                             ///< when, seconds
   std::vector<double> heights;                               ///< of the tip after every period
   std::function<void()> every_period;                        ///< called then
   std::function<Answer(const Pose&, const Joints&)> answer;  ///< instead of what is right
   std::function<void(Snapshot&)> spoil;                      ///< changes what is heard
+  std::function<double()> late;                              ///< by how much a period of the driver's is too long, s
   int asked = 0;
 
  private:

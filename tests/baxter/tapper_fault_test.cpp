@@ -136,7 +136,8 @@ TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
   EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not come"));
   EXPECT_THAT(contact.reason,
               EndsWith("nothing more is sent, the arm stays where it is: the emergency stop is pressed: "
-                       "release it, reset and enable the robot"));
+                       "release it, then reset it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun "
+                       "baxter_tools enable_robot.py -e)"));
 }
 
 TEST(AFault, BetweenTwoTapsSendsNothing) {

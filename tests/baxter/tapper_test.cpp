@@ -3,6 +3,7 @@
 #include "baxter/tapper_bench.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/random.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -182,6 +183,61 @@ TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
   };
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
+}
+
+/// Of a hundred readings of the force one is 9 N off, and then nothing new comes for so many periods.
+std::function<void(Snapshot&)> spikes(int stalled, const Bench& bench) {
+  return [=, &bench, held = std::optional<EndpointReading>(), left = 0,
+          random = Random(5, "spikes")](Snapshot& seen) mutable {
+    if (left > 0 && --left > 0) {
+      seen.endpoint = held;
+      return;
+    }
+    if (bench.tip() > kHover - 0.005 || random.uniform() > 0.01) return;
+    seen.endpoint->force.z() += 9.0;
+    held = seen.endpoint;
+    left = stalled;
+  };
+}
+
+TEST(ATap, IsNotFooledByOneLoudReadingThatStaysTheLatest) {
+  Bench bench;
+  bench.robot.spoil = spikes(5, bench);
+  for (int i = 0; i < 40; ++i) {
+    const Target place{0.02 + 0.01 * (i % 20), i % 2 == 0 ? 0.02 : 0.115};
+    const Contact contact = bench.tap(place);
+    if (contact.outcome != Outcome::contact) continue;  // one that was not believed is no lie
+    ASSERT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.004) << "tap " << i;
+  }
+}
+
+TEST(ATap, DoesNotMakeUpForPeriodsThatItsComputerMissed) {
+  Bench bench;
+  int period = 0;
+  bench.robot.late = [&] { return ++period % 20 == 0 ? 0.045 : 0.0; };
+  const Contact contact = bench.tap(kOnObject);
+  ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
+  EXPECT_NEAR(contact.height, wave_scene().height(kOnObject.x, kOnObject.y), 0.003);
+  ASSERT_GT(bench.robot.commanded.size(), 300U);
+  for (std::size_t i = 1; i < bench.robot.commanded.size(); ++i) {
+    ASSERT_GT(bench.robot.commanded[i] - bench.robot.commanded[i - 1], 0.0099) << "set-point " << i;
+  }
+}
+
+TEST(ARobot, WhoseForceComesTooSeldomIsRefusedBeforeAnythingMoves) {
+  Bench bench;
+  std::optional<EndpointReading> held;
+  bench.robot.spoil = [&](Snapshot& seen) {
+    if (!held || seen.now - held->received >= 0.04 - 1e-9) held = seen.endpoint;
+    seen.endpoint = held;
+  };
+  try {
+    bench.check();
+    FAIL() << "25 Hz were taken";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("endpoint_state of the left arm came only "));
+  }
+  EXPECT_TRUE(bench.robot.commands.empty());
 }
 
 TEST(ATap, IsNotBegunWhereTheWayToItCannotBePlanned) {

@@ -57,8 +57,15 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"EmergencyStop", [](Snapshot& s) { s.state->estop_button = StateReading::Button::pressed; },
               "the emergency stop is pressed: release it", Then::silence},
         Wrong{"EmergencyStopReleased", [](Snapshot& s) { s.state->estop_button = StateReading::Button::released; },
-              "was pressed and is released: reset the robot", Then::silence},
-        Wrong{"Error", [](Snapshot& s) { s.state->error = true; }, "reports an error", Then::silence},
+              "was pressed and is released: reset it (rosrun", Then::silence},
+        Wrong{
+            "Error",
+            [](Snapshot& s) {
+              s.state->error = true;
+              s.state->enabled = false;
+            },
+            "reports an error and is disabled: see its screen, then reset it (rosrun baxter_tools enable_robot.py -r)",
+            Then::silence},
         Wrong{"Stopped", [](Snapshot& s) { s.state->stopped = true; }, "the robot is stopped", Then::silence},
         Wrong{"Disabled", [](Snapshot& s) { s.state->enabled = false; }, "the robot is disabled: enable it",
               Then::silence},
@@ -94,8 +101,12 @@ INSTANTIATE_TEST_SUITE_P(
               Then::silence},
         Wrong{"CommandedByAnother", [](Snapshot& s) { s.commanders = {"/palpate_2"}; },
               "the arm is commanded by /palpate_2, too", Then::silence},
-        Wrong{"ButtonNotKnown", [](Snapshot& s) { s.state->estop_button = StateReading::Button::unknown; },
-              "does not know whether its emergency stop is pressed", Then::silence},
+        Wrong{"StoppedByAProgram",
+              [](Snapshot& s) {
+                s.state->stopped = true;
+                s.state->estop_button = StateReading::Button::unknown;
+              },
+              "a program stopped the robot (/robot/set_super_stop)", Then::silence},
         Wrong{"Reflex", [](Snapshot& s) { s.collision->collision = true; }, "the arm's own reflex stopped it",
               Then::retreat}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
@@ -149,6 +160,7 @@ TEST(ASoundRobot, MayHaveAClockThatGoesALittleFaster) {
   for (double now = 1.0; now < 4.0 * 3600.0; now += 1.0) {
     Snapshot seen = sound(now, pose());
     seen.joints->stamp = seen.endpoint->stamp = 0.9999 * now;  // 1.4 s in four hours
+    watch.begin();                                             // it is looked at once a second, between motions
     const std::optional<Fault> fault = watch.look(seen, kInside);
     ASSERT_FALSE(fault) << now << ": " << fault->reason;
   }
@@ -174,6 +186,13 @@ bool noticed_silence_of_collisions(double period) {
 TEST(AStreamOfCollisions, MustGoOnIfItCameAgainAndAgain) {
   EXPECT_TRUE(noticed_silence_of_collisions(0.02));
   EXPECT_FALSE(noticed_silence_of_collisions(1.5)) << "it is sent when it changes";
+}
+
+TEST(ASoundRobot, MayReportAnErrorWhileItIsEnabled) {
+  Watch watch(kSpace, 14.0);
+  Snapshot seen = sound(1.0, pose());
+  seen.state->error = true;
+  EXPECT_FALSE(watch.look(seen, kInside)) << "it moves all the same";
 }
 
 TEST(ASoundRobot, BreaksNoRule) {
@@ -235,6 +254,79 @@ TEST(AForce, StopsAfterThreeSamplesBeyondTheLimitInAnyDirection) {
     EXPECT_THAT(fault->reason, HasSubstr("more than force_stop allows"));
     EXPECT_EQ(fault->then, Then::retreat);
   }
+}
+
+TEST(AForce, ThatIsLookedAtAgainIsStillOneReading) {
+  Watch watch(kSpace, 14.0);
+  watch.set_tare(Eigen::Vector3d(0.3, -0.2, 1.0));
+  Snapshot seen = sound(1.0, pose());
+  seen.endpoint->force.z() += 40.0;
+  for (int i = 0; i < 6; ++i) {
+    seen.now += 0.01;
+    EXPECT_FALSE(watch.look(seen, kInside));
+    EXPECT_EQ(watch.fresh(), i == 0);
+  }
+}
+
+/// Looks every `period` seconds, for three seconds, at streams that come so often a second; what stopped that, if any.
+std::optional<Fault> looked(double period, double joints, double endpoint, bool simulated = false) {
+  Watch watch(kSpace, 14.0);
+  for (int i = 0; i * period < 3.0; ++i) {
+    const double now = 1.0 + i * period;
+    Snapshot seen = sound(now, pose());
+    seen.simulated = simulated;
+    const auto latest = [now](Arrival& arrival, double rate) {
+      arrival.received = std::floor(now * rate + 1e-6) / rate;
+      arrival.stamp = arrival.received + 5.0;
+    };
+    latest(*seen.joints, joints);
+    latest(*seen.endpoint, endpoint);
+    if (const std::optional<Fault> fault = watch.look(seen, kInside)) return fault;
+  }
+  return std::nullopt;
+}
+
+TEST(AStream, BelowFiftyHertzStopsTheArm) {
+  for (const double rate : {100.0, 70.0, 50.0}) EXPECT_FALSE(looked(0.01, rate, rate)) << rate;
+  for (const double rate : {45.0, 25.0, 20.0}) {
+    const std::optional<Fault> force = looked(0.01, 100.0, rate);
+    ASSERT_TRUE(force) << rate;
+    EXPECT_THAT(force->reason, HasSubstr("endpoint_state of the left arm came only "));
+    EXPECT_THAT(force->reason, HasSubstr(" times in the last 0.5 s, 25 are needed"));
+    EXPECT_EQ(force->then, Then::hold);
+    const std::optional<Fault> joints = looked(0.01, rate, 100.0);
+    ASSERT_TRUE(joints) << rate;
+    EXPECT_THAT(joints->reason, HasSubstr("/robot/joint_states of the left arm came only "));
+  }
+}
+
+TEST(ADriver, ThatGetsToTheArmTooSeldomBlamesItsComputer) {
+  const std::optional<Fault> own = looked(0.03, 100.0, 100.0);
+  ASSERT_TRUE(own);
+  EXPECT_THAT(own->reason, HasSubstr("this computer got to the arm 17 times in the last 0.5 s, 25 are needed"));
+  EXPECT_FALSE(looked(0.03, 100.0, 100.0, true)) << "a simulated clock does not wait";
+  EXPECT_TRUE(looked(0.03, 100.0, 12.0, true)) << "a stream that is slower than the driver is not its fault";
+}
+
+TEST(AGap, OfTheDriversOwnIsNotBlamedOnTheNetwork) {
+  Watch watch(kSpace, 14.0);
+  ASSERT_FALSE(watch.look(sound(1.0, pose()), kInside));
+  Snapshot seen = sound(1.0, pose());
+  seen.now = 1.15;  // nobody looked, and nobody received
+  const std::optional<Fault> own = watch.look(seen, kInside);
+  ASSERT_TRUE(own);
+  EXPECT_THAT(own->reason, testing::StartsWith("this computer did not get to the arm for 0.15 s"));
+
+  Watch receiving(kSpace, 14.0);
+  for (double now = 1.0; now < 1.1; now += 0.01) {
+    Snapshot held = sound(1.0, pose());
+    held.now = now;
+    ASSERT_FALSE(receiving.look(held, kInside));
+  }
+  seen.now = 1.12;
+  EXPECT_THAT(receiving.look(seen, kInside)->reason, HasSubstr("see to the network"));
+  seen.own_gap = 0.12;
+  EXPECT_THAT(receiving.look(seen, kInside)->reason, HasSubstr("this computer did not get to the arm for 0.12 s"));
 }
 
 TEST(AForce, WhoseZeroFollowsStopsWhenItRisesFastAndNotWhenItDrifts) {

@@ -108,6 +108,29 @@ TEST(GuardedTap, DoesNotTakeTwoLoudPeriodsForAContact) {
   EXPECT_EQ(run.tap.outcome(), Outcome::no_contact);
 }
 
+TEST(GuardedTap, TakesOneReadingForOneHoweverOftenItIsTold) {
+  const MotionOptions options = motion("{type: continuous}");
+  GuardedTap tap(options, plan_descent(options, 0.0, {}));
+  double height = options.hover;
+  for (int i = 0; !tap.done() && i < 100'000; ++i) {
+    const bool loud = i > 60 && (i / 6) % 2 == 0;  // one reading of two, each told for six periods
+    height = tap.next(height, loud ? 50.0 : 0.0, i % 6 == 0);
+  }
+  EXPECT_EQ(tap.outcome(), Outcome::no_contact);
+}
+
+TEST(GuardedTap, TaresNewReadingsAlone) {
+  const MotionOptions options = motion("{type: continuous, tare: 200 ms}");
+  GuardedTap tap(options, plan_descent(options, 0.0, {}));
+  double height = options.hover;
+  for (int i = 0; !tap.done() && i < 100'000; ++i) {
+    // 2 N in every new reading, 30 N whenever nothing new came.
+    height = tap.next(height, i % 2 == 0 ? 2.0 + (height < 0.05 ? 20.0 : 0.0) : 30.0, i % 2 == 0);
+  }
+  EXPECT_EQ(tap.outcome(), Outcome::contact);
+  EXPECT_NEAR(tap.peak_force(), 20.0, 1e-9);
+}
+
 TEST(GuardedTap, TaresTheZeroOfTheForceAway) {
   for (const char* yaml : {"{type: paper}", "{type: two_stage}", "{type: continuous}"}) {
     const MotionOptions options = motion(yaml);

@@ -16,7 +16,8 @@ constexpr double kReachSpacing = 0.02;  ///< m between the places of a dry run
 constexpr double kPoseError = 0.001;    ///< m and
 constexpr double kTurnError = 0.02;     ///< rad by which an answer of the robot's may miss the pose
 constexpr double kPatience = 1.0;       ///< s in which data must be fresh when a tap begins
-constexpr double kListen = 0.3;         ///< s in which another program that commands the arm is heard
+/// s in which another program that commands the arm is heard, and streams that are too slow
+constexpr double kListen = Stream::kWindow + 0.05;
 
 /// Of all that GuardedTap does within a column.
 double fastest(const tapping::MotionOptions& motion) {
@@ -29,9 +30,9 @@ double fastest(const tapping::MotionOptions& motion) {
 
 void Tapper::check() {
   check_plan(options_, scene_);
-  take(robot_.read());
-  robot_.wait_until(seen_.now + kListen);
+  const std::optional<Fault> slow = listen();
   await_fit(!options_.dry_run);
+  if (slow && !options_.dry_run) throw Error("", slow->reason, {}, Error::Kind::run);
   check_before_flight(seen_, options_, planner_, workspace_, !options_.dry_run);
   try {
     if (options_.calibration) column({options_.calibration->at[0], options_.calibration->at[1]});
@@ -42,6 +43,20 @@ void Tapper::check() {
   } catch (const Fault& fault) {
     throw Error("", fault.reason, {}, Error::Kind::run);
   }
+}
+
+/// What is wrong with how often the robot's data come.
+std::optional<Fault> Tapper::listen() {
+  take(robot_.read());
+  watch_.begin();
+  const double end = seen_.now + kListen;
+  std::optional<Fault> slow;
+  for (next_ = seen_.now; next_ < end; slow = watch_.listen(seen_)) {
+    next_ += tapping::GuardedTap::kPeriod;
+    if (!robot_.wait_until(next_)) break;
+    take(robot_.read());
+  }
+  return slow;
 }
 
 void Tapper::try_reach() {

@@ -87,7 +87,8 @@ struct EndEffector {
 
 /// The latest of every stream, and who has been sending. A stream that has not been heard is absent.
 struct Snapshot {
-  double now = 0.0;  ///< protocol time: the clock of the robot's network, which may be a simulated one
+  double now = 0.0;        ///< protocol time: the clock of the robot's network
+  bool simulated = false;  ///< that clock is a simulated one: it does not wait for whoever is late
   std::optional<JointReading> joints;
   std::optional<EndpointReading> endpoint;
   std::optional<StateReading> state;

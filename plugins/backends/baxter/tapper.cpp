@@ -6,6 +6,7 @@
 #include <exception>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 namespace palpate::baxter {
 namespace {
@@ -14,17 +15,17 @@ using tapping::GuardedTap;
 using Then = Fault::Then;
 
 constexpr double kPeriod = GuardedTap::kPeriod;
-constexpr double kStepClamp = 0.05;  ///< rad by which a set-point may leave both the last one and the arm
-constexpr double kBehind = 0.05;     ///< s that the loop may be late before it starts counting anew
-constexpr double kAtGoal = 0.015;    ///< rad: settled errors are up to 0.008
-constexpr double kStill = 0.002;     ///< rad in kStillFor
-constexpr double kStillFor = 0.1;    ///< s
-constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
-constexpr double kHeld = 0.5;        ///< s for which the measured joints are sent at a stop
-constexpr double kReflexEnds = 4.0;  ///< s: the firmware's own stop lasts two
-constexpr int kForceSamples = 10;    ///< for the force at rest
+constexpr double kStepClamp = 0.05;        ///< rad by which a set-point may leave both the last one and the arm
+constexpr double kAtGoal = 0.015;          ///< rad: settled errors are up to 0.008
+constexpr double kStill = 0.002;           ///< rad in kStillFor
+constexpr double kStillFor = 0.1;          ///< s
+constexpr double kSettling = 5.0;          ///< s: after a stop the arm takes two
+constexpr double kHeld = 0.5;              ///< s for which the measured joints are sent at a stop
+constexpr double kReflexEnds = 4.0;        ///< s: the firmware's own stop lasts two
+constexpr std::size_t kForceSamples = 15;  ///< new ones, for the force at rest
+constexpr double kForcePatience = 1.0;     ///< s in which they must have come
 constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
-constexpr int kPulled = 3;  ///< samples of a force that pulls: one alone may be noise
+constexpr int kPulled = 3;  ///< new readings of a force that pulls: one alone may be noise
 
 std::string centimetres(double length) {
   std::ostringstream out;
@@ -58,6 +59,18 @@ class Mean {
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   int count_ = 0;
 };
+
+/// Of each component, at least one reading being there.
+Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
+  Eigen::Vector3d out;
+  const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
+  for (int i = 0; i < 3; ++i) {
+    std::nth_element(readings.begin(), middle, readings.end(),
+                     [i](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[i] < b[i]; });
+    out[i] = (*middle)[i];
+  }
+  return out;
+}
 
 Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false) {
   Contact out{outcome, 0.0, 0.0, 0.0, reason};
@@ -206,7 +219,8 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
   for (bool first = true; !tap.done();) {
     const double before = set_point;
     const bool taring = tap.taring();
-    set_point = tap.next(height(), force());
+    const bool fresh = watch_.fresh();
+    set_point = tap.next(height(), force(), fresh);
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
@@ -214,7 +228,7 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
       command = column.at(plan.hover - set_point);
     }
     if (taring) {
-      tare.add(seen_.endpoint->force);
+      if (fresh) tare.add(seen_.endpoint->force);
       pulled = 0;
       if (!tap.taring()) {
         // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
@@ -222,7 +236,7 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
         if (std::exchange(first, false)) at_hover = zero_;
         watch_.set_tare(zero_);
       }
-    } else {
+    } else if (fresh) {
       pulled = force() - options_.sign() * zero_.z() < -options_.motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
@@ -250,14 +264,15 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
   }
 }
 
-/// The mean of a few readings, while the arm is where it is sent.
+/// The median of a few new readings, while the arm is where it is sent: one of them may be far off.
 Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
-  Mean mean;
-  for (int i = 0; i < kForceSamples; ++i) {
+  std::vector<Eigen::Vector3d> readings;
+  const double patience = seen_.now + kForcePatience;
+  while (readings.size() < kForceSamples && seen_.now < patience) {
     step(joints);
-    mean.add(seen_.endpoint->force);
+    if (watch_.fresh()) readings.push_back(seen_.endpoint->force);
   }
-  return mean.take();
+  return median(std::move(readings));
 }
 
 /// Does what may still be done and tells, in half a sentence, where that left the arm.
@@ -308,7 +323,8 @@ void Tapper::step(const Joints& command) {
   robot_.command(command);
   watch_.sent(seen_.now, command);
   next_ += kPeriod;
-  if (next_ < seen_.now - kBehind) next_ = seen_.now + kPeriod;
+  // A period that was missed is not made up for: the arm would be sent several set-points at once.
+  if (next_ <= seen_.now) next_ = seen_.now + kPeriod;
   if (!robot_.wait_until(next_)) throw standstill();
   take(robot_.read());
   if (std::optional<Fault> fault = watch_.look(seen_, tip_)) throw *fault;

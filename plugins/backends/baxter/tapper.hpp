@@ -43,6 +43,7 @@ class Tapper {
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const Path& column);
   void calibrate(const Contact& contact);
+  std::optional<Fault> listen();
   void try_reach();
   void await_fit(bool moving);
   void expect_fit();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace palpate::baxter {
 namespace {
@@ -30,22 +31,29 @@ std::string names(const std::vector<std::string>& all) {
   return out;
 }
 
+constexpr const char* kReset =
+    "reset it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun baxter_tools enable_robot.py -e)";
+
 /// What the robot's state forbids.
 std::optional<Fault> state_forbids(const StateReading& state, const std::optional<JointReading>& joints, bool moving) {
   if (state.estop_button == Button::pressed) {
-    return Fault{"the emergency stop is pressed: release it, reset and enable the robot", Then::silence, true};
+    return Fault{std::string("the emergency stop is pressed: release it, then ") + kReset, Then::silence, true};
   }
   if (state.estop_button == Button::released) {
-    return Fault{"the emergency stop was pressed and is released: reset the robot and enable it", Then::silence, true};
+    return Fault{std::string("the emergency stop was pressed and is released: ") + kReset, Then::silence, true};
   }
-  if (state.estop_button == Button::unknown) {
-    return Fault{"the robot does not know whether its emergency stop is pressed: see that the button is connected",
+  // An error alone stops nothing, by Rethink's own reference: an enabled robot may report one and move.
+  if (state.error && !state.enabled) {
+    return Fault{std::string("the robot reports an error and is disabled: see its screen, then ") + kReset,
                  Then::silence, true};
   }
-  if (state.error) {
-    return Fault{"the robot reports an error: see its screen, reset it and enable it", Then::silence, true};
+  if (state.stopped && state.estop_button == Button::unknown) {
+    return Fault{
+        std::string("a program stopped the robot (/robot/set_super_stop), a safety node perhaps: see why, then ") +
+            kReset,
+        Then::silence, true};
   }
-  if (state.stopped) return Fault{"the robot is stopped: reset it and enable it", Then::silence, true};
+  if (state.stopped) return Fault{std::string("the robot is stopped: ") + kReset, Then::silence, true};
   if (!moving) return std::nullopt;
   if (!state.enabled && joints && joints->position(1) < -1.6) {
     return Fault{"the robot is disabled and its arm is tucked (left_s1 at " + degrees(joints->position(1)) +
@@ -53,14 +61,24 @@ std::optional<Fault> state_forbids(const StateReading& state, const std::optiona
                  Then::silence, true};
   }
   if (!state.enabled) {
-    return Fault{"the robot is disabled: enable it, palpate never does that itself", Then::silence, true};
+    return Fault{
+        "the robot is disabled: enable it (rosrun baxter_tools enable_robot.py -e), palpate never does that itself",
+        Then::silence, true};
   }
   if (!state.ready) return Fault{"the robot is not ready: wait until it has started", Then::silence, true};
   return std::nullopt;
 }
 
-std::optional<Fault> stale(const char* stream, double age, double most) {
+constexpr const char* kOwnSlowness =
+    ": end what else keeps this computer busy, and let palpate have real-time scheduling (see its baxter.txt)";
+
+/// `gap`: how long ago the driver itself looked last. What is old only by that is nobody else's fault.
+std::optional<Fault> stale(const char* stream, double age, double most, double gap) {
   if (age <= most) return std::nullopt;
+  if (gap > most && age <= gap + most) {
+    return Fault{"this computer did not get to the arm for " + number(gap, 2) + " s" + kOwnSlowness, Then::silence,
+                 true};
+  }
   return Fault{std::string(stream) + " did not come for " + number(age, 2) +
                    " s: see to the network and to the robot's processes",
                Then::silence, true};
@@ -96,6 +114,9 @@ Watch::Watch(const Workspace& workspace, double force_stop) : workspace_(workspa
 
 void Watch::begin() {
   sent_.clear();
+  joint_stream_.begin();
+  endpoint_stream_.begin();
+  looks_.clear();
   joints_.reset();
   too_strong_ = 0;
   last_force_.reset();
@@ -113,17 +134,60 @@ std::optional<Joints> Watch::last_sent() const {
 }
 
 std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
-  if (auto fault = known(seen, moving)) return fault;
-  return feels(seen);
+  if (auto fault = known(seen, moving, 0.0)) return fault;
+  return feels(seen, 0.0);
+}
+
+/// For how long this program did not get to the arm: since the look before, or to receive what came.
+double Watch::gap(const Snapshot& seen) const {
+  const double looked = looks_.empty() ? 0.0 : seen.now - looks_.back();
+  return seen.simulated ? looked : std::max(looked, seen.own_gap);
+}
+
+std::optional<Fault> Watch::listen(const Snapshot& seen) {
+  hear(seen);
+  return too_slow(seen);
+}
+
+/// Notes which readings are new.
+void Watch::hear(const Snapshot& seen) {
+  if (looks_.empty()) began_ = seen.now;
+  looks_.push_back(seen.now);
+  while (looks_.front() < seen.now - Stream::kWindow) looks_.pop_front();
+  if (seen.joints) joint_stream_.hear(*seen.joints, seen.now);
+  fresh_ = seen.endpoint && endpoint_stream_.hear(*seen.endpoint, seen.now);
+}
+
+/// Whoever feels too seldom presses too hard before he notices. A simulated clock runs on while this program is late,
+/// which then says nothing about the robot: there the readings are held against the looks.
+std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
+  if (seen.now - began_ < Stream::kWindow) return std::nullopt;
+  const int looks = static_cast<int>(looks_.size());
+  const auto in_window = [](int times) {
+    return std::to_string(times) + " times in the last " + number(Stream::kWindow) + " s, " +
+           std::to_string(Stream::kFewest) + " are needed";
+  };
+  if (looks < Stream::kFewest && !seen.simulated) {
+    return Fault{"this computer got to the arm " + in_window(looks) + kOwnSlowness, Then::hold, true};
+  }
+  const int fewest = seen.simulated ? std::min(Stream::kFewest, looks / 2) : Stream::kFewest;
+  for (const auto& [name, stream] : {std::pair{"/robot/joint_states of the left arm", &joint_stream_},
+                                     std::pair{"endpoint_state of the left arm", &endpoint_stream_}}) {
+    if (stream->heard() >= fewest) continue;
+    return Fault{std::string(name) + " came only " + in_window(stream->heard()) +
+                     ": see to the network, and to /robot/joint_state_publish_rate, which should be 100",
+                 Then::hold, true};
+  }
+  return std::nullopt;
 }
 
 /// Whatever forbids to command even the measured joints.
-std::optional<Fault> Watch::known(const Snapshot& seen, bool moving) {
+std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap) {
   if (!seen.malformed.empty()) return Fault{seen.malformed, Then::silence, true};
   if (!seen.state || !seen.joints || !seen.endpoint) {
     return Fault{"not all of joints, endpoint and state were heard", Then::silence, true};
   }
-  if (auto fault = stale("/robot/state", seen.now - seen.state->received, kStateFresh)) return fault;
+  if (auto fault = stale("/robot/state", seen.now - seen.state->received, kStateFresh, gap)) return fault;
   if (auto fault = state_forbids(*seen.state, seen.joints, moving)) return fault;
   if (seen.state_senders.size() > 1) {
     return Fault{"/robot/state comes from more than one node, " + names(seen.state_senders) +
@@ -138,7 +202,9 @@ std::optional<Fault> Watch::known(const Snapshot& seen, bool moving) {
   if (!seen.commanders.empty()) {
     return Fault{"the arm is commanded by " + names(seen.commanders) + ", too: end that first", Then::silence, true};
   }
-  if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh)) return fault;
+  if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh, gap)) {
+    return fault;
+  }
   if (!seen.joints->position.allFinite()) {
     return Fault{"/robot/joint_states has a position that is no number: restart the robot", Then::silence, true};
   }
@@ -146,8 +212,8 @@ std::optional<Fault> Watch::known(const Snapshot& seen, bool moving) {
 }
 
 /// Where the arm is, is known: it may be held there.
-std::optional<Fault> Watch::feels(const Snapshot& seen) {
-  if (auto fault = stale("endpoint_state of the left arm", seen.now - seen.endpoint->received, kFresh)) {
+std::optional<Fault> Watch::feels(const Snapshot& seen, double gap) {
+  if (auto fault = stale("endpoint_state of the left arm", seen.now - seen.endpoint->received, kFresh, gap)) {
     fault->then = Then::hold;
     return fault;
   }
@@ -164,10 +230,13 @@ std::optional<Fault> Watch::feels(const Snapshot& seen) {
 /// Of several rules that are broken at once that counts which leaves the least to do: so all that ask for silence are
 /// looked at first, and those that allow to retreat last.
 std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& tip) {
-  if (auto fault = known(seen, true)) return fault;
+  const double own = gap(seen);
+  hear(seen);
+  if (auto fault = known(seen, true, own)) return fault;
   if (auto fault = joints(seen)) return fault;
-  if (auto fault = feels(seen)) return fault;
-  if (auto fault = endpoint(seen)) return fault;
+  if (auto fault = feels(seen, own)) return fault;
+  if (auto fault = endpoint(seen, own)) return fault;
+  if (auto fault = too_slow(seen)) return fault;
   if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
     return Fault{std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is at " +
                      degrees(seen.joints->position(joint)) + ", beyond its limit: move the arm by hand",
@@ -199,7 +268,7 @@ std::optional<Fault> Watch::joints(const Snapshot& seen) {
   return std::nullopt;
 }
 
-std::optional<Fault> Watch::endpoint(const Snapshot& seen) {
+std::optional<Fault> Watch::endpoint(const Snapshot& seen, double gap) {
   if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_)) {
     fault->then = Then::hold;
     return fault;
@@ -214,11 +283,11 @@ std::optional<Fault> Watch::endpoint(const Snapshot& seen) {
                      " s: its sender is frozen, restart the robot",
                  Then::hold, true};
   }
-  return collision_silent(seen);
+  return collision_silent(seen, gap);
 }
 
 /// A robot that sends it again and again must go on; one that sends it when it changes may be silent.
-std::optional<Fault> Watch::collision_silent(const Snapshot& seen) {
+std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
   if (!seen.collision) return std::nullopt;
   const double received = seen.collision->received;
   if (received != collision_received_) {
@@ -226,13 +295,13 @@ std::optional<Fault> Watch::collision_silent(const Snapshot& seen) {
     collision_received_ = received;
   }
   if (!collision_streams_) return std::nullopt;
-  auto fault = stale("collision_detection_state of the left arm", seen.now - received, kStateFresh);
+  auto fault = stale("collision_detection_state of the left arm", seen.now - received, kStateFresh, gap);
   if (fault) fault->then = Then::hold;
   return fault;
 }
 
 std::optional<Fault> Watch::force(const Snapshot& seen) {
-  if (!tare_) return std::nullopt;
+  if (!tare_ || !fresh_) return std::nullopt;
   const Eigen::Vector3d felt = seen.endpoint->force - *tare_;
   const double change = felt.norm();
   if (zero_ == Zero::follows) *tare_ += felt * (kPeriod / kZeroFollows);

@@ -5,6 +5,7 @@
 #include "baxter/kinematics.hpp"
 #include "baxter/options.hpp"
 #include "baxter/robot.hpp"
+#include "baxter/stream.hpp"
 
 #include <Eigen/Core>
 
@@ -51,7 +52,7 @@ class Watch {
   static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
   static constexpr double kTrail = 0.8;        ///< s
   static constexpr double kZeroFollows = 0.5;  ///< s
-  static constexpr int kForceSamples = 3;      ///< above force_stop: one or two may be noise
+  static constexpr int kForceSamples = 3;      ///< new ones, above force_stop: one or two may be noise
 
   /// The least that receipt has come after the stamp, seconds, and when it was last looked at.
   struct Delay {
@@ -76,6 +77,11 @@ class Watch {
 
   /// Looks at what was read; `tip` is where the joints in it have the tip, in the frame of the scene.
   std::optional<Fault> look(const Snapshot& seen, const Eigen::Vector3d& tip);
+  /// The part of look() that needs no arm of ours: which readings are new, and whether they come often enough, which is
+  /// known half a second after begin().
+  std::optional<Fault> listen(const Snapshot& seen);
+  /// Whether the force that was looked at last was a new reading, and not the one of the look before.
+  bool fresh() const { return fresh_; }
   /// Tells what is sent, so that look() can judge whether the arm follows.
   void sent(double time, const Joints& target);
   /// The last of what was sent; none since begin().
@@ -86,11 +92,14 @@ class Watch {
   static std::optional<Fault> fit(const Snapshot& seen, bool moving);
 
  private:
-  static std::optional<Fault> known(const Snapshot& seen, bool moving);
-  static std::optional<Fault> feels(const Snapshot& seen);
+  static std::optional<Fault> known(const Snapshot& seen, bool moving, double gap);
+  static std::optional<Fault> feels(const Snapshot& seen, double gap);
+  double gap(const Snapshot& seen) const;
+  void hear(const Snapshot& seen);
+  std::optional<Fault> too_slow(const Snapshot& seen) const;
   std::optional<Fault> joints(const Snapshot& seen);
-  std::optional<Fault> endpoint(const Snapshot& seen);
-  std::optional<Fault> collision_silent(const Snapshot& seen);
+  std::optional<Fault> endpoint(const Snapshot& seen, double gap);
+  std::optional<Fault> collision_silent(const Snapshot& seen, double gap);
   std::optional<Fault> follows(const Snapshot& seen) const;
   std::optional<Fault> force(const Snapshot& seen);
 
@@ -105,6 +114,11 @@ class Watch {
   };
   std::deque<Sent> sent_;
   std::optional<JointReading> joints_;  ///< the reading before
+  Stream joint_stream_;
+  Stream endpoint_stream_;
+  bool fresh_ = false;
+  std::deque<double> looks_;  ///< within Stream::kWindow
+  double began_ = 0.0;        ///< the first look since begin()
   std::optional<Eigen::Vector3d> last_force_;
   double force_changed_ = 0.0;  ///< when it last was another
   int too_strong_ = 0;

@@ -8,7 +8,7 @@
 namespace palpate::tapping {
 namespace {
 
-/// Periods above the threshold until it counts as a contact: one alone may be noise.
+/// Readings above the threshold until it counts as a contact: one alone may be noise.
 constexpr int kConsecutive = 3;
 /// How near to its goal the arm must come before the next stage. One that has not come nearer by as much again for so
 /// many seconds is held up, and will not.
@@ -20,15 +20,10 @@ constexpr double kHeldUp = 2.0;
 GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
     : motion_(motion), descent_(descent), arm_(arm), set_point_(descent.hover) {}
 
-double GuardedTap::next(double height, double force) {
+double GuardedTap::next(double height, double force, bool fresh) {
   if (done()) return set_point_;
   ++periods_;
-  const double felt = force - zero_;
-  const bool tared = !taring();
-  if (tared) peak_ = std::max(peak_, felt);
-  above_ = tared && felt > threshold() ? above_ + 1 : 0;
-  const bool coming_down = stage_ == Stage::descend || stage_ == Stage::bottom;
-  if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
+  if (fresh) feel(height, force);
   if (seconds() > motion_.timeout) {
     finish(Outcome::timeout, height);
     return set_point_;
@@ -36,9 +31,8 @@ double GuardedTap::next(double height, double force) {
   switch (stage_) {
     case Stage::tare:
     case Stage::settle:
-      sum_ += force;
-      if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause)) {
-        zero_ = sum_ / static_cast<double>(periods_ - entered_);
+      if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) && summed_ > 0) {
+        zero_ = sum_ / summed_;
         enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
       }
       break;
@@ -57,7 +51,7 @@ double GuardedTap::next(double height, double force) {
       descend(height);
       break;
     case Stage::pause:
-      if (arm_ == Arm::real) tare_in_pause(force);
+      if (arm_ == Arm::real) tare_in_pause();
       if (above_ >= kConsecutive) {
         touched(height);
       } else if (waited(motion_.pause)) {
@@ -93,6 +87,21 @@ double GuardedTap::next(double height, double force) {
   return set_point_;
 }
 
+/// What a new reading counts for.
+void GuardedTap::feel(double height, double force) {
+  const bool in_pause = arm_ == Arm::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
+  if (taring() || in_pause) {
+    sum_ += force;
+    ++summed_;
+  }
+  if (taring()) return;
+  const double felt = force - zero_;
+  peak_ = std::max(peak_, felt);
+  above_ = felt > threshold() ? above_ + 1 : 0;
+  const bool coming_down = stage_ == Stage::descend || stage_ == Stage::bottom;
+  if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
+}
+
 void GuardedTap::descend(double height) {
   if (above_ >= kConsecutive) {
     touched(height);
@@ -103,12 +112,10 @@ void GuardedTap::descend(double height) {
 
 /// The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which must not
 /// be tared away.
-void GuardedTap::tare_in_pause(double force) {
-  if (!waited(motion_.pause - motion_.tare)) return;
-  sum_ += force;
-  ++summed_;
+void GuardedTap::tare_in_pause() {
+  if (!waited(motion_.pause) || summed_ == 0) return;
   const double mean = sum_ / summed_;
-  if (waited(motion_.pause) && std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
+  if (std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
 }
 
 void GuardedTap::enter(Stage stage) {

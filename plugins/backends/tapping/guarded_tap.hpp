@@ -12,11 +12,11 @@ namespace palpate::tapping {
 
 /// One descent, from arrival at the height of travel to the end of contact; travel and retreat are the caller's.
 ///
-/// Every period the caller tells the measured height and force and commands the set-point that it gets. A contact is
-/// declared when the force has been above its threshold for three periods. What then follows is the motion's:
+/// Every period the caller tells the measured height and force, and whether that force is a new reading; it commands
+/// the set-point that it gets. A contact is declared when three readings, one after the other, were above the
+/// threshold: one reading is one, for however many periods it is the latest. What then follows is the motion's:
 /// - paper: the set-point stays (a real arm's does not), the pause passes, and the height is read while the arm still
-/// presses: too low by what
-///   the contact gives way under the set-point's lead.
+///   presses: too low by what the contact gives way under the set-point's lead.
 /// - two_stage: the set-point is put where the arm is, backs off until the tip is clear, rests and tares, and comes
 /// down
 ///   slowly to a gentler threshold; the height is that of the second contact. No second contact within twice the way
@@ -34,8 +34,9 @@ class GuardedTap {
 
   GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
 
-  /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m).
-  double next(double height, double force);
+  /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m). A
+  /// force that is not `fresh` was told before: time goes on, but it counts for nothing.
+  double next(double height, double force, bool fresh = true);
 
   bool done() const { return stage_ == Stage::done; }
   /// Whether the force of the next period belongs to a tare, the first or that of two_stage.
@@ -52,9 +53,10 @@ class GuardedTap {
  private:
   enum class Stage { tare, approach, clear, descend, pause, rest, back_off, settle, fine, stop, bottom, done };
 
+  void feel(double height, double force);
   void enter(Stage stage);
   void touched(double height);
-  void tare_in_pause(double force);
+  void tare_in_pause();
   void descend(double height);
   bool ramp(double goal, double speed);
   bool arrived(double height);
@@ -72,12 +74,12 @@ class GuardedTap {
   double goal_ = 0.0;  ///< of the ramp of this stage
   double zero_ = 0.0;  ///< force of the tare
   double sum_ = 0.0;   ///< of forces while taring
-  int summed_ = 0;     ///< how many, in a pause
+  int summed_ = 0;     ///< how many
   double peak_ = 0.0;
   double first_ = 0.0;         ///< height of the first contact of two_stage
   double gap_ = 0.0;           ///< least distance of arm and set-point in this stage
   long nearer_ = 0;            ///< the period in which it last became less
-  int above_ = 0;              ///< periods above the threshold, without a break
+  int above_ = 0;              ///< readings above the threshold, without a break
   std::vector<Sample> trace_;  ///< of the descent, for the onset
   Outcome outcome_ = Outcome::unknown;
   double height_ = 0.0;

@@ -119,6 +119,7 @@ class RosRobot final : public Link {
     const std::lock_guard lock(mutex_);
     Snapshot snapshot = latest_;
     snapshot.now = clock_.now();
+    snapshot.simulated = ros::Time::isSimTime();
     snapshot.own_gap = pulse_.longest(steady_seconds());
     return snapshot;
   }
