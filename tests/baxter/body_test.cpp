@@ -138,6 +138,33 @@ TEST(FakeBody, TheFirmwareHoldsItForTwoSecondsAbove16NewtonsAndThenItGoesOn) {
   EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
 }
 
+TEST(FakeBody, LeftPressingItIsHeldAgainAndAgainAndALittleWayUpEachTimeSetsItFree) {
+  BodyBench bench(kBare, kQuiet);
+  const auto reflex = [&] { return bench.body.mode() == Body::Mode::reflex; };
+  bench.lead({0.115, 0.115, -0.03}, 0.1, reflex);
+  bench.hold(0.5);
+  ASSERT_GT(bench.body.pressing(), Body::kReflex);
+  int fired = 0;
+  bool before = true;
+  const auto watch = [&](double seconds) {
+    for (double left = seconds; left > 0.0; left -= Body::kPeriod) {
+      bench.hold(Body::kPeriod);
+      EXPECT_EQ(bench.body.said().collision->collision, reflex());
+      fired += reflex() && !before ? 1 : 0;
+      before = reflex();
+    }
+  };
+  watch(4.5 * Body::kHeld);
+  EXPECT_EQ(fired, 4) << "the set-point is still below";
+  EXPECT_GT(bench.body.pressing(), Body::kReflex);
+  bench.target =
+      bench.tool.solve({bench.in_base({0.115, 0.115, 0.05}), bench.tool.tip(bench.target).rotation}, bench.target)
+          .value();
+  watch(10 * Body::kHeld);
+  EXPECT_FALSE(reflex());
+  EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
+}
+
 TEST(FakeBody, HasNoiseAndABiasThatDependsOnThePose) {
   BodyBench bench;
   const auto mean = [&] {

@@ -223,11 +223,9 @@ void Body::touch() {
   }
 }
 
-/// Held where it presses, the arm is not held again for the same force, but for one still greater.
+/// An arm that is left pressing is held again and again.
 void Body::feel_reflex() {
-  if (pressing_ < kReflex) reflex_above_ = kReflex;
-  if (mode_ == Mode::reflex) reflex_above_ = std::max(reflex_above_, pressing_ + 0.5);
-  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= reflex_above_) return;
+  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= kReflex) return;
   held_until_ = now() + kHeld;
   mode_ = Mode::reflex;
   hold(false);
@@ -255,10 +253,11 @@ void Body::step() {
   const Mode mode = choose_mode();
   const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
   if (mode != mode_ && mode != Mode::following) hold(brakes);
+  const bool let_go = mode_ == Mode::reflex && mode != Mode::reflex;
   mode_ = mode;
   if (!brakes) follow();
   touch();
-  feel_reflex();
+  if (!let_go) feel_reflex();  // for one period it goes on, and says so
   speed_ = (measured_ - before) / kPeriod;
   watch_faults(height_before);
   measure();

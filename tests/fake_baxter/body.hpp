@@ -149,7 +149,6 @@ class Body {
   Joints measured_;
   Joints speed_ = Joints::Zero();
   double pressing_ = 0.0;
-  double reflex_above_ = kReflex;  ///< N; rises while the arm is held where it presses
   double held_until_ = -1e9;
   baxter::EndpointReading endpoint_;
   Eigen::Vector3d endpoint_speed_ = Eigen::Vector3d::Zero();
