@@ -55,14 +55,22 @@ TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
   for (double one : said.speed) EXPECT_NEAR(one, speed, 1e-4);
 }
 
-TEST(FakeBody, KeepsToTheSpeedOfItsJointsHoweverFarTheSetPointJumps) {
-  BodyBench bench(kBare, "{}");
-  bench.target(1) -= 1.5;
-  for (int i = 0; i < 100; ++i) {
-    bench.hold(Body::kPeriod);
-    EXPECT_LT(bench.body.said().speed.cwiseAbs().maxCoeff(), 1.5);
+TEST(FakeBody, GoesAtItsShareOfTheGreatestSpeedHoweverFarTheSetPointJumps) {
+  fake_baxter::BodyOptions left_slow = fake_options();
+  left_slow.speed_ratio = 0.03;
+  BodyBench as_shipped(kBare, "{}");
+  BodyBench as_left(kBare, "{}", left_slow);
+  BodyBench told(kBare, "{}");
+  told.body.set_speed_ratio(1.0);
+  told.body.set_speed_ratio(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [bench, share] : {std::pair(&as_shipped, 0.3), {&as_left, 0.03}, {&told, 1.0}}) {
+    bench->target(1) -= 3.0 * share;
+    for (int i = 0; i < 140; ++i) {
+      bench->hold(Body::kPeriod);
+      EXPECT_LT(bench->body.said().speed.cwiseAbs().maxCoeff(), 1.5 * share * (1 + 1e-9));
+    }
+    EXPECT_LT(bench->body.said().speed(1), -1.4 * share);
   }
-  EXPECT_LT(bench.body.said().speed(1), -1.0);
 }
 
 TEST(FakeBody, HoldsWhenCommandsStopFor200Milliseconds) {
@@ -80,6 +88,16 @@ TEST(FakeBody, HoldsWhenCommandsStopFor200Milliseconds) {
   bench.body.command(bench.target);
   bench.wait(0.9);
   EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+}
+
+TEST(FakeBody, KeepsTheTimeoutThatAnotherProgramLeft) {
+  fake_baxter::BodyOptions options = fake_options();
+  options.command_timeout = 0.02;
+  BodyBench bench(kBare, "{}", options);
+  bench.hold(0.1);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+  bench.wait(0.02);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::timed_out);
 }
 
 TEST(FakeBody, PressesByItsStiffnessTimesTheDepth) {
