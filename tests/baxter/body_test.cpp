@@ -55,14 +55,22 @@ TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
   for (double one : said.speed) EXPECT_NEAR(one, speed, 1e-4);
 }
 
-TEST(FakeBody, KeepsToTheSpeedOfItsJointsHoweverFarTheSetPointJumps) {
-  BodyBench bench(kBare, "{}");
-  bench.target(1) -= 1.5;
-  for (int i = 0; i < 100; ++i) {
-    bench.hold(Body::kPeriod);
-    EXPECT_LT(bench.body.said().speed.cwiseAbs().maxCoeff(), 1.5);
+TEST(FakeBody, GoesAtItsShareOfTheGreatestSpeedHoweverFarTheSetPointJumps) {
+  fake_baxter::BodyOptions left_slow = fake_options();
+  left_slow.speed_ratio = 0.03;
+  BodyBench as_shipped(kBare, "{}");
+  BodyBench as_left(kBare, "{}", left_slow);
+  BodyBench told(kBare, "{}");
+  told.body.set_speed_ratio(1.0);
+  told.body.set_speed_ratio(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [bench, share] : {std::pair(&as_shipped, 0.3), {&as_left, 0.03}, {&told, 1.0}}) {
+    bench->target(1) -= 3.0 * share;
+    for (int i = 0; i < 140; ++i) {
+      bench->hold(Body::kPeriod);
+      EXPECT_LT(bench->body.said().speed.cwiseAbs().maxCoeff(), 1.5 * share * (1 + 1e-9));
+    }
+    EXPECT_LT(bench->body.said().speed(1), -1.4 * share);
   }
-  EXPECT_LT(bench.body.said().speed(1), -1.0);
 }
 
 TEST(FakeBody, HoldsWhenCommandsStopFor200Milliseconds) {
@@ -80,6 +88,16 @@ TEST(FakeBody, HoldsWhenCommandsStopFor200Milliseconds) {
   bench.body.command(bench.target);
   bench.wait(0.9);
   EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+}
+
+TEST(FakeBody, KeepsTheTimeoutThatAnotherProgramLeft) {
+  fake_baxter::BodyOptions options = fake_options();
+  options.command_timeout = 0.02;
+  BodyBench bench(kBare, "{}", options);
+  bench.hold(0.1);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
+  bench.wait(0.02);
+  EXPECT_EQ(bench.body.mode(), Body::Mode::timed_out);
 }
 
 TEST(FakeBody, PressesByItsStiffnessTimesTheDepth) {
@@ -135,6 +153,33 @@ TEST(FakeBody, TheFirmwareHoldsItForTwoSecondsAbove16NewtonsAndThenItGoesOn) {
   EXPECT_NEAR(bench.body.now() - begin, Body::kHeld, 0.011);
   EXPECT_FALSE(bench.body.said().collision->collision);
   bench.hold(3.0);
+  EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
+}
+
+TEST(FakeBody, LeftPressingItIsHeldAgainAndAgainAndALittleWayUpEachTimeSetsItFree) {
+  BodyBench bench(kBare, kQuiet);
+  const auto reflex = [&] { return bench.body.mode() == Body::Mode::reflex; };
+  bench.lead({0.115, 0.115, -0.03}, 0.1, reflex);
+  bench.hold(0.5);
+  ASSERT_GT(bench.body.pressing(), Body::kReflex);
+  int fired = 0;
+  bool before = true;
+  const auto watch = [&](double seconds) {
+    for (double left = seconds; left > 0.0; left -= Body::kPeriod) {
+      bench.hold(Body::kPeriod);
+      EXPECT_EQ(bench.body.said().collision->collision, reflex());
+      fired += reflex() && !before ? 1 : 0;
+      before = reflex();
+    }
+  };
+  watch(4.5 * Body::kHeld);
+  EXPECT_EQ(fired, 4) << "the set-point is still below";
+  EXPECT_GT(bench.body.pressing(), Body::kReflex);
+  bench.target =
+      bench.tool.solve({bench.in_base({0.115, 0.115, 0.05}), bench.tool.tip(bench.target).rotation}, bench.target)
+          .value();
+  watch(10 * Body::kHeld);
+  EXPECT_FALSE(reflex());
   EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
 }
 

@@ -59,7 +59,9 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       object_give_(1.0 / kObject),
       arm_give_(0.0),
       noise_(kForceNoise),
-      normal_(Random(options.seed, "fake_baxter/noise")) {
+      normal_(Random(options.seed, "fake_baxter/noise")),
+      timeout_(options.command_timeout),
+      speed_ratio_(options.speed_ratio) {
   const Effects& effects = scene.effects();
   if (effects.stiffness) {
     object_give_ = 1.0 / effects.stiffness->object;
@@ -109,6 +111,14 @@ void Body::command(const Joints& target) {
   if (!target.allFinite() || active(FaultKind::drop_commands) != nullptr) return;
   target_ = target.cwiseMax(baxter::lower_limits()).cwiseMin(baxter::upper_limits());
   commanded_ = now();
+}
+
+void Body::set_command_timeout(double seconds) {
+  if (std::isfinite(seconds)) timeout_ = seconds;
+}
+
+void Body::set_speed_ratio(double ratio) {
+  if (std::isfinite(ratio)) speed_ratio_ = std::clamp(ratio, 0.0, 1.0);
 }
 
 void Body::enable(bool wanted) {
@@ -200,7 +210,7 @@ void Body::hold(bool brakes) {
 
 void Body::follow() {
   if (mode_ == Mode::following) {
-    const Joints most = kPeriod * greatest_speed();
+    const Joints most = kPeriod * speed_ratio_ * greatest_speed();
     reference_ += (target_ - reference_).cwiseMax(-most).cwiseMin(most);
   }
   for (int i = 0; i < 7; ++i) {
@@ -223,11 +233,9 @@ void Body::touch() {
   }
 }
 
-/// Held where it presses, the arm is not held again for the same force, but for one still greater.
+/// An arm that is left pressing is held again and again.
 void Body::feel_reflex() {
-  if (pressing_ < kReflex) reflex_above_ = kReflex;
-  if (mode_ == Mode::reflex) reflex_above_ = std::max(reflex_above_, pressing_ + 0.5);
-  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= reflex_above_) return;
+  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= kReflex) return;
   held_until_ = now() + kHeld;
   mode_ = Mode::reflex;
   hold(false);
@@ -255,10 +263,11 @@ void Body::step() {
   const Mode mode = choose_mode();
   const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
   if (mode != mode_ && mode != Mode::following) hold(brakes);
+  const bool let_go = mode_ == Mode::reflex && mode != Mode::reflex;
   mode_ = mode;
   if (!brakes) follow();
   touch();
-  feel_reflex();
+  if (!let_go) feel_reflex();  // for one period it goes on, and says so
   speed_ = (measured_ - before) / kPeriod;
   watch_faults(height_before);
   measure();

@@ -40,6 +40,9 @@ struct BodyOptions {
   Start start = Start::hover;
   std::optional<Eigen::Vector3d> start_at;  ///< of the tip, straight down, in the scene's frame; goes before `start`
   double begin = 100.0;                     ///< time at the start, seconds
+  /// What another program has left behind: the robot keeps both until somebody sets them again.
+  double speed_ratio = 0.3;
+  double command_timeout = 0.2;  ///< s
 };
 
 /// What the robot says at the end of a period; a stream that is silent is absent. `received` is when it is said.
@@ -72,8 +75,10 @@ class Body {
 
   /// A set-point for all joints, radians, as of now; values that are not finite are ignored.
   void command(const Joints& target);
-  /// For how long a set-point is followed, seconds.
-  void set_command_timeout(double seconds) { timeout_ = seconds; }
+  /// For how long a set-point is followed, seconds; and the share of their greatest speed at which the joints go after
+  /// it, clamped to 0 to 1. What is not finite is ignored.
+  void set_command_timeout(double seconds);
+  void set_speed_ratio(double ratio);
   void enable(bool wanted);
   void stop() { assembly_.stop(); }
   void reset() { assembly_.reset(); }
@@ -101,6 +106,7 @@ class Body {
   long commands() const { return commands_; }                          ///< received so far
   double latest_command() const { return commanded_; }                 ///< its time; before any, the distant past
   double command_timeout() const { return timeout_; }
+  double speed_ratio() const { return speed_ratio_; }
 
  private:
   struct Armed {
@@ -139,7 +145,8 @@ class Body {
   std::vector<Armed> faults_;
   long periods_ = 0;
   Mode mode_ = Mode::timed_out;
-  double timeout_ = 0.2;
+  double timeout_;
+  double speed_ratio_;
   double commanded_ = -1e9;
   long commands_ = 0;
   Joints target_;                      ///< of the latest command
@@ -149,7 +156,6 @@ class Body {
   Joints measured_;
   Joints speed_ = Joints::Zero();
   double pressing_ = 0.0;
-  double reflex_above_ = kReflex;  ///< N; rises while the arm is held where it presses
   double held_until_ = -1e9;
   baxter::EndpointReading endpoint_;
   Eigen::Vector3d endpoint_speed_ = Eigen::Vector3d::Zero();

@@ -44,6 +44,7 @@ struct Arguments {
   NodeOptions node;
   std::string start = "hover";
   std::string start_at;
+  BodyOptions body;
   std::vector<std::string> faults;
   std::string at = "start";
   std::string companion;
@@ -67,7 +68,7 @@ Eigen::Vector3d parse_place(const std::string& text) {
 }
 
 BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter, std::uint64_t seed) {
-  BodyOptions out;
+  BodyOptions out = a.body;
   out.tool = baxter.tool;
   out.place = baxter.place;
   out.hover = baxter.motion.hover;
@@ -127,6 +128,12 @@ int run_main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 60.0));
   app.add_option("--start", a.start, "hover, low, untucked or tucked");
   app.add_option("--start-at", a.start_at, "x,y,z of the tip in the scene's frame, metres");
+  app.add_option("--speed-ratio", a.body.speed_ratio, "what another program has set and left, of set_speed_ratio")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--command-timeout", a.body.command_timeout, "likewise of joint_command_timeout, seconds")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--fault", a.faults, "what goes wrong: NAME or NAME=VALUE; may be given again")->take_all();
   app.add_option("--at", a.at, "when: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
   app.add_option("--trace", a.node.trace, "a CSV file with a row for every period");

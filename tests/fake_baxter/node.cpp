@@ -185,6 +185,8 @@ class Node {
     listen<baxter_core_msgs::JointCommand>("/robot/limb/left/joint_command", [this](const auto& m) { command(m); });
     listen<std_msgs::Float64>("/robot/limb/left/joint_command_timeout",
                               [this](const auto& m) { body_.set_command_timeout(m.data); });
+    listen<std_msgs::Float64>("/robot/limb/left/set_speed_ratio",
+                              [this](const auto& m) { body_.set_speed_ratio(m.data); });
     listen<std_msgs::Bool>("/robot/set_super_enable", [this](const auto& m) { body_.enable(m.data != 0); });
     listen<std_msgs::Empty>("/robot/set_super_stop", [this](const auto&) { body_.stop(); });
     listen<std_msgs::Empty>("/robot/set_super_reset", [this](const auto&) { body_.reset(); });

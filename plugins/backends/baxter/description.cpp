@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/description.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -35,7 +36,8 @@ class Tags {
         at_ = text_.find('>', at_);
       } else {
         ++at_;
-        return tag();
+        const Tag out = tag();
+        return at_ < text_.size() ? std::optional<Tag>(out) : std::nullopt;  // a text that ends in it has no such tag
       }
     }
     return {};
