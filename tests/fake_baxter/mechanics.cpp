@@ -2,6 +2,10 @@
 #include "fake_baxter/mechanics.hpp"
 
 #include "fake_baxter/lagged.hpp"
+#include "fake_baxter/mujoco.hpp"
+#include "fake_baxter/springs.hpp"
+
+#include <palpate/error.hpp>
 
 namespace palpate::fake_baxter {
 
@@ -31,8 +35,23 @@ double object_stiffness(const Scene& scene) {
   return scene.effects().stiffness ? scene.effects().stiffness->object : kSoft;
 }
 
-std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions&, const Ground& ground, const Eigen::Vector3d& tip) {
-  return std::make_unique<Lagged>(ground, tip);
+MechanicsOptions::Type parse_mechanics(const std::string& word) {
+  if (word == "lagged") return MechanicsOptions::Type::lagged;
+  if (word == "springs") return MechanicsOptions::Type::springs;
+  if (word == "mujoco") return MechanicsOptions::Type::mujoco;
+  throw Error("--arm", "takes lagged, springs or mujoco, not '" + word + "'");
+}
+
+std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions& options, const Ground& ground,
+                                          const Eigen::Vector3d& tip) {
+  switch (options.type) {
+    case MechanicsOptions::Type::springs:
+      return std::make_unique<Springs>(ground, tip, options.friction, options.step);
+    case MechanicsOptions::Type::mujoco:
+      return make_mujoco(ground, tip, options.friction);
+    default:
+      return std::make_unique<Lagged>(ground, tip);
+  }
 }
 
 }  // namespace palpate::fake_baxter

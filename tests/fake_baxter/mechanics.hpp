@@ -9,6 +9,7 @@
 #include <palpate/scene.hpp>
 
 #include <memory>
+#include <string>
 
 namespace palpate::fake_baxter {
 
@@ -42,6 +43,7 @@ struct ArmState {
   Joints velocity = Joints::Zero();  ///< rad/s
   Joints effort = Joints::Zero();    ///< torques that carry the arm and press, Nm
   double pressing = 0.0;             ///< N, upwards on the tip: the truth
+  double peak = 0.0;                 ///< N, the most that it was during the period
   /// N in `base`, on the tip: what the robot makes of its efforts, before noise and bias.
   Eigen::Vector3d felt = Eigen::Vector3d::Zero();
 };
@@ -72,13 +74,21 @@ class Mechanics {
 /// Which arm.
 struct MechanicsOptions {
   enum class Type {
-    lagged,  ///< joints that trail their reference, without mass: lagged.hpp
+    lagged,   ///< joints that trail their reference, without mass: lagged.hpp
+    springs,  ///< rigid bodies and springs, by KDL: springs.hpp
+    mujoco    ///< the same arm, by MuJoCo: mujoco.hpp
   };
   Type type = Type::lagged;
+  double friction = 0.0;  ///< of every joint, Nm; lagged has none
+  double step = 1e-3;     ///< of springs, s, which goes into a period
 };
 
+/// Reads `lagged`, `springs` or `mujoco`. Throws Error.
+MechanicsOptions::Type parse_mechanics(const std::string& word);
+
 /// The arm with a tool whose tip is there in the frame left_hand, metres, over `ground`, which it keeps; the effects of
-/// the scene say how stiff what it presses on is and how the joints lag.
+/// the scene say how stiff what it presses on is and how the joints lag. Throws Error for an arm that this build does
+/// not have.
 std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions& options, const Ground& ground,
                                           const Eigen::Vector3d& tip);
 
