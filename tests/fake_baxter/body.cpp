@@ -3,8 +3,6 @@
 
 #include <palpate/error.hpp>
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +10,6 @@
 namespace palpate::fake_baxter {
 namespace {
 
-constexpr double kObject = 1500.0;        // N/m, where the scene has no stiffness
 constexpr double kForceNoise = 1.5;       // N, where it has no noise
 constexpr double kLeastNoise = 0.01;      // N: a real sensor never says the same twice
 constexpr double kBias = 2.0;             // N, standard deviation of the bias
@@ -50,33 +47,26 @@ const Joints& tucked() {
 
 Body::Body(const Scene& scene, const BodyOptions& options)
     : scene_(scene),
-      place_(options.place),
+      ground_(scene, options.place),
       tool_(Eigen::Vector3d(options.tool.tip)),
       gripper_({0.0, 0.0, options.tool.gripper}),
       seed_(options.seed),
       begin_(options.begin),
-      lag_(scene.effects().joint_lag.value_or(JointLag{kLag, 0.0})),
-      object_give_(1.0 / kObject),
-      arm_give_(0.0),
+      mechanics_(make_mechanics(options.mechanics, ground_, Eigen::Vector3d(options.tool.tip))),
       noise_(kForceNoise),
       normal_(Random(options.seed, "fake_baxter/noise")),
       timeout_(options.command_timeout),
       speed_ratio_(options.speed_ratio) {
   const Effects& effects = scene.effects();
-  if (effects.stiffness) {
-    object_give_ = 1.0 / effects.stiffness->object;
-    if (effects.stiffness->arm) arm_give_ = 1.0 / *effects.stiffness->arm;
-  }
   if (effects.force_noise) noise_ = std::max(kLeastNoise, effects.force_noise->deviation);
   backends::Normal bias(Random(options.seed, "fake_baxter/bias"));
   for (double& one : bias_.reshaped()) one = kBias * bias();
   for (double& one : bias_by_joints_.reshaped()) one = kBiasByJoints * bias();
 
-  position_ = start_joints(options);
-  measured_ = target_ = position_;
+  target_ = start_joints(options);
+  mechanics_->put(target_);
   hold(true);
   if (options.start == Start::tucked && !options.start_at) assembly_ = Assembly(false);
-  touch();
   measure();
 }
 
@@ -88,21 +78,14 @@ Joints Body::start_joints(const BodyOptions& options) const {
   if (options.start == Start::low) at = {kAbove, kAbove, scene_.desk() + kAbove};
   if (options.start_at) at = *options.start_at;
   baxter::Pose pose;
-  const Eigen::Rotation2Dd turn(place_.rotation);
-  pose.position << Eigen::Vector2d(place_.corner) + turn * at.head<2>(), place_.height + at.z();
+  pose.position = ground_.in_base(at);
   pose.rotation = straight_down(tool_);
   const std::optional<Joints> found = tool_.solve(pose, untucked());
   if (!found) throw Error("--start", "the arm cannot reach where it should start", "move the scene by backend.place");
   return *found;
 }
 
-Eigen::Vector3d Body::in_scene(const Joints& joints) const {
-  const Eigen::Vector3d at = tool_.tip(joints).position;
-  const Eigen::Rotation2Dd back(-place_.rotation);
-  Eigen::Vector3d out;
-  out << back * (at.head<2>() - Eigen::Vector2d(place_.corner)), at.z() - place_.height;
-  return out;
-}
+Eigen::Vector3d Body::in_scene(const Joints& joints) const { return ground_.in_scene(tool_.tip(joints).position); }
 
 double Body::now() const { return begin_ + static_cast<double>(periods_) * kPeriod; }
 
@@ -122,7 +105,7 @@ void Body::set_speed_ratio(double ratio) {
 }
 
 void Body::enable(bool wanted) {
-  const bool refused = position_(1) < kTuckedShoulder || active(FaultKind::tucked) != nullptr;
+  const bool refused = joints()(1) < kTuckedShoulder || active(FaultKind::tucked) != nullptr;
   assembly_.enable(wanted, refused);
 }
 
@@ -169,9 +152,9 @@ void Body::begin(Armed& armed) {
       break;
     case FaultKind::tucked:
       assembly_.enable(false, true);
-      position_ = measured_ = target_ = tucked();
+      target_ = tucked();
+      mechanics_->put(target_);
       hold(true);
-      touch();
       measure();
       break;
     default:
@@ -180,7 +163,7 @@ void Body::begin(Armed& armed) {
 }
 
 void Body::watch_faults(double height_before) {
-  const double height = in_scene(position_)(2);
+  const double height = tip().z();
   for (Armed& one : faults_) {
     if (one.since) {
       const bool pressed = assembly_.state().estop_button == Assembly::State::Button::pressed;
@@ -202,10 +185,8 @@ Body::Mode Body::choose_mode() const {
 
 /// The arm stays where it is: at once by the brakes, else as its joints come to rest there.
 void Body::hold(bool brakes) {
-  reference_ = position_;
-  if (!brakes) return;
-  lagged_.clear();
-  for (int i = 0; i < 7; ++i) lagged_.emplace_back(lag_, kPeriod, position_(i));
+  reference_ = mechanics_->holding();
+  if (brakes) mechanics_->brake();
 }
 
 void Body::follow() {
@@ -213,38 +194,21 @@ void Body::follow() {
     const Joints most = kPeriod * speed_ratio_ * greatest_speed();
     reference_ += (target_ - reference_).cwiseMax(-most).cwiseMin(most);
   }
-  for (int i = 0; i < 7; ++i) {
-    backends::Arm& joint = lagged_[static_cast<std::size_t>(i)];
-    joint.follow(reference_(i));
-    position_(i) = joint.position();
-  }
+  mechanics_->advance(reference_);
 }
 
-/// Where the tip is under what it presses on.
-void Body::touch() {
-  const Eigen::Vector3d at = in_scene(position_);
-  const double pressed = std::max(0.0, scene_.height(at.x(), at.y()) - at.z());
-  pressing_ = pressed / (object_give_ + arm_give_);
-  measured_ = position_;
-  if (pressing_ > 0.0 && arm_give_ > 0.0) {
-    const Eigen::Matrix<double, 3, 7> jacobian = tool_.jacobian(position_);
-    const Eigen::Matrix3d square = jacobian * jacobian.transpose();
-    measured_ += jacobian.transpose() * (square.inverse() * Eigen::Vector3d(0.0, 0.0, pressing_ * arm_give_));
-  }
-}
-
-/// An arm that is left pressing is held again and again.
+/// An arm that is left pressing is held again and again, with a moment in between.
 void Body::feel_reflex() {
-  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= kReflex) return;
+  const bool just_let_go = now() < held_until_ + kAfterwards;
+  if (!assembly_.state().enabled || mode_ == Mode::reflex || just_let_go || pressing() <= kReflex) return;
   held_until_ = now() + kHeld;
   mode_ = Mode::reflex;
   hold(false);
 }
 
 void Body::measure() {
-  const baxter::Pose pose = gripper_.tip(measured_);
-  Eigen::Vector3d force = bias_ + bias_by_joints_ * (position_ - untucked());
-  force.z() += pressing_;
+  const baxter::Pose pose = gripper_.tip(joints());
+  Eigen::Vector3d force = bias_ + bias_by_joints_ * (joints() - untucked()) + arm().felt;
   for (double& one : force.reshaped()) one += noise_ * normal_();
   if (const Fault* bias = active(FaultKind::bias)) force.z() += bias->amount;
   if (active(FaultKind::zero_wrench) != nullptr) force.setZero();
@@ -257,18 +221,14 @@ void Body::measure() {
 }
 
 void Body::step() {
-  const double height_before = in_scene(position_)(2);
-  const Joints before = measured_;
+  const double height_before = tip().z();
   ++periods_;
   const Mode mode = choose_mode();
   const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
   if (mode != mode_ && mode != Mode::following) hold(brakes);
-  const bool let_go = mode_ == Mode::reflex && mode != Mode::reflex;
   mode_ = mode;
-  if (!brakes) follow();
-  touch();
-  if (!let_go) feel_reflex();  // for one period it goes on, and says so
-  speed_ = (measured_ - before) / kPeriod;
+  follow();
+  feel_reflex();
   watch_faults(height_before);
   measure();
 }
@@ -290,10 +250,10 @@ Said Body::said() const {
   };
   if (heard(FaultKind::kill_joints, "joints")) {
     baxter::JointReading joints;
-    joints.position = measured_;
+    joints.position = arm().position;
     if (const Fault* jump = active(FaultKind::jump_joints)) joints.position(1) += jump->amount;
     out.joints = stamped(joints);
-    out.speed = speed_;
+    out.speed = arm().velocity;
   }
   if (heard(FaultKind::kill_endpoint, "endpoint")) {
     out.endpoint = stamped(endpoint_);

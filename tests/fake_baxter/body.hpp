@@ -7,7 +7,8 @@
 #include "baxter/options.hpp"
 #include "fake_baxter/assembly.hpp"
 #include "fake_baxter/faults.hpp"
-#include "simulator/arm.hpp"
+#include "fake_baxter/mechanics.hpp"
+#include "simulator/normal.hpp"
 
 #include <palpate/scene.hpp>
 
@@ -16,8 +17,6 @@
 #include <vector>
 
 namespace palpate::fake_baxter {
-
-using baxter::Joints;
 
 /// Untucked, as Rethink's tools leave the arm: the posture that the arm keeps while it works, radians.
 const Joints& untucked();
@@ -40,6 +39,7 @@ struct BodyOptions {
   Start start = Start::hover;
   std::optional<Eigen::Vector3d> start_at;  ///< of the tip, straight down, in the scene's frame; goes before `start`
   double begin = 100.0;                     ///< time at the start, seconds
+  MechanicsOptions mechanics;
   /// What another program has left behind: the robot keeps both until somebody sets them again.
   double speed_ratio = 0.3;
   double command_timeout = 0.2;  ///< s
@@ -57,16 +57,17 @@ struct Said {
 
 /// The arm and its firmware.
 ///
-/// Every joint follows its set-point with a lag (scene.effects.joint_lag, 0.35 s if absent). The tip presses on
-/// whatever the scene has below it as on a spring (scene.effects.stiffness, 1500 N/m if absent); if the arm gives way,
-/// too, the measured joints show it. The published force is that, with a bias that depends on the pose and with noise
-/// (scene.effects.force_noise, 1.5 N if absent), and it rises along z when something presses the tool upwards.
+/// The arm itself is its mechanics' (mechanics.hpp). The published force is what they feel, with a bias that depends on
+/// the pose and with noise (scene.effects.force_noise, 1.5 N if absent), and it rises along z when something presses
+/// the tool upwards.
 class Body {
  public:
-  static constexpr double kPeriod = 0.01;  ///< s
+  static constexpr double kPeriod = Mechanics::kPeriod;
   static constexpr double kReflex = 16.0;  ///< N, above which the firmware holds the arm
   static constexpr double kHeld = 2.0;     ///< s, for so long
-  static constexpr double kLag = 0.35;     ///< s
+  /// s for which it then lets the arm go whatever the force: an arm that goes on pressing is held again after that.
+  static constexpr double kAfterwards = 0.1;
+  static constexpr double kLag = Mechanics::kLag;
 
   enum class Mode { following, timed_out, reflex, stopped, disabled };
 
@@ -98,13 +99,14 @@ class Body {
 
   /// What is so, whatever is said.
   Mode mode() const { return mode_; }
-  Joints joints() const { return measured_; }                          ///< with what the arm gives way
+  Joints joints() const { return arm().position; }                     ///< with what the arm gives way
   const Joints& set_point() const { return reference_; }               ///< that the joints follow
-  Eigen::Vector3d tip() const { return in_scene(measured_); }          ///< in the scene's frame, metres
+  Eigen::Vector3d tip() const { return in_scene(joints()); }           ///< in the scene's frame, metres
   double set_point_height() const { return in_scene(reference_)(2); }  ///< of the tip, in the scene's frame, metres
-  double pressing() const { return pressing_; }                        ///< N, upwards on the tool
-  long commands() const { return commands_; }                          ///< received so far
-  double latest_command() const { return commanded_; }                 ///< its time; before any, the distant past
+  const ArmState& arm() const { return mechanics_->state(); }
+  double pressing() const { return arm().pressing; }    ///< N, upwards on the tool
+  long commands() const { return commands_; }           ///< received so far
+  double latest_command() const { return commanded_; }  ///< its time; before any, the distant past
   double command_timeout() const { return timeout_; }
   double speed_ratio() const { return speed_ratio_; }
 
@@ -123,20 +125,17 @@ class Body {
   Mode choose_mode() const;
   void hold(bool brakes);
   void follow();
-  void touch();
   void feel_reflex();
   void measure();
 
   const Scene& scene_;
-  baxter::PlaceOptions place_;
+  Ground ground_;
   baxter::Arm tool_;     ///< its tip is the tool's
   baxter::Arm gripper_;  ///< its tip is left_gripper
   std::uint64_t seed_;
   double begin_;
-  JointLag lag_;
-  double object_give_;  ///< m/N
-  double arm_give_;     ///< m/N
-  double noise_;        ///< N
+  std::unique_ptr<Mechanics> mechanics_;
+  double noise_;  ///< N
   backends::Normal normal_;
   Eigen::Vector3d bias_;                        ///< N, in the untucked posture
   Eigen::Matrix<double, 3, 7> bias_by_joints_;  ///< N/rad
@@ -149,13 +148,8 @@ class Body {
   double speed_ratio_;
   double commanded_ = -1e9;
   long commands_ = 0;
-  Joints target_;                      ///< of the latest command
-  Joints reference_;                   ///< what the joints follow
-  std::vector<backends::Arm> lagged_;  ///< the joints, one each
-  Joints position_;                    ///< of the joints, but for what the arm gives way
-  Joints measured_;
-  Joints speed_ = Joints::Zero();
-  double pressing_ = 0.0;
+  Joints target_;     ///< of the latest command
+  Joints reference_;  ///< what the joints follow
   double held_until_ = -1e9;
   baxter::EndpointReading endpoint_;
   Eigen::Vector3d endpoint_speed_ = Eigen::Vector3d::Zero();

@@ -48,6 +48,8 @@ struct Arguments {
   std::vector<std::string> faults;
   std::string at = "start";
   std::string companion;
+  std::string arm = "lagged";
+  double friction = 0.0;
 };
 
 ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
@@ -77,6 +79,8 @@ BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter
   const auto found = std::find(starts.begin(), starts.end(), a.start);
   if (found == starts.end()) throw Error("--start", "takes hover, low, untucked or tucked, not '" + a.start + "'");
   out.start = static_cast<Start>(found - starts.begin());
+  out.mechanics.type = parse_mechanics(a.arm);
+  out.mechanics.friction = a.friction;
   if (!a.start_at.empty()) out.start_at = parse_place(a.start_at);
   if (a.node.rate <= 0.0) {
     out.begin = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -134,6 +138,8 @@ int run_main(int argc, char** argv) {
   app.add_option("--command-timeout", a.body.command_timeout, "likewise of joint_command_timeout, seconds")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--arm", a.arm, "lagged (joints without mass), springs (rigid bodies, by KDL) or mujoco");
+  app.add_option("--friction", a.friction, "of every joint of springs and mujoco, Nm")->check(CLI::Range(0.0, 5.0));
   app.add_option("--fault", a.faults, "what goes wrong: NAME or NAME=VALUE; may be given again")->take_all();
   app.add_option("--at", a.at, "when: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
   app.add_option("--trace", a.node.trace, "a CSV file with a row for every period");

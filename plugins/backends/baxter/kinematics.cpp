@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/kinematics.hpp"
 
+#include "baxter/left_arm.hpp"
+
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>
@@ -9,28 +11,11 @@
 namespace palpate::baxter {
 namespace {
 
-constexpr double kHalfPi = 1.57079632679;  // as many digits as the robot's own description has
+using namespace description;
+
 constexpr double kAccuracy = 1e-6;
 constexpr int kIterations = 100;
 constexpr double kLever = 0.1;  // m: a turn counts as much as the way of a point so far away
-
-/// Position of a joint in the frame of the one before, metres, and its rotation as roll, pitch and yaw.
-struct Step {
-  double x, y, z, roll, pitch, yaw;
-};
-
-/// base -> torso -> left_arm_mount, then joint by joint; every joint turns about its own z.
-constexpr Step kMount = {0.024645, 0.219645, 0.118588, 0, 0, 0.7854};
-constexpr Step kSteps[] = {
-    {0.055695, 0, 0.011038, 0, 0, 0},            // s0
-    {0.069, 0, 0.27035, -kHalfPi, 0, 0},         // s1
-    {0.102, 0, 0, kHalfPi, 0, kHalfPi},          // e0
-    {0.069, 0, 0.26242, -kHalfPi, -kHalfPi, 0},  // e1
-    {0.10359, 0, 0, kHalfPi, 0, kHalfPi},        // w0
-    {0.01, 0, 0.2707, -kHalfPi, -kHalfPi, 0},    // w1
-    {0.115975, 0, 0, kHalfPi, 0, kHalfPi},       // w2
-};
-constexpr double kHand = 0.11355;  // left_wrist -> left_hand, along z
 
 KDL::Frame frame(const Step& step) {
   return {KDL::Rotation::RPY(step.roll, step.pitch, step.yaw), KDL::Vector(step.x, step.y, step.z)};

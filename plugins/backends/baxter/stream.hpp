@@ -20,15 +20,20 @@ class Stream {
   /// Takes what is the latest at `now` (s); whether it is new, that is, has another stamp than the one before.
   bool hear(const Arrival& arrival, double now);
 
-  /// How many were new within the last kWindow seconds.
-  int heard() const { return static_cast<int>(times_.size()); }
+  /// How many were new within the last kWindow seconds, with those that came and went between two looks, where the
+  /// arrivals are counted.
+  int heard() const;
 
   /// Counts anew. What was heard last is still not new.
-  void begin() { times_.clear(); }
+  void begin() { heard_.clear(); }
 
  private:
+  struct Heard {
+    double time;
+    long count;
+  };
   std::optional<double> stamp_;
-  std::deque<double> times_;
+  std::deque<Heard> heard_;
 };
 
 }  // namespace palpate::baxter

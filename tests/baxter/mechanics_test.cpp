@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// The arms of the tests' robot: against closed forms, against what is known of a real Baxter, and against one another.
+#include "baxter/body_bench.hpp"
+#include "fake_baxter/dynamics.hpp"
+#include "fake_baxter/mujoco.hpp"
+#include "fake_baxter/series_elastic.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/random.hpp>
+
+#include <gtest/gtest.h>
+
+namespace palpate::test {
+namespace {
+
+using baxter::Joints;
+using fake_baxter::Body;
+using fake_baxter::BodyOptions;
+using fake_baxter::MechanicsOptions;
+using Type = MechanicsOptions::Type;
+
+const Eigen::Vector2d kMiddle(0.115, 0.115);
+constexpr double kDeskHeight = 0.0;
+
+BodyOptions with(const MechanicsOptions& mechanics, double above = 0.15) {
+  BodyOptions out = fake_options();
+  out.mechanics = mechanics;
+  out.start_at = Eigen::Vector3d(kMiddle.x(), kMiddle.y(), kDeskHeight + above);
+  return out;
+}
+
+BodyBench bare(const MechanicsOptions& mechanics, double stiffness = 1500.0, double above = 0.15) {
+  return BodyBench("[]", "{stiffness: {object: " + std::to_string(stiffness) + " N/m}}", with(mechanics, above));
+}
+
+const MechanicsOptions kSprings{Type::springs, 0.0, 1e-3};
+
+Joints posture(Random& random) {
+  Joints out = baxter::untucked();
+  for (double& one : out) one += random.uniform() - 0.5;
+  return out;
+}
+
+TEST(TheArmWithMasses, EndsWhereTheDriversKinematicsHaveIt) {
+  const Eigen::Vector3d tip(0.01, -0.02, 0.15);
+  const fake_baxter::Dynamics dynamics(tip);
+  const baxter::Arm arm(tip);
+  Random random(1, "test");
+  for (int i = 0; i < 100; ++i) {
+    const Joints joints = posture(random);
+    EXPECT_LT((dynamics.tip(joints) - arm.tip(joints).position).norm(), 1e-12);
+    EXPECT_LT((dynamics.jacobian(joints).topRows<3>() - arm.jacobian(joints)).norm(), 1e-12);
+  }
+}
+
+TEST(TheArmWithMasses, KeepsItsEnergyWhenNothingActsOnItButItsWeight) {
+  // Kinetic energy by its inertia, and the work of its weight: one is lost to the other.
+  const fake_baxter::Dynamics dynamics({0, 0, 0.15});
+  Random random(2, "test");
+  for (int i = 0; i < 20; ++i) {
+    Joints joints = posture(random);
+    Joints speed;
+    for (double& one : speed) one = random.uniform() - 0.5;
+    const double begin = 0.5 * speed.dot(dynamics.inertia(joints) * speed);
+    double work = 0.0;
+    constexpr double kStep = 1e-4;
+    for (int step = 0; step < 1000; ++step) {  // the midpoint rule
+      const Joints before = joints;
+      const Joints half = speed + kStep / 2 * dynamics.acceleration(joints, speed, Joints::Zero());
+      const Joints middle = joints + kStep / 2 * speed;
+      speed += kStep * dynamics.acceleration(middle, half, Joints::Zero());
+      joints += kStep * half;
+      work -= dynamics.weight(middle).dot(joints - before);
+    }
+    EXPECT_NEAR(0.5 * speed.dot(dynamics.inertia(joints) * speed) - begin, work, 1e-5);
+  }
+}
+
+TEST(TheArmWithSprings, SettlesAsFarFromItsSetPointAsARealOneAndStays) {
+  BodyBench bench = bare(kSprings);
+  bench.hold(3.0);
+  const Joints rested = bench.body.joints();
+  const double off = (rested - bench.target).cwiseAbs().maxCoeff();
+  EXPECT_GT(off, 0.004);
+  EXPECT_LT(off, 0.008);
+  bench.hold(6.0);
+  EXPECT_LT((bench.body.joints() - rested).cwiseAbs().maxCoeff(), 0.0004);
+}
+
+TEST(TheArmWithSprings, TrailsItsSetPointInFlightAsARealOne) {
+  for (const double speed : {0.12, 0.23, 0.50}) {
+    BodyBench bench = bare(kSprings);
+    bench.hold(2.0);
+    const double rest = (bench.target - bench.body.joints())(1);
+    for (int i = 0; i < 150; ++i) {
+      bench.target(1) -= speed * Body::kPeriod;
+      bench.hold(Body::kPeriod);
+    }
+    const double lag = (rest - (bench.target - bench.body.joints())(1)) / speed;
+    EXPECT_GT(lag, 0.30) << speed;
+    EXPECT_LT(lag, 0.42) << speed;
+  }
+}
+
+TEST(TheArmWithSprings, FeelsWhatItPressesWith) {
+  for (const double stiffness : {1500.0, 20000.0}) {
+    BodyBench bench = bare(kSprings, stiffness, 0.01);
+    bench.hold(2.0);
+    const double zero = bench.body.arm().felt.z();
+    EXPECT_NEAR(zero, 0.0, 0.01);
+    bench.lead({kMiddle.x(), kMiddle.y(), -0.008}, 0.01);
+    bench.hold(3.0);
+    EXPECT_GT(bench.body.pressing(), 5.0);
+    EXPECT_NEAR(bench.body.arm().felt.z(), bench.body.pressing(), 0.02 * bench.body.pressing());
+    EXPECT_NEAR(bench.body.tip().z(), -bench.body.pressing() / stiffness, 1e-6);
+  }
+}
+
+TEST(TheArmWithSprings, TakesTheFrictionOfItsJointsForAForceWhileItMovesAndAfter) {
+  const auto felt = [](double friction) {
+    BodyBench bench = bare({Type::springs, friction, 1e-3});
+    const auto go = [&](double height) {
+      bench.lead({kMiddle.x(), kMiddle.y(), height}, 0.03);
+      const double moving = bench.body.arm().felt.z();
+      bench.hold(2.0);
+      return std::make_pair(moving, bench.body.arm().felt.z());
+    };
+    const auto down = go(0.08);
+    const auto up = go(0.15);
+    EXPECT_EQ(bench.body.pressing(), 0.0);
+    return std::make_pair(down.first - up.first, down.second - up.second);
+  };
+  const auto smooth = felt(0.0);
+  EXPECT_LT(std::abs(smooth.first), 1.0);
+  EXPECT_LT(std::abs(smooth.second), 0.05);
+  const auto rough = felt(0.4);
+  EXPECT_GT(rough.first, 2.0);
+  EXPECT_GT(rough.second, 1.0) << "joints that stick keep what they have been turned with";
+}
+
+TEST(TheArmWithSprings, SticksWithoutCreeping) {
+  BodyBench bench = bare({Type::springs, 0.4, 1e-3});
+  bench.lead({kMiddle.x(), kMiddle.y(), 0.08}, 0.03);
+  bench.hold(5.0);
+  const Joints rested = bench.body.joints();
+  bench.hold(5.0);
+  EXPECT_LT((bench.body.joints() - rested).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+/// A touch that is guarded by the true force: down until it is above 6 N, then the measured joints.
+struct Touch {
+  double peak = 0.0;    ///< N
+  double lowest = 1.0;  ///< m
+  double height = 0.0;  ///< m, at the end
+  double force = 0.0;   ///< N, at the end
+  double felt = 0.0;    ///< N, more than before
+};
+
+Touch touch(const MechanicsOptions& mechanics, double stiffness, double speed) {
+  BodyBench bench = bare(mechanics, stiffness, 0.005);
+  bench.hold(0.3);
+  Touch out;
+  const double zero = bench.body.arm().felt.z();
+  const auto look = [&] {
+    out.peak = std::max(out.peak, bench.body.arm().peak);
+    out.lowest = std::min(out.lowest, bench.body.tip().z());
+  };
+  bench.lead({kMiddle.x(), kMiddle.y(), -0.03}, speed, [&] {
+    look();
+    return bench.body.pressing() > 6.0;
+  });
+  bench.target = bench.body.joints();
+  for (int i = 0; i < 40; ++i) {
+    bench.hold(Body::kPeriod);
+    look();
+  }
+  out.height = bench.body.tip().z();
+  out.force = bench.body.pressing();
+  out.felt = bench.body.arm().felt.z() - zero;
+  return out;
+}
+
+TEST(TheArmWithSprings, MovesInStepsOfAMillisecondAsInStepsOfATwentieth) {
+  const struct {
+    double stiffness, speed, friction;
+  } cases[] = {{1500, 0.02, 0.0}, {20000, 0.01, 0.4}, {100000, 0.005, 0.0}, {100000, 0.01, 0.4}, {100000, 0.02, 0.0}};
+  for (const auto& one : cases) {
+    const Touch coarse = touch({Type::springs, one.friction, 1e-3}, one.stiffness, one.speed);
+    const Touch fine = touch({Type::springs, one.friction, 5e-5}, one.stiffness, one.speed);
+    const std::string where = std::to_string(one.stiffness) + " N/m at " + std::to_string(one.speed) + " m/s";
+    EXPECT_NEAR(coarse.peak, fine.peak, 0.01 * fine.peak) << where;
+    EXPECT_NEAR(coarse.lowest, fine.lowest, 0.01 * std::abs(fine.lowest)) << where;
+    EXPECT_NEAR(coarse.height, fine.height, 0.01 * std::abs(fine.height)) << where;
+    EXPECT_GT(fine.peak, 6.0);
+  }
+}
+
+class MujocoTwin : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fake_baxter::has_mujoco()) GTEST_SKIP() << "MuJoCo is not installed: heading physics of packages.txt";
+  }
+};
+
+TEST_F(MujocoTwin, HasTheSameWeightAndTheSameLag) {
+  BodyBench ours = bare(kSprings);
+  BodyBench theirs = bare({Type::mujoco});
+  for (BodyBench* bench : {&ours, &theirs}) bench->lead({0.03, 0.2, 0.10}, 0.2);
+  // Half of our longer step, at up to 0.7 rad/s.
+  EXPECT_LT((ours.body.joints() - theirs.body.joints()).cwiseAbs().maxCoeff(), 4e-4);
+  EXPECT_LT((ours.body.arm().felt - theirs.body.arm().felt).cwiseAbs().maxCoeff(), 0.3) << "masses that are moved";
+  for (BodyBench* bench : {&ours, &theirs}) bench->hold(3.0);
+  EXPECT_LT((ours.body.joints() - theirs.body.joints()).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((ours.body.arm().effort - theirs.body.arm().effort).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST_F(MujocoTwin, TouchesWithTheSameForces) {
+  for (const double friction : {0.0, 0.4}) {
+    for (const double stiffness : {1500.0, 20000.0, 100000.0}) {
+      for (const double speed : {0.005, 0.01}) {
+        const Touch ours = touch({Type::springs, friction, 1e-3}, stiffness, speed);
+        const Touch theirs = touch({Type::mujoco, friction, 0.0}, stiffness, speed);
+        const std::string where = std::to_string(stiffness) + " N/m at " + std::to_string(speed) + " m/s, " +
+                                  std::to_string(friction) + " Nm";
+        // MuJoCo's friction yields a little; its contact, too.
+        EXPECT_NEAR(ours.peak, theirs.peak, 0.03 * theirs.peak) << where;
+        EXPECT_NEAR(ours.force, theirs.force, 0.03 * theirs.force) << where;
+        EXPECT_NEAR(ours.felt, theirs.felt, 0.3) << where;
+        EXPECT_NEAR(ours.height, theirs.height, 2e-5 + 0.03 * std::abs(theirs.height)) << where;
+      }
+    }
+  }
+}
+
+TEST(ArmOfTheTests, IsNamedOrRefusedInOneLine) {
+  EXPECT_EQ(fake_baxter::parse_mechanics("springs"), Type::springs);
+  try {
+    fake_baxter::parse_mechanics("rubber");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "--arm: takes lagged, springs or mujoco, not 'rubber'");
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
