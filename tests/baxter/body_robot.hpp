@@ -35,6 +35,7 @@ class BodyRobot final : public Robot {
 
   bool wait_until(double time) override {
     if (body.active(FaultKind::freeze_clock) != nullptr) return false;
+    if (late) time += late();
     while (body.now() < time - 1e-9) {
       body.step();
       hear();
@@ -63,6 +64,7 @@ class BodyRobot final : public Robot {
   std::function<void()> every_period;                        ///< called then
   std::function<Answer(const Pose&, const Joints&)> answer;  ///< instead of what is right
   std::function<void(Snapshot&)> spoil;                      ///< changes what is heard
+  std::function<double()> late;                              ///< s by which a wait ends too late
   int asked = 0;
 
  private:
