@@ -66,7 +66,7 @@ class BodyRobot final : public Robot {
   std::function<void()> every_period;                        ///< called then
   std::function<Answer(const Pose&, const Joints&)> answer;  ///< instead of what is right
   std::function<void(Snapshot&)> spoil;                      ///< changes what is heard
-  std::function<double()> late;                              ///< by how much a period of the driver's is too long, s
+  std::function<double()> late;                              ///< s by which a wait ends too late
   int asked = 0;
 
  private:

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/campaign.hpp"
+
+#include "config/compose.hpp"
+#include "experiment/resolved.hpp"
+#include "scene/scene_options.hpp"
+#include "support/filled.hpp"
+
+#include <palpate/random.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::baxter::test {
+namespace {
+
+using palpate::test::shared_host;
+
+constexpr double kRate = 0.01;       // of spikes among readings, of stalls among periods
+constexpr double kSpike = 9.0;       // N
+constexpr double kStall = 0.05;      // s
+constexpr double kTouched = 0.5;     // N of true force from which on a tap has touched
+constexpr double kAfterwards = 3.0;  // s after which an arm that is left alone stands
+
+std::unique_ptr<const Scene> scene_of(double stiffness) {
+  return build_scene(palpate::test::filled<SceneOptions>(fmt::format(
+                         "{{area: {{width: 23 cm, depth: 23 cm}}, objects: [{{type: wave, length: 16 cm, width: 6 cm, "
+                         "height: 9 cm, amplitude: 2 cm, period: 8 cm, at: [11.5 cm, 11.5 cm], rotation: 90 deg}}], "
+                         "effects: {{stiffness: {{object: {} N/m}}}}}}",
+                         stiffness)),
+                     1, shared_host());
+}
+
+/// Of the same kind whatever was measured: digits are left out.
+std::string kind_of(const std::string& reason) {
+  std::string out = reason.substr(0, reason.find(';'));
+  out.erase(std::remove_if(out.begin(), out.end(), [](char c) { return c >= '0' && c <= '9'; }), out.end());
+  return out;
+}
+
+/// A run until something ends it.
+class Session {
+ public:
+  Session(const Condition& condition, const Scene& scene, std::uint64_t seed)
+      : scene_(scene),
+        random_(seed, "campaign"),
+        robot_(scene, body_of(condition, seed)),
+        tapper_(shipped_options(), scene, robot_, nullptr, [](const std::string&) {}) {
+    if (condition.spikes) {
+      robot_.spoil = [this](Snapshot& seen) { spike(*seen.endpoint); };
+    }
+    if (condition.stalls) {
+      robot_.late = [this] { return random_.uniform() < kRate ? kStall * random_.uniform() : 0.0; };
+    }
+    robot_.every_period = [this] { peak_ = std::max(peak_, robot_.body.arm().peak); };
+  }
+
+  /// Whether the run goes on.
+  bool tap(Tally& tally) {
+    TapRequest request;
+    request.number = ++taps_;
+    request.target = draw_place();
+    request.previous = previous_;
+    previous_ = request.target;
+    peak_ = 0.0;
+    const Contact contact = tapper_.tap(request);
+    ++tally.taps;
+    const bool touched = peak_ > kTouched;
+    tally.touched += touched ? 1 : 0;
+    tally.peak = std::max(tally.peak, peak_);
+    if (contact.outcome == Outcome::contact) {
+      ++tally.contacts;
+      const double error = std::abs(contact.height - scene_.height(request.target.x, request.target.y));
+      tally.error = std::max(tally.error, error);
+      tally.phantoms += !touched || error >= Tally::kFar ? 1 : 0;
+      return true;
+    }
+    tally.rejected += touched ? 1 : 0;
+    ++tally.reasons[kind_of(contact.reason)];
+    if (!contact.ends_run) return true;
+    ++tally.ended;
+    robot_.late = nullptr;
+    robot_.wait_until(robot_.body.now() + kAfterwards);
+    tally.pressing += robot_.body.pressing() > 0.0 ? 1 : 0;
+    return false;
+  }
+
+ private:
+  static BodyOptions body_of(const Condition& condition, std::uint64_t seed) {
+    BodyOptions out = body_options(shipped_options());
+    out.seed = seed;
+    out.mechanics = condition.arm;
+    return out;
+  }
+
+  void spike(EndpointReading& reading) {
+    if (reading.received == spiked_at_) return;  // once for every message
+    spiked_at_ = reading.received;
+    if (random_.uniform() < kRate) reading.force.z() += random_.uniform() < 0.5 ? kSpike : -kSpike;
+  }
+
+  /// What the tool finds beside an edge is another question.
+  Target draw_place() {
+    for (;;) {
+      const Target out{0.01 + 0.21 * random_.uniform(), 0.01 + 0.21 * random_.uniform()};
+      const double here = scene_.height(out.x, out.y);
+      bool even = true;
+      for (int side = 0; side < 8; ++side) {
+        const double turn = side * 0.785398;
+        const double there = scene_.height(out.x + 0.006 * std::cos(turn), out.y + 0.006 * std::sin(turn));
+        even = even && std::abs(there - here) < 0.006;
+      }
+      if (even) return out;
+    }
+  }
+
+  const Scene& scene_;
+  Random random_;
+  BodyRobot robot_;
+  Tapper tapper_;
+  int taps_ = 0;
+  double peak_ = 0.0;  ///< N, of this tap
+  double spiked_at_ = -1.0;
+  std::optional<Target> previous_;
+};
+
+}  // namespace
+
+const BaxterOptions& shipped_options() {
+  static const BaxterOptions options = [] {
+    const std::filesystem::path configs = palpate::test::source_folder() / "configs";
+    Composer composer(configs);
+    const ResolvedConfig config = load_experiment(composer, shared_host(), configs / "paper" / "object_i.yaml",
+                                                  {parse_override("backend=fake_baxter")});
+    BaxterOptions out;
+    fill(*config.options.backend.options, shared_host(), "backend", [&](Fields& fields) { out.list(fields); });
+    return out;
+  }();
+  return options;
+}
+
+void Tally::add(const Tally& other) {
+  taps += other.taps;
+  contacts += other.contacts;
+  touched += other.touched;
+  phantoms += other.phantoms;
+  rejected += other.rejected;
+  ended += other.ended;
+  pressing += other.pressing;
+  peak = std::max(peak, other.peak);
+  error = std::max(error, other.error);
+  for (const auto& [reason, count] : other.reasons) reasons[reason] += count;
+}
+
+Tally campaign(const Condition& condition, int taps, std::uint64_t seed) {
+  const std::unique_ptr<const Scene> scene = scene_of(condition.stiffness);
+  Tally out;
+  std::unique_ptr<Session> session;
+  while (out.taps < taps) {
+    if (!session) session = std::make_unique<Session>(condition, *scene, 1000 * seed + static_cast<unsigned>(out.taps));
+    if (!session->tap(out)) session.reset();
+  }
+  return out;
+}
+
+std::string in_words(const Tally& tally) {
+  return fmt::format(
+      "{} taps, {} contacts, {} touched: {} phantom, {} rejected, {} ended the run, {} left pressing; at most {:.1f} "
+      "N, "
+      "{:.1f} mm",
+      tally.taps, tally.contacts, tally.touched, tally.phantoms, tally.rejected, tally.ended, tally.pressing,
+      tally.peak, 1e3 * tally.error);
+}
+
+}  // namespace palpate::baxter::test
