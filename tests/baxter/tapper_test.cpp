@@ -185,6 +185,31 @@ TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
   EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
 }
 
+/// The force reads `offset` newtons more at 2 cm/s downwards, as much less upwards, and at most twice that.
+std::function<void(Snapshot&)> moves(double offset, const Bench& bench) {
+  return [=, &bench, last = 0.0, at = 0.0, speed = 0.0](Snapshot& seen) mutable {
+    const double height = bench.tip();
+    if (seen.now > at) speed = (height - last) / (seen.now - at);
+    last = height;
+    at = seen.now;
+    seen.endpoint->force.z() -= offset * std::clamp(speed / 0.02, -2.0, 2.0);
+  };
+}
+
+TEST(ATap, IsBelievedThoughTheForceIsAnotherWhileTheArmMoves) {
+  for (const double offset : {4.0, -4.0}) {
+    Bench bench;
+    bench.robot.spoil = moves(offset, bench);
+    for (const Target& place : {kOnObject, kOnDesk, Target{0.2, 0.03}, Target{0.115, 0.08}}) {
+      const Contact contact = bench.tap(place);
+      ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
+      EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.003) << offset;
+    }
+    ASSERT_FALSE(bench.notes.empty());
+    EXPECT_THAT(bench.notes.front(), StartsWith("coming down in the air the force reads "));
+  }
+}
+
 /// Of a hundred readings of the force one is 9 N off, and then nothing new comes for so many periods.
 std::function<void(Snapshot&)> spikes(int stalled, const Bench& bench) {
   return [=, &bench, held = std::optional<EndpointReading>(), left = 0,

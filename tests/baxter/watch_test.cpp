@@ -237,9 +237,9 @@ TEST(AFrozenForce, IsNoticedHalfASecondLater) {
   EXPECT_NEAR(noticed, 1.51, 0.015);
 }
 
-TEST(AForce, StopsAfterThreeSamplesBeyondTheLimitInAnyDirection) {
+TEST(AForce, StopsAfterThreeReadingsBeyondTheLimitAndSidewaysHalfAsMuchAgain) {
   for (const Eigen::Vector3d& push : {Eigen::Vector3d(0, 0, 14.5), Eigen::Vector3d(0, 0, -14.5),
-                                      Eigen::Vector3d(14.5, 0, 0), Eigen::Vector3d(9, 9, 7)}) {
+                                      Eigen::Vector3d(21.5, 0, 0), Eigen::Vector3d(15.5, 15, 7)}) {
     Watch watch(kSpace, 14.0);
     const Eigen::Vector3d zero(0.3, -0.2, 1.0);
     watch.set_tare(zero);
@@ -327,6 +327,20 @@ TEST(AGap, OfTheDriversOwnIsNotBlamedOnTheNetwork) {
   EXPECT_THAT(receiving.look(seen, kInside)->reason, HasSubstr("see to the network"));
   seen.own_gap = 0.12;
   EXPECT_THAT(receiving.look(seen, kInside)->reason, HasSubstr("this computer did not get to the arm for 0.12 s"));
+}
+
+TEST(AForce, SidewaysOfAnArmWhoseJointsRubStopsNoTapButStopsTravel) {
+  for (const auto zero : {Watch::Zero::stays, Watch::Zero::follows}) {
+    Watch watch(kSpace, 14.0);
+    watch.set_tare(Eigen::Vector3d(0.3, -0.2, 1.0), zero);
+    bool stopped = false;
+    for (int i = 1; i <= 5; ++i) {
+      Snapshot seen = sound(1.0 + 0.01 * i, pose());
+      seen.endpoint->force += Eigen::Vector3d(17, 9, 0);
+      stopped = stopped || watch.look(seen, kInside);
+    }
+    EXPECT_EQ(stopped, zero == Watch::Zero::follows);
+  }
 }
 
 TEST(AForce, WhoseZeroFollowsStopsWhenItRisesFastAndNotWhenItDrifts) {

@@ -61,8 +61,8 @@ std::optional<Fault> Tapper::listen() {
 
 void Tapper::try_reach() {
   const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
-  const int places =
-      check_reach(planner_, scene_.area(), descent.hover, descent.floor, fastest(options_.motion), kReachSpacing);
+  const int places = check_reach(planner_, scene_.area(), descent.hover + kFromAbove, descent.floor,
+                                 fastest(options_.motion), kReachSpacing);
   note_("dry run: all " + std::to_string(places) + " places of the area can be reached, all the way down");
 }
 
@@ -79,7 +79,7 @@ void Tapper::await_fit(bool moving) {
 Path Tapper::column(const Target& place) const {
   const Area area = scene_.area();
   const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
-  return planner_.column(place, {0.5 * area.width, 0.5 * area.depth}, descent.hover, descent.floor,
+  return planner_.column(place, {0.5 * area.width, 0.5 * area.depth}, descent.hover + kFromAbove, descent.floor,
                          fastest(options_.motion));
 }
 

@@ -22,8 +22,15 @@ constexpr double kStillFor = 0.1;          ///< s
 constexpr double kSettling = 5.0;          ///< s: after a stop the arm takes two
 constexpr double kHeld = 0.5;              ///< s for which the measured joints are sent at a stop
 constexpr double kReflexEnds = 4.0;        ///< s: the firmware's own stop lasts two
-constexpr std::size_t kForceSamples = 15;  ///< new ones, for the force at rest
+constexpr std::size_t kForceSamples = 25;  ///< new ones, for the force at rest
 constexpr double kForcePatience = 1.0;     ///< s in which they must have come
+constexpr double kUnloading = 0.6;  ///< s after which an arm that trails by 0.35 s has turned around and is clear
+constexpr double kEvenFrom = 0.7;   ///< s after which an arm that trails by 0.35 s comes down evenly
+constexpr double kEvenTo = 1.0;     ///< s, for so long the force of the moving arm is looked at
+constexpr std::size_t kLeastReadings = 10;
+constexpr double kSteady = 1.5;      ///< N from one half of it to the other: noise of 1.5 N makes 0.55
+constexpr int kTold = 3;             ///< taps of a run for which that is noted
+constexpr double kLeastMoved = 2.5;  ///< N that the zero may move, whatever the threshold: noise makes 0.4
 constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
 constexpr int kPulled = 3;  ///< new readings of a force that pulls: one alone may be noise
 
@@ -71,6 +78,38 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
   }
   return out;
 }
+
+/// The mean force of a descent from when the arm, which trails its set-point, comes down evenly until shortly after;
+/// what rises meanwhile is a contact that begins, and is left alone.
+class Even {
+ public:
+  /// Takes a reading `time` seconds after the set-point began to come down; whether the mean is there now.
+  bool add(double time, const Eigen::Vector3d& reading) {
+    if (time < kEvenFrom || time >= kEvenTo) {
+      const bool ended = time >= kEvenTo && readings_.size() >= kLeastReadings;
+      if (ended) mean_ = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& one : readings_) mean_ += one / static_cast<double>(readings_.size());
+      const double rise = ended ? half(1) - half(0) : 0.0;
+      readings_.clear();
+      return ended && std::abs(rise) < kSteady;
+    }
+    readings_.push_back(reading);
+    return false;
+  }
+  const Eigen::Vector3d& mean() const { return mean_; }
+
+ private:
+  /// The mean of the vertical force in the first or second half.
+  double half(std::size_t which) const {
+    const std::size_t count = readings_.size() / 2;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count; ++i) sum += readings_[which * count + i].z();
+    return sum / static_cast<double>(count);
+  }
+
+  std::vector<Eigen::Vector3d> readings_;
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+};
 
 Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false) {
   Contact out{outcome, 0.0, 0.0, 0.0, reason};
@@ -125,11 +164,11 @@ Contact Tapper::attempt(const TapRequest& request) {
     desk.target = {options_.calibration->at[0], options_.calibration->at[1]};
     const Path bare = column(desk.target);
     go_to(bare.front());
-    calibrate(descend(desk, bare));
+    calibrate(descend(desk, options_.motion, bare));
     down = column(request.target);
   }
   go_to(down.front());
-  return descend(request, down);
+  return descend(request, options_.motion, down);
 }
 
 /// The scene's zero moves to where a tap on the bare desk found it.
@@ -208,36 +247,54 @@ void Tapper::settle(const Joints& goal) {
   throw Fault{"the arm did not come to rest where it was sent: see what holds it", Then::hold, true};
 }
 
-Contact Tapper::descend(const TapRequest& request, const Path& column) {
-  const tapping::Descent plan = tapping::plan_descent(options_.motion, scene_.desk(), request.predicted);
-  GuardedTap tap(options_.motion, plan, GuardedTap::Arm::real);
+/// Comes down to `hover` from just above and waits until the arm rests. Its joints rub: at 0.4 Nm the force of an arm
+/// at rest reads 9 N less after it has come up than after it has come down. So it rests as it will go on, and what is
+/// felt at rest before a tap and after it can be compared.
+void Tapper::rest_from_above(const Path& column) {
+  settle(column.front());
+  for (double along = 0.0; along < kFromAbove;) {
+    along = std::min(kFromAbove, column.advance(along, options_.motion.speed, kPeriod));
+    step(column.at(along));
+  }
+  settle(column.at(kFromAbove));
+}
+
+Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column) {
+  const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
+  const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
+  rest_from_above(column);
+  GuardedTap tap(motion, plan, GuardedTap::Arm::real);
   Mean tare;
+  Even even;
   int pulled = 0;
   double set_point = plan.hover;
-  Joints command = column.front();
+  Joints command = at(plan.hover);
   Eigen::Vector3d at_hover = seen_.endpoint->force;
   for (bool first = true; !tap.done();) {
     const double before = set_point;
     const bool taring = tap.taring();
     const bool fresh = watch_.fresh();
-    set_point = tap.next(height(), force(), fresh);
+    const Eigen::Vector3d reading = seen_.endpoint->force;
+    const Eigen::Vector3d felt = tap.coming_down() ? Eigen::Vector3d(reading - moving_) : reading;
+    set_point = tap.next(height(), force(felt), fresh);
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
     } else if (set_point != before) {
-      command = column.at(plan.hover - set_point);
+      command = at(set_point);
     }
     if (taring) {
-      if (fresh) tare.add(seen_.endpoint->force);
+      if (fresh) tare.add(reading);
       pulled = 0;
       if (!tap.taring()) {
         // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
         zero_ = tare.take();
         if (std::exchange(first, false)) at_hover = zero_;
-        watch_.set_tare(zero_);
+        watch_.set_tare(zero_ + moving_);
       }
     } else if (fresh) {
-      pulled = force() - options_.sign() * zero_.z() < -options_.motion.threshold ? pulled + 1 : 0;
+      if (even.add(tap.even_for(), reading)) learn_moving(even.mean() - zero_);
+      pulled = force(felt - zero_) < -motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
             "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
@@ -247,11 +304,11 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
     }
     step(command);
   }
-  follow(column.back(plan.hover - height()), options_.motion.retreat_speed);
-  await_height(column.front());
+  retreat(column.back(plan.hover + kFromAbove - height()));
   switch (tap.outcome()) {
     case Outcome::contact:
-      if ((force_at_rest(column.front()) - at_hover).norm() >= 0.5 * options_.motion.threshold) {
+      rest_from_above(column);
+      if (!believed(at_hover, force_at_rest(at(plan.hover)), motion.threshold)) {
         return failed(Outcome::aborted,
                       "the force did not go back to its zero when the tool was clear: its zero moved "
                       "during the tap, and the contact may be none");
@@ -262,6 +319,43 @@ Contact Tapper::descend(const TapRequest& request, const Path& column) {
     default:
       return failed(tap.outcome(), "the descent ended without a contact");
   }
+}
+
+/// Goes up from where it may press. What it presses with goes, and so does what the joints rub against, which turns
+/// around: only what comes after that is a force of something that holds the tool.
+void Tapper::retreat(const Path& up) {
+  watch_.forget_tare();
+  const double free = seen_.now + kUnloading;
+  bool tared = false;
+  for (double along = 0.0; along < up.length();) {
+    along = up.advance(along, options_.motion.retreat_speed, kPeriod);
+    step(up.at(along));
+    if (!tared && seen_.now >= free) {
+      tared = true;
+      watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
+    }
+  }
+  await_height(up.end());
+}
+
+/// What the force reads beside while the arm comes down in the air is no contact: from now on it counts as zero then.
+void Tapper::learn_moving(const Eigen::Vector3d& difference) {
+  if (std::abs(difference.z()) >= options_.motion.threshold) return;  // a contact is noticed, or was missed
+  moving_ = difference;
+  watch_.set_tare(zero_ + moving_);
+  if (told_ >= kTold) return;
+  ++told_;
+  note_("coming down in the air the force reads " + newtons(difference.norm()) + " beside that at rest, " +
+        newtons(force(difference)) + " of it upwards: taken for its zero while the arm moves" +
+        (std::abs(difference.z()) > 0.5 * options_.motion.threshold
+             ? "; that is much, so calibrate the robot (rosrun baxter_tools tare.py) or take a lower motion.speed"
+             : ""));
+}
+
+/// Whether two zeros, felt at rest before and after a tap, are the same. Sideways the robot's estimate is at its worst.
+bool Tapper::believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const {
+  const Eigen::Vector3d moved = after - before;
+  return std::abs(moved.z()) < std::max(kLeastMoved, 0.5 * threshold) && moved.head<2>().norm() < options_.force_stop;
 }
 
 /// The median of a few new readings, while the arm is where it is sent: one of them may be far off.
@@ -354,6 +448,6 @@ void Tapper::take(Snapshot seen) {
 bool Tapper::interrupted() const { return interrupted_ != nullptr && interrupted_->load(); }
 double Tapper::height() const { return tip_.z(); }
 double Tapper::travel_height() const { return scene_.desk() + options_.motion.hover; }
-double Tapper::force() const { return options_.sign() * seen_.endpoint->force.z(); }
+double Tapper::force(const Eigen::Vector3d& reading) const { return options_.sign() * reading.z(); }
 
 }  // namespace palpate::baxter

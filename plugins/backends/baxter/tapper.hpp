@@ -39,9 +39,11 @@ class Tapper {
 
  private:
   static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
+  /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
+  static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
 
   Contact attempt(const TapRequest& request);
-  Contact descend(const TapRequest& request, const Path& column);
+  Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
   void calibrate(const Contact& contact);
   std::optional<Fault> listen();
   void try_reach();
@@ -50,7 +52,11 @@ class Tapper {
   void go_to(const Joints& hover);
   void follow(const Path& path, double speed);
   void settle(const Joints& goal);
+  void rest_from_above(const Path& column);
+  void retreat(const Path& up);
+  void learn_moving(const Eigen::Vector3d& difference);
   Eigen::Vector3d force_at_rest(const Joints& joints);
+  bool believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const;
   std::string recover(const Fault& fault);
   Path way_up() const;
   void climb(const Path& up);
@@ -65,7 +71,7 @@ class Tapper {
   void take(Snapshot seen);
   double height() const;
   double travel_height() const;
-  double force() const;
+  double force(const Eigen::Vector3d& reading) const;
 
   BaxterOptions options_;
   const Scene& scene_;
@@ -81,7 +87,9 @@ class Tapper {
   double next_ = 0.0;                              ///< when the next period begins
   bool recovering_ = false;
   bool calibrated_ = false;
-  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
+  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();    ///< the force of the latest tare
+  Eigen::Vector3d moving_ = Eigen::Vector3d::Zero();  ///< what it reads beside while the arm comes down in the air
+  int told_ = 0;                                      ///< of how many taps moving_ was noted
 };
 
 }  // namespace palpate::baxter

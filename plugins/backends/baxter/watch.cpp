@@ -303,7 +303,8 @@ std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
 std::optional<Fault> Watch::force(const Snapshot& seen) {
   if (!tare_ || !fresh_) return std::nullopt;
   const Eigen::Vector3d felt = seen.endpoint->force - *tare_;
-  const double change = felt.norm();
+  const double change =
+      zero_ == Zero::follows ? felt.norm() : std::max(std::abs(felt.z()), felt.head<2>().norm() / kSideways);
   if (zero_ == Zero::follows) *tare_ += felt * (kPeriod / kZeroFollows);
   too_strong_ = change > force_stop_ ? too_strong_ + 1 : 0;
   if (too_strong_ < kForceSamples) return std::nullopt;

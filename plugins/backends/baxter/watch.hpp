@@ -52,7 +52,10 @@ class Watch {
   static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
   static constexpr double kTrail = 0.8;        ///< s
   static constexpr double kZeroFollows = 0.5;  ///< s
-  static constexpr int kForceSamples = 3;      ///< new ones, above force_stop: one or two may be noise
+  /// How much more force counts the same sideways, where the robot's estimate is at its worst, while the arm goes up or
+  /// down: friction of 0.4 Nm makes 12 N of it.
+  static constexpr double kSideways = 1.5;
+  static constexpr int kForceSamples = 3;  ///< new ones, above force_stop: one or two may be noise
 
   /// The least that receipt has come after the stamp, seconds, and when it was last looked at.
   struct Delay {
@@ -64,14 +67,16 @@ class Watch {
 
   /// Forgets what was commanded and felt: before a motion, after a pause in which nothing was sent.
   void begin();
-  /// Whether the force from which force_stop counts stays, or goes after what is felt as the pose of the arm, and with
-  /// it the bias of the force, changes: then only what rises within kZeroFollows stops.
+  /// Whether the force from which force_stop counts stays, as in a tap, or goes after what is felt as the pose of the
+  /// arm, and with it the bias of the force, changes: then only what rises within kZeroFollows stops.
   enum class Zero { stays, follows };
   /// The force (N) from which force_stop counts; until it is set no force stops.
   void set_tare(const Eigen::Vector3d& force, Zero zero = Zero::stays) {
     tare_ = force;
     zero_ = zero;
   }
+  /// No force stops from now on.
+  void forget_tare() { tare_.reset(); }
   /// Whether a collision felt by the robot's firmware is a fault; not while one waits for its end.
   void expect_collision(bool expected) { collision_expected_ = expected; }
 

@@ -62,7 +62,10 @@ double GuardedTap::next(double height, double force, bool fresh) {
       if (waited(motion_.pause)) finish(Outcome::contact, height);
       break;
     case Stage::back_off:
-      if (ramp(goal_, motion_.speed) && arrived(height)) enter(Stage::settle);
+      if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
+      break;
+    case Stage::unwind:
+      if (ramp(goal_, motion_.fine_speed) && arrived(height)) enter(Stage::settle);
       break;
     case Stage::fine:
       if (above_ >= kConsecutive) {
@@ -102,6 +105,24 @@ void GuardedTap::feel(double height, double force) {
   if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
 }
 
+bool GuardedTap::coming_down() const {
+  switch (stage_) {
+    case Stage::approach:
+    case Stage::descend:
+    case Stage::fine:
+    case Stage::bottom:
+    case Stage::stop:
+      return true;
+    default:
+      return false;
+  }
+}
+
+double GuardedTap::even_for() const {
+  const bool even = stage_ == Stage::descend || stage_ == Stage::fine;
+  return even ? static_cast<double>(periods_ - entered_) * kPeriod : 0.0;
+}
+
 void GuardedTap::descend(double height) {
   if (above_ >= kConsecutive) {
     touched(height);
@@ -136,8 +157,11 @@ void GuardedTap::enter(Stage stage) {
       break;
     case Stage::back_off:
       // From where the contact began: a soft object may have given way by more than that, and would be tared.
-      goal_ = std::min(descent_.hover,
-                       std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) + motion_.back_off);
+      goal_ = std::min(descent_.hover, std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) +
+                                           motion_.back_off + (arm_ == Arm::real ? kFromAbove : 0.0));
+      break;
+    case Stage::unwind:
+      goal_ = set_point_ - kFromAbove;
       break;
     case Stage::fine:
       goal_ = std::max(descent_.floor, first_ - motion_.back_off);

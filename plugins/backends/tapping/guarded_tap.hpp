@@ -29,8 +29,13 @@ class GuardedTap {
 
   /// Whose arm it is. The simulated one of `paper` presses on at a contact, as the paper's did: its set-point stays
   /// ahead. A real one stops at 16 N and its zero wanders: at every contact the set-point is put where the arm is, and
-  /// every pause of `paper` tares anew, unless what it feels there may be a contact that begins.
+  /// every pause of `paper` tares anew, unless what it feels there may be a contact that begins. Its joints rub, so
+  /// that its force at rest depends on the way it came: wherever it tares it has come from above, as it goes on.
   enum class Arm { simulated, real };
+
+  /// The way down, metres, after which an arm rests as one that comes down does: its joints give way by less than a
+  /// milliradian until they slip.
+  static constexpr double kFromAbove = 0.01;
 
   GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
 
@@ -41,6 +46,10 @@ class GuardedTap {
   bool done() const { return stage_ == Stage::done; }
   /// Whether the force of the next period belongs to a tare, the first or that of two_stage.
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
+  /// Whether the arm comes down, or is being stopped at a contact: its force then is that of an arm that moves.
+  bool coming_down() const;
+  /// For how long the set-point has been coming down evenly in this stage, seconds.
+  double even_for() const;
   /// When done: `contact`, `no_contact` (the floor was reached) or `timeout`.
   Outcome outcome() const { return outcome_; }
   /// Of the contact, metres.
@@ -51,7 +60,7 @@ class GuardedTap {
   double seconds() const { return static_cast<double>(periods_) * kPeriod; }
 
  private:
-  enum class Stage { tare, approach, clear, descend, pause, rest, back_off, settle, fine, stop, bottom, done };
+  enum class Stage { tare, approach, clear, descend, pause, rest, back_off, unwind, settle, fine, stop, bottom, done };
 
   void feel(double height, double force);
   void enter(Stage stage);
