@@ -60,6 +60,7 @@ class ProcessBackend : public testing::Test {
     EXPECT_EQ(contact.height, 0.07);
     EXPECT_EQ(contact.seconds, 5.5);
     EXPECT_EQ(contact.reason, "");
+    EXPECT_FALSE(contact.ends_run);
   }
 
   static void expect_failure(const Contact& contact, Outcome outcome, const std::string& reason) {

@@ -60,6 +60,42 @@ TEST_F(ProcessBackend, EveryFailureOfTheProgramsOwnKeepsItsOutcomeAndReason) {
   }
 }
 
+TEST_F(ProcessBackend, AProgramEndsTheRunWithAReasonWhateverBecameOfItsTap) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    if ask['tap'] == 1: contact(ask, ends_run=False)\n"
+      "    elif ask['tap'] == 2: contact(ask, ends_run=None)\n"
+      "    elif ask['tap'] == 3: contact(ask, ends_run=True, reason='it\\nholds')\n"
+      "    else: tell(ask, outcome='unreachable', reason='it holds', seconds=2, ends_run=True)");
+  expect_contact(tap(*backend, 1));
+  expect_contact(tap(*backend, 2));
+  const Contact touched = tap(*backend, 3);
+  EXPECT_TRUE(touched.ends_run);
+  EXPECT_EQ(touched.outcome, Outcome::contact);
+  EXPECT_EQ(touched.height, 0.07);
+  EXPECT_EQ(touched.reason, "it holds");
+  const Contact failed = tap(*backend, 4);
+  EXPECT_TRUE(failed.ends_run);
+  expect_failure(failed, Outcome::unreachable, "it holds");
+  EXPECT_EQ(failed.seconds, 2.0);
+}
+
+TEST_F(ProcessBackend, AStopThatIsBadlyToldIsAStopAllTheSame) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    if ask['tap'] == 1: tell(ask, outcome='abort', seconds=1, ends_run=True, reason='a protective stop')\n"
+      "    elif ask['tap'] == 2: tell(ask, outcome='aborted', seconds=1, ends_run='true', reason='a protective stop')\n"
+      "    elif ask['tap'] == 3: tell({'tap': 1}, outcome='aborted', seconds=1, ends_run=True, reason='a stop')\n"
+      "    elif ask['tap'] == 4: tell(ask, outcome='abort', seconds=1, ends_run=False)\n"
+      "    else: tell(ask, outcome='abort', seconds=1)");
+  for (int number = 1; number <= 5; ++number) {
+    const Contact contact = tap(*backend, number);
+    EXPECT_EQ(contact.outcome, Outcome::aborted);
+    EXPECT_THAT(contact.reason, StartsWith("the answer "));
+    EXPECT_EQ(contact.ends_run, number <= 3) << contact.reason;
+  }
+}
+
 TEST_F(ProcessBackend, ControlCharactersAndLengthOfAReasonDoNotReachTheRecord) {
   const Contact contact =
       second_tap(R"(tell(ask, outcome='no_contact', reason='a\nb\x1b[2J\x7f\x9b' + '\u00e9' * 300, seconds=1))", true);
