@@ -82,5 +82,21 @@ for ask in asks():
   EXPECT_EQ(outcomes(), expected);
 }
 
+TEST_F(ARobotsRun, EndsWhenItsProgramIsKilledWithoutStartingAnother) {
+  const std::string body = R"(
+for ask in asks():
+    note(f"tap {ask['tap']}")
+    if ask["tap"] == 3 and not os.path.exists("cleared"): os.kill(os.getpid(), 9)
+    contact(ask)
+)";
+  const Ended ended = palpate(run(body, {"taps=5"}));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, StartsWith("backend/process: the program was ended by signal 9 (Killed); see to the robot"));
+  EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\n");
+  folder_.write("cleared", "");
+  EXPECT_EQ(resume().status, 0);
+  EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\nbegin\ntap 4\ntap 5\n");
+}
+
 }  // namespace
 }  // namespace palpate

@@ -197,12 +197,14 @@ TEST_F(ProcessBackend, AClosedStdinFailsTheTapAndRaisesNoSigpipe) {
 
 TEST_F(ProcessBackend, InterruptedWhileItWaitsTheTapIsAbortedAndTheProgramEnded) {
   const auto backend =
-      open("for ask in asks():\n    print(os.getpid(), file=sys.stderr, flush=True)\n    time.sleep(60)");
+      plain(command("for ask in asks():\n    print(os.getpid(), file=sys.stderr, flush=True)\n    time.sleep(60)"));
   std::thread user([this] {
     eventually([this] { return !diary().empty(); });
     interrupted_ = true;
   });
-  expect_failure(tap(*backend, 1), Outcome::aborted, "interrupted");
+  const Contact contact = tap(*backend, 1);
+  expect_failure(contact, Outcome::aborted, "interrupted");
+  EXPECT_FALSE(contact.ends_run) << "the user's wish is no fault";
   user.join();
   EXPECT_FALSE(running(std::stol(diary())));
 }

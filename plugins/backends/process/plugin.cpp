@@ -3,9 +3,10 @@
 //
 // One rule covers all that can go wrong. An answer that carries the number of the tap keeps the program, even if its
 // fields are refused. After anything else (no answer in time, a line that is no answer, a line too many, an end) nobody
-// knows what the next line would belong to or whether the arm still moves: the tap fails, the program is ended before
-// tap() returns, and the next tap starts it again. So no late answer is ever taken for another tap, each trouble costs
-// one tap, and each is told in the record.
+// knows what the next line would belong to or whether the arm still moves: the tap fails and the program is ended
+// before tap() returns. If taps are repeatable, or the config says `restart`, the next tap starts it again; else the
+// run ends, for somebody to look at the arm. So no late answer is ever taken for another tap, and each trouble is told
+// in the record.
 #include "process/child.hpp"
 #include "process/command.hpp"
 #include "process/protocol.hpp"
@@ -24,6 +25,7 @@ struct ProcessOptions : Options {
   double deadline = 90.0;
   double start = 30.0;
   bool repeatable = false;
+  bool restart = false;
   bool scene_is_truth = false;
   tapping::MotionOptions motion;
 
@@ -46,6 +48,10 @@ struct ProcessOptions : Options {
     fields.flag(repeatable, Field("repeatable",
                                   "a tap can be made again at no risk and is answered alike: taps are "
                                   "not announced and synced before they move"));
+    fields.flag(restart,
+                Field("restart",
+                      "a program that ended, or had to be ended, is started again for the next tap though taps "
+                      "are not repeatable; else the run fails then, for somebody to look at the arm"));
     fields.flag(scene_is_truth,
                 Field("scene_is_truth", "the scene of the config is what the program taps: compute the errors"));
     fields.section(motion, Field("motion", "the tapping motion, sent along in SI units"));
@@ -78,7 +84,7 @@ class Process final : public Backend {
     const process::Patience patience{begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)),
                                      context_.interrupted};
     process::Answer answer = ask(request, patience);
-    if (!answer.in_step) child_.reset();
+    if (!answer.in_step) end_program(answer.contact);
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
   }
@@ -95,8 +101,17 @@ class Process final : public Backend {
     return context_.directory.empty() ? std::string() : context_.directory + "/process.stderr.txt";
   }
 
+  bool may_restart() const { return options_.repeatable || options_.restart; }
+
+  /// Of an answer after which nobody knows what the program does.
+  void end_program(Contact& contact) {
+    child_.reset();
+    if (contact.ends_run) contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+  }
+
   process::Answer ask(const TapRequest& request, const process::Patience& patience) {
     std::string line;
+    process::Answer answer;
     // Whatever there is before the ask is no answer to it, and then the arm had better not move.
     Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
     if (heard == Child::Heard::line) return failed("said more than its answer: " + process::shown(line));
@@ -106,7 +121,9 @@ class Process final : public Backend {
     }
     switch (heard) {
       case Child::Heard::line:
-        return process::read_answer(line, request.number);
+        answer = process::read_answer(line, request.number);
+        if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
+        return answer;
       case Child::Heard::ended:
         return failed(child_->fate());
       case Child::Heard::late:
@@ -121,8 +138,8 @@ class Process final : public Backend {
     return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}};
   }
 
-  static process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) {
-    return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what}};
+  process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) const {
+    return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what, !may_restart()}};
   }
 
   Options options_;
