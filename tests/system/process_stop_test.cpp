@@ -6,10 +6,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <map>
+#include <sstream>
+
 namespace palpate {
 namespace {
 
 using test::Ended;
+using test::eventually;
 using test::text_of;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -44,6 +49,14 @@ class ARobotsRun : public testing::Test {
   std::string notes() const {
     const fs::path file = folder_.path() / "notes.txt";
     return fs::exists(file) ? text_of(file) : "";
+  }
+
+  /// How often each line is in the notes.
+  std::map<std::string, int> noted() const {
+    std::map<std::string, int> out;
+    std::istringstream in(notes());
+    for (std::string line; std::getline(in, line);) ++out[line];
+    return out;
   }
 
   std::vector<std::string> outcomes() const {
@@ -96,6 +109,31 @@ for ask in asks():
   folder_.write("cleared", "");
   EXPECT_EQ(resume().status, 0);
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\nbegin\ntap 4\ntap 5\n");
+}
+
+TEST_F(ARobotsRun, StartsNoSecondProgramBesideOneThatOutlivedItsRun) {
+  std::vector<std::string> words = run(R"(
+note(str(os.getpid()))
+for ask in asks(): contact(ask)
+time.sleep(60)  # and does not care that its stdin has ended
+)",
+                                       {"taps=100000", "backend.start=300ms", "acquisition=random"});
+  words.insert(words.begin(), test::program_file().string());
+  {
+    test::Child child(words, folder_.path());
+    ASSERT_TRUE(eventually([&] { return test::lines(notes()) == 2; })) << child.err();
+    ASSERT_TRUE(eventually([&] { return test::lines(text_of(directory() / "taps.jsonl")) > 4; }));
+    child.signal(SIGKILL);
+    child.wait();
+  }
+  const std::string pid = notes().substr(6, notes().size() - 7);
+  ASSERT_TRUE(test::running(std::stol(pid)));
+  const Ended refused = resume();
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("the program of an earlier attempt, process " + pid + ", still runs: end it"));
+  EXPECT_EQ(noted()["begin"], 1);
+  EXPECT_TRUE(test::running(std::stol(pid)));
+  ::kill(static_cast<pid_t>(std::stol(pid)), SIGKILL);
 }
 
 }  // namespace

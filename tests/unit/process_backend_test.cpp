@@ -232,8 +232,9 @@ TEST_F(ProcessBackend, AnEndIsToldThoughWhatTheProgramStartedHoldsItsStdout) {
 
 TEST_F(ProcessBackend, TwoBackendsHoldNoneOfEachOthersPipes) {
   const std::string body = "for ask in asks(): contact(ask)\nprint('end of input', file=sys.stderr)";
-  auto first = open(body);
-  const auto second = open(body);
+  // Of a record's programs that are not repeatable there would be but one.
+  auto first = open(body, ", repeatable: true");
+  const auto second = open(body, ", repeatable: true");
   expect_contact(tap(*first, 1));
   expect_contact(tap(*second, 1));
   first.reset();  // would have to be killed, and say nothing, if the second program held its stdin
@@ -241,12 +242,14 @@ TEST_F(ProcessBackend, TwoBackendsHoldNoneOfEachOthersPipes) {
   expect_contact(tap(*second, 2));
 }
 
-TEST_F(ProcessBackend, NoOpenFileOfOursReachesTheProgram) {
+TEST_F(ProcessBackend, NoOpenFileOfOursReachesTheProgramButItsLock) {
   const int ours = ::open("/dev/null", O_RDONLY);  // NOLINT: without O_CLOEXEC on purpose
-  const auto backend = open(
-      "files = sorted(os.listdir('/proc/self/fd'))\n"
-      "for ask in asks(): tell(ask, outcome='aborted', seconds=0, reason=' '.join(files))");
-  EXPECT_EQ(tap(*backend, 1).reason, "0 1 2 3") << "3 is the list itself";
+  const std::string list =
+      "files = [f'/proc/self/fd/{n}' for n in range(2, 10)]\n"
+      "names = ' '.join(os.path.basename(os.readlink(file)) for file in files if os.path.exists(file))\n"
+      "for ask in asks(): tell(ask, outcome='aborted', seconds=0, reason=names)";
+  EXPECT_EQ(tap(*open(list), 1).reason, "process.stderr.txt process.lock");
+  EXPECT_EQ(tap(*open(list, ", repeatable: true"), 1).reason, "process.stderr.txt");
   ::close(ours);
 }
 

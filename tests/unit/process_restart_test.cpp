@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What becomes of a run when its program is gone.
+// What becomes of a run when its program is gone, or when one of an earlier attempt is still there.
 #include "unit/process_backend.hpp"
 
+#include <cmath>
+#include <csignal>
 #include <memory>
+#include <thread>
 
 namespace palpate::test {
 namespace {
@@ -60,6 +63,61 @@ INSTANTIATE_TEST_SUITE_P(
                     Gone{"AnotherTap", "print('{\"tap\": 7}', flush=True)",
                          "the answer is not that to tap 2: '{\"tap\": 7}'"}),
     [](const auto& one) { return one.param.name; });
+
+class ProgramLeftBehind : public ProcessBackend {
+ protected:
+  /// A program of an earlier attempt that does not care about the end of its stdin: once it runs, its run is gone.
+  std::unique_ptr<Child> leave_behind() {
+    const fs::path program = folder_.write("stubborn.py", R"(import fcntl, os, time
+lock = open("record/process.lock", "w")
+fcntl.flock(lock, fcntl.LOCK_EX)
+print(os.getpid(), file=lock, flush=True)
+print("held", flush=True)
+time.sleep(60)
+)");
+    auto child =
+        std::make_unique<Child>(std::vector<std::string>{"/usr/bin/python3", program.string()}, folder_.path());
+    EXPECT_TRUE(eventually([&] { return child->out() == "held\n"; }));
+    return child;
+  }
+
+  static constexpr const char* kBody = "print('begin', file=sys.stderr, flush=True)\nfor ask in asks(): contact(ask)";
+};
+
+TEST_F(ProgramLeftBehind, KeepsTheNextOneFromBeingStarted) {
+  const auto other = leave_behind();
+  for (const char* more : {", start: 200 ms", ", start: 200 ms, restart: true"}) {
+    const Contact contact = tap(*plain(command(kBody), more), 1);
+    EXPECT_TRUE(contact.ends_run);
+    expect_failure(contact, Outcome::aborted,
+                   "the program of an earlier attempt, process " + std::to_string(other->pid()) +
+                       ", still runs: end it" + kSeeToIt);
+  }
+  EXPECT_FALSE(fs::exists(folder_.path() / "record" / "process.stderr.txt")) << "nothing was started";
+}
+
+TEST_F(ProgramLeftBehind, IsWaitedForAndThenTheNextOneIsStarted) {
+  const auto other = leave_behind();
+  const auto backend = plain(command(kBody), ", start: 60 s");
+  std::thread end([&] { other->signal(SIGKILL); });
+  const Contact contact = tap(*backend, 1);
+  end.join();
+  expect_contact(contact);
+  EXPECT_EQ(text_of(folder_.path() / "record" / "process.lock"), std::to_string(std::lround(contact.force)) + "\n");
+}
+
+TEST_F(ProgramLeftBehind, DoesNotDisturbOneWhoseTapsAreRepeatable) {
+  const auto other = leave_behind();
+  expect_contact(tap(*plain(command(kBody), ", start: 200 ms, repeatable: true"), 1));
+}
+
+TEST_F(ProgramLeftBehind, IsNoLongerWaitedForWhenTheUserWantsToStop) {
+  const auto other = leave_behind();
+  interrupted_ = true;
+  const Contact contact = tap(*plain(command(kBody), ", start: 60 s"), 1);
+  expect_failure(contact, Outcome::aborted, "interrupted");
+  EXPECT_FALSE(contact.ends_run);
+}
 
 }  // namespace
 }  // namespace palpate::test

@@ -9,16 +9,19 @@
 // in the record.
 #include "process/child.hpp"
 #include "process/command.hpp"
+#include "process/hold.hpp"
 #include "process/protocol.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 namespace palpate::backends {
 
 using process::Child;
+using process::Hold;
 
 struct ProcessOptions : Options {
   std::string command;
@@ -76,14 +79,12 @@ class Process final : public Backend {
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();
     double seconds = options_.deadline;
+    // Not before the first tap: the folder of the record exists only from then on.
     if (!child_) {
-      // Not before the first tap: the folder of the record exists only from then on.
-      child_ = std::make_unique<Child>(file_, words_, diary());
+      start(patience(begin, options_.start));
       seconds += options_.start;
     }
-    const process::Patience patience{begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)),
-                                     context_.interrupted};
-    process::Answer answer = ask(request, patience);
+    process::Answer answer = child_ ? ask(request, patience(begin, seconds)) : left_behind();
     if (!answer.in_step) end_program(answer.contact);
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
@@ -97,8 +98,36 @@ class Process final : public Backend {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
 
-  std::string diary() const {
-    return context_.directory.empty() ? std::string() : context_.directory + "/process.stderr.txt";
+  static constexpr const char* kLock = "process.lock";
+
+  process::Patience patience(Clock::time_point begin, double seconds) const {
+    return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
+  }
+
+  /// A file in the folder of the record; empty where none is kept.
+  std::string recorded(const char* name) const {
+    return context_.directory.empty() ? std::string() : context_.directory + "/" + name;
+  }
+
+  /// Starts the program, but where taps are not repeatable only once none of an earlier attempt is there any more: two
+  /// must not move one arm. If one still is when the patience is over, there is no child.
+  void start(const process::Patience& patience) {
+    std::optional<Hold> hold;
+    if (const std::string lock = recorded(kLock); !options_.repeatable && !lock.empty()) {
+      hold = Hold::take(lock, patience);
+      if (!hold) return;
+    }
+    child_ =
+        std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), hold ? &hold->descriptor() : nullptr);
+    if (hold) hold->note(child_->pid());
+  }
+
+  process::Answer left_behind() const {
+    if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
+    process::Answer answer =
+        failed("of an earlier attempt, process " + Hold::noted(recorded(kLock)) + ", still runs: end it");
+    answer.contact.ends_run = true;
+    return answer;
   }
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
@@ -135,8 +164,10 @@ class Process final : public Backend {
       case Child::Heard::interrupted:
         break;
     }
-    return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}};
+    return interrupted();
   }
+
+  static process::Answer interrupted() { return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}}; }
 
   process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) const {
     return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what, !may_restart()}};
