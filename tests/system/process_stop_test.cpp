@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Programs that move something: what ends the run, and how it goes on.
+// Programs that move something: who ends the run, who is started again, and what becomes of taps when all is killed.
+// PALPATE_KILLS says how many kills (tests/stress.sh: a hundred).
+#include "record/json.hpp"
+#include "record/tap_row.hpp"
 #include "support/programs.hpp"
 #include "system/shipped.hpp"
+
+#include <palpate/random.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <map>
 #include <sstream>
+#include <thread>
 
 namespace palpate {
 namespace {
@@ -28,6 +35,7 @@ notes = os.open("notes.txt", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
 def note(text):
     os.write(notes, (text + "\n").encode())
 
+parent = os.getppid()
 note("begin")
 )";
 
@@ -134,6 +142,111 @@ time.sleep(60)  # and does not care that its stdin has ended
   EXPECT_EQ(noted()["begin"], 1);
   EXPECT_TRUE(test::running(std::stol(pid)));
   ::kill(static_cast<pid_t>(std::stol(pid)), SIGKILL);
+}
+
+int wanted_kills() {
+  const char* text = std::getenv("PALPATE_KILLS");
+  return text != nullptr ? std::atoi(text) : 8;
+}
+
+/// A run that is killed again and again, begun or carried on.
+class AKilledRun : public ARobotsRun {
+ protected:
+  /// Taps that the program makes no sooner than the test allows, so that the run cannot end before it was killed.
+  static constexpr const char* kBody = R"(
+import fcntl
+arm = open("arm", "w")
+try:
+    fcntl.flock(arm, fcntl.LOCK_EX | fcntl.LOCK_NB)
+except OSError:
+    note("two programs at once")
+for ask in asks():
+    note(f"tap {ask['tap']}")
+    time.sleep(0.004)
+    while os.stat("allowed").st_size < ask["tap"] and os.getppid() == parent: time.sleep(0.001)
+    try:
+        contact(ask)
+    except BrokenPipeError:
+        break  # its run is gone
+time.sleep(0.05)  # an arm takes time to stop
+note("end")
+)";
+
+  void allow(std::size_t taps) const {
+    const fs::path file = folder_.path() / "allowed";
+    if (!fs::exists(file)) folder_.write("allowed", "");
+    if (taps > fs::file_size(file)) fs::resize_file(file, taps);
+  }
+
+  std::size_t last_asked() const {
+    const std::string text = notes();
+    const auto place = text.rfind("tap ");
+    return place == std::string::npos ? 0 : std::stoul(text.substr(place + 4));
+  }
+
+  /// The run as it is to be begun, or to be carried on if there is something to carry on.
+  std::vector<std::string> next_words(const std::vector<std::string>& begin) const {
+    const fs::path runs = folder_.path() / "runs";
+    if (!fs::exists(runs) || !fs::exists(directory() / "config.yaml")) return begin;
+    return {"resume", directory().string(), "--quiet"};
+  }
+};
+
+TEST_F(AKilledRun, AsksForNoTapTwiceAndLosesNone) {
+  const int kills = wanted_kills();
+  constexpr int kMost = 3;  // taps that are allowed before the next kill; one more is asked for
+  const int taps = (kMost + 1) * (kills + 1);
+  const std::vector<std::string> begin = run(kBody, {"taps=" + std::to_string(taps), "acquisition=random"});
+  Random random(11, "process_stop_test");
+  allow(0);
+  for (int i = 0; i < kills; ++i) {
+    std::vector<std::string> words = next_words(begin);
+    words.insert(words.begin(), test::program_file().string());
+    const int begun = noted()["begin"];
+    const std::size_t asked = last_asked();
+    test::Child child(words, folder_.path());
+    // A quarter of the kills comes while it starts, a quarter once its program has begun, the others once it taps.
+    const double when = random.uniform();
+    if (when > 0.25) {
+      ASSERT_TRUE(eventually([&] { return noted()["begin"] > begun; })) << child.err();
+    }
+    if (when > 0.5) {
+      ASSERT_TRUE(eventually([&] { return last_asked() > asked; })) << child.err();
+    }
+    allow(last_asked() + static_cast<std::size_t>(random.uniform() * (kMost + 1)));
+    // The very subject is a kill at a moment that nothing announces.
+    std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(random.uniform() * 30'000)));
+    ASSERT_TRUE(child.running()) << "it was to be killed, not to end: " << child.err();
+    child.signal(SIGKILL);
+    EXPECT_EQ(child.wait().status, 128 + SIGKILL);
+  }
+  allow(static_cast<std::size_t>(taps));
+  const Ended last = palpate(next_words(begin));
+  ASSERT_EQ(last.status, 0) << last.err;
+
+  std::map<std::string, int> made = noted();
+  EXPECT_EQ(made["two programs at once"], 0);
+  EXPECT_EQ(made["end"], made["begin"]) << "each program saw the end of its run";
+  int unknown = 0;
+  int contacts = 0;
+  for (const Row& row : read_json_lines(directory() / "taps.jsonl").rows) {
+    if (is_intent(row)) continue;
+    const int number = contacts + unknown + 1;
+    EXPECT_EQ(*row.find("tap"), Scalar{std::int64_t{number}}) << "none lost, none twice";
+    const bool touched = *row.find("outcome") == Scalar{std::string("contact")};
+    EXPECT_TRUE(touched || *row.find("outcome") == Scalar{std::string("unknown")});
+    const int times = made["tap " + std::to_string(number)];
+    EXPECT_LE(times, 1) << "tap " << number << " was asked for more than once";
+    EXPECT_GE(times, touched ? 1 : 0) << "tap " << number << " is recorded, but nobody was asked for it";
+    (touched ? contacts : unknown) += 1;
+  }
+  EXPECT_EQ(contacts + unknown, taps);
+  EXPECT_LE(unknown, kills) << "at most one a kill";
+  EXPECT_GE(unknown, 1) << "no kill came within a tap";
+  RecordProperty("kills", kills);
+  RecordProperty("contacts", contacts);
+  RecordProperty("unknown", unknown);
+  RecordProperty("programs", made["begin"]);
 }
 
 }  // namespace
