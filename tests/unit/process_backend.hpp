@@ -28,9 +28,15 @@ class ProcessBackend : public testing::Test {
     return "python3 -SE '" + folder_.write(name, python(body)).string() + "'";
   }
 
-  std::shared_ptr<Backend> start(const std::string& command, const std::string& more = "") {
+  /// With nothing but what `more` says beside the command.
+  std::shared_ptr<Backend> plain(const std::string& command, const std::string& more = "") {
     return context_.create<Backend>(
         choose(shared_host(), "backend", "process", "{command: " + yaml_quoted(command) + more + "}"));
+  }
+
+  /// One that starts its program again whenever it ended.
+  std::shared_ptr<Backend> start(const std::string& command, const std::string& more = "") {
+    return plain(command, ", restart: true" + more);
   }
 
   std::shared_ptr<Backend> open(const std::string& body, const std::string& more = "") {
@@ -60,6 +66,7 @@ class ProcessBackend : public testing::Test {
     EXPECT_EQ(contact.height, 0.07);
     EXPECT_EQ(contact.seconds, 5.5);
     EXPECT_EQ(contact.reason, "");
+    EXPECT_FALSE(contact.ends_run);
   }
 
   static void expect_failure(const Contact& contact, Outcome outcome, const std::string& reason) {

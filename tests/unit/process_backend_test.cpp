@@ -60,6 +60,42 @@ TEST_F(ProcessBackend, EveryFailureOfTheProgramsOwnKeepsItsOutcomeAndReason) {
   }
 }
 
+TEST_F(ProcessBackend, AProgramEndsTheRunWithAReasonWhateverBecameOfItsTap) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    if ask['tap'] == 1: contact(ask, ends_run=False)\n"
+      "    elif ask['tap'] == 2: contact(ask, ends_run=None)\n"
+      "    elif ask['tap'] == 3: contact(ask, ends_run=True, reason='it\\nholds')\n"
+      "    else: tell(ask, outcome='unreachable', reason='it holds', seconds=2, ends_run=True)");
+  expect_contact(tap(*backend, 1));
+  expect_contact(tap(*backend, 2));
+  const Contact touched = tap(*backend, 3);
+  EXPECT_TRUE(touched.ends_run);
+  EXPECT_EQ(touched.outcome, Outcome::contact);
+  EXPECT_EQ(touched.height, 0.07);
+  EXPECT_EQ(touched.reason, "it holds");
+  const Contact failed = tap(*backend, 4);
+  EXPECT_TRUE(failed.ends_run);
+  expect_failure(failed, Outcome::unreachable, "it holds");
+  EXPECT_EQ(failed.seconds, 2.0);
+}
+
+TEST_F(ProcessBackend, AStopThatIsBadlyToldIsAStopAllTheSame) {
+  const auto backend = open(
+      "for ask in asks():\n"
+      "    if ask['tap'] == 1: tell(ask, outcome='abort', seconds=1, ends_run=True, reason='a protective stop')\n"
+      "    elif ask['tap'] == 2: tell(ask, outcome='aborted', seconds=1, ends_run='true', reason='a protective stop')\n"
+      "    elif ask['tap'] == 3: tell({'tap': 1}, outcome='aborted', seconds=1, ends_run=True, reason='a stop')\n"
+      "    elif ask['tap'] == 4: tell(ask, outcome='abort', seconds=1, ends_run=False)\n"
+      "    else: tell(ask, outcome='abort', seconds=1)");
+  for (int number = 1; number <= 5; ++number) {
+    const Contact contact = tap(*backend, number);
+    EXPECT_EQ(contact.outcome, Outcome::aborted);
+    EXPECT_THAT(contact.reason, StartsWith("the answer "));
+    EXPECT_EQ(contact.ends_run, number <= 3) << contact.reason;
+  }
+}
+
 TEST_F(ProcessBackend, ControlCharactersAndLengthOfAReasonDoNotReachTheRecord) {
   const Contact contact =
       second_tap(R"(tell(ask, outcome='no_contact', reason='a\nb\x1b[2J\x7f\x9b' + '\u00e9' * 300, seconds=1))", true);
@@ -161,12 +197,14 @@ TEST_F(ProcessBackend, AClosedStdinFailsTheTapAndRaisesNoSigpipe) {
 
 TEST_F(ProcessBackend, InterruptedWhileItWaitsTheTapIsAbortedAndTheProgramEnded) {
   const auto backend =
-      open("for ask in asks():\n    print(os.getpid(), file=sys.stderr, flush=True)\n    time.sleep(60)");
+      plain(command("for ask in asks():\n    print(os.getpid(), file=sys.stderr, flush=True)\n    time.sleep(60)"));
   std::thread user([this] {
     eventually([this] { return !diary().empty(); });
     interrupted_ = true;
   });
-  expect_failure(tap(*backend, 1), Outcome::aborted, "interrupted");
+  const Contact contact = tap(*backend, 1);
+  expect_failure(contact, Outcome::aborted, "interrupted");
+  EXPECT_FALSE(contact.ends_run) << "the user's wish is no fault";
   user.join();
   EXPECT_FALSE(running(std::stol(diary())));
 }
@@ -194,8 +232,9 @@ TEST_F(ProcessBackend, AnEndIsToldThoughWhatTheProgramStartedHoldsItsStdout) {
 
 TEST_F(ProcessBackend, TwoBackendsHoldNoneOfEachOthersPipes) {
   const std::string body = "for ask in asks(): contact(ask)\nprint('end of input', file=sys.stderr)";
-  auto first = open(body);
-  const auto second = open(body);
+  // Of a record's programs that are not repeatable there would be but one.
+  auto first = open(body, ", repeatable: true");
+  const auto second = open(body, ", repeatable: true");
   expect_contact(tap(*first, 1));
   expect_contact(tap(*second, 1));
   first.reset();  // would have to be killed, and say nothing, if the second program held its stdin
@@ -203,12 +242,14 @@ TEST_F(ProcessBackend, TwoBackendsHoldNoneOfEachOthersPipes) {
   expect_contact(tap(*second, 2));
 }
 
-TEST_F(ProcessBackend, NoOpenFileOfOursReachesTheProgram) {
+TEST_F(ProcessBackend, NoOpenFileOfOursReachesTheProgramButItsLock) {
   const int ours = ::open("/dev/null", O_RDONLY);  // NOLINT: without O_CLOEXEC on purpose
-  const auto backend = open(
-      "files = sorted(os.listdir('/proc/self/fd'))\n"
-      "for ask in asks(): tell(ask, outcome='aborted', seconds=0, reason=' '.join(files))");
-  EXPECT_EQ(tap(*backend, 1).reason, "0 1 2 3") << "3 is the list itself";
+  const std::string list =
+      "files = [f'/proc/self/fd/{n}' for n in range(2, 10)]\n"
+      "names = ' '.join(os.path.basename(os.readlink(file)) for file in files if os.path.exists(file))\n"
+      "for ask in asks(): tell(ask, outcome='aborted', seconds=0, reason=names)";
+  EXPECT_EQ(tap(*open(list), 1).reason, "process.stderr.txt process.lock");
+  EXPECT_EQ(tap(*open(list, ", repeatable: true"), 1).reason, "process.stderr.txt");
   ::close(ours);
 }
 

@@ -23,20 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often a wait looks whether the user wants to stop.
-constexpr std::chrono::milliseconds kGlance{20};
-
 [[noreturn]] void fail(const std::string& what, int number) {
   throw Error("command", what + ": " + std::strerror(number), {}, Error::Kind::run);
-}
-
-/// Above the standard ones even where this process was started without them: dup2 in the child must not hit its
-/// sources.
-Descriptor above_standard(int number) {
-  if (number < 0) fail("cannot open a pipe or file", errno);
-  Descriptor low(number);
-  if (number > STDERR_FILENO) return low;
-  return above_standard(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
 }
 
 struct Pipe {
@@ -75,14 +63,13 @@ class Start {
   Start(const Start&) = delete;
   Start& operator=(const Start&) = delete;
 
-  void standard(int number, const Descriptor& as) {
-    ::posix_spawn_file_actions_adddup2(&actions_, as.number(), number);
-  }
+  /// Hands `file` over under the next number, from that of stdin on.
+  void hand_over(const Descriptor& file) { ::posix_spawn_file_actions_adddup2(&actions_, file.number(), ++inherited_); }
 
   /// The process, or -1 with errno set.
   pid_t operator()(const std::string& file, const std::vector<std::string>& words) {
     // Files that the program holds open without the flag, as streams of the standard library do.
-    ::posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+    ::posix_spawn_file_actions_addclosefrom_np(&actions_, inherited_ + 1);
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
@@ -92,6 +79,7 @@ class Start {
   }
 
  private:
+  int inherited_ = -1;  ///< the last number
   posix_spawn_file_actions_t actions_;
   posix_spawnattr_t attributes_;
 };
@@ -133,16 +121,26 @@ void Descriptor::close() {
   number_ = -1;
 }
 
-Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary) : diary_(diary) {
+Descriptor above_standard(int number) {
+  if (number < 0) fail("cannot open a pipe or file", errno);
+  Descriptor low(number);
+  if (number > STDERR_FILENO) return low;
+  return above_standard(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+}
+
+Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
+             const Descriptor* kept)
+    : diary_(diary) {
   Pipe in;
   Pipe out;
   const Descriptor err = above_standard(
       ::open(diary.empty() ? "/dev/null" : diary.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
   if (!diary.empty()) diary_begin_ = ::lseek(err.number(), 0, SEEK_END);
   Start start;
-  start.standard(STDIN_FILENO, in.to_read);
-  start.standard(STDOUT_FILENO, out.to_write);
-  start.standard(STDERR_FILENO, err);
+  start.hand_over(in.to_read);
+  start.hand_over(out.to_write);
+  start.hand_over(err);
+  if (kept != nullptr) start.hand_over(*kept);
   pid_ = start(file, words);
   if (pid_ < 0) fail("cannot start '" + file + "'", errno);
   input_ = std::move(in.to_write);
@@ -171,7 +169,7 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
       continue;
     }
     if (errno != EAGAIN && errno != EINTR) return Heard::ended;
-    if (patience.interrupted != nullptr && patience.interrupted->load()) return Heard::interrupted;
+    if (patience.broken_off()) return Heard::interrupted;
     if (!glance(input_, POLLOUT, patience.until) && Clock::now() >= patience.until) return Heard::late;
   }
   return Heard::line;
@@ -186,7 +184,7 @@ Child::Heard Child::hear(std::string& line, const Patience& patience) {
       heard_.erase(0, end + 1);
       return Heard::line;
     }
-    if (patience.interrupted != nullptr && patience.interrupted->load()) return Heard::interrupted;
+    if (patience.broken_off()) return Heard::interrupted;
     // Asked before the look at the pipe: what it said before it ended is then already in there.
     const bool over = gone();
     if (glance(output_, POLLIN, over ? Clock::now() : patience.until)) {

@@ -33,15 +33,25 @@ class Descriptor {
   int number_ = -1;
 };
 
+/// Takes over `number`, what opening a file gave, under one above the standard ones even where this process was started
+/// without them: a child gets its own standard files first, and they must not hit what it gets after them. Throws Error
+/// with the reason in errno if `number` is negative.
+Descriptor above_standard(int number);
+
+/// How often a wait looks whether the user wants to stop.
+constexpr std::chrono::milliseconds kGlance{20};
+
 /// Until when to wait, and what breaks the wait off.
 struct Patience {
   std::chrono::steady_clock::time_point until;
   const std::atomic<bool>* interrupted = nullptr;  ///< may be null
+
+  bool broken_off() const { return interrupted != nullptr && interrupted->load(); }
 };
 
 /// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
 /// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
-/// directory, and of open files only the three standard ones.
+/// directory, and of open files the three standard ones and at most one more.
 class Child {
  public:
   /// A longer line is refused: a program that never ends its line must not fill the memory.
@@ -52,8 +62,10 @@ class Child {
   enum class Heard { line, ended, late, interrupted, too_long };
 
   /// Starts `file` with the arguments `words`, of which the first is its name. Its stderr is appended to `diary`, or
-  /// dropped if that is empty. Throws Error when it cannot be started.
-  Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary);
+  /// dropped if that is empty. It inherits `kept` (may be null) as the file after the standard ones. Throws Error when
+  /// it cannot be started.
+  Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
+        const Descriptor* kept = nullptr);
   /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM, then SIGKILL, each to the whole group.
   /// Afterwards nothing of it is left.
   ~Child();
@@ -67,6 +79,8 @@ class Child {
   /// How it ended, for people: "ended with exit status 3, its last words: ...". Waits up to kGrace for that; "closed
   /// its stdin or stdout" if it is still there.
   std::string fate();
+
+  pid_t pid() const { return pid_; }
 
  private:
   bool gone() const;

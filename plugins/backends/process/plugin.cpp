@@ -3,27 +3,32 @@
 //
 // One rule covers all that can go wrong. An answer that carries the number of the tap keeps the program, even if its
 // fields are refused. After anything else (no answer in time, a line that is no answer, a line too many, an end) nobody
-// knows what the next line would belong to or whether the arm still moves: the tap fails, the program is ended before
-// tap() returns, and the next tap starts it again. So no late answer is ever taken for another tap, each trouble costs
-// one tap, and each is told in the record.
+// knows what the next line would belong to or whether the arm still moves: the tap fails and the program is ended
+// before tap() returns. If taps are repeatable, or the config says `restart`, the next tap starts it again; else the
+// run ends, for somebody to look at the arm. So no late answer is ever taken for another tap, and each trouble is told
+// in the record.
 #include "process/child.hpp"
 #include "process/command.hpp"
+#include "process/hold.hpp"
 #include "process/protocol.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 namespace palpate::backends {
 
 using process::Child;
+using process::Hold;
 
 struct ProcessOptions : Options {
   std::string command;
   double deadline = 90.0;
   double start = 30.0;
   bool repeatable = false;
+  bool restart = false;
   bool scene_is_truth = false;
   tapping::MotionOptions motion;
 
@@ -46,6 +51,10 @@ struct ProcessOptions : Options {
     fields.flag(repeatable, Field("repeatable",
                                   "a tap can be made again at no risk and is answered alike: taps are "
                                   "not announced and synced before they move"));
+    fields.flag(restart,
+                Field("restart",
+                      "a program that ended, or had to be ended, is started again for the next tap though taps "
+                      "are not repeatable; else the run fails then, for somebody to look at the arm"));
     fields.flag(scene_is_truth,
                 Field("scene_is_truth", "the scene of the config is what the program taps: compute the errors"));
     fields.section(motion, Field("motion", "the tapping motion, sent along in SI units"));
@@ -70,15 +79,13 @@ class Process final : public Backend {
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();
     double seconds = options_.deadline;
+    // Not before the first tap: the folder of the record exists only from then on.
     if (!child_) {
-      // Not before the first tap: the folder of the record exists only from then on.
-      child_ = std::make_unique<Child>(file_, words_, diary());
+      start(patience(begin, options_.start));
       seconds += options_.start;
     }
-    const process::Patience patience{begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)),
-                                     context_.interrupted};
-    process::Answer answer = ask(request, patience);
-    if (!answer.in_step) child_.reset();
+    process::Answer answer = child_ ? ask(request, patience(begin, seconds)) : left_behind();
+    if (!answer.in_step) end_program(answer.contact);
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
   }
@@ -91,12 +98,49 @@ class Process final : public Backend {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
 
-  std::string diary() const {
-    return context_.directory.empty() ? std::string() : context_.directory + "/process.stderr.txt";
+  static constexpr const char* kLock = "process.lock";
+
+  process::Patience patience(Clock::time_point begin, double seconds) const {
+    return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
+  }
+
+  /// A file in the folder of the record; empty where none is kept.
+  std::string recorded(const char* name) const {
+    return context_.directory.empty() ? std::string() : context_.directory + "/" + name;
+  }
+
+  /// Starts the program, but where taps are not repeatable only once none of an earlier attempt is there any more: two
+  /// must not move one arm. If one still is when the patience is over, there is no child.
+  void start(const process::Patience& patience) {
+    std::optional<Hold> hold;
+    if (const std::string lock = recorded(kLock); !options_.repeatable && !lock.empty()) {
+      hold = Hold::take(lock, patience);
+      if (!hold) return;
+    }
+    child_ =
+        std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), hold ? &hold->descriptor() : nullptr);
+    if (hold) hold->note(child_->pid());
+  }
+
+  process::Answer left_behind() const {
+    if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
+    process::Answer answer =
+        failed("of an earlier attempt, process " + Hold::noted(recorded(kLock)) + ", still runs: end it");
+    answer.contact.ends_run = true;
+    return answer;
+  }
+
+  bool may_restart() const { return options_.repeatable || options_.restart; }
+
+  /// Of an answer after which nobody knows what the program does.
+  void end_program(Contact& contact) {
+    child_.reset();
+    if (contact.ends_run) contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
   }
 
   process::Answer ask(const TapRequest& request, const process::Patience& patience) {
     std::string line;
+    process::Answer answer;
     // Whatever there is before the ask is no answer to it, and then the arm had better not move.
     Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
     if (heard == Child::Heard::line) return failed("said more than its answer: " + process::shown(line));
@@ -106,7 +150,9 @@ class Process final : public Backend {
     }
     switch (heard) {
       case Child::Heard::line:
-        return process::read_answer(line, request.number);
+        answer = process::read_answer(line, request.number);
+        if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
+        return answer;
       case Child::Heard::ended:
         return failed(child_->fate());
       case Child::Heard::late:
@@ -118,11 +164,13 @@ class Process final : public Backend {
       case Child::Heard::interrupted:
         break;
     }
-    return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}};
+    return interrupted();
   }
 
-  static process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) {
-    return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what}};
+  static process::Answer interrupted() { return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}}; }
+
+  process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) const {
+    return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what, !may_restart()}};
   }
 
   Options options_;

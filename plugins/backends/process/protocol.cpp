@@ -101,7 +101,8 @@ class Reader {
  public:
   explicit Reader(const Json& answer) : answer_(answer) {
     for (const auto& [key, value] : answer.items()) {
-      static const std::array<const char*, 6> kKnown{"tap", "outcome", "height", "force", "seconds", "reason"};
+      static const std::array<const char*, 7> kKnown{"tap",     "outcome", "height",  "force",
+                                                     "seconds", "reason",  "ends_run"};
       if (std::find(kKnown.begin(), kKnown.end(), key) == kKnown.end()) refuse("has an unknown field " + shown(key));
     }
   }
@@ -122,6 +123,19 @@ class Reader {
     if (!has(field)) return refuse(lacks(field)), "";
     if (!answer_[field].is_string()) return refuse(bad(field, "that is not a text")), "";
     return answer_[field].get<std::string>();
+  }
+
+  bool flag(const char* field) {
+    if (!has(field)) return false;
+    if (!answer_[field].is_boolean()) return refuse(bad(field, "that is neither true nor false")), false;
+    return answer_[field].get<bool>();
+  }
+
+  /// Words for the record, at least one.
+  std::string reason() {
+    std::string words = cleaned(text("reason"));
+    if (words.find_first_not_of(' ') == std::string::npos) refuse("has no words in 'reason'");
+    return words;
   }
 
   Outcome outcome() {
@@ -154,15 +168,20 @@ Contact read_contact(Reader& reader) {
   if (out.outcome == Outcome::contact) {
     out.height = reader.number("height", -kFarthestHeight, kFarthestHeight, "more than 10 m from 0: it is in metres");
     if (reader.has("force")) out.force = reader.number("force", 0.0, kAny, "that is negative");
-  } else {
-    out.reason = cleaned(reader.text("reason"));
-    if (out.reason.find_first_not_of(' ') == std::string::npos) reader.refuse("has no words in 'reason'");
   }
+  out.ends_run = reader.flag("ends_run");
+  if (out.outcome != Outcome::contact || out.ends_run) out.reason = reader.reason();
   return out;
 }
 
-Answer refused(const std::string& line, const std::string& why, bool in_step) {
-  return {in_step, false, {Outcome::aborted, 0.0, 0.0, 0.0, "the answer " + why + ": " + shown(line)}};
+/// Whether an answer, however wrong the rest of it, wants the run to end. A stop that is badly told is a stop.
+bool wants_end(const Json& answer) {
+  const auto end = answer.find("ends_run");
+  return end != answer.end() && !end->is_null() && *end != Json(false);
+}
+
+Answer refused(const std::string& line, const std::string& why, bool in_step, bool ends_run) {
+  return {in_step, false, {Outcome::aborted, 0.0, 0.0, 0.0, "the answer " + why + ": " + shown(line), ends_run}};
 }
 
 }  // namespace
@@ -193,14 +212,15 @@ Answer read_answer(const std::string& line, int tap) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
-    return refused(line, python ? "is not JSON, which has no NaN and no Infinity" : "is not JSON", false);
+    return refused(line, python ? "is not JSON, which has no NaN and no Infinity" : "is not JSON", false, false);
   }
-  if (!json.is_object()) return refused(line, "is not a JSON object", false);
-  if (!json.contains("tap")) return refused(line, "lacks 'tap'", false);
-  if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false);
+  if (!json.is_object()) return refused(line, "is not a JSON object", false, false);
+  const bool ends_run = wants_end(json);
+  if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
+  if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false, ends_run);
   Reader reader(json);
   Contact contact = read_contact(reader);
-  if (!reader.trouble.empty()) return refused(line, reader.trouble, true);
+  if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
   return {true, true, std::move(contact)};
 }
 

@@ -22,6 +22,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
 struct Answer {
   bool in_step = false;   ///< it carries the number of the tap: the program and we speak of the same one
   bool accepted = false;  ///< and all of it is valid: `contact` is what the program says, else a failed tap
+  /// Ends the run if the program says so, even in an answer that is refused.
   Contact contact;
 };
 Answer read_answer(const std::string& line, int tap);

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// Programs that move something: who ends the run, who is started again, and what becomes of taps when all is killed.
+// PALPATE_KILLS says how many kills (tests/stress.sh: a hundred).
+#include "record/json.hpp"
+#include "record/tap_row.hpp"
+#include "support/programs.hpp"
+#include "system/shipped.hpp"
+
+#include <palpate/random.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <thread>
+
+namespace palpate {
+namespace {
+
+using test::Ended;
+using test::eventually;
+using test::text_of;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+/// A program that notes its start and end and each tap that it is asked for, before anything else, in notes.txt.
+constexpr const char* kNotes = R"(
+notes = os.open("notes.txt", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+
+def note(text):
+    os.write(notes, (text + "\n").encode())
+
+parent = os.getppid()
+note("begin")
+)";
+
+class ARobotsRun : public testing::Test {
+ protected:
+  /// The words of a run on a program of this body, behind kNotes, whose taps cannot be repeated.
+  std::vector<std::string> run(const std::string& body, const std::vector<std::string>& more = {}) const {
+    const std::string program = folder_.write("program.py", test::python(kNotes + body)).string();
+    std::vector<std::string> out{"run", test::config("process.yaml"), "backend.command=python3 -SE '" + program + "'",
+                                 "backend.repeatable=false", "--quiet"};
+    out.insert(out.end(), more.begin(), more.end());
+    return out;
+  }
+
+  Ended palpate(const std::vector<std::string>& words) const { return test::palpate(words, folder_.path()); }
+  Ended resume() const { return palpate({"resume", directory().string(), "--retry-failed", "--quiet"}); }
+  fs::path directory() const { return test::only_run(folder_.path() / "runs"); }
+
+  std::string notes() const {
+    const fs::path file = folder_.path() / "notes.txt";
+    return fs::exists(file) ? text_of(file) : "";
+  }
+
+  /// How often each line is in the notes.
+  std::map<std::string, int> noted() const {
+    std::map<std::string, int> out;
+    std::istringstream in(notes());
+    for (std::string line; std::getline(in, line);) ++out[line];
+    return out;
+  }
+
+  std::vector<std::string> outcomes() const {
+    std::vector<std::string> out;
+    for (const test::Cells& row : test::csv_rows(text_of(directory() / "taps.csv"))) out.push_back(row.at("outcome"));
+    return out;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ARobotsRun, EndsWithTheProgramsReasonAndGoesOnBehindTheRecordedTaps) {
+  const Ended ended = palpate(run(R"(
+for ask in asks():
+    note(f"tap {ask['tap']}")
+    if ask["tap"] == 4 and not os.path.exists("cleared"):
+        tell(ask, outcome="aborted", seconds=2, ends_run=True, reason="protective stop:\nfree the arm")
+    else:
+        contact(ask)
+)",
+                                  {"taps=7"}));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_EQ(ended.err, "backend/process: protective stop: free the arm\n");
+  EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\ntap 4\n") << "it is asked for no other tap";
+  const std::string before = text_of(directory() / "taps.jsonl");
+  EXPECT_THAT(before, HasSubstr(R"("outcome": "aborted", "reason": "protective stop: free the arm")"));
+  EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
+
+  EXPECT_EQ(palpate({"resume", directory().string()}).status, 1) << "somebody has to say so";
+  folder_.write("cleared", "");
+  const Ended resumed = resume();
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(text_of(directory() / "taps.jsonl"), StartsWith(before));
+  EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\ntap 4\nbegin\ntap 5\ntap 6\ntap 7\n");
+  const std::vector<std::string> expected{"contact", "contact", "contact", "aborted", "contact", "contact", "contact"};
+  EXPECT_EQ(outcomes(), expected);
+}
+
+TEST_F(ARobotsRun, EndsWhenItsProgramIsKilledWithoutStartingAnother) {
+  const std::string body = R"(
+for ask in asks():
+    note(f"tap {ask['tap']}")
+    if ask["tap"] == 3 and not os.path.exists("cleared"): os.kill(os.getpid(), 9)
+    contact(ask)
+)";
+  const Ended ended = palpate(run(body, {"taps=5"}));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, StartsWith("backend/process: the program was ended by signal 9 (Killed); see to the robot"));
+  EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\n");
+  folder_.write("cleared", "");
+  EXPECT_EQ(resume().status, 0);
+  EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\nbegin\ntap 4\ntap 5\n");
+}
+
+TEST_F(ARobotsRun, StartsNoSecondProgramBesideOneThatOutlivedItsRun) {
+  std::vector<std::string> words = run(R"(
+note(str(os.getpid()))
+for ask in asks(): contact(ask)
+time.sleep(60)  # and does not care that its stdin has ended
+)",
+                                       {"taps=100000", "backend.start=300ms", "acquisition=random"});
+  words.insert(words.begin(), test::program_file().string());
+  {
+    test::Child child(words, folder_.path());
+    ASSERT_TRUE(eventually([&] { return test::lines(notes()) == 2; })) << child.err();
+    ASSERT_TRUE(eventually([&] { return test::lines(text_of(directory() / "taps.jsonl")) > 4; }));
+    child.signal(SIGKILL);
+    child.wait();
+  }
+  const std::string pid = notes().substr(6, notes().size() - 7);
+  ASSERT_TRUE(test::running(std::stol(pid)));
+  const Ended refused = resume();
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("the program of an earlier attempt, process " + pid + ", still runs: end it"));
+  EXPECT_EQ(noted()["begin"], 1);
+  EXPECT_TRUE(test::running(std::stol(pid)));
+  ::kill(static_cast<pid_t>(std::stol(pid)), SIGKILL);
+}
+
+int wanted_kills() {
+  const char* text = std::getenv("PALPATE_KILLS");
+  return text != nullptr ? std::atoi(text) : 8;
+}
+
+/// A run that is killed again and again, begun or carried on.
+class AKilledRun : public ARobotsRun {
+ protected:
+  /// Taps that the program makes no sooner than the test allows, so that the run cannot end before it was killed.
+  static constexpr const char* kBody = R"(
+import fcntl
+arm = open("arm", "w")
+try:
+    fcntl.flock(arm, fcntl.LOCK_EX | fcntl.LOCK_NB)
+except OSError:
+    note("two programs at once")
+for ask in asks():
+    note(f"tap {ask['tap']}")
+    time.sleep(0.004)
+    while os.stat("allowed").st_size < ask["tap"] and os.getppid() == parent: time.sleep(0.001)
+    try:
+        contact(ask)
+    except BrokenPipeError:
+        break  # its run is gone
+time.sleep(0.05)  # an arm takes time to stop
+note("end")
+)";
+
+  void allow(std::size_t taps) const {
+    const fs::path file = folder_.path() / "allowed";
+    if (!fs::exists(file)) folder_.write("allowed", "");
+    if (taps > fs::file_size(file)) fs::resize_file(file, taps);
+  }
+
+  std::size_t last_asked() const {
+    const std::string text = notes();
+    const auto place = text.rfind("tap ");
+    return place == std::string::npos ? 0 : std::stoul(text.substr(place + 4));
+  }
+
+  /// The run as it is to be begun, or to be carried on if there is something to carry on.
+  std::vector<std::string> next_words(const std::vector<std::string>& begin) const {
+    const fs::path runs = folder_.path() / "runs";
+    if (!fs::exists(runs) || !fs::exists(directory() / "config.yaml")) return begin;
+    return {"resume", directory().string(), "--quiet"};
+  }
+};
+
+TEST_F(AKilledRun, AsksForNoTapTwiceAndLosesNone) {
+  const int kills = wanted_kills();
+  constexpr int kMost = 3;  // taps that are allowed before the next kill; one more is asked for
+  const int taps = (kMost + 1) * (kills + 1);
+  const std::vector<std::string> begin = run(kBody, {"taps=" + std::to_string(taps), "acquisition=random"});
+  Random random(11, "process_stop_test");
+  allow(0);
+  for (int i = 0; i < kills; ++i) {
+    std::vector<std::string> words = next_words(begin);
+    words.insert(words.begin(), test::program_file().string());
+    const int begun = noted()["begin"];
+    const std::size_t asked = last_asked();
+    test::Child child(words, folder_.path());
+    // A quarter of the kills comes while it starts, a quarter once its program has begun, the others once it taps.
+    const double when = random.uniform();
+    if (when > 0.25) {
+      ASSERT_TRUE(eventually([&] { return noted()["begin"] > begun; })) << child.err();
+    }
+    if (when > 0.5) {
+      ASSERT_TRUE(eventually([&] { return last_asked() > asked; })) << child.err();
+    }
+    allow(last_asked() + static_cast<std::size_t>(random.uniform() * (kMost + 1)));
+    // The very subject is a kill at a moment that nothing announces.
+    std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(random.uniform() * 30'000)));
+    ASSERT_TRUE(child.running()) << "it was to be killed, not to end: " << child.err();
+    child.signal(SIGKILL);
+    EXPECT_EQ(child.wait().status, 128 + SIGKILL);
+  }
+  allow(static_cast<std::size_t>(taps));
+  const Ended last = palpate(next_words(begin));
+  ASSERT_EQ(last.status, 0) << last.err;
+
+  std::map<std::string, int> made = noted();
+  EXPECT_EQ(made["two programs at once"], 0);
+  EXPECT_EQ(made["end"], made["begin"]) << "each program saw the end of its run";
+  int unknown = 0;
+  int contacts = 0;
+  for (const Row& row : read_json_lines(directory() / "taps.jsonl").rows) {
+    if (is_intent(row)) continue;
+    const int number = contacts + unknown + 1;
+    EXPECT_EQ(*row.find("tap"), Scalar{std::int64_t{number}}) << "none lost, none twice";
+    const bool touched = *row.find("outcome") == Scalar{std::string("contact")};
+    EXPECT_TRUE(touched || *row.find("outcome") == Scalar{std::string("unknown")});
+    const int times = made["tap " + std::to_string(number)];
+    EXPECT_LE(times, 1) << "tap " << number << " was asked for more than once";
+    EXPECT_GE(times, touched ? 1 : 0) << "tap " << number << " is recorded, but nobody was asked for it";
+    (touched ? contacts : unknown) += 1;
+  }
+  EXPECT_EQ(contacts + unknown, taps);
+  EXPECT_LE(unknown, kills) << "at most one a kill";
+  EXPECT_GE(unknown, 1) << "no kill came within a tap";
+  RecordProperty("kills", kills);
+  RecordProperty("contacts", contacts);
+  RecordProperty("unknown", unknown);
+  RecordProperty("programs", made["begin"]);
+}
+
+}  // namespace
+}  // namespace palpate

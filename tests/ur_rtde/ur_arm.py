@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""The arm behind the stand-ins for ur_rtde: it moves in time of its own, one step a look at its clock, so that a test
+takes as long as the machine likes. UR_LOG names the file in which it notes what is done to it, UR_FAULT what goes wrong:
+`KIND@N` in its Nth move down, counted over all programs; KIND one of protective, emergency, lost, frozen, script, spike,
+missing, pushed, sticky, slow. And `mode`, from the start."""
+import math
+import os
+import time
+
+STEP = 0.002  # s, 500 Hz
+STIFFNESS = 5000.0  # N/m
+CORNER = (0.4, -0.1, 0.05)  # of the area, m
+AREA = 0.23
+RADIUS = 0.06  # of the dome in its middle
+DOWN = [math.pi, 0.0, 0.0]
+
+
+def surface(x, y):
+    """Height of desk and dome in the base frame."""
+    away = math.hypot(x - CORNER[0] - AREA / 2, y - CORNER[1] - AREA / 2)
+    return CORNER[2] + math.sqrt(max(0.0, RADIUS**2 - away**2))
+
+
+class Arm:
+    def __init__(self):
+        self.log = open(os.environ["UR_LOG"], "a")
+        self.fault, _, at = os.environ.get("UR_FAULT", "").partition("@")
+        self.at = int(at or 0)
+        with open(os.environ["UR_LOG"]) as before:
+            self.descents = sum(line == "down\n" for line in before)
+        self.time = 100.0
+        self.position = [CORNER[0] + 0.01, CORNER[1] + 0.01, CORNER[2] + 0.05]
+        self.velocity = [0.0] * 3
+        self.target, self.speed = None, 0.0
+        self.offset = 3.0  # N, of the sensor
+        self.zeroed = 0.0
+        self.safety, self.mode = 1, 3 if self.fault == "mode" else 7
+        self.script = self.connected = True
+        self.frozen = False
+        self.active = False  # the fault, in this descent
+        self.watchdog, self.kicked = None, self.time
+        self.spikes = 0
+
+    def note(self, what):
+        print(what, file=self.log, flush=True)
+
+    def step(self):
+        self.time += STEP
+        if self.active and self.fault == "slow":
+            time.sleep(STEP)
+        if self.watchdog and self.script and self.time - self.kicked > 1.0 / self.watchdog:
+            self.end_script("watchdog")
+        self.misbehave()
+        self.velocity = [0.0] * 3
+        if not self.script or not self.target or self.safety not in (1, 2):
+            return
+        way = [t - p for t, p in zip(self.target, self.position)]
+        left = math.sqrt(sum(w * w for w in way))
+        step = min(left, self.speed * STEP)
+        if left < 1e-9:
+            self.target = None
+            return
+        self.velocity = [w / left * step / STEP for w in way]
+        self.position = [p + v * STEP for p, v in zip(self.position, self.velocity)]
+        assert self.force() < 60.0, "pressed through what it was to feel"
+
+    def misbehave(self):
+        """Faults begin 2 cm above the desk or what is on it."""
+        if not self.active or self.position[2] > surface(*self.position[:2]) + 0.02:
+            return
+        if self.fault == "protective":
+            self.safety, self.target = 3, None
+        elif self.fault == "emergency":
+            self.safety, self.mode, self.target = 7, 3, None
+        elif self.fault == "script":
+            self.end_script("error")
+        elif self.fault == "lost":
+            self.connected = False
+        elif self.fault == "frozen":
+            self.frozen = True
+
+    def end_script(self, why):
+        self.note(why)
+        self.script, self.target = False, None
+
+    def force(self):
+        """Newtons that what it stands on pushes back with."""
+        free = self.active and self.fault == "missing"
+        return 0.0 if free else STIFFNESS * max(0.0, surface(*self.position[:2]) - self.position[2])
+
+    def wrench(self):
+        self.spikes += 1
+        push = self.force()
+        if self.active and self.fault == "spike" and self.spikes % 50 == 0:
+            push += 40.0
+        if self.active and self.fault == "sticky":
+            push += 5.0
+        side = 50.0 if self.active and self.fault == "pushed" and self.velocity[2] < 0 else 0.0
+        return [side, 0.0, self.offset + push - self.zeroed, 0.0, 0.0, 0.0]
+
+    def move(self, target, speed):
+        down = target[2] < self.position[2] - 0.01
+        if down and math.dist(target[:2], self.position[:2]) < 1e-3:
+            self.descents += 1
+            self.note("down")
+            self.active = self.descents == self.at
+        elif self.fault not in ("missing", "sticky"):
+            self.active = False
+        self.target, self.speed = list(target[:3]), speed
+
+
+ARM = None
+
+
+def arm():
+    """One arm for both interfaces, there from the first on."""
+    global ARM
+    ARM = ARM or Arm()
+    return ARM
