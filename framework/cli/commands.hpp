@@ -36,6 +36,7 @@ struct RunArguments {
   bool quiet = false;
   bool dry_run = false;
   bool force = false;
+  bool step = false;
   bool print_config = false;
   bool origins = false;
   std::string junit;
@@ -78,6 +79,7 @@ struct ResumeArguments {
   std::string directory;
   bool retry_failed = false;
   bool force = false;
+  bool step = false;
   std::string jobs;  ///< of a sweep: "0-7,12"; "" for all
   LaunchArguments launch;
 };

@@ -50,18 +50,20 @@ std::string duration_words(double seconds) {
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}
 
 void TapTable::clear_live_line() const {
-  if (terminal_) fmt::print("\r\x1b[K");
+  if (terminal_) mention("\r\x1b[K", stdout);
 }
 
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
-    fmt::print("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}\n", "tap", "source", "x cm", "y cm",
-               "height cm", "contact", "max sd cm", "rmse cm", "IoU");
+    mention(fmt::format("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}\n", "tap", "source", "x cm",
+                        "y cm", "height cm", "contact", "max sd cm", "rmse cm", "IoU"),
+            stdout);
     header_ = true;
   }
   if (!terminal_) return;
-  fmt::print("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100,
-             tap.target.y * 100);
+  mention(fmt::format("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100,
+                      tap.target.y * 100),
+          stdout);
   std::fflush(stdout);
 }
 
@@ -69,18 +71,17 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   clear_live_line();
   const bool touched = tap.contact.outcome == Outcome::contact;
   const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_surface ? "object" : "desk";
-  const char* source = tap.source == Source::initial    ? "initial"
-                       : tap.source == Source::fallback ? "fallback"
-                                                        : "acquisition";
-  fmt::print("{:>4}  {:<11}  {:>6.2f}  {:>6.2f}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}{}\n", tap.number, source,
-             tap.target.x * 100, tap.target.y * 100,
-             touched ? fmt::format("{:.2f}", tap.contact.height * 100) : std::string("-"), contact,
-             scaled(tap.max_standard_deviation, 100, "{:.2f}"), scaled(tap.errors.rmse, 100, "{:.2f}"),
-             scaled(tap.errors.footprint_iou, 1, "{:.2f}"), touched ? "" : "  " + tap.contact.reason);
+  const std::string line =
+      fmt::format("{:>4}  {:<11}  {:>6.2f}  {:>6.2f}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}{}\n", tap.number,
+                  source_name(tap.source), tap.target.x * 100, tap.target.y * 100,
+                  touched ? fmt::format("{:.2f}", tap.contact.height * 100) : std::string("-"), contact,
+                  scaled(tap.max_standard_deviation, 100, "{:.2f}"), scaled(tap.errors.rmse, 100, "{:.2f}"),
+                  scaled(tap.errors.footprint_iou, 1, "{:.2f}"), touched ? "" : "  " + tap.contact.reason);
+  mention(line, stdout);
   std::fflush(stdout);
 }
 
-void mention(const std::string& text) { std::fputs(text.c_str(), stderr); }
+void mention(const std::string& text, std::FILE* where) { std::fputs(text.c_str(), where); }
 
 SweepLine::SweepLine(bool quiet)
     : quiet_(quiet),
@@ -114,8 +115,8 @@ void SweepLine::show(const SweepProgress& progress) {
 
 namespace {
 
-/// What had to be done about rounding, in one line; none when nothing was.
-void print_numerics(const Row& row) {
+/// What had to be done about rounding, in one line; empty when nothing was.
+std::string numerics_line(const Row& row) {
   std::string line;
   const auto add = [&](const char* kind, const char* words) {
     const std::string count = number_at(row, (std::string("interventions.") + kind).c_str(), 1, "{:.0f}");
@@ -125,30 +126,33 @@ void print_numerics(const Row& row) {
   add("pivoted", "{}the covariance was pivoted {} times");
   add("set_aside", "{}{} taps were set aside");
   add("fit_failed", "{}{} fits failed");
-  if (!line.empty()) fmt::print("numerics: {}; runs/README.md says what that means\n", line);
+  return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
 }
 
 }  // namespace
 
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;
+  std::string text;
   if (report.already_done) {
-    fmt::print("already done, nothing was repeated: {}\n", report.directory.string());
+    text += fmt::format("already done, nothing was repeated: {}\n", report.directory.string());
   }
-  fmt::print("{}: {} after {} taps and {} s of robot time\n",
-             report.interrupted ? "interrupted" : text_at(row, "status"), text_at(row, "stop_reason"),
-             text_at(row, "taps"), number_at(row, "robot_seconds", 1, "{:.1f}"));
+  text += fmt::format("{}: {} after {} taps and {} s of robot time\n",
+                      report.interrupted ? "interrupted" : text_at(row, "status"), text_at(row, "stop_reason"),
+                      text_at(row, "taps"), number_at(row, "robot_seconds", 1, "{:.1f}"));
   const std::string hit = text_at(row, "first_hit_tap");
-  fmt::print("taps: {} on the object, {} on the desk, {} failed; {}\n", text_at(row, "on_surface_taps"),
-             text_at(row, "off_surface_taps"), text_at(row, "failed_taps"),
-             hit.empty() ? "the object was not found" : "first hit at tap " + hit);
+  text += fmt::format("taps: {} on the object, {} on the desk, {} failed; {}\n", text_at(row, "on_surface_taps"),
+                      text_at(row, "off_surface_taps"), text_at(row, "failed_taps"),
+                      hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   if (!text_at(row, "rmse_m").empty()) {
-    fmt::print("error: {} cm over the scene, {} cm on the object; outline IoU {}\n",
-               number_at(row, "rmse_m", 100, "{:.2f}"), number_at(row, "rmse_on_surface_m", 100, "{:.2f}"),
-               number_at(row, "footprint_iou", 1, "{:.2f}"));
+    text += fmt::format("error: {} cm over the scene, {} cm on the object; outline IoU {}\n",
+                        number_at(row, "rmse_m", 100, "{:.2f}"), number_at(row, "rmse_on_surface_m", 100, "{:.2f}"),
+                        number_at(row, "footprint_iou", 1, "{:.2f}"));
   }
-  print_numerics(row);
-  fmt::print("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
+  text += numerics_line(row);
+  text +=
+      fmt::format("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
+  mention(text, stdout);
 }
 
 void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures) {

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
@@ -32,9 +33,9 @@ class TapTable final : public Journal {
 /// "12 s", "8 min", "3 h 05 min".
 std::string duration_words(double seconds);
 
-/// Writes to stderr what only accompanies the work. That nobody can read it any more, because the terminal is closed,
-/// is no reason to break the work off, as fmt::print(stderr) would.
-void mention(const std::string& text);
+/// Writes what only accompanies the work. That nobody can read it any more, because the terminal is closed, is no
+/// reason to break the work off, as fmt::print would.
+void mention(const std::string& text, std::FILE* where = stderr);
 
 /// Prints a live line of a sweep on a terminal, else a line per tenth, on stderr: done, running, failed, rate, time
 /// left.

@@ -43,6 +43,10 @@ struct Arguments {
 /// What to do once the command line is understood.
 using Action = std::function<int(Program&)>;
 
+constexpr const char* kStepHelp =
+    "of a robot: show place, way and force limits of every tap before it is made; Enter taps, q ends, "
+    "'palpate resume' carries on";
+
 void add_run(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("run", "Run one experiment");
   sub->add_option("CONFIG", a.run.config, "the experiment, a YAML file")->required();
@@ -50,9 +54,10 @@ void add_run(CLI::App& app, Arguments& a, Action& action) {
                   "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)");
   sub->add_option("--runs", a.run.runs, "where run directories are made")->capture_default_str();
   sub->add_flag("--json", a.run.json, "print summary.json and nothing else");
-  sub->add_flag("--quiet", a.run.quiet, "print nothing");
+  CLI::Option* quiet = sub->add_flag("--quiet", a.run.quiet, "print nothing");
   sub->add_flag("--dry-run", a.run.dry_run, "say what would be run and where; move nothing");
   sub->add_flag("--force", a.run.force, "move an earlier run of this id aside and run again");
+  sub->add_flag("--step", a.run.step, kStepHelp)->excludes(quiet);
   CLI::Option* print = sub->add_flag("--print-config", a.run.print_config, "print the resolved config and stop");
   sub->add_flag("--origins", a.run.origins, "with it, where each value came from")->needs(print);
   sub->add_option("--junit", a.run.junit, "write what held and what failed as JUnit XML to this file");
@@ -105,6 +110,7 @@ void add_resume(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("--jobs", a.resume.jobs,
                   "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
   add_launch(sub, a.resume.launch);
+  sub->add_flag("--step", a.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
   sub->callback([&] { action = [&](Program& program) { return resume(program, a.resume); }; });
 }
 

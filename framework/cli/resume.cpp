@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "cli/step.hpp"
 
 #include <palpate/error.hpp>
 
@@ -26,6 +27,9 @@ void check_jobs(const Program& program, Campaign& campaign) {
 }
 
 int resume_sweep(Program& program, const ResumeArguments& arguments, const ResumeOptions& options) {
+  if (arguments.step) {
+    throw Error("command line", "--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
+  }
   const Sweep sweep = read_sweep(arguments.directory);
   const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
   Campaign campaign{sweep, config_of, options, arguments.launch, {}, false};
@@ -56,10 +60,12 @@ int resume(Program& program, const ResumeArguments& arguments) {
     throw Error("command line", "--launcher slurm: " + arguments.directory + " is no sweep", "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
+  const std::unique_ptr<Step> step = Step::when(arguments.step, config.options, program.workshop.interrupted);
   std::unique_ptr<Journal> display;
   if (!arguments.launch.quiet) display = std::make_unique<TapTable>(config.options.taps);
-  return conclude_run(config, {!arguments.launch.quiet, false, arguments.launch.junit},
-                      [&] { return resume_run(program.workshop, arguments.directory, options, display.get()); });
+  return conclude_run(config, {!arguments.launch.quiet, false, arguments.launch.junit}, [&] {
+    return resume_run(program.workshop, arguments.directory, options, display.get(), step.get());
+  });
 }
 
 }  // namespace palpate::cli

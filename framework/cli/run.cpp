@@ -2,6 +2,7 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "cli/step.hpp"
 #include "config/yaml.hpp"
 #include "record/run_directory.hpp"
 
@@ -65,11 +66,13 @@ int run(Program& program, const RunArguments& arguments) {
     return kDone;
   }
   check_junit(arguments.junit);
+  const std::unique_ptr<Step> step = Step::when(arguments.step, config.options, program.workshop.interrupted);
   const bool table = !arguments.quiet && !arguments.json;
   std::unique_ptr<Journal> display;
   if (table) display = std::make_unique<TapTable>(config.options.taps);
-  return conclude_run(config, {table, arguments.json, arguments.junit},
-                      [&] { return start_run(program.workshop, config, directory, arguments.force, display.get()); });
+  return conclude_run(config, {table, arguments.json, arguments.junit}, [&] {
+    return start_run(program.workshop, config, directory, arguments.force, display.get(), step.get());
+  });
 }
 
 int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action) {

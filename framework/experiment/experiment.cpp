@@ -23,6 +23,10 @@ void Experiment::run(Journal& journal, int most_taps) {
       result_.stop_reason = "no candidate is left";
       return;
     }
+    if (!journal.permits(*tap)) {
+      result_.stop_reason = kStoppedByUser;
+      return;
+    }
     journal.announce(*tap);
     perform(*tap);
     journal.record(*tap, clock_.take());
@@ -40,7 +44,7 @@ std::optional<TapRecord> Experiment::choose_next() {
     if (tap.candidate < 0) return std::nullopt;
   }
   tap.target = candidates_.target(tap.candidate);
-  tap.predicted = predict(tap.candidate);
+  if (backend_->wants_prediction()) tap.predicted = predict(tap.candidate);
   describe_state(tap);
   return tap;
 }
@@ -71,7 +75,7 @@ void Experiment::perform(TapRecord& tap) {
 }
 
 std::optional<std::string> Experiment::stop_reason() const {
-  if (context_.interrupted != nullptr && context_.interrupted->load()) return "interrupted";
+  if (context_.interrupted != nullptr && context_.interrupted->load()) return kStoppedByUser;
   if (result_.taps >= budget_) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";

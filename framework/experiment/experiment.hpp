@@ -50,6 +50,9 @@ class Experiment {
   /// none. None if no candidate is left.
   std::optional<TapRecord> choose_next();
 
+  /// What is known of a tap that choose_next() chose. The backend is asked; no model is built for it.
+  Preview preview(const TapRecord& tap) const;
+
   /// What the acquisition gives each candidate as of now: asked again, which changes nothing (its law).
   Eigen::VectorXd scores() const;
 
@@ -70,7 +73,8 @@ class Experiment {
   Pick pick_best();
   void describe_state(TapRecord& tap);
   void perform(TapRecord& tap);
-  std::optional<Prediction> predict(int candidate) const;
+  Prediction predict(int candidate) const;
+  TapRequest request_of(const TapRecord& tap) const;
   Contact touch(const TapRecord& tap);
   void absorb(const Target& target, const Contact& contact, Source source);
   [[noreturn]] void fail(const Contact& last) const;

@@ -95,14 +95,23 @@ Pick Experiment::pick_best() {
   return chooser_.pick(VectorScores(scores_), allowed_, scale, options_.tie_tolerance);
 }
 
-std::optional<Prediction> Experiment::predict(int candidate) const {
-  if (!backend_->wants_prediction()) return std::nullopt;
-  return Prediction{belief_.height_mean()(candidate), std::sqrt(belief_.height_variance()(candidate))};
+Prediction Experiment::predict(int candidate) const {
+  return {belief_.height_mean()(candidate), std::sqrt(belief_.height_variance()(candidate))};
+}
+
+TapRequest Experiment::request_of(const TapRecord& tap) const {
+  return {tap.number, tap.target, previous_, tap.predicted};
+}
+
+Preview Experiment::preview(const TapRecord& tap) const {
+  Preview out{tap.predicted, backend_->describe(request_of(tap))};
+  if (!out.expected && belief_.surface_process()) out.expected = predict(tap.candidate);
+  return out;
 }
 
 Contact Experiment::touch(const TapRecord& tap) {
   const PhaseClock::Scope in_tap(clock_, Phase::robot);
-  Contact contact = backend_->tap({tap.number, tap.target, previous_, tap.predicted});
+  Contact contact = backend_->tap(request_of(tap));
   if (contact.outcome != Outcome::contact || std::isfinite(contact.height)) return contact;
   return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused, contact.ends_run};
 }
@@ -170,7 +179,7 @@ void Experiment::describe_state(TapRecord& tap) {
 RunResult Experiment::result() {
   RunResult out = result_;
   if (forecaster_) out.forecast = forecaster_->forecast(belief_);
-  out.interrupted = out.stop_reason == "interrupted";
+  out.interrupted = out.stop_reason == kStoppedByUser;
   if (const Truth* known = truth()) {
     out.errors = final_errors(belief_, *known);
     out.calibration = calibration(belief_, *known, tapped_);

@@ -70,6 +70,9 @@ struct TapRecord {
   std::optional<bool> true_on_surface;  ///< absent where no truth is known
 };
 
+/// The reason to stop of a run whose user wanted it: it has no summary, and can be carried on.
+constexpr const char* kStoppedByUser = "interrupted";
+
 /// The result of a run, in the order of summary.json but for what the record adds (clocks, memory, names).
 struct RunResult {
   std::string stop_reason;
@@ -90,10 +93,19 @@ struct RunResult {
   std::optional<FootprintState> footprint;
 };
 
+/// What is known of a tap before it is made, for people.
+struct Preview {
+  std::optional<Prediction> expected;  ///< of the height, where the models are there already
+  std::vector<std::string> motion;     ///< what the backend says that it would do, in lines
+};
+
 /// Learns of every tap, in time.
 class Journal {
  public:
   virtual ~Journal() = default;
+  /// The tap is chosen; nothing has moved and nothing is announced. If it may not be made, the run ends there,
+  /// interrupted.
+  virtual bool permits(const TapRecord& /*tap*/) { return true; }
   /// The tap is chosen; nothing has moved.
   virtual void announce(const TapRecord& tap) = 0;
   /// The tap is over. `seconds` is the time since the last tap, by phase.

@@ -65,11 +65,22 @@ void move_away(const fs::path& directory) {
   }
 }
 
-/// Passes taps to the record first and to the observer after it, and writes maps where the config asks for them.
+/// Who follows a run while it goes on; each may be null.
+struct Company {
+  Journal* observer;
+  Supervisor* supervisor;
+};
+
+/// Asks the supervisor, passes taps to the record first and to the observer after it, and writes maps where the config
+/// asks for them.
 class Relay final : public Journal {
  public:
-  Relay(const ExperimentOptions& options, Experiment& experiment, RunDirectory& directory, Journal* observer)
-      : maps_(options.log.maps), experiment_(experiment), directory_(directory), observer_(observer) {}
+  Relay(const ExperimentOptions& options, Experiment& experiment, RunDirectory& directory, const Company& company)
+      : maps_(options.log.maps), experiment_(experiment), directory_(directory), company_(company) {}
+
+  bool permits(const TapRecord& tap) override {
+    return company_.supervisor == nullptr || company_.supervisor->permits(tap, experiment_.preview(tap));
+  }
 
   void announce(const TapRecord& tap) override {
     {
@@ -77,7 +88,7 @@ class Relay final : public Journal {
       if (maps_) write_maps(tap.number);
       directory_.announce(tap);
     }
-    if (observer_ != nullptr) observer_->announce(tap);
+    if (company_.observer != nullptr) company_.observer->announce(tap);
   }
 
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override {
@@ -85,7 +96,7 @@ class Relay final : public Journal {
       const PhaseClock::Scope log(experiment_.clock(), Phase::log);
       directory_.record(tap, seconds);
     }
-    if (observer_ != nullptr) observer_->record(tap, seconds);
+    if (company_.observer != nullptr) company_.observer->record(tap, seconds);
   }
 
  private:
@@ -99,7 +110,7 @@ class Relay final : public Journal {
   bool maps_;
   Experiment& experiment_;
   RunDirectory& directory_;
-  Journal* observer_;
+  Company company_;
 };
 
 /// Builds the experiment. What only building finds out names an option; the config knows where that was written.
@@ -113,13 +124,22 @@ Experiment build_experiment(const Workshop& workshop, const ResolvedConfig& conf
   }
 }
 
+/// Throws Error where a person would be asked of taps that put nothing at risk.
+void check_worth_asking(const ResolvedConfig& config, const Experiment& experiment) {
+  if (!experiment.backend().repeatable()) return;
+  throw Error("command line",
+              fmt::format("--step: the taps of backend {} can be repeated, there is nothing to confirm",
+                          config.options.backend.type),
+              "leave it out");
+}
+
 /// Runs the experiment in an open directory and writes what ends a run.
-RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, Journal* observer,
-                    const Stopwatch& watch) {
+RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment,
+                    const Company& company, const Stopwatch& watch) {
   const LogOptions& log = config.options.log;
   const bool careful = log.sync == LogOptions::Sync::tap || !experiment.backend().repeatable();
   directory.open(careful, careful && log.sync != LogOptions::Sync::none);
-  Relay relay(config.options, experiment, directory, observer);
+  Relay relay(config.options, experiment, directory, company);
 
   RunReport report;
   report.directory = directory.path();
@@ -158,7 +178,7 @@ fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {
 }
 
 RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
-                    Journal* observer) {
+                    Journal* observer, Supervisor* supervisor) {
   const Stopwatch watch;
   const RunStatus status = read_status(directory);
   if (status.state == RunStatus::State::running) FileLock{directory / "lock"};  // throws: busy
@@ -179,6 +199,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
   }
   // Built before the directory is touched: what only building finds out leaves no trace.
   Experiment experiment = build_experiment(workshop, config, directory);
+  if (supervisor != nullptr) check_worth_asking(config, experiment);
   if (status.state != RunStatus::State::absent) move_away(directory);
   RunDirectory held(directory);
   // Another process may have run it, whole or in part, while this one was still building.
@@ -188,7 +209,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
   }
   held.write("config.yaml", to_yaml(config.tree));
   held.write("manifest.json", manifest_text(workshop, config));
-  return carry_out(config, held, experiment, observer, watch);
+  return carry_out(config, held, experiment, {observer, supervisor}, watch);
 }
 
 Tree read_run_config(const fs::path& directory) {
@@ -218,15 +239,15 @@ void check_build(const Workshop& workshop, const ResolvedConfig& config, const f
 }
 
 RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options,
-                     Journal* observer) {
+                     Journal* observer, Supervisor* supervisor) {
   // Read first: what is no run directory is not made one.
   const ResolvedConfig config = load_run(workshop.host, directory);
   RunDirectory held(directory);
-  return resume_held(workshop, config, held, options, observer);
+  return resume_held(workshop, config, held, options, observer, supervisor);
 }
 
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
-                      const ResumeOptions& options, Journal* observer) {
+                      const ResumeOptions& options, Journal* observer, Supervisor* supervisor) {
   const Stopwatch watch;
   const fs::path& directory = held.path();
   const RunStatus status = held.status();
@@ -238,6 +259,7 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   if (!options.force) check_build(workshop, config, directory);
   const std::vector<PastTap> past = held.recover();
   Experiment experiment = build_experiment(workshop, config, directory);
+  if (supervisor != nullptr) check_worth_asking(config, experiment);
   experiment.resume(past);
   if (recorded_build(directory).empty()) {
     held.write("manifest.json", manifest_text(workshop, config));
@@ -246,7 +268,7 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   }
   std::error_code none;
   fs::remove(directory / "summary.json", none);
-  return carry_out(config, held, experiment, observer, watch);
+  return carry_out(config, held, experiment, {observer, supervisor}, watch);
 }
 
 }  // namespace palpate

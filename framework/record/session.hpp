@@ -33,6 +33,14 @@ struct RunReport {
   Row summary;                ///< the fields of summary.json
 };
 
+/// Somebody who is asked before every tap of a backend that moves what only a person can put right.
+class Supervisor {
+ public:
+  virtual ~Supervisor() = default;
+  /// Whether the tap may be made. If not, the run ends, interrupted, as if the tap had never been chosen.
+  virtual bool permits(const TapRecord& tap, const Preview& preview) = 0;
+};
+
 /// <runs>/<slug>/<id>.
 std::filesystem::path directory_of(const ResolvedConfig& config, const std::filesystem::path& runs);
 
@@ -41,8 +49,10 @@ std::filesystem::path directory_of(const ResolvedConfig& config, const std::file
 /// A finished run of the same build is left alone and reported. A finished run of another build, a failed or a broken
 /// one throws Error with the remedy; with `force` the old directory is moved to <id>.old-N first. When the run itself
 /// fails, its summary says so and the Error, of kind `run`, is thrown on.
+///
+/// `supervisor` (may be null) is asked before every tap; a repeatable backend is then refused by an Error.
 RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory,
-                    bool force, Journal* observer);
+                    bool force, Journal* observer, Supervisor* supervisor = nullptr);
 
 struct ResumeOptions {
   bool retry_failed = false;  ///< carry on a failed run too
@@ -50,13 +60,13 @@ struct ResumeOptions {
 };
 
 /// Carries on the run in `directory` from its config and its recorded taps; repeats none. A finished run is reported
-/// as done.
+/// as done. `supervisor` as of start_run().
 RunReport resume_run(const Workshop& workshop, const std::filesystem::path& directory, const ResumeOptions& options,
-                     Journal* observer);
+                     Journal* observer, Supervisor* supervisor = nullptr);
 
 /// The same with `config`, that of the run, in a directory that this process holds.
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
-                      const ResumeOptions& options, Journal* observer);
+                      const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
 
 /// Throws Error if the run in `directory` has taps of another build than this one.
 void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);

@@ -5,6 +5,7 @@
 #include "robot_words.hpp"
 #include "support/programs.hpp"
 #include "support/sanitizers.hpp"
+#include "support/terminal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,6 +51,14 @@ bool low(const RobotLab& lab, double height) {
 }
 
 double last_height(const RobotLab& lab) { return std::stod(lab.trace().back().at("z")); }
+
+/// Set-points that the robot has had, once a second of its time has passed in which more would have shown.
+int commanded(const RobotLab& lab) {
+  const auto rows = [&] { return lab.trace().size(); };
+  const std::size_t before = rows();
+  EXPECT_TRUE(eventually([&] { return rows() >= before + 100; }));
+  return std::stoi(lab.trace().back().at("commands"));
+}
 
 /// Root of the mean squared error of the height mean over the places that truly lie on the object, as rmse_height_m is
 /// defined; `truth` is a surface.csv with the truth.
@@ -154,6 +163,33 @@ TEST(RobotRun, InterruptedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
   const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));
+}
+
+TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  std::vector<std::string> words{program_file().string(), "run", object_i(), "backend=fake_baxter", "taps=2", "--step",
+                                 "initial.count=2"};
+  Terminal terminal(words, lab.folder(), lab.environment());
+  ASSERT_TRUE(terminal.shows("Enter taps, q ends: ")) << terminal.screen();
+  EXPECT_THAT(terminal.screen(), HasSubstr("tap 1 of 2 at ("));
+  EXPECT_THAT(terminal.screen(), HasSubstr("stop at 6.0 N above the tare: a contact\r\n"
+                                           "      stop whatever it does when the force changes by 14.0 N in any"));
+  EXPECT_EQ(commanded(lab), 0);
+  EXPECT_EQ(text_of(only_run(lab.folder() / "runs") / "taps.jsonl"), "") << "no tap is announced";
+  terminal.type("\n");
+  ASSERT_TRUE(terminal.shows("Enter taps, q ends: ", 2)) << terminal.screen();
+  const int moves = commanded(lab);
+  EXPECT_GT(moves, 0);
+  terminal.type(std::string(1, Terminal::kControlC));
+  EXPECT_EQ(terminal.wait(), 130) << terminal.screen();
+  EXPECT_EQ(commanded(lab), moves) << "nothing was sent for the second tap";
+  const fs::path run = only_run(lab.folder() / "runs");
+  EXPECT_THAT(outcomes(run), ElementsAre("contact"));
+
+  const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(outcomes(run), ElementsAre("contact", "contact"));
 }
 
 TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {

@@ -30,12 +30,12 @@ class TapperBench {
                 [this](const std::string& line) { notes.push_back(line); }) {}
 
   Contact tap(const Target& place) {
-    TapRequest request;
-    request.number = ++taps_;
-    request.target = place;
-    request.previous = previous_;
+    const TapRequest request{++taps_, place, previous_, std::nullopt};
     previous_ = place;
     return tapper_.tap(request);
+  }
+  std::vector<std::string> describe(const Target& place) {
+    return tapper_.describe({taps_ + 1, place, previous_, std::nullopt});
   }
   void check() { tapper_.check(); }
   double tip() const { return robot.body.tip().z(); }

@@ -18,6 +18,7 @@ using test::kOnDesk;
 using test::kOnObject;
 using test::wave_scene;
 using Bench = test::TapperBench;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 using Type = tapping::MotionOptions::Type;
@@ -101,6 +102,23 @@ TEST(ATap, GoesOnAfterTheArmWasMovedByHandInBetween) {
   const Contact contact = bench.tap(kOnObject);
   ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
   EXPECT_NEAR(contact.height, wave_scene().height(kOnObject.x, kOnObject.y), 0.002);
+}
+
+TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
+  BaxterOptions options = fake_options();
+  options.calibration.emplace();
+  options.calibration->at[0] = options.calibration->at[1] = 0.02;
+  Bench bench(options, fake_options(),
+              [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(0.04, 0.07, 0.05); });
+  EXPECT_THAT(
+      bench.describe({0.1, 0.2}),
+      ElementsAre("rise from 5.0 cm above the desk", "before it, a calibration tap on the bare desk at (2.0, 2.0) cm",
+                  "travel from (4.0, 7.0) cm to (10.0, 20.0) cm at 13.5 cm above the desk, 15.0 cm/s",
+                  "descend at 2.0 cm/s to at most 2.0 cm below the desk", "stop at 6.0 N above the tare: a contact",
+                  "stop whatever it does when the force changes by 14.0 N in any direction"));
+  EXPECT_TRUE(bench.robot.commands.empty());
+  ASSERT_EQ(bench.tap(kOnObject).outcome, Outcome::contact);
+  EXPECT_THAT(bench.describe(kOnDesk)[0], StartsWith("travel from (11.")) << "calibrated, and at the height of travel";
 }
 
 TEST(ATap, OutOfReachMovesNothing) {

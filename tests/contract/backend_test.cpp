@@ -87,6 +87,14 @@ TEST_P(BackendContract, AnswersTheSameRequestAlikeWhateverCameBefore) {
   }
 }
 
+TEST_P(BackendContract, AnswersAlikeWhetherItWasAskedToDescribeTheTapOrNot) {
+  const std::shared_ptr<Backend> fresh = make<Backend>(contract_host(), GetParam());
+  for (const TapRequest& request : requests()) {
+    for (const std::string& line : backend_->describe(request)) EXPECT_EQ(line.find('\n'), std::string::npos);
+    expect_same(backend_->tap(request), fresh->tap(request));
+  }
+}
+
 TEST_P(BackendContract, TouchesTheSceneThatItCallsTheTruth) {
   if (!backend_->scene_is_truth()) return;
   for (const TapRequest& request : requests()) {

@@ -217,6 +217,55 @@ TEST(Experiment, AnInterruptionStopsItAfterTheTapUnderWay) {
   EXPECT_TRUE(experiment.result().interrupted);
 }
 
+TEST(Experiment, ATapThatIsNotPermittedIsNeitherAnnouncedNorMade) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  const auto backend = std::make_shared<ScriptedBackend>(std::vector<Contact>{});
+  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
+  class Keeper final : public Journal {
+   public:
+    std::vector<int> announced, recorded;
+    bool permits(const TapRecord& tap) override { return tap.number < 3; }
+    void announce(const TapRecord& tap) override { announced.push_back(tap.number); }
+    void record(const TapRecord& tap, const std::array<double, kPhases>&) override { recorded.push_back(tap.number); }
+  } keeper;
+  experiment.run(keeper);
+  EXPECT_EQ(keeper.announced, (std::vector<int>{1, 2}));
+  EXPECT_EQ(keeper.recorded, (std::vector<int>{1, 2}));
+  EXPECT_EQ(backend->requests.size(), 2U);
+  EXPECT_TRUE(experiment.result().interrupted);
+}
+
+TEST(Experiment, APreviewTellsWhatTheModelsExpectAndBuildsNone) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4"});
+  Experiment experiment(config.options, test::shared_host(), nullptr,
+                        std::make_shared<ScriptedBackend>(std::vector<Contact>{touch(0.09)}));
+  class Asker final : public Journal {
+   public:
+    explicit Asker(const Experiment& experiment) : experiment_(experiment) {}
+    std::vector<Preview> previews;
+    std::vector<bool> built;
+    double mean = 0.0;
+    bool permits(const TapRecord& tap) override {
+      built.push_back(static_cast<bool>(experiment_.belief().height_process()));
+      previews.push_back(experiment_.preview(tap));
+      EXPECT_EQ(static_cast<bool>(experiment_.belief().height_process()), built.back());
+      if (built.back()) mean = experiment_.belief().height_mean()(tap.candidate);
+      return true;
+    }
+    void announce(const TapRecord&) override {}
+    void record(const TapRecord&, const std::array<double, kPhases>&) override {}
+
+   private:
+    const Experiment& experiment_;
+  } asker(experiment);
+  experiment.run(asker);
+  ASSERT_EQ(asker.built, (std::vector<bool>{false, false, false, true})) << "three initial taps need no model";
+  EXPECT_FALSE(asker.previews[2].expected.has_value());
+  ASSERT_TRUE(asker.previews[3].expected.has_value());
+  EXPECT_EQ(asker.previews[3].expected->height, asker.mean);
+  EXPECT_GT(asker.previews[3].expected->standard_deviation, 0.0);
+}
+
 TEST(Experiment, StrategiesWithEqualSeedsStartAlike) {
   std::vector<std::vector<int>> starts;
   for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {

@@ -6,6 +6,8 @@
 #include <palpate/types.hpp>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace palpate {
 
@@ -45,6 +47,11 @@ class Backend {
 
   /// Whether a tap can be made again at no risk. If not, each tap is announced in the log and synced before it moves.
   virtual bool repeatable() const = 0;
+
+  /// What tap() would do with `request`, for a person who is asked before every tap (`palpate run --step`): a few lines
+  /// without line ends, as where the tool comes from, how deep and fast it goes, which forces end it. Empty: nothing is
+  /// known beside the place. Never called unless a person is asked; called or not, the taps are the same.
+  virtual std::vector<std::string> describe(const TapRequest& /*request*/) { return {}; }
 
   /// Whether taps depend on what the models expect. If so, the loop builds the process of the heights for it.
   virtual bool wants_prediction() const { return false; }

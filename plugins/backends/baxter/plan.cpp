@@ -2,6 +2,8 @@
 // What Tapper looks at and plans while nothing moves.
 #include "baxter/tapper.hpp"
 
+#include "tapping/words.hpp"
+
 #include <palpate/error.hpp>
 
 #include <algorithm>
@@ -57,6 +59,28 @@ std::optional<Fault> Tapper::listen() {
     take(robot_.read());
   }
   return slow;
+}
+
+std::vector<std::string> Tapper::describe(const TapRequest& request) {
+  if (options_.dry_run) return {"dry run: nothing moves"};
+  take(robot_.read());
+  std::optional<Target> from;
+  std::vector<std::string> out;
+  if (seen_.joints) {
+    from = Target{tip_.x(), tip_.y()};
+    if (height() < travel_height() - kNearTravel) {
+      out.push_back("rise from " + tapping::centimetres(height() - scene_.desk()) + " above the desk");
+    }
+  }
+  if (options_.calibration && !calibrated_) {
+    const Target bare{options_.calibration->at[0], options_.calibration->at[1]};
+    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare));
+  }
+  const std::vector<std::string> motion = tapping::describe(options_.motion, scene_.desk(), request, from);
+  out.insert(out.end(), motion.begin(), motion.end());
+  out.push_back("stop whatever it does when the force changes by " + tapping::newtons(options_.force_stop) +
+                " upwards or downwards, and by half as much again sideways");
+  return out;
 }
 
 void Tapper::try_reach() {

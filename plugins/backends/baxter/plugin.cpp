@@ -76,6 +76,8 @@ class Baxter final : public Backend {
     return contact;
   }
 
+  std::vector<std::string> describe(const TapRequest& request) override { return tapper_.describe(request); }
+
   void show(const Belief& belief) override {
     if (!view_) return;
     view_->surface(belief.candidates(), belief.height_mean(), belief.height_variance().cwiseMax(0.0).cwiseSqrt());

@@ -15,6 +15,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace palpate::baxter {
 
@@ -33,6 +34,9 @@ class Tapper {
   /// Taps. What goes wrong is an outcome: `unreachable` before anything moved; `aborted` by a fault, whose reason ends
   /// with where the arm was left, and which `ends_run` if the robot needs a person.
   Contact tap(const TapRequest& request);
+
+  /// tap() in words: from where the arm is now, which may not be where it was left.
+  std::vector<std::string> describe(const TapRequest& request);
 
   /// Looks at everything that must be right before anything moves. Throws Error.
   void check();

@@ -11,12 +11,14 @@
 #include "process/command.hpp"
 #include "process/hold.hpp"
 #include "process/protocol.hpp"
+#include "tapping/words.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 namespace palpate::backends {
 
@@ -88,6 +90,15 @@ class Process final : public Backend {
     if (!answer.in_step) end_program(answer.contact);
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
+  }
+
+  std::vector<std::string> describe(const TapRequest& request) override {
+    std::vector<std::string> out = tapping::describe(options_.motion, context_.scene.desk(), request, request.previous);
+    std::ostringstream ask;
+    ask << (child_ ? "ask " : "start ") << process::shown(options_.command) << ", which has "
+        << options_.deadline + (child_ ? 0.0 : options_.start) << " s, for this motion:";
+    out.insert(out.begin(), ask.str());
+    return out;
   }
 
   bool repeatable() const override { return options_.repeatable; }

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "cli/step.hpp"
+
+#include "cli/display.hpp"
+#include "record/tap_row.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace palpate::cli {
+namespace {
+
+/// How long a wish to stop may go unseen: another thread may have taken the signal, and then nothing wakes this one.
+constexpr int kGlance = 100;  // ms
+
+std::string who_chose(const TapRecord& tap) {
+  switch (tap.source) {
+    case Source::initial:
+      return "one of the initial taps";
+    case Source::acquisition:
+      return "chosen by the acquisition";
+    case Source::fallback:
+      break;
+  }
+  return "a fallback: " + tap.why;
+}
+
+}  // namespace
+
+std::unique_ptr<Step> Step::when(bool wanted, const ExperimentOptions& options, const std::atomic<bool>* interrupted) {
+  if (!wanted) return nullptr;
+  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
+    throw Error("command line", "--step: there is no terminal to show a tap and to ask whether it may be made",
+                "stdin and stderr must be one");
+  }
+  return std::unique_ptr<Step>(new Step(options, interrupted));
+}
+
+Step::Step(const ExperimentOptions& options, const std::atomic<bool>* interrupted)
+    : budget_(options.taps),
+      two_part_(options.surface == ExperimentOptions::Surface::two_part),
+      interrupted_(interrupted) {}
+
+bool Step::permits(const TapRecord& tap, const Preview& preview) {
+  std::string text = fmt::format("tap {} of {} at ({:.2f}, {:.2f}) cm, {}", tap.number, budget_, tap.target.x * 100,
+                                 tap.target.y * 100, who_chose(tap));
+  if (const std::optional<Prediction>& expected = preview.expected) {
+    text += fmt::format("; expected height{} {:.1f} +- {:.1f} cm", two_part_ ? " of an object there" : "",
+                        expected->height * 100, expected->standard_deviation * 100);
+  }
+  for (const std::string& line : preview.motion) text += "\n      " + line;
+  std::fflush(stdout);
+  ::tcflush(STDIN_FILENO, TCIFLUSH);
+  mention(text + "\n");
+  for (;;) {
+    mention("      Enter taps, q ends: ");
+    const std::optional<std::string> answer = read_line();
+    if (!answer) mention("\n");
+    if (!answer || *answer == "q") return false;
+    if (answer->empty()) return true;
+  }
+}
+
+/// Without the line end; none when the terminal is gone, its user has ended the input, or wants to stop.
+std::optional<std::string> Step::read_line() const {
+  std::string line;
+  while (line.empty() || line.back() != '\n') {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    const int ready = ::poll(&input, 1, kGlance);
+    if (interrupted_ != nullptr && interrupted_->load()) return std::nullopt;
+    if (ready <= 0) continue;
+    char piece[256];
+    const ssize_t size = ::read(STDIN_FILENO, piece, sizeof piece);  // a terminal gives one line at most
+    if (size <= 0) return std::nullopt;
+    line.append(piece, static_cast<std::size_t>(size));
+  }
+  line.pop_back();
+  return line;
+}
+
+}  // namespace palpate::cli
