@@ -55,14 +55,16 @@ install() {
 }
 
 # build PRESET TARGET...: configures if that was never done or other packages are installed than were then, whoever
-# installed them, and builds what changed.
+# installed them, and builds what changed. Where CI=true, as services of continuous integration set it, warnings are errors.
 build() {
   preset=$1
   shift
   log=$root/build/$preset.log
   known=$root/build/$preset/packages # that were installed when it was configured
   if [ ! -f "$root/build/$preset/build.ninja" ] || [ ! -f "$known" ] || [ "$(cat "$known")" != "$installed" ]; then
-    if ! cmake --preset "$preset" -S "$root" >"$log" 2>&1; then
+    warnings=
+    [ "${CI:-}" != true ] || warnings=-DPALPATE_WERROR=ON
+    if ! cmake --preset "$preset" -S "$root" $warnings >"$log" 2>&1; then
       grep -A 4 -E 'CMake Error|Could NOT' "$log" >&2 || true
       say "configuring failed, the whole story is in build/$preset.log"
       exit 1

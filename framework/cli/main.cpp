@@ -50,8 +50,9 @@ constexpr const char* kStepHelp =
 void add_run(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("run", "Run one experiment");
   sub->add_option("CONFIG", a.run.config, "the experiment, a YAML file")->required();
-  sub->add_option("KEY=VALUE", a.run.overrides,
-                  "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)");
+  sub->add_option("OVERRIDE", a.run.overrides,
+                  "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
+      ->type_name("KEY=VALUE");
   sub->add_option("--runs", a.run.runs, "where run directories are made")->capture_default_str();
   sub->add_flag("--json", a.run.json, "print summary.json and nothing else");
   CLI::Option* quiet = sub->add_flag("--quiet", a.run.quiet, "print nothing");
@@ -93,9 +94,10 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
 void add_sweep(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("sweep", "Run many experiments: every combination of some values");
   sub->add_option("CONFIG", a.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
-  sub->add_option("KEY=VALUES", a.sweep.axes,
+  sub->add_option("AXIS", a.sweep.axes,
                   "what to vary: seed=range(0,10), acquisition=weighted,random, "
-                  "kernel.length_scale=log(1cm,5cm,8)");
+                  "kernel.length_scale=log(1cm,5cm,8)")
+      ->type_name("KEY=VALUES");
   sub->add_option("--runs", a.sweep.runs, "where run directories are made")->capture_default_str();
   sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
   add_launch(sub, a.sweep.launch);
@@ -128,7 +130,7 @@ void add_rest(CLI::App& app, Arguments& a, Action& action) {
   sub->callback([&] { action = [&](Program& program) { return validate(program, a.configs); }; });
 
   sub = app.add_subcommand("plugins", "List plugins, or the options of one");
-  sub->add_option("KIND/NAME", a.plugin, "a kind (kernel) or a plugin (kernel/rbf)");
+  sub->add_option("PLUGIN", a.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
   sub->add_flag("--json", a.json, "as JSON");
   sub->callback([&] { action = [&](Program& program) { return plugins(program, a.plugin, a.json); }; });
 

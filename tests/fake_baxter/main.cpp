@@ -125,7 +125,7 @@ int run_main(int argc, char** argv) {
   CLI::Option* companion = app.add_option("--companion", a.companion, "");
   companion->group("");
   app.add_option("CONFIG", a.config, "the experiment, a YAML file");
-  app.add_option("KEY=VALUE", a.overrides, "override a value or a group, as palpate takes them");
+  app.add_option("OVERRIDE", a.overrides, "override a value or a group, as palpate takes them")->type_name("KEY=VALUE");
   app.add_option("--rate", a.node.rate, "seconds of the robot's time in a second, told on /clock; 0: real time")
       ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--patience", a.node.patience, "seconds that /clock waits for a driver that was sending")

@@ -71,6 +71,7 @@ def main():
     os.environ.setdefault("HOME", tempfile.gettempdir())  # Chromium wants one to write to
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = open_browser(profile, webgl)
+        browser.set_script_timeout(PATIENCE)  # a step may draw in software, and answers with what it drew
         try:
             browser.get(pathlib.Path(page).absolute().as_uri())
             for step in steps:

@@ -349,6 +349,16 @@ TEST(CommandLine, HelpGoesToStdoutWithStatus0) {
   }
 }
 
+TEST(CommandLine, HelpSaysWhatItTakesWithNamesThatEveryVersionOfItsLibraryAccepts) {
+  // CLI11 2.4 refuses names of positional arguments with '=' or '/' in them before it has read any.
+  const TemporaryFolder folder;
+  const auto help = [&](const char* command) { return test::palpate({command, "--help"}, folder.path()).out; };
+  EXPECT_THAT(help("run"), testing::ContainsRegex("Usage: palpate run .* CONFIG \\[OVERRIDE\\.\\.\\.\\]\n"));
+  EXPECT_THAT(help("run"), testing::ContainsRegex("\n +OVERRIDE KEY=VALUE \\.\\.\\. +override a value"));
+  EXPECT_THAT(help("sweep"), testing::ContainsRegex("\n +AXIS KEY=VALUES \\.\\.\\. +what to vary"));
+  EXPECT_THAT(help("plugins"), testing::ContainsRegex("\n +PLUGIN KIND\\[/NAME\\] +a kind"));
+}
+
 TEST(CommandLine, WrongUsageIsOneLineWithStatus2) {
   const TemporaryFolder folder;
   const std::vector<std::vector<std::string>> wrong{{},

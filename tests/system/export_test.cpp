@@ -136,7 +136,8 @@ TEST_F(Export, WritesContactsAsPointsAndFailedTapsInTheTableAlone) {
   }
   ASSERT_LT(contacts.size(), 17U) << "some taps failed";
 
-  const std::string ply = text_of(folder_.path() / "elsewhere" / "deep" / "taps.ply");
+  const fs::path file = folder_.path() / "elsewhere" / "deep" / "taps.ply";
+  const std::string ply = text_of(file);
   EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(contacts.size()) + "\n"));
   std::string points;
   for (const Cells& tap : contacts) {
@@ -145,7 +146,7 @@ TEST_F(Export, WritesContactsAsPointsAndFailedTapsInTheTableAlone) {
   }
   EXPECT_EQ(ply.substr(ply.find("end_header\n") + 11), points);
   Assimp::Importer importer;
-  const aiMesh& mesh = only_mesh(importer, folder_.path() / "elsewhere" / "deep" / "taps.ply");
+  const aiMesh& mesh = only_mesh(importer, file);
   ASSERT_EQ(mesh.mNumVertices, contacts.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     EXPECT_FLOAT_EQ(mesh.mVertices[i].x, single(contacts[i].at("x")));

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string_view>
 
 namespace palpate {
 namespace {
@@ -87,11 +88,11 @@ struct MadeUp {
   }
 };
 
-const Setting& setting(const Pareto& pareto, const std::string& name) {
+const Setting& setting(const Pareto& pareto, std::string_view name) {
   for (const Setting& one : pareto.settings) {
     if (one.name == name) return one;
   }
-  throw std::runtime_error("no setting " + name);
+  throw std::runtime_error("no setting " + std::string(name));
 }
 
 TEST(Pareto, GroupsOverTheSeedAndNamesOnlyTheKeysThatDiffer) {

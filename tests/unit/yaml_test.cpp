@@ -5,6 +5,7 @@
 
 #include <palpate/error.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -147,9 +148,10 @@ TEST(Yaml, RefusesAnAliasOfItself) {
 }
 
 TEST(Yaml, RefusesAnUnknownAlias) {
-  EXPECT_EQ(refusal("a: *x\n"),
-            "c.yaml:1:4: not valid YAML: the referenced anchor is not defined, look here or above for a missing "
-            "bracket or quote, a wrong indent or a tab");
+  // yaml-cpp 0.8 names it, 0.7 does not.
+  EXPECT_THAT(refusal("a: *x\n"),
+              testing::MatchesRegex("c.yaml:1:4: not valid YAML: the referenced anchor is not defined(: x)?, look here "
+                                    "or above for a missing bracket or quote, a wrong indent or a tab"));
 }
 
 TEST(Yaml, AllowsAHundredLevelsAndRefusesMore) {

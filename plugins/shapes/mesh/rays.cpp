@@ -8,7 +8,11 @@
 #include <algorithm>
 #include <limits>
 
+#if PALPATE_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 namespace palpate::shapes {
 
@@ -80,9 +84,13 @@ double Rays::first_hit(const Line& line) const {
   ray.ray.tfar = static_cast<float>(2.1 * radius_);
   ray.ray.mask = ~0U;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if PALPATE_EMBREE == 3
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(embree_->scene, &context, &ray);
+#else
+  rtcIntersect1(embree_->scene, &ray);
+#endif
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kInfinity;
 
   const auto& triangle = mesh_.corners[ray.hit.primID];

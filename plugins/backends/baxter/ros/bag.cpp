@@ -13,6 +13,7 @@
 #include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
+#include <console_bridge/console.h>
 #include <ros/this_node.h>
 #include <rosbag/bag.h>
 #include <sensor_msgs/JointState.h>
@@ -62,7 +63,9 @@ void Bag::open(const std::string& file) {
 }
 
 void Bag::abandon_file() {
-  // Its destructor would try once more to write, and throw: so it is kept for ever.
+  // Its destructor would try once more to write, and throw: so it is kept for ever, of which class_loader, which loads
+  // its plugins, would warn when the program ends.
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
   static auto* const abandoned = new std::vector<rosbag::Bag*>;
   const std::lock_guard lock(current_mutex);
   abandoned->push_back(bag_.release());

@@ -159,7 +159,7 @@ std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme
   return Place{rest.substr(0, colon), port};
 }
 
-const std::vector<std::string>& Graph::of(const Nodes& nodes, const std::string& name) {
+const std::vector<std::string>& Graph::of(const Nodes& nodes, std::string_view name) {
   static const std::vector<std::string> nobody;
   const auto found = nodes.find(name);
   return found == nodes.end() ? nobody : found->second;

@@ -5,9 +5,11 @@
 
 #include "baxter/ros/socket.hpp"
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpate::baxter {
@@ -23,12 +25,12 @@ std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme
 
 /// Who does what on the network: for each name the nodes.
 struct Graph {
-  using Nodes = std::map<std::string, std::vector<std::string>>;
+  using Nodes = std::map<std::string, std::vector<std::string>, std::less<>>;
   Nodes publishers;   ///< of a topic
   Nodes subscribers;  ///< of a topic
   Nodes services;     ///< who offers it
 
-  static const std::vector<std::string>& of(const Nodes& nodes, const std::string& name);
+  static const std::vector<std::string>& of(const Nodes& nodes, std::string_view name);
 };
 
 /// The master. All members throw Unreached.

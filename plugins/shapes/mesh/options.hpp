@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What a config says of an object that comes from a file.
+#pragma once
+
+#include <palpate/options.hpp>
+
+#include <string>
+
+namespace palpate::shapes {
+
+struct MeshOptions : Options {
+  enum class Up { z, y };
+  enum class Holes { refuse, allow };
+  std::string file;
+  double unit = 0.001;
+  Up up = Up::z;
+  Holes holes = Holes::refuse;
+  std::string checksum;
+
+  /// Reads the file, whose content the checksum stands for: throws what read_file() does.
+  void list(Fields& fields) override;
+};
+
+}  // namespace palpate::shapes
