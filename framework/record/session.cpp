@@ -56,6 +56,16 @@ void note_resume(const Workshop& workshop, const ResolvedConfig& config, const R
   directory.write("manifest.json", to_json(manifest));
 }
 
+/// Notes in the manifest what the taps have shown of the robot.
+void note_learnt(const RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
+  if (learnt.empty()) return;
+  Tree manifest = read_yaml(directory.path() / "manifest.json");
+  Tree& notes = manifest.at("learnt");
+  notes = Tree::map();
+  for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, quoted(one.value)});
+  directory.write("manifest.json", to_json(manifest));
+}
+
 void move_away(const fs::path& directory) {
   for (int n = 1;; ++n) {
     const fs::path old = directory.string() + fmt::format(".old-{}", n);
@@ -155,6 +165,7 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   }
   // A model that failed once is not asked again.
   if (!failure.empty()) result = experiment.counts();
+  note_learnt(directory, experiment.backend().learnt());
   report.interrupted = result.interrupted;
   report.summary = summary_row(config, result, failure, watch, directory.total_seconds());
   directory.write("taps.csv", to_csv(directory.rows()));

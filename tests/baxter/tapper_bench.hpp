@@ -38,6 +38,7 @@ class TapperBench {
     return tapper_.describe({taps_ + 1, place, previous_, std::nullopt});
   }
   void check() { tapper_.check(); }
+  std::string learnt_sign() const { return tapper_.learnt_sign(); }
   double tip() const { return robot.body.tip().z(); }
 
   std::atomic<bool> interrupted{false};

@@ -186,6 +186,39 @@ TEST(ATap, OfARobotWhoseForceFallsIsTheSameOnceTheConfigSaysSo) {
   }
 }
 
+TEST(ACalibrationTap, LearnsTheSignOfTheForceAndComesDownGently) {
+  for (const double sign : {1.0, -1.0}) {
+    BaxterOptions options = fake_options();
+    options.calibration.emplace();
+    options.calibration->at[0] = options.calibration->at[1] = 0.02;
+    options.force_sign.reset();  // what the config says nothing of
+    Bench bench(options);
+    bench.robot.spoil = [&](Snapshot& seen) { seen.endpoint->force.z() *= sign; };
+    double hardest = 0.0;
+    bench.robot.every_period = [&] {
+      if (bench.robot.body.tip().x() < 0.04) hardest = std::max(hardest, bench.robot.body.pressing());
+    };
+    for (const Target& place : {kOnObject, Target{0.2, 0.2}}) {
+      const Contact contact = bench.tap(place);
+      ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
+      EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.003);
+    }
+    EXPECT_EQ(bench.learnt_sign(), sign > 0.0 ? "positive" : "negative");
+    EXPECT_LT(hardest, 11.0) << "4 N, and the noise and the lag of an arm that stops";
+    EXPECT_GT(hardest, 2.0);
+  }
+}
+
+TEST(ForceSign, IsLearntWithACalibrationTapAndElseThatOfOtherProgramsUnlessTheConfigSaysIt) {
+  using Sign = BaxterOptions::ForceSign;
+  BaxterOptions options;
+  EXPECT_EQ(options.sign(), Sign::negative);
+  options.calibration.emplace();
+  EXPECT_EQ(options.sign(), Sign::learn);
+  options.force_sign = Sign::positive;
+  EXPECT_EQ(options.sign(), Sign::positive);
+}
+
 TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
   BaxterOptions options = fake_options();
   options.motion.type = Type::two_stage;

@@ -53,6 +53,14 @@ class Backend {
   /// known beside the place. Never called unless a person is asked; called or not, the taps are the same.
   virtual std::vector<std::string> describe(const TapRequest& /*request*/) { return {}; }
 
+  /// Something that taps have shown of the robot, one line each.
+  struct Learnt {
+    std::string name;  ///< of the option that left it open
+    std::string value;
+  };
+  /// What the taps of this process have shown of what the config left open, noted in the manifest when the run ends.
+  virtual std::vector<Learnt> learnt() const { return {}; }
+
   /// Whether taps depend on what the models expect. If so, the loop builds the process of the heights for it.
   virtual bool wants_prediction() const { return false; }
 

@@ -79,17 +79,24 @@ void BaxterOptions::list(Fields& fields) {
   fields.section(place, Field("place", "where the scene lies before the robot"));
   fields.section(calibration,
                  Field("calibration", "begin with a tap on the bare desk, and take its height for the desk's"));
-  fields.choice(force_sign,
-                Field("force_sign", "of the force along z in endpoint_state when the tool is pressed upwards")
-                    .from("Rethink documents neither frame nor sign"),
-                {{"positive", "it rises", {}}, {"negative", "it falls", {}}});
-  fields.real(force_stop,
-              Field("force_stop",
-                    "change of the force since the tare, in any direction, at which the arm stops whatever it does")
-                  .in(Unit::newton)
-                  .above(0)
-                  .at_most(kGreatestStop)
-                  .from("the arm's firmware stops it at 16 N"));
+  ForceSign chosen = sign();
+  fields.choice(chosen,
+                Field("force_sign", "of the force along z in endpoint_state when something presses the tool upwards")
+                    .from("Rethink documents none; five public programs for Baxter take it to fall. With a calibration "
+                          "tap the default is learn"),
+                {{"negative", "it falls", {}},
+                 {"positive", "it rises", {}},
+                 {"learn", "until the first contact any change counts, and that contact shows it", {}}});
+  force_sign = chosen;
+  fields.real(
+      force_stop,
+      Field("force_stop",
+            "change of the force since the tare at which the arm stops whatever it does; sideways, while it goes up or "
+            "down, half as much again")
+          .in(Unit::newton)
+          .above(0)
+          .at_most(kGreatestStop)
+          .from("the arm's firmware stops it at 16 N"));
   fields.require(force_stop > motion.threshold, "force_stop", "must lie above motion.threshold");
   fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),
                 {{"own", "this program", {}}, {"robot", "the robot's IKService, whose answers are checked", {}}});

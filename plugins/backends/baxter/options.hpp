@@ -35,22 +35,21 @@ struct CalibrationOptions : Options {
 
 struct BaxterOptions : Options {
   enum class InverseKinematics { own, robot };
-  /// The sign of the force along z when something presses the tool upwards.
-  enum class ForceSign { positive, negative };
+  /// The sign of the force along z when something presses the tool upwards; `learn`: the first contact shows it.
+  enum class ForceSign { negative, positive, learn };
 
   tapping::MotionOptions motion;
   ToolOptions tool;
   PlaceOptions place;
   std::optional<CalibrationOptions> calibration;
-  ForceSign force_sign = ForceSign::positive;
-  double force_stop = 14.0;  ///< N
+  std::optional<ForceSign> force_sign;  ///< `learn` with a calibration and else `negative`, if the config says nothing
+  double force_stop = 14.0;             ///< N
   InverseKinematics inverse_kinematics = InverseKinematics::own;
   bool dry_run = false;
   bool view = true;
   bool bag = false;
 
-  /// What to multiply the force along z with, so that it rises when the tool is pressed upwards.
-  double sign() const { return force_sign == ForceSign::positive ? 1.0 : -1.0; }
+  ForceSign sign() const { return force_sign.value_or(calibration ? ForceSign::learn : ForceSign::negative); }
   void list(Fields& fields) override;
 };
 

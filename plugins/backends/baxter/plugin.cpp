@@ -83,6 +83,11 @@ class Baxter final : public Backend {
     view_->surface(belief.candidates(), belief.height_mean(), belief.height_variance().cwiseMax(0.0).cwiseSqrt());
   }
 
+  std::vector<Learnt> learnt() const override {
+    const std::string sign = tapper_.learnt_sign();
+    return sign.empty() ? std::vector<Learnt>() : std::vector<Learnt>{{"force_sign", sign}};
+  }
+
   bool repeatable() const override { return false; }
   bool scene_is_truth() const override { return false; }
   bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }

@@ -1,124 +1,58 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/tapper.hpp"
 
+#include "baxter/readings.hpp"
+#include "tapping/words.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <sstream>
 #include <utility>
-#include <vector>
 
 namespace palpate::baxter {
 namespace {
 
+using tapping::centimetres;
 using tapping::GuardedTap;
+using tapping::newtons;
 using Then = Fault::Then;
 
 constexpr double kPeriod = GuardedTap::kPeriod;
-constexpr double kStepClamp = 0.05;        ///< rad by which a set-point may leave both the last one and the arm
-constexpr double kAtGoal = 0.015;          ///< rad: settled errors are up to 0.008
-constexpr double kStill = 0.002;           ///< rad in kStillFor
-constexpr double kStillFor = 0.1;          ///< s
-constexpr double kSettling = 5.0;          ///< s: after a stop the arm takes two
-constexpr double kHeld = 0.5;              ///< s for which the measured joints are sent at a stop
-constexpr double kReflexEnds = 4.0;        ///< s: the firmware's own stop lasts two
-constexpr std::size_t kForceSamples = 25;  ///< new ones, for the force at rest
-constexpr double kForcePatience = 1.0;     ///< s in which they must have come
-constexpr double kUnloading = 0.6;  ///< s after which an arm that trails by 0.35 s has turned around and is clear
-constexpr double kEvenFrom = 0.7;   ///< s after which an arm that trails by 0.35 s comes down evenly
-constexpr double kEvenTo = 1.0;     ///< s, for so long the force of the moving arm is looked at
-constexpr std::size_t kLeastReadings = 10;
-constexpr double kSteady = 1.5;      ///< N from one half of it to the other: noise of 1.5 N makes 0.55
-constexpr int kTold = 3;             ///< taps of a run for which that is noted
-constexpr double kLeastMoved = 2.5;  ///< N that the zero may move, whatever the threshold: noise makes 0.4
-constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
-constexpr int kPulled = 3;  ///< new readings of a force that pulls: one alone may be noise
+constexpr double kStepClamp = 0.05;  ///< rad by which a set-point may leave both the last one and the arm
+constexpr double kAtGoal = 0.015;    ///< rad: settled errors are up to 0.008
+constexpr double kStill = 0.002;     ///< rad in kStillFor
+constexpr double kStillFor = 0.1;    ///< s
+constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
+constexpr double kUnloading = 0.6;   ///< s after which an arm that trails by 0.35 s has turned around and is clear
+constexpr double kSmoothing = 0.2;   ///< of the force of a contact: over five readings
+constexpr int kPulled = 3;           ///< new readings of a force that pulls: one alone may be noise
 
-std::string centimetres(double length) {
-  std::ostringstream out;
-  out.precision(1);
-  out << std::fixed << 100.0 * length << " cm";
-  return out.str();
+/// For the first contact with a desk of which nobody knows how hard it is: at 1 cm/s and 4 N it stays below 8 N on
+/// 100 kN/m.
+tapping::MotionOptions gentle(tapping::MotionOptions motion) {
+  motion.speed = std::min(motion.speed, 0.01);
+  motion.fine_speed = std::min(motion.fine_speed, motion.speed);
+  motion.threshold = std::min(motion.threshold, 4.0);
+  motion.fine_threshold = std::min(motion.fine_threshold, motion.threshold);
+  return motion;
 }
 
-std::string newtons(double force) {
-  std::ostringstream out;
-  out.precision(1);
-  out << std::fixed << force << " N";
-  return out.str();
+double sign_of(BaxterOptions::ForceSign sign) {
+  switch (sign) {
+    case BaxterOptions::ForceSign::negative:
+      return -1.0;
+    case BaxterOptions::ForceSign::positive:
+      return 1.0;
+    case BaxterOptions::ForceSign::learn:
+      return 0.0;
+  }
+  return 0.0;
 }
-
-/// Of forces.
-class Mean {
- public:
-  void add(const Eigen::Vector3d& force) {
-    sum_ += force;
-    ++count_;
-  }
-  /// What it is, at least one being added; begins anew.
-  Eigen::Vector3d take() {
-    const Eigen::Vector3d out = sum_ / count_;
-    *this = {};
-    return out;
-  }
-
- private:
-  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
-  int count_ = 0;
-};
-
-/// Of each component, at least one reading being there.
-Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
-  Eigen::Vector3d out;
-  const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
-  for (int i = 0; i < 3; ++i) {
-    std::nth_element(readings.begin(), middle, readings.end(),
-                     [i](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[i] < b[i]; });
-    out[i] = (*middle)[i];
-  }
-  return out;
-}
-
-/// The mean force of a descent from when the arm, which trails its set-point, comes down evenly until shortly after;
-/// what rises meanwhile is a contact that begins, and is left alone.
-class Even {
- public:
-  /// Takes a reading `time` seconds after the set-point began to come down; whether the mean is there now.
-  bool add(double time, const Eigen::Vector3d& reading) {
-    if (time < kEvenFrom || time >= kEvenTo) {
-      const bool ended = time >= kEvenTo && readings_.size() >= kLeastReadings;
-      if (ended) mean_ = Eigen::Vector3d::Zero();
-      for (const Eigen::Vector3d& one : readings_) mean_ += one / static_cast<double>(readings_.size());
-      const double rise = ended ? half(1) - half(0) : 0.0;
-      readings_.clear();
-      return ended && std::abs(rise) < kSteady;
-    }
-    readings_.push_back(reading);
-    return false;
-  }
-  const Eigen::Vector3d& mean() const { return mean_; }
-
- private:
-  /// The mean of the vertical force in the first or second half.
-  double half(std::size_t which) const {
-    const std::size_t count = readings_.size() / 2;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < count; ++i) sum += readings_[which * count + i].z();
-    return sum / static_cast<double>(count);
-  }
-
-  std::vector<Eigen::Vector3d> readings_;
-  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
-};
 
 Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false) {
   Contact out{outcome, 0.0, 0.0, 0.0, reason};
   out.ends_run = ends_run;
   return out;
-}
-
-Fault standstill() {
-  return {"the clock of the robot's network stands still: its sender is gone", Then::silence, true};
 }
 
 }  // namespace
@@ -133,7 +67,8 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
       arm_(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)),
       planner_(options.place, arm_, [this](const Pose& tip, const Joints& seed) { return inverse(tip, seed); }),
       workspace_(workspace_of(options, scene)),
-      watch_(workspace_, options.force_stop) {}
+      watch_(workspace_, options.force_stop),
+      sign_(sign_of(options.sign())) {}
 
 Contact Tapper::tap(const TapRequest& request) {
   const double begin = robot_.read().now;
@@ -164,7 +99,7 @@ Contact Tapper::attempt(const TapRequest& request) {
     desk.target = {options_.calibration->at[0], options_.calibration->at[1]};
     const Path bare = column(desk.target);
     go_to(bare.front());
-    calibrate(descend(desk, options_.motion, bare));
+    calibrate(descend(desk, gentle(options_.motion), bare));
     down = column(request.target);
   }
   go_to(down.front());
@@ -265,8 +200,9 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   rest_from_above(column);
   GuardedTap tap(motion, plan, GuardedTap::Arm::real);
   Mean tare;
-  Even even;
+  EvenDescent even;
   int pulled = 0;
+  double pressed = 0.0;
   double set_point = plan.hover;
   Joints command = at(plan.hover);
   Eigen::Vector3d at_hover = seen_.endpoint->force;
@@ -276,7 +212,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     const bool fresh = watch_.fresh();
     const Eigen::Vector3d reading = seen_.endpoint->force;
     const Eigen::Vector3d felt = tap.coming_down() ? Eigen::Vector3d(reading - moving_) : reading;
-    set_point = tap.next(height(), force(felt), fresh);
+    set_point = tap.next(height(), force(felt, taring), fresh);
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
@@ -294,7 +230,9 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
       }
     } else if (fresh) {
       if (even.add(tap.even_for(), reading)) learn_moving(even.mean() - zero_);
-      pulled = force(felt - zero_) < -motion.threshold ? pulled + 1 : 0;
+      const double above = felt.z() - zero_.z();
+      pressed += kSmoothing * (above - pressed);
+      pulled = sign_ * above < -motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
             "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
@@ -313,6 +251,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
                       "the force did not go back to its zero when the tool was clear: its zero moved "
                       "during the tap, and the contact may be none");
       }
+      if (sign_ == 0.0) learn_sign(pressed);
       return {Outcome::contact, tap.height(), tap.peak_force(), 0.0, {}};
     case Outcome::timeout:
       return failed(Outcome::timeout, "the tap took longer than motion.timeout");
@@ -336,66 +275,6 @@ void Tapper::retreat(const Path& up) {
     }
   }
   await_height(up.end());
-}
-
-/// What the force reads beside while the arm comes down in the air is no contact: from now on it counts as zero then.
-void Tapper::learn_moving(const Eigen::Vector3d& difference) {
-  if (std::abs(difference.z()) >= options_.motion.threshold) return;  // a contact is noticed, or was missed
-  moving_ = difference;
-  watch_.set_tare(zero_ + moving_);
-  if (told_ >= kTold) return;
-  ++told_;
-  note_("coming down in the air the force reads " + newtons(difference.norm()) + " beside that at rest, " +
-        newtons(force(difference)) + " of it upwards: taken for its zero while the arm moves" +
-        (std::abs(difference.z()) > 0.5 * options_.motion.threshold
-             ? "; that is much, so calibrate the robot (rosrun baxter_tools tare.py) or take a lower motion.speed"
-             : ""));
-}
-
-/// Whether two zeros, felt at rest before and after a tap, are the same. Sideways the robot's estimate is at its worst.
-bool Tapper::believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const {
-  const Eigen::Vector3d moved = after - before;
-  return std::abs(moved.z()) < std::max(kLeastMoved, 0.5 * threshold) && moved.head<2>().norm() < options_.force_stop;
-}
-
-/// The median of a few new readings, while the arm is where it is sent: one of them may be far off.
-Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
-  std::vector<Eigen::Vector3d> readings;
-  const double patience = seen_.now + kForcePatience;
-  while (readings.size() < kForceSamples && seen_.now < patience) {
-    step(joints);
-    if (watch_.fresh()) readings.push_back(seen_.endpoint->force);
-  }
-  return median(std::move(readings));
-}
-
-/// Does what may still be done and tells, in half a sentence, where that left the arm.
-std::string Tapper::recover(const Fault& fault) {
-  if (fault.then == Then::silence) return kSilent;
-  const std::string where = "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk";
-  recovering_ = true;
-  if (const auto other = hold(seen_.joints->position)) return std::string(kSilent) + ": " + other->reason;
-  if (fault.then == Then::hold) return where;
-  try {
-    watch_.begin();
-    watch_.expect_collision(true);
-    next_ = seen_.now;
-    for (double patience = kReflexEnds; patience > 0.0 && seen_.collision && seen_.collision->collision;
-         patience -= kPeriod) {
-      step(seen_.joints->position);
-    }
-    watch_.expect_collision(false);
-    step(seen_.joints->position);
-    climb(way_up());
-    settle(*watch_.last_sent());
-    return "the arm was raised to the height of travel";
-  } catch (const NoPath& none) {
-    return where + ", it could not be raised: " + none.reason;
-  } catch (const Fault& other) {
-    if (other.then == Then::silence) return std::string(kSilent) + ": " + other.reason;
-    hold(seen_.joints->position);
-    return where + ", it was not raised: " + other.reason;
-  }
 }
 
 void Tapper::expect_fit() {
@@ -424,22 +303,6 @@ void Tapper::step(const Joints& command) {
   if (std::optional<Fault> fault = watch_.look(seen_, tip_)) throw *fault;
 }
 
-/// Sends the joints, which keep the arm where it is, for a while; or less, where a rule comes to ask for silence. That
-/// rule, if one did.
-std::optional<Fault> Tapper::hold(const Joints& joints) {
-  watch_.begin();
-  next_ = seen_.now;
-  for (double left = kHeld; left > 0.0; left -= kPeriod) {
-    robot_.command(joints);
-    next_ += kPeriod;
-    if (!robot_.wait_until(next_)) return standstill();
-    take(robot_.read());
-    std::optional<Fault> fault = watch_.look(seen_, tip_);
-    if (fault && fault->then == Then::silence) return fault;
-  }
-  return std::nullopt;
-}
-
 void Tapper::take(Snapshot seen) {
   seen_ = std::move(seen);
   if (seen_.joints) tip_ = planner_.to_scene(arm_.tip(seen_.joints->position).position);
@@ -448,6 +311,5 @@ void Tapper::take(Snapshot seen) {
 bool Tapper::interrupted() const { return interrupted_ != nullptr && interrupted_->load(); }
 double Tapper::height() const { return tip_.z(); }
 double Tapper::travel_height() const { return scene_.desk() + options_.motion.hover; }
-double Tapper::force(const Eigen::Vector3d& reading) const { return options_.sign() * reading.z(); }
 
 }  // namespace palpate::baxter

@@ -38,11 +38,16 @@ class Tapper {
   /// tap() in words: from where the arm is now, which may not be where it was left.
   std::vector<std::string> describe(const TapRequest& request);
 
+  /// What the taps have shown of the robot's force that the config left open: `positive` or `negative`; empty for
+  /// nothing.
+  std::string learnt_sign() const;
+
   /// Looks at everything that must be right before anything moves. Throws Error.
   void check();
 
  private:
   static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
+  static constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
   /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
 
@@ -62,6 +67,8 @@ class Tapper {
   Eigen::Vector3d force_at_rest(const Joints& joints);
   bool believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const;
   std::string recover(const Fault& fault);
+  static Fault standstill();
+  void outlast_reflex();
   Path way_up() const;
   void climb(const Path& up);
   void await_height(const Joints& top);
@@ -75,7 +82,8 @@ class Tapper {
   void take(Snapshot seen);
   double height() const;
   double travel_height() const;
-  double force(const Eigen::Vector3d& reading) const;
+  double force(const Eigen::Vector3d& reading, bool taring) const;
+  void learn_sign(double pressed);
 
   BaxterOptions options_;
   const Scene& scene_;
@@ -91,6 +99,7 @@ class Tapper {
   double next_ = 0.0;                              ///< when the next period begins
   bool recovering_ = false;
   bool calibrated_ = false;
+  double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();    ///< the force of the latest tare
   Eigen::Vector3d moving_ = Eigen::Vector3d::Zero();  ///< what it reads beside while the arm comes down in the air
   int told_ = 0;                                      ///< of how many taps moving_ was noted

@@ -250,7 +250,7 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
     return Fault{
         "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
         "motion.threshold, or see what the arm met",
-        Then::retreat, true};
+        Then::retreat, true, true};
   }
   return force(seen);
 }

@@ -27,6 +27,7 @@ struct Fault {
   std::string reason;  ///< cause and remedy, one line
   Then then = Then::silence;
   bool ends_run = true;
+  bool reflex = false;  ///< it was the arm's own, which ends by itself
 };
 
 /// The space in which the tip may be, in the frame of the scene, metres.
