@@ -25,6 +25,7 @@ inline BaxterOptions fake_options() {
   out.place.corner[0] = 0.507;
   out.place.corner[1] = 0.067;
   out.place.height = -0.17;
+  out.force_sign = BaxterOptions::ForceSign::negative;
   out.place.rotation = 10.0 * 3.14159265358979323846 / 180.0;
   return out;
 }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate::fake_baxter {
 namespace {
@@ -19,10 +18,19 @@ constexpr double kBias = 2.0;             // N, standard deviation of the bias
 constexpr double kBiasByJoints = 2.0;     // N/rad, of how it depends on each joint
 constexpr double kTuckedShoulder = -1.6;  // rad: with left_s1 below it the robot refuses to be enabled
 constexpr double kAbove = 0.03;           // m, of the start
+constexpr double kAvoidanceRate = 10.0;   // Hz; not known of a real one
 constexpr double kSlack = 1e-9;           // of times that are sums of periods, s
 
 /// Greatest speed of each joint, rad/s.
 Joints greatest_speed() { return (Joints() << 1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0).finished(); }
+
+/// Whether a stream of this rate, Hz, has a message in this period.
+bool due(long period, double rate) {
+  const auto so_far = [&](long periods) {
+    return std::floor(static_cast<double>(periods) * Body::kPeriod * rate + kSlack);
+  };
+  return period == 0 || so_far(period) > so_far(period - 1);
+}
 
 /// Straight down, with the hand turned about the vertical as in the untucked posture.
 Eigen::Quaterniond straight_down(const baxter::Arm& arm) {
@@ -60,6 +68,7 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       arm_give_(0.0),
       noise_(kForceNoise),
       normal_(Random(options.seed, "fake_baxter/noise")),
+      force_faults_(options.seed),
       timeout_(options.command_timeout),
       speed_ratio_(options.speed_ratio) {
   const Effects& effects = scene.effects();
@@ -134,8 +143,8 @@ void Body::inject(const Fault& fault, const Trigger& trigger) {
 const Fault* Body::active(FaultKind kind) const {
   for (const Armed& one : faults_) {
     if (one.fault.kind != kind || !one.since) continue;
-    // Of the faults that pass by themselves, these two need no more than their time.
-    if (kind == FaultKind::drop_commands && now() >= *one.since + one.fault.amount) continue;
+    const bool passes = kind == FaultKind::drop_commands || kind == FaultKind::stall;
+    if (passes && now() >= *one.since + one.fault.amount - kSlack) continue;
     return &one.fault;
   }
   return nullptr;
@@ -166,6 +175,12 @@ void Body::begin(Armed& armed) {
       break;
     case FaultKind::disabled:
       assembly_.enable(false, false);
+      break;
+    case FaultKind::speed_ratio:
+      set_speed_ratio(armed.fault.amount);
+      break;
+    case FaultKind::command_timeout:
+      set_command_timeout(armed.fault.amount);
       break;
     case FaultKind::tucked:
       assembly_.enable(false, true);
@@ -233,9 +248,10 @@ void Body::touch() {
   }
 }
 
-/// An arm that is left pressing is held again and again.
+/// An arm that is left pressing is held again and again, and let go in between for as long as it takes to feel that.
 void Body::feel_reflex() {
-  if (!assembly_.state().enabled || mode_ == Mode::reflex || pressing_ <= kReflex) return;
+  if (now() < held_until_ + kLetGo - kSlack) return;
+  if (!assembly_.state().enabled || pressing_ <= kReflex) return;
   held_until_ = now() + kHeld;
   mode_ = Mode::reflex;
   hold(false);
@@ -244,11 +260,9 @@ void Body::feel_reflex() {
 void Body::measure() {
   const baxter::Pose pose = gripper_.tip(measured_);
   Eigen::Vector3d force = bias_ + bias_by_joints_ * (position_ - untucked());
-  force.z() += pressing_;
+  force.z() -= pressing_;
   for (double& one : force.reshaped()) one += noise_ * normal_();
-  if (const Fault* bias = active(FaultKind::bias)) force.z() += bias->amount;
-  if (active(FaultKind::zero_wrench) != nullptr) force.setZero();
-  if (active(FaultKind::nan_wrench) != nullptr) force.setConstant(std::numeric_limits<double>::quiet_NaN());
+  force = force_faults_.spoilt(force, tool_.jacobian(measured_) * speed_, [&](FaultKind kind) { return active(kind); });
   if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
   endpoint_speed_ = (pose.position - endpoint_.pose.position) / kPeriod;
   if (periods_ == 0) endpoint_speed_.setZero();
@@ -263,11 +277,10 @@ void Body::step() {
   const Mode mode = choose_mode();
   const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
   if (mode != mode_ && mode != Mode::following) hold(brakes);
-  const bool let_go = mode_ == Mode::reflex && mode != Mode::reflex;
   mode_ = mode;
   if (!brakes) follow();
   touch();
-  if (!let_go) feel_reflex();  // for one period it goes on, and says so
+  feel_reflex();
   speed_ = (measured_ - before) / kPeriod;
   watch_faults(height_before);
   measure();
@@ -294,8 +307,10 @@ Said Body::said() const {
     if (const Fault* jump = active(FaultKind::jump_joints)) joints.position(1) += jump->amount;
     out.joints = stamped(joints);
     out.speed = speed_;
+    out.effort = tool_.jacobian(measured_).transpose() * Eigen::Vector3d(0.0, 0.0, -pressing_);
   }
-  if (heard(FaultKind::kill_endpoint, "endpoint")) {
+  const Fault* slow = active(FaultKind::slow_endpoint);
+  if (heard(FaultKind::kill_endpoint, "endpoint") && (slow == nullptr || due(periods_, slow->amount))) {
     out.endpoint = stamped(endpoint_);
     out.tip_speed = endpoint_speed_;
   }
@@ -307,6 +322,14 @@ Said Body::said() const {
     baxter::CollisionReading collision;
     collision.collision = now() < held_until_ - kSlack;
     out.collision = stamped(collision);
+  }
+  if ((never == nullptr || never->text != "avoidance") && due(periods_, kAvoidanceRate)) {
+    baxter::AvoidanceReading avoidance;
+    if (const Fault* avoid = active(FaultKind::avoid)) {
+      avoidance.other_arm = avoid->text == "other_arm";
+      if (!avoidance.other_arm) avoidance.objects = {avoid->text};
+    }
+    out.avoidance = stamped(avoidance);
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include "baxter/options.hpp"
 #include "fake_baxter/assembly.hpp"
 #include "fake_baxter/faults.hpp"
+#include "fake_baxter/force_faults.hpp"
 #include "simulator/arm.hpp"
 
 #include <palpate/scene.hpp>
@@ -48,11 +49,13 @@ struct BodyOptions {
 /// What the robot says at the end of a period; a stream that is silent is absent. `received` is when it is said.
 struct Said {
   std::optional<baxter::JointReading> joints;
-  Joints speed = Joints::Zero();  ///< of the joints, rad/s
+  Joints speed = Joints::Zero();   ///< of the joints, rad/s
+  Joints effort = Joints::Zero();  ///< of the joints, Nm: with which they press, without gravity
   std::optional<baxter::EndpointReading> endpoint;
   Eigen::Vector3d tip_speed = Eigen::Vector3d::Zero();  ///< of left_gripper, m/s
   std::optional<baxter::StateReading> state;
   std::optional<baxter::CollisionReading> collision;
+  std::optional<baxter::AvoidanceReading> avoidance;
 };
 
 /// The arm and its firmware.
@@ -60,12 +63,14 @@ struct Said {
 /// Every joint follows its set-point with a lag (scene.effects.joint_lag, 0.35 s if absent). The tip presses on
 /// whatever the scene has below it as on a spring (scene.effects.stiffness, 1500 N/m if absent); if the arm gives way,
 /// too, the measured joints show it. The published force is that, with a bias that depends on the pose and with noise
-/// (scene.effects.force_noise, 1.5 N if absent), and it rises along z when something presses the tool upwards.
+/// (scene.effects.force_noise, 1.5 N if absent), and it falls along z when something presses the tool upwards: so five
+/// programs for Baxter by three authors have it.
 class Body {
  public:
   static constexpr double kPeriod = 0.01;  ///< s
   static constexpr double kReflex = 16.0;  ///< N, above which the firmware holds the arm
   static constexpr double kHeld = 2.0;     ///< s, for so long
+  static constexpr double kLetGo = 0.1;    ///< s for which it then goes on at least; not known of a real one
   static constexpr double kLag = 0.35;     ///< s
 
   enum class Mode { following, timed_out, reflex, stopped, disabled };
@@ -138,6 +143,7 @@ class Body {
   double arm_give_;     ///< m/N
   double noise_;        ///< N
   backends::Normal normal_;
+  ForceFaults force_faults_;
   Eigen::Vector3d bias_;                        ///< N, in the untucked posture
   Eigen::Matrix<double, 3, 7> bias_by_joints_;  ///< N/rad
 
