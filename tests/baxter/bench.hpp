@@ -22,7 +22,6 @@ inline BaxterOptions fake_options() {
   out.motion.tare = 0.5;
   out.motion.overrun = 0.02;
   out.tool.tip[2] = 0.15;
-  out.force_sign = BaxterOptions::ForceSign::positive;
   out.place.corner[0] = 0.507;
   out.place.corner[1] = 0.067;
   out.place.height = -0.17;

@@ -5,6 +5,7 @@
 #include "baxter/bench.hpp"
 #include "baxter/robot.hpp"
 #include "fake_baxter/body.hpp"
+#include "fake_baxter/delivery.hpp"
 
 #include <functional>
 #include <string>
@@ -71,18 +72,35 @@ class BodyRobot final : public Robot {
 
  private:
   void hear() {
-    const fake_baxter::Said said = body.said();
+    for (const fake_baxter::Said& said : delivery_.take(body)) {
+      keep(heard_.joints, said.joints);
+      keep(heard_.endpoint, said.endpoint);
+      keep(heard_.state, said.state);
+      keep(heard_.collision, said.collision);
+      keep(heard_.avoidance, said.avoidance);
+    }
     heard_.now = body.now();
-    if (said.joints) heard_.joints = said.joints;
-    if (said.endpoint) heard_.endpoint = said.endpoint;
-    if (said.state) heard_.state = said.state;
-    if (said.collision) heard_.collision = said.collision;
+    const auto told = [&](FaultKind kind) {
+      const fake_baxter::Fault* fault = body.active(kind);
+      return fault != nullptr ? std::optional<Setting>({fault->amount, "/other_program"}) : std::nullopt;
+    };
+    heard_.speed_ratio = told(FaultKind::speed_ratio);
+    heard_.command_timeout = told(FaultKind::command_timeout);
     heard_.joint_senders = heard_.state_senders = {"/realtime_loop"};
     if (body.active(FaultKind::second_state) != nullptr) heard_.state_senders.push_back("/mock_robot");
     if (spoil) spoil(heard_);
   }
 
+  template <class Reading>
+  static void keep(std::optional<Reading>& latest, const std::optional<Reading>& said) {
+    if (!said) return;
+    const long before = latest ? latest->count : 0;
+    latest = said;
+    latest->count = before + 1;
+  }
+
   Arm gripper_;
+  fake_baxter::Delivery delivery_;
   Snapshot heard_;
 };
 

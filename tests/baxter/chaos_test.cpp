@@ -287,7 +287,8 @@ TEST(ATap, ComesDownOnlyWhereItWasSentWhenCommandsWereLostOnTheWay) {
     TapRequest request;
     request.target = {0.03, 0.03};
     tapper.tap(request);
-    ASSERT_LT(aside, 0.004) << "commands lost from period " << moment;
+    // Of the motion that was lost the joints catch up one by one, each at 0.3 of its greatest speed.
+    ASSERT_LT(aside, 0.005) << "commands lost from period " << moment;
   }
 }
 

@@ -43,6 +43,8 @@ TEST(FakeRobot, ItsMessagesAreThoseOfARealRobotByTheirMd5Sums) {
             "AssemblyState 356d9dd237ce73b2667da9235f541933\n"
             "OldAssemblyState d7ff2b9fa7d5f688665ce44db4ee2af8\n"
             "CollisionDetectionState 7bde38c182b4d08fdc0635b116f65d04\n"
+            "CollisionAvoidanceState 30f5cb8ae019f1ffe8b599e6d2e589c7\n"
+            "EndEffectorProperties 21b83773ab9a35216d11e427573c76cc\n"
             "SolvePositionIK 18cc92fd96853eb10b34de0b5c7d3cba\n"
             "SolvePositionIKRequest 2587e42983d0081d0a2288230991073b\n"
             "SolvePositionIKResponse d9b0c2b3932e08421f5094cf62743b9f\n");
@@ -62,8 +64,9 @@ TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
   expect_rate("/realtime_loop /robot/joint_states 17", 100);
   expect_rate("/realtime_loop /robot/state 1", 100);
   expect_rate("/realtime_loop /robot/limb/left/collision_detection_state 1", 100);
+  expect_rate("/realtime_loop /robot/limb/left/collision_avoidance_state 1", 10);
   expect_rate("/end_effector_publisher /robot/joint_states 1", 38);
-  EXPECT_EQ(streams.size(), 5U);
+  EXPECT_EQ(streams.size(), 6U);
 }
 
 TEST(FakeRobot, StopsResetsAndIsEnabledLikeARealOne) {
@@ -130,6 +133,15 @@ TEST(FakeRobot, OldFirmwareIsNotUnderstood) {
   EXPECT_EQ(streams.count("/realtime_loop /robot/joint_states 17"), 1U);
 }
 
+TEST(FakeRobot, TellsOfItsOptionsAndFaults) {
+  const Ended ended = run_program({fake_baxter_file().string(), "--help"}, ".");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* word : {"--speed-ratio", "--command-timeout", "--gripper", "--tool-mass", "  complaint ", "  stop ",
+                           "  slow_endpoint ", "  bursts ", "  stall ", "  spikes ", "  moving_force ", "  avoid "}) {
+    EXPECT_THAT(ended.out, HasSubstr(word));
+  }
+}
+
 TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
   const auto refusal = [](const std::vector<std::string>& words) {
     std::vector<std::string> all{fake_baxter_file().string()};
@@ -140,6 +152,8 @@ TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
     return ended.err;
   };
   EXPECT_THAT(refusal(robot_words({"--fault", "sulk"})), HasSubstr("there is no fault 'sulk'"));
+  EXPECT_THAT(refusal(robot_words({"--fault", "spikes=2"})), HasSubstr("spikes takes a number from 0 to 1, not '2'"));
+  EXPECT_THAT(refusal(robot_words({"--fault", "stall=-1"})), HasSubstr("stall takes a number from 0 on, not '-1'"));
   EXPECT_THAT(refusal(robot_words({"--at", "soon"})), HasSubstr("takes 'start' or DESCENT:HEIGHT"));
   EXPECT_THAT(refusal(robot_words({"--start", "asleep"})), HasSubstr("takes hover, low, untucked or tucked"));
   EXPECT_THAT(refusal({robot_words().front()}), HasSubstr("add backend=fake_baxter"));

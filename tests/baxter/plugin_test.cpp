@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kOptions =
     "{motion: {type: continuous, speed: 2 cm/s, threshold: 6 N}, tool: {tip: [0 cm, 0 cm, 15 cm]}, "
-    "place: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}}";
+    "place: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}, force_sign: negative}";
 
 long threads() {
   const std::filesystem::directory_iterator tasks("/proc/self/task");

@@ -230,7 +230,7 @@ TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
   EXPECT_EQ(too_early.status, 1);
   EXPECT_THAT(too_early.err, HasSubstr("the emergency stop was pressed and is released: reset it (rosrun"));
   EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted")) << "what is refused before it moves is no tap";
-  ASSERT_THAT(lab.probe({"switches"}).out, EndsWith("enable: enabled 1 stopped 0 error 0 button 0 source 0\n"));
+  ASSERT_THAT(lab.probe({"switches"}).out, EndsWith("enable: ready 1 enabled 1 stopped 0 error 0 button 0 source 0\n"));
   const Ended resumed = lab.palpate({"resume", run.string(), "--retry-failed", "--quiet"});
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));

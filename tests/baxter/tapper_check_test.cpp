@@ -124,7 +124,7 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
       {FaultKind::zero_wrench, "a force of exactly zero"},
       {FaultKind::second_state, "more than one node, /realtime_loop and /mock_robot"},
       {FaultKind::estop, "the emergency stop is pressed"},
-      {FaultKind::error, "the robot reports an error"},
+      {FaultKind::error, "the robot does not know whether its emergency stop is pressed"},
   };
   for (const auto& [kind, reason] : cases) {
     Bench bench;

@@ -167,22 +167,22 @@ TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
   EXPECT_THAT(contact.reason, HasSubstr("cm higher than place.height has it"));
 }
 
-TEST(ATap, OfARobotWhoseForceFallsIsTheSameOnceTheConfigSaysSo) {
+TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
   for (const Type type : {Type::paper, Type::two_stage, Type::continuous}) {
-    const auto tapped = [&](bool falls) {
+    const auto tapped = [&](bool rises) {
       BaxterOptions options = fake_options();
       options.motion.type = type;
-      if (falls) options.force_sign = BaxterOptions::ForceSign::negative;
+      if (rises) options.force_sign = BaxterOptions::ForceSign::positive;
       Bench bench(options);
-      if (falls) bench.robot.spoil = [](Snapshot& seen) { seen.endpoint->force.z() *= -1.0; };
+      if (rises) bench.robot.spoil = [](Snapshot& seen) { seen.endpoint->force.z() *= -1.0; };
       return bench.tap(kOnObject);
     };
-    const Contact rises = tapped(false);
-    const Contact falls = tapped(true);
-    ASSERT_EQ(falls.outcome, Outcome::contact) << falls.reason;
+    const Contact falls = tapped(false);
+    const Contact rises = tapped(true);
+    ASSERT_EQ(rises.outcome, Outcome::contact) << rises.reason;
     // But for the first reading, which was made before it was turned.
-    EXPECT_NEAR(falls.height, rises.height, 0.003);
-    EXPECT_NEAR(falls.force, rises.force, 3.0);
+    EXPECT_NEAR(rises.height, falls.height, 0.003);
+    EXPECT_NEAR(rises.force, falls.force, 3.0);
   }
 }
 
@@ -231,7 +231,7 @@ TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
     touched = touched || height < -0.003;
     over = over || (touched && height > 0.005);
     const double trembles = 0.1 * std::sin(1000.0 * seen.now);  // no sensor says the same twice
-    seen.endpoint->force = {over && height < 0.05 ? 13.0 : 0.0, 0.0, bench.robot.body.pressing() + trembles};
+    seen.endpoint->force = {over && height < 0.05 ? 13.0 : 0.0, 0.0, trembles - bench.robot.body.pressing()};
   };
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;

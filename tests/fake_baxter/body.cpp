@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate::fake_baxter {
 namespace {
@@ -16,10 +15,19 @@ constexpr double kBias = 2.0;             // N, standard deviation of the bias
 constexpr double kBiasByJoints = 2.0;     // N/rad, of how it depends on each joint
 constexpr double kTuckedShoulder = -1.6;  // rad: with left_s1 below it the robot refuses to be enabled
 constexpr double kAbove = 0.03;           // m, of the start
+constexpr double kAvoidanceRate = 10.0;   // Hz; not known of a real one
 constexpr double kSlack = 1e-9;           // of times that are sums of periods, s
 
 /// Greatest speed of each joint, rad/s.
 Joints greatest_speed() { return (Joints() << 1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0).finished(); }
+
+/// Whether a stream of this rate, Hz, has a message in this period.
+bool due(long period, double rate) {
+  const auto so_far = [&](long periods) {
+    return std::floor(static_cast<double>(periods) * Body::kPeriod * rate + kSlack);
+  };
+  return period == 0 || so_far(period) > so_far(period - 1);
+}
 
 /// Straight down, with the hand turned about the vertical as in the untucked posture.
 Eigen::Quaterniond straight_down(const baxter::Arm& arm) {
@@ -55,6 +63,7 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       mechanics_(make_mechanics(options.mechanics, ground_, Eigen::Vector3d(options.tool.tip))),
       noise_(kForceNoise),
       normal_(Random(options.seed, "fake_baxter/noise")),
+      force_faults_(options.seed),
       timeout_(options.command_timeout),
       speed_ratio_(options.speed_ratio) {
   const Effects& effects = scene.effects();
@@ -117,8 +126,8 @@ void Body::inject(const Fault& fault, const Trigger& trigger) {
 const Fault* Body::active(FaultKind kind) const {
   for (const Armed& one : faults_) {
     if (one.fault.kind != kind || !one.since) continue;
-    // Of the faults that pass by themselves, these two need no more than their time.
-    if (kind == FaultKind::drop_commands && now() >= *one.since + one.fault.amount) continue;
+    const bool passes = kind == FaultKind::drop_commands || kind == FaultKind::stall;
+    if (passes && now() >= *one.since + one.fault.amount - kSlack) continue;
     return &one.fault;
   }
   return nullptr;
@@ -149,6 +158,12 @@ void Body::begin(Armed& armed) {
       break;
     case FaultKind::disabled:
       assembly_.enable(false, false);
+      break;
+    case FaultKind::speed_ratio:
+      set_speed_ratio(armed.fault.amount);
+      break;
+    case FaultKind::command_timeout:
+      set_command_timeout(armed.fault.amount);
       break;
     case FaultKind::tucked:
       assembly_.enable(false, true);
@@ -197,10 +212,10 @@ void Body::follow() {
   mechanics_->advance(reference_);
 }
 
-/// An arm that is left pressing is held again and again, with a moment in between.
+/// An arm that is left pressing is held again and again, and let go in between for as long as it takes to feel that.
 void Body::feel_reflex() {
-  const bool just_let_go = now() < held_until_ + kAfterwards;
-  if (!assembly_.state().enabled || mode_ == Mode::reflex || just_let_go || pressing() <= kReflex) return;
+  if (now() < held_until_ + kLetGo - kSlack) return;
+  if (!assembly_.state().enabled || pressing() <= kReflex) return;
   held_until_ = now() + kHeld;
   mode_ = Mode::reflex;
   hold(false);
@@ -208,11 +223,10 @@ void Body::feel_reflex() {
 
 void Body::measure() {
   const baxter::Pose pose = gripper_.tip(joints());
-  Eigen::Vector3d force = bias_ + bias_by_joints_ * (joints() - untucked()) + arm().felt;
+  Eigen::Vector3d force = bias_ + bias_by_joints_ * (joints() - untucked()) - arm().felt;
   for (double& one : force.reshaped()) one += noise_ * normal_();
-  if (const Fault* bias = active(FaultKind::bias)) force.z() += bias->amount;
-  if (active(FaultKind::zero_wrench) != nullptr) force.setZero();
-  if (active(FaultKind::nan_wrench) != nullptr) force.setConstant(std::numeric_limits<double>::quiet_NaN());
+  force = force_faults_.spoilt(force, tool_.jacobian(joints()) * arm().velocity,
+                               [&](FaultKind kind) { return active(kind); });
   if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
   endpoint_speed_ = (pose.position - endpoint_.pose.position) / kPeriod;
   if (periods_ == 0) endpoint_speed_.setZero();
@@ -254,8 +268,10 @@ Said Body::said() const {
     if (const Fault* jump = active(FaultKind::jump_joints)) joints.position(1) += jump->amount;
     out.joints = stamped(joints);
     out.speed = arm().velocity;
+    out.effort = arm().effort;
   }
-  if (heard(FaultKind::kill_endpoint, "endpoint")) {
+  const Fault* slow = active(FaultKind::slow_endpoint);
+  if (heard(FaultKind::kill_endpoint, "endpoint") && (slow == nullptr || due(periods_, slow->amount))) {
     out.endpoint = stamped(endpoint_);
     out.tip_speed = endpoint_speed_;
   }
@@ -267,6 +283,14 @@ Said Body::said() const {
     baxter::CollisionReading collision;
     collision.collision = now() < held_until_ - kSlack;
     out.collision = stamped(collision);
+  }
+  if ((never == nullptr || never->text != "avoidance") && due(periods_, kAvoidanceRate)) {
+    baxter::AvoidanceReading avoidance;
+    if (const Fault* avoid = active(FaultKind::avoid)) {
+      avoidance.other_arm = avoid->text == "other_arm";
+      if (!avoidance.other_arm) avoidance.objects = {avoid->text};
+    }
+    out.avoidance = stamped(avoidance);
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include "baxter/options.hpp"
 #include "fake_baxter/assembly.hpp"
 #include "fake_baxter/faults.hpp"
+#include "fake_baxter/force_faults.hpp"
 #include "fake_baxter/mechanics.hpp"
 #include "simulator/normal.hpp"
 
@@ -48,25 +49,26 @@ struct BodyOptions {
 /// What the robot says at the end of a period; a stream that is silent is absent. `received` is when it is said.
 struct Said {
   std::optional<baxter::JointReading> joints;
-  Joints speed = Joints::Zero();  ///< of the joints, rad/s
+  Joints speed = Joints::Zero();   ///< of the joints, rad/s
+  Joints effort = Joints::Zero();  ///< of the joints, Nm: with which they press, without gravity
   std::optional<baxter::EndpointReading> endpoint;
   Eigen::Vector3d tip_speed = Eigen::Vector3d::Zero();  ///< of left_gripper, m/s
   std::optional<baxter::StateReading> state;
   std::optional<baxter::CollisionReading> collision;
+  std::optional<baxter::AvoidanceReading> avoidance;
 };
 
 /// The arm and its firmware.
 ///
-/// The arm itself is its mechanics' (mechanics.hpp). The published force is what they feel, with a bias that depends on
-/// the pose and with noise (scene.effects.force_noise, 1.5 N if absent), and it rises along z when something presses
-/// the tool upwards.
+/// The arm itself is its mechanics' (mechanics.hpp). The published force is what they feel, turned around, with a bias
+/// that depends on the pose and with noise (scene.effects.force_noise, 1.5 N if absent): it falls along z when
+/// something presses the tool upwards, as five programs for Baxter by three authors have it.
 class Body {
  public:
   static constexpr double kPeriod = Mechanics::kPeriod;
   static constexpr double kReflex = 16.0;  ///< N, above which the firmware holds the arm
   static constexpr double kHeld = 2.0;     ///< s, for so long
-  /// s for which it then lets the arm go whatever the force: an arm that goes on pressing is held again after that.
-  static constexpr double kAfterwards = 0.1;
+  static constexpr double kLetGo = 0.1;    ///< s for which it then goes on at least; not known of a real one
   static constexpr double kLag = Mechanics::kLag;
 
   enum class Mode { following, timed_out, reflex, stopped, disabled };
@@ -137,6 +139,7 @@ class Body {
   std::unique_ptr<Mechanics> mechanics_;
   double noise_;  ///< N
   backends::Normal normal_;
+  ForceFaults force_faults_;
   Eigen::Vector3d bias_;                        ///< N, in the untucked posture
   Eigen::Matrix<double, 3, 7> bias_by_joints_;  ///< N/rad
 

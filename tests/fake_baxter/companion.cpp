@@ -6,10 +6,13 @@
 #include <baxter_core_msgs/AssemblyState.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <functional>
 
 #include <poll.h>
 #include <sys/prctl.h>
@@ -43,6 +46,32 @@ void publish_state(const ros::Publisher& publisher) {
   message.ready = true;
   message.enabled = true;
   publisher.publish(message);
+}
+
+/// Of the node.
+std::string name_of(const std::string& role) {
+  if (role == "end_effector") return "end_effector_publisher";
+  if (role == "second_state") return "second_robot";
+  return "other_program_" + role.substr(0, role.find('='));
+}
+
+/// What to do whenever it is told to, with the stamp.
+std::function<void(double)> publisher_of(const std::string& role, ros::NodeHandle& node) {
+  if (role == "end_effector") {
+    const ros::Publisher publisher = node.advertise<sensor_msgs::JointState>("/robot/joint_states", 1);
+    return [publisher](double stamp) { publish_gripper(publisher, stamp); };
+  }
+  if (role == "second_state") {
+    const ros::Publisher publisher = node.advertise<baxter_core_msgs::AssemblyState>("/robot/state", 1);
+    return [publisher](double) { publish_state(publisher); };
+  }
+  const std::size_t equals = role.find('=');
+  const ros::Publisher publisher =
+      node.advertise<std_msgs::Float64>("/robot/limb/left/" + role.substr(0, equals), 1, true);
+  std_msgs::Float64 message;
+  message.data = std::atof(role.c_str() + equals + 1);
+  publisher.publish(message);
+  return [publisher](double) {};
 }
 
 }  // namespace
@@ -91,17 +120,14 @@ int serve_companion(const std::string& role) {
   std::signal(SIGTERM, SIG_IGN);
   double stamp = 0.0;
   if (!told(stamp)) return 0;
-  const bool gripper = role == "end_effector";
   const ros::M_string no_remappings;
-  ros::init(no_remappings, gripper ? "end_effector_publisher" : "second_robot", ros::init_options::NoSigintHandler);
+  ros::init(no_remappings, name_of(role), ros::init_options::NoSigintHandler);
   {
     ros::NodeHandle node;
-    const ros::Publisher publisher = gripper ? node.advertise<sensor_msgs::JointState>("/robot/joint_states", 1)
-                                             : node.advertise<baxter_core_msgs::AssemblyState>("/robot/state", 1);
+    const std::function<void(double)> publish = publisher_of(role, node);
     ::send(STDIN_FILENO, "u", 1, MSG_NOSIGNAL);
     do {
-      if (gripper) publish_gripper(publisher, stamp);
-      if (!gripper) publish_state(publisher);
+      publish(stamp);
     } while (told(stamp));
   }
   ros::shutdown();

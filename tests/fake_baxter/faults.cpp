@@ -5,52 +5,81 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace palpate::fake_baxter {
 namespace {
 
 enum class Takes { nothing, number, text };
 
+constexpr double kAny = std::numeric_limits<double>::infinity();
+
 struct Known {
   const char* name;
+  const char* meaning;
   FaultKind kind;
   Takes takes = Takes::nothing;
   double amount = 0.0;
   const char* text = "";
+  double least = -kAny, most = kAny;  ///< of amount
 };
 
 constexpr Known kKnown[] = {
-    {"estop", FaultKind::estop, Takes::number, 2.0},
-    {"stop", FaultKind::stop},
-    {"error", FaultKind::error},
-    {"complaint", FaultKind::complaint},
-    {"squish", FaultKind::squish},
-    {"freeze_endpoint", FaultKind::freeze_endpoint},
-    {"kill_endpoint", FaultKind::kill_endpoint},
-    {"kill_joints", FaultKind::kill_joints},
-    {"kill_state", FaultKind::kill_state},
-    {"stale_stamps", FaultKind::stale_stamps},
-    {"second_state", FaultKind::second_state},
-    {"nan_wrench", FaultKind::nan_wrench},
-    {"zero_wrench", FaultKind::zero_wrench},
-    {"bias", FaultKind::bias, Takes::number, 12.0},
-    {"drop_commands", FaultKind::drop_commands, Takes::number, 5.0},
-    {"jump_joints", FaultKind::jump_joints, Takes::number, 0.3},
-    {"old_state", FaultKind::old_state},
-    {"no_data", FaultKind::no_data, Takes::text, 0.0, "endpoint"},
-    {"disabled", FaultKind::disabled},
-    {"tucked", FaultKind::tucked},
-    {"ik_invalid", FaultKind::ik_invalid},
-    {"ik_slow", FaultKind::ik_slow, Takes::number, 5.0},
-    {"ik_absent", FaultKind::ik_absent},
-    {"software", FaultKind::software, Takes::text, 0.0, "1.1.1"},
-    {"freeze_clock", FaultKind::freeze_clock},
-    {"die", FaultKind::die},
+    {"estop", "somebody presses the emergency stop, and lets go after VALUE seconds (2)", FaultKind::estop,
+     Takes::number, 2.0},
+    {"stop", "a program stops the robot by /robot/set_super_stop", FaultKind::stop},
+    {"error", "a joint has a fault: the robot reports an error and stops itself", FaultKind::error},
+    {"complaint", "the robot reports an error of a component, which stops nothing and outlasts a reset",
+     FaultKind::complaint},
+    {"squish", "the firmware feels a collision, whatever the force", FaultKind::squish},
+    {"freeze_endpoint", "endpoint_state goes on with fresh stamps, but pose and force stay the same",
+     FaultKind::freeze_endpoint},
+    {"kill_endpoint", "endpoint_state stops", FaultKind::kill_endpoint},
+    {"kill_joints", "joint_states of the arm stop", FaultKind::kill_joints},
+    {"kill_state", "/robot/state stops", FaultKind::kill_state},
+    {"stale_stamps", "messages go on, but their stamps stay the same", FaultKind::stale_stamps},
+    {"second_state", "another node publishes /robot/state, too: a healthy robot's", FaultKind::second_state},
+    {"nan_wrench", "the force is not a number", FaultKind::nan_wrench},
+    {"zero_wrench", "the force is exactly zero, as in Rethink's simulator", FaultKind::zero_wrench},
+    {"bias", "the force gets VALUE newtons (12) on top, as though the tool were pressed upwards", FaultKind::bias,
+     Takes::number, 12.0},
+    {"spikes", "of the readings of the force the share VALUE (0.01) has 9 N on top, likewise", FaultKind::spikes,
+     Takes::number, 0.01, "", 0.0, 1.0},
+    {"moving_force", "while the arm moves, the force has up to VALUE newtons (4) on top that go against the motion",
+     FaultKind::moving_force, Takes::number, 4.0},
+    {"drop_commands", "commands are ignored for VALUE seconds (5)", FaultKind::drop_commands, Takes::number, 5.0},
+    {"jump_joints", "the measured left_s1 is off by VALUE radians (0.3) from now on", FaultKind::jump_joints,
+     Takes::number, 0.3},
+    {"old_state", "* /robot/state has the md5 sum of firmware before 1.2", FaultKind::old_state},
+    {"no_data", "* of the stream VALUE (endpoint; joints, state, collision, avoidance) nothing ever comes",
+     FaultKind::no_data, Takes::text, 0.0, "endpoint"},
+    {"disabled", "* the robot begins disabled", FaultKind::disabled},
+    {"tucked", "* the arm begins tucked and disabled, and refuses to be enabled", FaultKind::tucked},
+    {"ik_invalid", "IKService says that there is no solution", FaultKind::ik_invalid},
+    {"ik_slow", "it answers after VALUE seconds (5) of real time", FaultKind::ik_slow, Takes::number, 5.0},
+    {"ik_absent", "* it is not there", FaultKind::ik_absent},
+    {"software", "* the robot's software has version VALUE", FaultKind::software, Takes::text, 0.0, "1.1.1"},
+    {"freeze_clock", "/clock stops; the robot goes on", FaultKind::freeze_clock},
+    {"avoid", "the arm's collision avoidance keeps away from VALUE (torso; other_arm for the right arm)",
+     FaultKind::avoid, Takes::text, 0.0, "torso"},
+    {"speed_ratio", "another program, which stays, sets the speed ratio to VALUE (0.03)", FaultKind::speed_ratio,
+     Takes::number, 0.03, "", 0.0, 1.0},
+    {"command_timeout", "likewise the time-out of commands to VALUE seconds (0.02)", FaultKind::command_timeout,
+     Takes::number, 0.02, "", 0.0, kAny},
+    {"slow_endpoint", "endpoint_state comes VALUE times a second (25)", FaultKind::slow_endpoint, Takes::number, 25.0,
+     "", 0.1, 100.0},
+    {"bursts", "all that the robot says comes in bursts, one every VALUE seconds (0.045)", FaultKind::bursts,
+     Takes::number, 0.045, "", 0.0, kAny},
+    {"stall", "for VALUE seconds (0.05) nothing comes, then all of it", FaultKind::stall, Takes::number, 0.05, "", 0.0,
+     kAny},
+    {"die", "the program is gone at once", FaultKind::die},
 };
 
-constexpr const char* kStreams[] = {"endpoint", "joints", "state", "collision"};
+constexpr const char* kStreams[] = {"endpoint", "joints", "state", "collision", "avoidance"};
 
 std::string all_names() {
   std::string out;
@@ -58,11 +87,15 @@ std::string all_names() {
   return out;
 }
 
-double number(const std::string& fault, const std::string& text) {
+double number(const Known& fault, const std::string& text) {
   char* end = nullptr;
   const double out = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(out)) {
-    throw Error("--fault", fault + " takes a number, not '" + text + "'");
+  const bool fits = out >= fault.least && out <= fault.most;
+  if (text.empty() || *end != '\0' || !std::isfinite(out) || !fits) {
+    std::string range;
+    if (std::isfinite(fault.least)) range += fmt::format(" from {} on", fault.least);
+    if (std::isfinite(fault.most)) range = fmt::format(" from {} to {}", fault.least, fault.most);
+    throw Error("--fault", std::string(fault.name) + " takes a number" + range + ", not '" + text + "'");
   }
   return out;
 }
@@ -78,16 +111,23 @@ Fault parse_fault(const std::string& words) {
     if (equals == std::string::npos) return out;
     const std::string value = words.substr(equals + 1);
     if (one.takes == Takes::nothing) throw Error("--fault", name + " takes no value");
-    if (one.takes == Takes::number) out.amount = number(name, value);
+    if (one.takes == Takes::number) out.amount = number(one, value);
     if (one.takes == Takes::text) out.text = value;
     if (one.kind == FaultKind::no_data) {
       bool stream = false;
       for (const char* known : kStreams) stream = stream || value == known;
-      if (!stream) throw Error("--fault", "no_data takes endpoint, joints, state or collision, not '" + value + "'");
+      if (!stream)
+        throw Error("--fault", "no_data takes endpoint, joints, state, collision or avoidance, not '" + value + "'");
     }
     return out;
   }
   throw Error("--fault", "there is no fault '" + name + "'", "there are " + all_names());
+}
+
+std::string describe_faults() {
+  std::string out;
+  for (const Known& one : kKnown) out += fmt::format("  {:16} {}\n", one.name, one.meaning);
+  return out;
 }
 
 bool starts_with_robot(FaultKind kind) {

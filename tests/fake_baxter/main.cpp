@@ -19,6 +19,8 @@
 namespace palpate::fake_baxter {
 namespace {
 
+constexpr std::uint32_t kBurst = 100;  ///< messages of one stream that may come at once
+
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
@@ -88,6 +90,20 @@ BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter
   return out;
 }
 
+/// The role of the node that a fault brings along; "" for none.
+std::string companion_of(const Fault& fault) {
+  switch (fault.kind) {
+    case FaultKind::second_state:
+      return "second_state";
+    case FaultKind::speed_ratio:
+      return fmt::format("set_speed_ratio={}", fault.amount);
+    case FaultKind::command_timeout:
+      return fmt::format("joint_command_timeout={}", fault.amount);
+    default:
+      return {};
+  }
+}
+
 int run(const Arguments& a) {
   std::vector<Fault> faults;
   for (const std::string& words : a.faults) faults.push_back(parse_fault(words));
@@ -103,16 +119,19 @@ int run(const Arguments& a) {
   const auto seed = static_cast<std::uint64_t>(config.options.seed);
   const std::unique_ptr<const Scene> scene = build_scene(config.options.scene, seed, host);
   Body body(*scene, body_options(a, baxter, seed));
-  bool second = false;
+  Companion gripper("end_effector");
+  std::list<Beside> beside;
   for (const Fault& fault : faults) {
     body.inject(fault, starts_with_robot(fault.kind) ? Trigger{} : trigger);
-    second = second || fault.kind == FaultKind::second_state;
+    const std::string role = companion_of(fault);
+    if (!role.empty()) beside.emplace_back(fault.kind, role);
   }
-  Companion gripper("end_effector");
-  std::optional<Companion> impostor;
-  if (second) impostor.emplace("second_state");
+  NodeOptions node = a.node;
+  for (const Fault& fault : faults) {
+    if (fault.kind == FaultKind::bursts || fault.kind == FaultKind::stall) node.queue = kBurst;
+  }
   const baxter::Arm arm({0.0, 0.0, baxter.tool.gripper});
-  serve(body, a.node, gripper, impostor ? &*impostor : nullptr, arm, stop);
+  serve(body, node, gripper, beside, arm, stop);
   return 0;
 }
 
@@ -140,9 +159,14 @@ int run_main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--arm", a.arm, "lagged (joints without mass), springs (rigid bodies, by KDL) or mujoco");
   app.add_option("--friction", a.friction, "of every joint of springs and mujoco, Nm")->check(CLI::Range(0.0, 5.0));
+  app.add_option("--gripper", a.node.gripper,
+                 "the product that the robot has recognised at its flange; none if absent");
+  app.add_option("--tool-mass", a.node.tool_mass, "kilograms that the robot has been told of, beyond its flange")
+      ->check(CLI::Range(0.0, 100.0));
   app.add_option("--fault", a.faults, "what goes wrong: NAME or NAME=VALUE; may be given again")->take_all();
   app.add_option("--at", a.at, "when: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
   app.add_option("--trace", a.node.trace, "a CSV file with a row for every period");
+  app.footer("Faults; those marked * hold from the start, whatever --at says:\n" + describe_faults());
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "fake_baxter/node.hpp"
 
+#include "fake_baxter/delivery.hpp"
 #include "fake_baxter/inverse.hpp"
 #include "fake_baxter/old_state.hpp"
+#include "fake_baxter/urdf.hpp"
 
 #include <palpate/error.hpp>
 
 #include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionAvoidanceState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
 #include <ros/callback_queue.h>
@@ -73,7 +77,7 @@ baxter_core_msgs::EndpointState message_of(const baxter::EndpointReading& readin
   return out;
 }
 
-sensor_msgs::JointState message_of(const baxter::JointReading& reading, const Joints& speed) {
+sensor_msgs::JointState message_of(const baxter::JointReading& reading, const Joints& speed, const Joints& effort) {
   sensor_msgs::JointState out;
   out.header.stamp = time_of(reading.stamp);
   out.name.assign(std::begin(kAllJoints), std::end(kAllJoints));
@@ -84,6 +88,7 @@ sensor_msgs::JointState message_of(const baxter::JointReading& reading, const Jo
     const std::size_t place = place_of(baxter::kJointNames[i]);
     out.position[place] = reading.position(static_cast<Eigen::Index>(i));
     out.velocity[place] = speed(static_cast<Eigen::Index>(i));
+    out.effort[place] = effort(static_cast<Eigen::Index>(i));
   }
   return out;
 }
@@ -96,6 +101,30 @@ baxter_core_msgs::AssemblyState message_of(const baxter::StateReading& state) {
   out.error = state.error;
   out.estop_button = static_cast<std::uint8_t>(state.estop_button);
   out.estop_source = static_cast<std::uint8_t>(state.estop_source);
+  return out;
+}
+
+baxter_core_msgs::CollisionDetectionState message_of(const baxter::CollisionReading& reading) {
+  baxter_core_msgs::CollisionDetectionState out;
+  out.header.stamp = time_of(reading.stamp);
+  out.collision_state = reading.collision;
+  return out;
+}
+
+baxter_core_msgs::CollisionAvoidanceState message_of(const baxter::AvoidanceReading& reading) {
+  baxter_core_msgs::CollisionAvoidanceState out;
+  out.header.stamp = time_of(reading.stamp);
+  out.other_arm = reading.other_arm;
+  out.collision_object = reading.objects;
+  return out;
+}
+
+baxter_core_msgs::EndEffectorProperties properties_of(const std::string& product) {
+  baxter_core_msgs::EndEffectorProperties out;
+  if (product.empty()) return out;
+  out.ui_type = baxter_core_msgs::EndEffectorProperties::ELECTRIC_GRIPPER;
+  out.manufacturer = "Rethink Research Robot";
+  out.product = product;
   return out;
 }
 
@@ -116,13 +145,14 @@ void join_network(bool clock) {
 
 class Node {
  public:
-  Node(Body& body, const NodeOptions& options, Companion& gripper, Companion* second, const baxter::Arm& arm)
-      : body_(body), options_(options), gripper_(gripper), second_(second), trace_(options.trace) {
+  Node(Body& body, const NodeOptions& options, Companion& gripper, std::list<Beside>& beside, const baxter::Arm& arm)
+      : body_(body), options_(options), gripper_(gripper), beside_(beside), trace_(options.trace) {
     join_network(options.rate > 0.0);
     node_.emplace();
     node_->setCallbackQueue(&queue_);
     const Fault* software = body.active(FaultKind::software);
     node_->setParam("/rethink/software_version", software != nullptr ? software->text : std::string(kSoftware));
+    node_->setParam("/robot_description", urdf(options.tool_mass));
     advertise();
     if (body.active(FaultKind::ik_absent) == nullptr) inverse_.emplace(arm);
     subscribe();
@@ -141,7 +171,9 @@ class Node {
     const ros::WallDuration period(Body::kPeriod / rate);
     ros::WallTime due = ros::WallTime::now();
     publish();
-    if (second_ != nullptr && body_.active(FaultKind::second_state) != nullptr) second_->wait_until_up();
+    for (Beside& one : beside_) {
+      if (body_.active(one.with) != nullptr) one.node.wait_until_up();
+    }
     std::puts("ready");
     std::fflush(stdout);
     while (!stop) {
@@ -161,14 +193,19 @@ class Node {
  private:
   void advertise() {
     ros::NodeHandle& node = *node_;
-    endpoint_ = node.advertise<baxter_core_msgs::EndpointState>("/robot/limb/left/endpoint_state", 1);
-    joints_ = node.advertise<sensor_msgs::JointState>("/robot/joint_states", 1);
-    collision_ =
-        node.advertise<baxter_core_msgs::CollisionDetectionState>("/robot/limb/left/collision_detection_state", 1);
+    endpoint_ = node.advertise<baxter_core_msgs::EndpointState>("/robot/limb/left/endpoint_state", options_.queue);
+    joints_ = node.advertise<sensor_msgs::JointState>("/robot/joint_states", options_.queue);
+    collision_ = node.advertise<baxter_core_msgs::CollisionDetectionState>("/robot/limb/left/collision_detection_state",
+                                                                           options_.queue);
+    avoidance_ = node.advertise<baxter_core_msgs::CollisionAvoidanceState>("/robot/limb/left/collision_avoidance_state",
+                                                                           options_.queue);
+    properties_ =
+        node.advertise<baxter_core_msgs::EndEffectorProperties>("/robot/end_effector/left_gripper/properties", 1, true);
+    properties_.publish(properties_of(options_.gripper));
     if (body_.active(FaultKind::old_state) != nullptr) {
       publish_state_ = advertise_old_state(node);
     } else {
-      const ros::Publisher state = node.advertise<baxter_core_msgs::AssemblyState>("/robot/state", 1);
+      const ros::Publisher state = node.advertise<baxter_core_msgs::AssemblyState>("/robot/state", options_.queue);
       publish_state_ = [state](const baxter::StateReading& reading) { state.publish(message_of(reading)); };
     }
     if (options_.rate > 0.0) clock_ = node.advertise<rosgraph_msgs::Clock>("/clock", 1);
@@ -241,21 +278,20 @@ class Node {
   }
 
   void publish() {
-    const Said said = body_.said();
-    if (said.endpoint) endpoint_.publish(message_of(*said.endpoint, said.tip_speed));
-    if (said.joints) joints_.publish(message_of(*said.joints, said.speed));
-    if (said.state) publish_state_(*said.state);
-    if (said.collision) {
-      baxter_core_msgs::CollisionDetectionState collision;
-      collision.header.stamp = time_of(said.collision->stamp);
-      collision.collision_state = said.collision->collision;
-      collision_.publish(collision);
+    for (const Said& said : delivery_.take(body_)) {
+      if (said.endpoint) endpoint_.publish(message_of(*said.endpoint, said.tip_speed));
+      if (said.joints) joints_.publish(message_of(*said.joints, said.speed, said.effort));
+      if (said.state) publish_state_(*said.state);
+      if (said.collision) collision_.publish(message_of(*said.collision));
+      if (said.avoidance) avoidance_.publish(message_of(*said.avoidance));
     }
     while (gripper_due_ <= body_.now()) {
       gripper_.tell(body_.now());
       gripper_due_ = std::max(gripper_due_, body_.now() - kGripperPeriod) + kGripperPeriod;
     }
-    if (second_ != nullptr && body_.active(FaultKind::second_state) != nullptr) second_->tell(body_.now());
+    for (Beside& one : beside_) {
+      if (body_.active(one.with) != nullptr) one.node.tell(body_.now());
+    }
     // Last, so that who sees the time most likely has what was said at that time.
     if (options_.rate > 0.0 && body_.active(FaultKind::freeze_clock) == nullptr) {
       rosgraph_msgs::Clock clock;
@@ -267,12 +303,13 @@ class Node {
   Body& body_;
   NodeOptions options_;
   Companion& gripper_;
-  Companion* second_;
+  std::list<Beside>& beside_;
+  Delivery delivery_;
   Trace trace_;
   ros::CallbackQueue queue_;
   std::optional<ros::NodeHandle> node_;
   std::optional<InverseKinematics> inverse_;
-  ros::Publisher endpoint_, joints_, collision_, clock_;
+  ros::Publisher endpoint_, joints_, collision_, avoidance_, properties_, clock_;
   std::function<void(const baxter::StateReading&)> publish_state_;
   std::vector<ros::Subscriber> heard_;
   double heard_at_ = -1e9;  ///< when a driver last sent a command, whatever became of it
@@ -283,9 +320,9 @@ class Node {
 
 }  // namespace
 
-void serve(Body& body, const NodeOptions& options, Companion& gripper, Companion* second, const baxter::Arm& arm,
-           const std::atomic<bool>& stop) {
-  Node(body, options, gripper, second, arm).run(stop);
+void serve(Body& body, const NodeOptions& options, Companion& gripper, std::list<Beside>& beside,
+           const baxter::Arm& arm, const std::atomic<bool>& stop) {
+  Node(body, options, gripper, beside, arm).run(stop);
 }
 
 }  // namespace palpate::fake_baxter

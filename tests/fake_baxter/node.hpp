@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <fstream>
+#include <list>
 #include <string>
 
 namespace palpate::fake_baxter {
@@ -16,7 +17,19 @@ struct NodeOptions {
   /// is no /clock.
   double rate = 0.0;
   double patience = 0.1;  ///< s of real time that /clock waits for a driver that was sending commands
-  std::string trace;      ///< a file, "" for none
+  /// Of the streams: only where messages come in bursts must all of them arrive; who is late has less to catch up with
+  /// if they need not.
+  std::uint32_t queue = 1;
+  std::string trace;       ///< a file, "" for none
+  std::string gripper;     ///< its product name, as the robot has recognised it; "" for none
+  double tool_mass = 0.0;  ///< kg, as the robot has been told
+};
+
+/// Another node that is there from when a fault begins.
+struct Beside {
+  Beside(FaultKind kind, const std::string& role) : with(kind), node(role) {}
+  FaultKind with;
+  Companion node;
 };
 
 /// One row a period of what is so, whatever is said: t, x, y, z of the tip in the scene's frame, height of the
@@ -39,8 +52,7 @@ class Trace {
 /// With /clock, time does not run away from a driver: while commands come, it goes no further than two periods past the
 /// latest one, unless none comes for `patience`. So a driver on a busy machine is not late, and one that is gone is
 /// still noticed.
-/// `second` publishes another /robot/state, where that is among the faults of `body`; may be null.
-void serve(Body& body, const NodeOptions& options, Companion& gripper, Companion* second, const baxter::Arm& arm,
-           const std::atomic<bool>& stop);
+void serve(Body& body, const NodeOptions& options, Companion& gripper, std::list<Beside>& beside,
+           const baxter::Arm& arm, const std::atomic<bool>& stop);
 
 }  // namespace palpate::fake_baxter

@@ -8,7 +8,9 @@
 #include "fake_baxter/old_state.hpp"
 
 #include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionAvoidanceState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
 #include <baxter_core_msgs/SolvePositionIK.h>
@@ -31,7 +33,9 @@ namespace palpate::fake_baxter {
 namespace {
 
 using baxter_core_msgs::AssemblyState;
+using baxter_core_msgs::CollisionAvoidanceState;
 using baxter_core_msgs::CollisionDetectionState;
+using baxter_core_msgs::EndEffectorProperties;
 using baxter_core_msgs::EndpointState;
 using baxter_core_msgs::JointCommand;
 using baxter_core_msgs::SolvePositionIK;
@@ -51,6 +55,8 @@ int md5() {
   print_md5<AssemblyState>("AssemblyState");
   fmt::print("OldAssemblyState {}\n", old_state_md5());
   print_md5<CollisionDetectionState>("CollisionDetectionState");
+  print_md5<CollisionAvoidanceState>("CollisionAvoidanceState");
+  print_md5<EndEffectorProperties>("EndEffectorProperties");
   fmt::print("SolvePositionIK {}\n", ros::service_traits::md5sum<SolvePositionIK>());
   print_md5<SolvePositionIK::Request>("SolvePositionIKRequest");
   print_md5<SolvePositionIK::Response>("SolvePositionIKResponse");
@@ -66,6 +72,7 @@ class Probe {
     });
     hear<AssemblyState>("/robot/state", [this](const auto& m) { state = m; });
     hear<CollisionDetectionState>("/robot/limb/left/collision_detection_state", [](const auto&) {});
+    hear<CollisionAvoidanceState>("/robot/limb/left/collision_avoidance_state", [](const auto&) {});
   }
 
   /// Takes what comes until `holds`; false if that lasts too long.

@@ -45,8 +45,9 @@ constexpr double kRounding = 1e-6;
 constexpr milliseconds kCatchUp(50);
 constexpr double kAlmostNow = 0.03;
 
-/// What came while this program did not get to it is counted, not dropped: at 100 Hz that of half a second.
-constexpr std::uint32_t kBacklog = 50;
+/// What came while this program did not get to it is counted, not dropped: at 100 Hz that of a tenth of a second, and
+/// no more, which would take even longer to get through.
+constexpr std::uint32_t kBacklog = 10;
 /// Without messages the spinner looks up so often.
 const ros::WallDuration kSpin(0.5 * Pulse::kNoted);
 
