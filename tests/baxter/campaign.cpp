@@ -18,7 +18,8 @@ namespace {
 
 using palpate::test::shared_host;
 
-constexpr double kRate = 0.01;       // of spikes among readings, of stalls among periods
+constexpr double kSpikes = 0.01;     // of the readings
+constexpr double kStalls = 0.03;     // of the periods
 constexpr double kSpike = 9.0;       // N
 constexpr double kStall = 0.05;      // s
 constexpr double kTouched = 0.5;     // N of true force from which on a tap has touched
@@ -52,7 +53,7 @@ class Session {
       robot_.spoil = [this](Snapshot& seen) { spike(*seen.endpoint); };
     }
     if (condition.stalls) {
-      robot_.late = [this] { return random_.uniform() < kRate ? kStall * random_.uniform() : 0.0; };
+      robot_.late = [this] { return random_.uniform() < kStalls ? kStall * random_.uniform() : 0.0; };
     }
     robot_.every_period = [this] { peak_ = std::max(peak_, robot_.body.arm().peak); };
   }
@@ -98,7 +99,7 @@ class Session {
   void spike(EndpointReading& reading) {
     if (reading.received == spiked_at_) return;  // once for every message
     spiked_at_ = reading.received;
-    if (random_.uniform() < kRate) reading.force.z() += random_.uniform() < 0.5 ? kSpike : -kSpike;
+    if (random_.uniform() < kSpikes) reading.force.z() += random_.uniform() < 0.5 ? kSpike : -kSpike;
   }
 
   /// What the tool finds beside an edge is another question.

@@ -17,7 +17,7 @@ struct Condition {
   fake_baxter::MechanicsOptions arm;
   double stiffness = 1500.0;  ///< of the object, N/m
   bool spikes = false;        ///< one reading of the force in a hundred is 9 N off
-  bool stalls = false;        ///< one period in a hundred takes up to 50 ms longer
+  bool stalls = false;        ///< three periods in a hundred take up to 50 ms longer
 };
 
 /// What became of them.

@@ -150,7 +150,7 @@ TEST(TheArmWithSprings, SticksWithoutCreeping) {
 /// A touch that is guarded by the true force: down until it is above 6 N, then the measured joints.
 struct Touch {
   double peak = 0.0;    ///< N
-  double lowest = 1.0;  ///< m
+  double depth = 0.0;   ///< m, the most
   double height = 0.0;  ///< m, at the end
   double force = 0.0;   ///< N, at the end
   double felt = 0.0;    ///< N, more than before
@@ -163,7 +163,7 @@ Touch touch(const MechanicsOptions& mechanics, double stiffness, double speed) {
   const double zero = bench.body.arm().felt.z();
   const auto look = [&] {
     out.peak = std::max(out.peak, bench.body.arm().peak);
-    out.lowest = std::min(out.lowest, bench.body.tip().z());
+    out.depth = std::max(out.depth, bench.body.arm().depth);
   };
   bench.lead({kMiddle.x(), kMiddle.y(), -0.03}, speed, [&] {
     look();
@@ -189,9 +189,10 @@ TEST(TheArmWithSprings, MovesInStepsOfAMillisecondAsInStepsOfATwentieth) {
     const Touch fine = touch({Type::springs, one.friction, 5e-5}, one.stiffness, one.speed);
     const std::string where = std::to_string(one.stiffness) + " N/m at " + std::to_string(one.speed) + " m/s";
     EXPECT_NEAR(coarse.peak, fine.peak, 0.01 * fine.peak) << where;
-    EXPECT_NEAR(coarse.lowest, fine.lowest, 0.01 * std::abs(fine.lowest)) << where;
+    EXPECT_NEAR(coarse.depth, fine.depth, 0.01 * fine.depth) << where;
     EXPECT_NEAR(coarse.height, fine.height, 0.01 * std::abs(fine.height)) << where;
     EXPECT_GT(fine.peak, 6.0);
+    RecordProperty(where, std::to_string(coarse.peak) + " N, " + std::to_string(fine.peak) + " N");
   }
 }
 
@@ -224,6 +225,7 @@ TEST_F(MujocoTwin, TouchesWithTheSameForces) {
                                   std::to_string(friction) + " Nm";
         // MuJoCo's friction yields a little; its contact, too.
         EXPECT_NEAR(ours.peak, theirs.peak, 0.03 * theirs.peak) << where;
+        EXPECT_NEAR(ours.depth, theirs.depth, 0.03 * theirs.depth) << where;
         EXPECT_NEAR(ours.force, theirs.force, 0.03 * theirs.force) << where;
         EXPECT_NEAR(ours.felt, theirs.felt, 0.3) << where;
         EXPECT_NEAR(ours.height, theirs.height, 2e-5 + 0.03 * std::abs(theirs.height)) << where;

@@ -119,6 +119,14 @@ TEST(RobotRun, WorksInRealTimeAsWell) {
   EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact"));
 }
 
+TEST(RobotRun, TapsWithAnArmThatHasMassesSpringsAndFriction) {
+  RobotLab lab;
+  lab.start_robot(robot_words({"--arm", "springs", "--friction", "0.05"}));
+  const Ended ended = lab.palpate(run_words(1));
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact"));
+}
+
 TEST(RobotRun, IsReplayedToTheLastDigitWithoutTheRobot) {
   RobotLab lab;
   lab.start_robot(robot_words());

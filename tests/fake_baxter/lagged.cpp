@@ -45,6 +45,7 @@ void Lagged::touch() {
   const double pressed = std::max(0.0, -ground_.clearance(arm_.tip(unloaded_).position));
   state_.pressing = pressed / (object_give_ + arm_give_);
   state_.peak = state_.pressing;
+  state_.depth = object_give_ * state_.pressing;
   state_.position = unloaded_;
   state_.felt = {0.0, 0.0, state_.pressing};
   state_.effort.setZero();

@@ -44,6 +44,7 @@ struct ArmState {
   Joints effort = Joints::Zero();    ///< torques that carry the arm and press, Nm
   double pressing = 0.0;             ///< N, upwards on the tip: the truth
   double peak = 0.0;                 ///< N, the most that it was during the period
+  double depth = 0.0;                ///< m, the most by which the tip was below what it presses during the period
   /// N in `base`, on the tip: what the robot makes of its efforts, before noise and bias.
   Eigen::Vector3d felt = Eigen::Vector3d::Zero();
 };

@@ -122,6 +122,7 @@ class Mujoco final : public Mechanics {
 
   void advance(const Joints& reference) override {
     state_.peak = 0.0;
+    state_.depth = 0.0;
     for (int i = 0; i < kInPeriod; ++i) step(reference);
     measure();
   }
@@ -179,6 +180,7 @@ class Mujoco final : public Mechanics {
       state_.pressing += force[0];
     }
     state_.peak = std::max(state_.peak, state_.pressing);
+    if (data_->ncon > 0) state_.depth = std::max(state_.depth, model_->qpos_spring[0] - data_->qpos[0]);
   }
 
   void measure() {

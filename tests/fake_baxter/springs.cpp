@@ -26,7 +26,8 @@ Springs::Springs(const Ground& ground, const Eigen::Vector3d& tip, double fricti
 void Springs::put(const Joints& joints) {
   state_ = {};
   state_.position = joints;
-  state_.pressing = stiffness_ * std::max(0.0, -ground_.clearance(dynamics_.tip(joints)));
+  state_.depth = std::max(0.0, -ground_.clearance(dynamics_.tip(joints)));
+  state_.pressing = stiffness_ * state_.depth;
   // Where the motors must be so that the springs carry what the firmware does not, less what the ground does.
   const Joints carried = dynamics_.jacobian(joints).row(2).transpose() * state_.pressing;
   const Joints left = kSag * dynamics_.weight(joints) - carried;
@@ -39,6 +40,7 @@ void Springs::put(const Joints& joints) {
 
 void Springs::advance(const Joints& reference) {
   state_.peak = 0.0;
+  state_.depth = 0.0;
   for (int i = 0; i < steps_; ++i) step(reference);
   measure();
 }
@@ -86,6 +88,7 @@ void Springs::step(const Joints& reference) {
   position += step_ * speed;
   state_.pressing = force;
   state_.peak = std::max(state_.peak, force);
+  state_.depth = std::max(state_.depth, depth);
 }
 
 /// The robot knows what its arm weighs, and takes whatever else its springs carry for a force on the tip.
