@@ -15,8 +15,8 @@ namespace palpate::baxter::test {
 inline BaxterOptions fake_options() {
   BaxterOptions out;
   out.motion.type = tapping::MotionOptions::Type::continuous;
-  out.motion.speed = 0.02;
-  out.motion.threshold = 6.0;
+  out.motion.speed = 0.015;
+  out.motion.threshold = 5.0;
   out.motion.travel_speed = 0.15;
   out.motion.retreat_speed = 0.1;
   out.motion.tare = 0.5;

@@ -25,6 +25,7 @@ constexpr double kDeskHeight = 0.0;
 BodyOptions with(const MechanicsOptions& mechanics, double above = 0.15) {
   BodyOptions out = fake_options();
   out.mechanics = mechanics;
+  out.speed_ratio = 1.0;  // what is asked of the joints is what they are given
   out.start_at = Eigen::Vector3d(kMiddle.x(), kMiddle.y(), kDeskHeight + above);
   return out;
 }
