@@ -272,7 +272,10 @@ TEST(Chaos, KeepsItsRulesWhateverHappensWhenever) {
 TEST(ATap, ComesDownOnlyWhereItWasSentWhenCommandsWereLostOnTheWay) {
   // The robot stands still where it lost them, for example just short of the goal: that is no arrival.
   for (int moment = 90; moment < 200; moment += 4) {
-    BodyRobot robot(wave_scene(), test::body_options(test::fake_options()));
+    test::BodyOptions body = test::body_options(test::fake_options());
+    // At the shipped 0.3 the joints catch up one by one with what was lost, which bends the way by itself.
+    body.speed_ratio = 1.0;
+    BodyRobot robot(wave_scene(), body);
     Tapper tapper(test::fake_options(), wave_scene(), robot, nullptr, [](const std::string&) {});
     int period = 0;
     std::optional<Eigen::Vector3d> low;
@@ -287,8 +290,7 @@ TEST(ATap, ComesDownOnlyWhereItWasSentWhenCommandsWereLostOnTheWay) {
     TapRequest request;
     request.target = {0.03, 0.03};
     tapper.tap(request);
-    // Of the motion that was lost the joints catch up one by one, each at 0.3 of its greatest speed.
-    ASSERT_LT(aside, 0.005) << "commands lost from period " << moment;
+    ASSERT_LT(aside, 0.004) << "commands lost from period " << moment;
   }
 }
 
