@@ -4,6 +4,7 @@
 // the few times of every day: tests/robot_campaign.sh.
 #include "baxter/campaign.hpp"
 #include "fake_baxter/mujoco.hpp"
+#include "support/sanitizers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,6 @@ using test::Tally;
 using Type = MechanicsOptions::Type;
 
 constexpr double kStiffnesses[] = {1500, 10000, 20000, 100000};  // N/m
-constexpr double kHard = 50000;                                  // N/m from which on a tap must end safely, and no more
 constexpr double kMostFriction = 0.4;                            // Nm
 constexpr double kMostForce = 16.0;                              // N
 
@@ -29,9 +29,14 @@ std::string name_of(Type arm) {
   return arm == Type::springs ? "Springs" : "Mujoco";
 }
 
+/// N/m from which on a tap must end safely, and no more. Joints without masses and springs press on by all of their
+/// lag, however hard that is.
+double hard_from(Type arm) { return arm == Type::lagged ? 5000 : 50000; }
+
 /// The campaign's taps on an arm, or `daily`.
 int taps_of(Type arm, int daily) {
   if (const char* taps = std::getenv("PALPATE_CAMPAIGN")) return std::atoi(taps);
+  if (palpate::test::kSanitized) daily /= 8;
   return arm == Type::mujoco ? daily / 3 : daily;
 }
 
@@ -74,10 +79,10 @@ TEST_P(Campaign, HasNoPhantomsLosesNoContactsAndStaysBelowTheReflex) {
     condition.stalls = cell % 4 >= 2;
     const Tally one = campaign(condition, taps, static_cast<std::uint64_t>(cell + 1));
     report(name_of(condition), one);
-    (condition.stiffness > kHard ? hard : yielding).add(one);
+    (condition.stiffness > hard_from(GetParam()) ? hard : yielding).add(one);
   }
-  report(name_of(GetParam()) + ", up to 20 kN/m", yielding);
-  report(name_of(GetParam()) + ", 100 kN/m", hard);
+  report(name_of(GetParam()) + ", yielding", yielding);
+  report(name_of(GetParam()) + ", hard", hard);
   EXPECT_EQ(yielding.phantoms, 0);
   EXPECT_LE(yielding.rejection(), 0.01);
   EXPECT_LE(yielding.peak, kMostForce);
@@ -98,7 +103,7 @@ TEST_P(Campaign, RunsThirtyTapsOnSoftAndOnHardThings) {
     report(name_of(condition), tally);
     EXPECT_EQ(tally.phantoms, 0);
     EXPECT_EQ(tally.pressing, 0);
-    if (stiffness > kHard) continue;
+    if (stiffness > hard_from(GetParam())) continue;
     EXPECT_EQ(tally.contacts, tally.taps);
     EXPECT_LE(tally.peak, kMostForce);
     EXPECT_LT(tally.error, 0.005);

@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
     OfTheRobot, FaultInATap,
     testing::Values(
         MidTap{"EmergencyStop", "estop", "the emergency stop is pressed", Left::holding, 1},
-        MidTap{"ErrorFlag", "error", "the robot does not know whether its emergency stop is pressed", Left::holding, 1},
+        MidTap{"ErrorFlag", "error", "the robot reports an error and is disabled", Left::holding, 1},
         MidTap{"Squish", "squish", "the arm's own reflex stopped it", Left::raised, 1},
         MidTap{"FrozenEndpoint", "freeze_endpoint", "the same force to the last digit", Left::holding, 1},
         MidTap{"KilledEndpoint", "kill_endpoint", "endpoint_state of the left arm did not come", Left::holding, 1},

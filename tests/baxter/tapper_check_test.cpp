@@ -30,7 +30,49 @@ TEST(ADryRun, CommandsNothing) {
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, StartsWith("dry run"));
   EXPECT_TRUE(bench.robot.commands.empty());
-  EXPECT_THAT(bench.notes.front(), HasSubstr("all 169 places of the area can be reached"));
+  EXPECT_THAT(bench.notes.back(), HasSubstr("all 169 places of the area can be reached"));
+}
+
+TEST(BeforeFlight, WhatOthersLeftOnTheRobotIsToldAndRefusedWhereTheArmWouldNotDoWhatItIsTold) {
+  const auto refusal = [](const std::function<void(Snapshot&)>& spoil) -> std::string {
+    Bench bench;
+    bench.robot.spoil = spoil;
+    try {
+      bench.check();
+    } catch (const Error& error) {
+      EXPECT_TRUE(bench.robot.commands.empty());
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal([](Snapshot& s) { s.speed_ratio = Setting{0.3, "/other"}; }), "");
+  EXPECT_THAT(refusal([](Snapshot& s) {
+                s.speed_ratio = Setting{0.03, "/other"};
+              }),
+              HasSubstr("/other has set it to 0.03, at which the arm cannot follow"));
+  EXPECT_EQ(refusal([](Snapshot& s) { s.command_timeout = Setting{0.2, "/other"}; }), "");
+  for (const double timeout : {0.02, 5.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THAT(refusal([&](Snapshot& s) {
+                  s.command_timeout = Setting{timeout, "/other"};
+                }),
+                HasSubstr("set it to 0.2, on /robot/limb/left/joint_command_timeout"));
+  }
+  EXPECT_EQ(refusal([](Snapshot& s) { s.avoidance = AvoidanceReading{}; }), "");
+  EXPECT_THAT(refusal([](Snapshot& s) {
+                s.avoidance = AvoidanceReading{};
+                s.avoidance->other_arm = true;
+                s.avoidance->objects = {"torso"};
+              }),
+              HasSubstr("pushes the arm away from the other arm and torso"));
+  Bench bench;
+  bench.robot.spoil = [](Snapshot& s) {
+    s.speed_ratio = Setting{0.5, "/other"};
+    s.end_effector = {"rethink electric gripper", 0.8};
+  };
+  bench.check();
+  EXPECT_THAT(bench.notes, testing::ElementsAre(StartsWith("set_speed_ratio: 0.5 from /other"),
+                                                HasSubstr("joint_command_timeout: nobody says it now"),
+                                                HasSubstr("rethink electric gripper, 0.8 kg beyond the flange")));
 }
 
 BaxterOptions asking() {
@@ -124,7 +166,7 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
       {FaultKind::zero_wrench, "a force of exactly zero"},
       {FaultKind::second_state, "more than one node, /realtime_loop and /mock_robot"},
       {FaultKind::estop, "the emergency stop is pressed"},
-      {FaultKind::error, "the robot does not know whether its emergency stop is pressed"},
+      {FaultKind::error, "the robot reports an error and is disabled"},
   };
   for (const auto& [kind, reason] : cases) {
     Bench bench;

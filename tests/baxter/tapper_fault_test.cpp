@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
     OnTheWayDown, TroubleInATap,
     testing::Values(
         Trouble{FaultKind::estop, 2, "the emergency stop is pressed", Arm_::held, true},
-        Trouble{FaultKind::error, 0, "the robot does not know whether its emergency stop is pressed", Arm_::held, true},
+        Trouble{FaultKind::error, 0, "the robot reports an error and is disabled", Arm_::held, true},
         Trouble{FaultKind::squish, 0, "the arm's own reflex stopped it", Arm_::raised, true},
         Trouble{FaultKind::freeze_endpoint, 0, "the same force to the last digit", Arm_::held, true},
         Trouble{FaultKind::kill_endpoint, 0, "endpoint_state of the left arm did not come", Arm_::held, true},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The left arm of a Baxter as a backend.
 #include "baxter/options.hpp"
+#include "baxter/real_time.hpp"
 #include "baxter/ros/connect.hpp"
 #include "baxter/tapper.hpp"
 
@@ -37,6 +38,8 @@ class Diary {
     }
   }
 
+  bool has_bag() const { return std::filesystem::exists(directory_ + "/baxter.bag"); }
+
   bool kept() const { return !directory_.empty(); }
 
  private:
@@ -65,9 +68,17 @@ class Baxter final : public Backend {
   }
 
   Contact tap(const TapRequest& request) override {
-    if (options_.bag && !recording_ && diary_.kept()) robot_->record(diary_.bag());
+    if (options_.bag && !recording_ && diary_.kept()) {
+      if (diary_.has_bag()) {
+        diary_.note("an earlier part of this run has a rosbag: if it was killed, 'rosbag reindex' makes that readable");
+      }
+      robot_->record(diary_.bag());
+    }
     recording_ = true;
     if (view_) view_->target(request.target);
+    const RealTime real_time(!robot_->read().simulated);
+    if (!recorded_schedule_ && !real_time.words().empty()) diary_.note(real_time.words());
+    recorded_schedule_ = true;
     Contact contact = tapper_.tap(request);
     diary_.write();
     if (view_ && contact.outcome == Outcome::contact) {
@@ -100,6 +111,7 @@ class Baxter final : public Backend {
   Tapper tapper_;
   std::unique_ptr<View> view_;  ///< before the robot goes, this goes
   bool recording_ = false;
+  bool recorded_schedule_ = false;
 };
 
 PALPATE_PLUGIN(Backend, Baxter, "baxter", "the left arm of a Baxter, over ROS 1")

@@ -16,6 +16,17 @@ constexpr double kAgreement = 0.005;   ///< m between kinematics and endpoint_st
 constexpr double kAgreedTurn = 0.035;  ///< rad, likewise
 constexpr double kUpright = 0.35;      ///< rad that the tool may lean before the first motion puts it upright
 
+/// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
+constexpr double kLeastRatio = 0.27;
+constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
+constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
 [[noreturn]] void refuse(const std::string& where, const std::string& reason, const std::string& hint) {
   throw Error(where, reason, hint, Error::Kind::run);
 }
@@ -84,6 +95,42 @@ void check_before_flight(const Snapshot& seen, const BaxterOptions& options, con
   if (std::acos(std::min(1.0, std::max(-1.0, -down.z()))) > kUpright) {
     refuse("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
   }
+}
+
+std::vector<std::string> check_settings(const Snapshot& seen) {
+  std::vector<std::string> out;
+  const auto in_words = [](const std::optional<Setting>& setting, const char* topic, const char* own) {
+    return std::string(topic) + (setting ? ": " + number(setting->value) + " from " + setting->sender
+                                         : std::string(": nobody says it now, taken for the robot's own ") + own);
+  };
+  out.push_back(in_words(seen.speed_ratio, "set_speed_ratio", "0.3"));
+  out.push_back(in_words(seen.command_timeout, "joint_command_timeout", "0.2 s"));
+  if (seen.speed_ratio && !(seen.speed_ratio->value >= kLeastRatio)) {
+    refuse("set_speed_ratio",
+           seen.speed_ratio->sender + " has set it to " + number(seen.speed_ratio->value) +
+               ", at which the arm cannot follow",
+           "set it to 0.3, on /robot/limb/left/set_speed_ratio");
+  }
+  if (seen.command_timeout &&
+      !(seen.command_timeout->value >= kLeastTimeout && seen.command_timeout->value <= kMostTimeout)) {
+    refuse(
+        "joint_command_timeout",
+        seen.command_timeout->sender + " has set it to " + number(seen.command_timeout->value) +
+            " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the next",
+        "set it to 0.2, on /robot/limb/left/joint_command_timeout");
+  }
+  if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
+    std::string from = seen.avoidance->other_arm ? "the other arm" : "";
+    for (const std::string& object : seen.avoidance->objects) from += (from.empty() ? "" : " and ") + object;
+    refuse("collision_avoidance_state", "the robot pushes the arm away from " + from,
+           "move the other arm away, or the area forward");
+  }
+  const EndEffector& mounted = seen.end_effector;
+  out.push_back("mounted, as the robot has it: " +
+                (mounted.product.empty() ? std::string("no gripper that it knows") : mounted.product) +
+                (mounted.mass ? ", " + number(*mounted.mass) + " kg beyond the flange" : ", of unknown mass") +
+                "; a tool of another mass moves the zero of the force with the posture");
+  return out;
 }
 
 int check_reach(const Planner& planner, const Area& area, double hover, double floor, double speed, double spacing) {

@@ -5,6 +5,9 @@
 #include "baxter/path.hpp"
 #include "baxter/watch.hpp"
 
+#include <string>
+#include <vector>
+
 #include <palpate/scene.hpp>
 
 namespace palpate::baxter {
@@ -23,6 +26,11 @@ void check_plan(const BaxterOptions& options, const Scene& scene);
 /// that is not above the area with its tool down.
 void check_before_flight(const Snapshot& seen, const BaxterOptions& options, const Planner& planner,
                          const Workspace& workspace, bool moving);
+
+/// What others have left on the robot and what it takes to be mounted, one line each for the diary. Throws Error (kind
+/// `run`) where that would keep the arm from doing what it is told: a speed ratio at which it could not follow, a
+/// time-out of set-points shorter than five periods or longer than half a second, a collision avoidance that pushes it.
+std::vector<std::string> check_settings(const Snapshot& seen);
 
 /// The joints that bring the tip to every place of the area, on a grid of `spacing` metres, all the way down. Throws
 /// Error (kind `run`) that counts the places which cannot be reached and says why for the first.
