@@ -235,6 +235,19 @@ TEST_F(MujocoTwin, TouchesWithTheSameForces) {
   }
 }
 
+TEST_F(MujocoTwin, MeetsNothingWhereItPassesTheEdgeOfAnObject) {
+  BodyBench bench(kObjectI, "{stiffness: {object: 1500 N/m}}", with({Type::mujoco}, 0.135));
+  double peak = 0.0;
+  const auto look = [&] {
+    peak = std::max(peak, bench.body.arm().peak);
+    return false;
+  };
+  bench.lead({0.03, 0.115, 0.135}, 0.15, look);
+  bench.lead({0.2, 0.115, 0.135}, 0.15, look);
+  EXPECT_LT(bench.body.tip().x(), 0.19);
+  EXPECT_EQ(peak, 0.0);
+}
+
 TEST(ArmOfTheTests, IsNamedOrRefusedInOneLine) {
   EXPECT_EQ(fake_baxter::parse_mechanics("springs"), Type::springs);
   try {

@@ -24,6 +24,7 @@ constexpr double kGravity = 9.81;  // m/s^2
 constexpr double kStep = 2e-4;     // s: MuJoCo's contacts are best when they may be harder than what is pressed
 constexpr int kInPeriod = 50;      // steps
 constexpr double kPlate = 0.02;    // kg: what the tip meets, so light that the spring below it is what it feels
+constexpr double kClear = 0.002;   // m of the tip above the scene, more than a tip that bounces rises
 constexpr double kRadius = 0.004;  // m, of the tip
 
 std::string frame(const Step& step) {
@@ -167,6 +168,11 @@ class Mujoco final : public Mechanics {
     // The part of the damping that depends on the joints' own speed is among what MuJoCo steps implicitly.
     Eigen::Map<Joints>(data_->qfrc_applied + kArm) = state_.effort + spring_damping().cwiseProduct(Joints(speed()));
     model_->qpos_spring[0] = surface();
+    // The scene lies still, and the plate would swing where the tip passes an edge.
+    if (data_->site_xpos[3 * tip_ + 2] > model_->qpos_spring[0] + kClear) {
+      data_->qpos[0] = model_->qpos_spring[0];
+      data_->qvel[0] = 0.0;
+    }
     data_->qfrc_applied[0] = kGravity * kPlate;
     mj_step(model_.get(), data_.get());
     press();
