@@ -114,7 +114,7 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
       bench.describe({0.1, 0.2}),
       ElementsAre("rise from 5.0 cm above the desk", "before it, a calibration tap on the bare desk at (2.0, 2.0) cm",
                   "travel from (4.0, 7.0) cm to (10.0, 20.0) cm at 13.5 cm above the desk, 15.0 cm/s",
-                  "descend at 2.0 cm/s to at most 2.0 cm below the desk", "stop at 6.0 N above the tare: a contact",
+                  "descend at 1.5 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
                   "stop whatever it does when the force changes by 14.0 N upwards or downwards, and by half as much "
                   "again sideways"));
   EXPECT_TRUE(bench.robot.commands.empty());

@@ -26,15 +26,9 @@ std::string Tapper::learnt_sign() const {
   return sign_ > 0.0 ? "positive" : "negative";
 }
 
-/// What something that presses the tool upwards adds to. Until its sign is known every change is taken for such.
-double Tapper::force(const Eigen::Vector3d& reading, bool taring) const {
-  if (sign_ != 0.0) return sign_ * reading.z();
-  return taring ? reading.z() : zero_.z() + std::abs(reading.z() - zero_.z());
-}
-
-/// Of a contact that was believed: what its last reading was beside the zero.
-void Tapper::learn_sign(double pressed) {
-  sign_ = std::copysign(1.0, pressed);
+/// Of a contact that was believed.
+void Tapper::learn_sign(double sign) {
+  sign_ = sign;
   note_("force_sign: when something presses the tool upwards, the force along z " +
         std::string(sign_ > 0.0 ? "rises: positive" : "falls: negative"));
 }

@@ -2,6 +2,7 @@
 #include "baxter/tapper.hpp"
 
 #include "baxter/readings.hpp"
+#include "baxter/signed_tap.hpp"
 #include "tapping/words.hpp"
 
 #include <algorithm>
@@ -24,7 +25,6 @@ constexpr double kStill = 0.002;     ///< rad in kStillFor
 constexpr double kStillFor = 0.1;    ///< s
 constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
 constexpr double kUnloading = 0.6;   ///< s after which an arm that trails by 0.35 s has turned around and is clear
-constexpr double kSmoothing = 0.2;   ///< of the force of a contact: over five readings
 constexpr int kPulled = 3;           ///< new readings of a force that pulls: one alone may be noise
 
 /// For the first contact with a desk of which nobody knows how hard it is: at 1 cm/s and 4 N it stays below 8 N on
@@ -198,21 +198,20 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
   const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
   rest_from_above(column);
-  GuardedTap tap(motion, plan, GuardedTap::Arm::real);
+  SignedTap signed_tap(motion, plan, sign_);
   Mean tare;
   EvenDescent even;
   int pulled = 0;
-  double pressed = 0.0;
   double set_point = plan.hover;
   Joints command = at(plan.hover);
   Eigen::Vector3d at_hover = seen_.endpoint->force;
-  for (bool first = true; !tap.done();) {
+  for (bool first = true; !signed_tap.tap().done();) {
     const double before = set_point;
-    const bool taring = tap.taring();
+    const bool taring = signed_tap.tap().taring();
     const bool fresh = watch_.fresh();
     const Eigen::Vector3d reading = seen_.endpoint->force;
-    const Eigen::Vector3d felt = tap.coming_down() ? Eigen::Vector3d(reading - moving_) : reading;
-    set_point = tap.next(height(), force(felt, taring), fresh);
+    const Eigen::Vector3d felt = signed_tap.tap().coming_down() ? Eigen::Vector3d(reading - moving_) : reading;
+    set_point = signed_tap.next(height(), felt.z(), fresh);
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
@@ -222,17 +221,15 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     if (taring) {
       if (fresh) tare.add(reading);
       pulled = 0;
-      if (!tap.taring()) {
+      if (!signed_tap.tap().taring()) {
         // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
         zero_ = tare.take();
         if (std::exchange(first, false)) at_hover = zero_;
         watch_.set_tare(zero_ + moving_);
       }
     } else if (fresh) {
-      if (even.add(tap.even_for(), reading)) learn_moving(even.mean() - zero_);
-      const double above = felt.z() - zero_.z();
-      pressed += kSmoothing * (above - pressed);
-      pulled = sign_ * above < -motion.threshold ? pulled + 1 : 0;
+      if (even.add(signed_tap.tap().even_for(), reading)) learn_moving(even.mean() - zero_);
+      pulled = sign_ * (felt.z() - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
             "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
@@ -243,6 +240,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     step(command);
   }
   retreat(column.back(plan.hover + kFromAbove - height()));
+  const GuardedTap& tap = signed_tap.tap();
   switch (tap.outcome()) {
     case Outcome::contact:
       rest_from_above(column);
@@ -251,7 +249,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
                       "the force did not go back to its zero when the tool was clear: its zero moved "
                       "during the tap, and the contact may be none");
       }
-      if (sign_ == 0.0) learn_sign(pressed);
+      if (sign_ == 0.0) learn_sign(signed_tap.sign());
       return {Outcome::contact, tap.height(), tap.peak_force(), 0.0, {}};
     case Outcome::timeout:
       return failed(Outcome::timeout, "the tap took longer than motion.timeout");

@@ -82,8 +82,7 @@ class Tapper {
   void take(Snapshot seen);
   double height() const;
   double travel_height() const;
-  double force(const Eigen::Vector3d& reading, bool taring) const;
-  void learn_sign(double pressed);
+  void learn_sign(double sign);
 
   BaxterOptions options_;
   const Scene& scene_;
