@@ -18,6 +18,8 @@ std::string scaled(const std::optional<double>& value, double scale, const char*
   return value ? fmt::format(fmt::runtime(format), *value * scale) : "-";
 }
 
+constexpr const char* kClearLine = "\r\x1b[K";
+
 std::string text_at(const Row& row, const char* name) {
   const Scalar* value = row.find(name);
   return value != nullptr ? csv_cell(*value) : std::string();
@@ -50,7 +52,7 @@ std::string duration_words(double seconds) {
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}
 
 void TapTable::clear_live_line() const {
-  if (terminal_) mention("\r\x1b[K", stdout);
+  if (terminal_) mention(kClearLine, stdout);
 }
 
 void TapTable::announce(const TapRecord& tap) {
@@ -110,7 +112,7 @@ void SweepLine::show(const SweepProgress& progress) {
     line += fmt::format(", {}", rate_words(rate));
     if (ended < progress.jobs) line += fmt::format(", {} left", duration_words((progress.jobs - ended) / rate));
   }
-  mention((terminal_ ? "\r\x1b[K" : "") + line + (terminal_ && !progress.last ? "" : "\n"));
+  mention((terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
 }
 
 namespace {
@@ -133,7 +135,8 @@ std::string numerics_line(const Row& row) {
 
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;
-  std::string text;
+  // The live line of a tap that was broken off and is made again.
+  std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? kClearLine : "";
   if (report.already_done) {
     text += fmt::format("already done, nothing was repeated: {}\n", report.directory.string());
   }

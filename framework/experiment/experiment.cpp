@@ -14,21 +14,12 @@ void Experiment::run(Journal& journal, int most_taps) {
   budget_ = std::min<std::int64_t>(options_.taps, most_taps);
   for (;;) {
     show_belief();
-    if (std::optional<std::string> reason = stop_reason()) {
-      result_.stop_reason = *reason;
-      return;
-    }
+    if (std::optional<std::string> reason = stop_reason()) return stop(*reason);
     std::optional<TapRecord> tap = choose_next();
-    if (!tap) {
-      result_.stop_reason = "no candidate is left";
-      return;
-    }
-    if (!journal.permits(*tap)) {
-      result_.stop_reason = kStoppedByUser;
-      return;
-    }
+    if (!tap) return stop("no candidate is left");
+    if (!journal.permits(*tap)) return stop(kStoppedByUser);
     journal.announce(*tap);
-    perform(*tap);
+    if (!perform(*tap)) return stop(kStoppedByUser);
     journal.record(*tap, clock_.take());
     if (tap->contact.ends_run) fail(tap->contact);
   }
@@ -68,14 +59,16 @@ void Experiment::choose_by_score(TapRecord& tap) {
   }
 }
 
-void Experiment::perform(TapRecord& tap) {
+bool Experiment::perform(TapRecord& tap) {
   tap.contact = touch(tap);
+  if (stop_wished() && tap.contact.outcome == Outcome::aborted && backend_->repeatable()) return false;
   if (tap.contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(tap.contact.height);
   absorb(tap.target, tap.contact, tap.source);
+  return true;
 }
 
 std::optional<std::string> Experiment::stop_reason() const {
-  if (context_.interrupted != nullptr && context_.interrupted->load()) return kStoppedByUser;
+  if (stop_wished()) return kStoppedByUser;
   if (result_.taps >= budget_) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";

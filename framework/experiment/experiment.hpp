@@ -66,13 +66,17 @@ class Experiment {
 
  private:
   std::optional<std::string> stop_reason() const;
+  bool stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
+  void stop(const std::string& reason) { result_.stop_reason = reason; }
   /// Whether the next tap is the initial design's. A search is over with the first hit, or when it has looked
   /// everywhere.
   bool starting() const;
   void choose_by_score(TapRecord& tap);
   Pick pick_best();
   void describe_state(TapRecord& tap);
-  void perform(TapRecord& tap);
+  /// Makes the tap and takes it in. False: it was broken off and can be made again, so it is as if never chosen, and a
+  /// run that is carried on equals the unbroken one.
+  bool perform(TapRecord& tap);
   Prediction predict(int candidate) const;
   TapRequest request_of(const TapRecord& tap) const;
   Contact touch(const TapRecord& tap);

@@ -105,7 +105,7 @@ void StopOptions::list(Fields& fields) {
 void LogOptions::list(Fields& fields) {
   fields.choice(sync, Field("sync", "when taps.jsonl is forced to disk"),
                 {{"auto", "around each tap where a tap cannot be repeated, else never", {}},
-                 {"tap", "around each tap", {}},
+                 {"tap", "after each tap, and before it where it cannot be repeated", {}},
                  {"none", "never", {}}});
   fields.flag(maps, Field("maps", "write the maps that each choice was made from: maps/tap_NNN.csv"));
   fields.flag(surface, Field("surface", "write surface.csv; false by default in a sweep"));

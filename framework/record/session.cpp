@@ -147,8 +147,8 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment,
                     const Company& company, const Stopwatch& watch) {
   const LogOptions& log = config.options.log;
-  const bool careful = log.sync == LogOptions::Sync::tap || !experiment.backend().repeatable();
-  directory.open(careful, careful && log.sync != LogOptions::Sync::none);
+  const bool once = !experiment.backend().repeatable();  // then a tap of which nobody saw the end must leave a trace
+  directory.open(once, log.sync == LogOptions::Sync::tap || (once && log.sync != LogOptions::Sync::none));
   Relay relay(config.options, experiment, directory, company);
 
   RunReport report;

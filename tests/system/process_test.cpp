@@ -140,6 +140,9 @@ for ask in asks():
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "contact", "unknown", "contact", "contact"}));
   EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"intent\": true"));
+  const Cells unknown = csv_rows(text_of(directory() / "taps.csv"))[2];
+  EXPECT_EQ(unknown.at("height"), "");
+  EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 1"));
   const std::string said = diary();
   EXPECT_THAT(said, ::testing::StartsWith("begin "));
   EXPECT_NE(said.find("begin ", 1), std::string::npos) << "appended to";

@@ -217,6 +217,37 @@ TEST(Experiment, AnInterruptionStopsItAfterTheTapUnderWay) {
   EXPECT_TRUE(experiment.result().interrupted);
 }
 
+TEST(Experiment, ATapThatWasBrokenOffAndCanBeRepeatedIsNotRecorded) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  for (const bool wished : {true, false}) {
+    std::atomic<bool> interrupted{false};
+    /// Its second tap is broken off, or fails by itself.
+    class Breaking final : public Backend {
+     public:
+      Breaking(std::atomic<bool>& flag, bool wish) : flag_(flag), wish_(wish) {}
+      Contact tap(const TapRequest& request) override {
+        if (request.number != 2) return touch(0.0);
+        flag_ = wish_;
+        return failure(Outcome::aborted);
+      }
+      bool repeatable() const override { return true; }
+      bool scene_is_truth() const override { return false; }
+
+     private:
+      std::atomic<bool>& flag_;
+      bool wish_;
+    };
+    Experiment experiment(config.options, test::shared_host(), &interrupted,
+                          std::make_shared<Breaking>(interrupted, wished));
+    Collector collector;
+    experiment.run(collector);
+    EXPECT_EQ(collector.taps.size(), wished ? 1U : 17U);
+    EXPECT_EQ(experiment.counts().taps, wished ? 1 : 17);
+    EXPECT_EQ(experiment.counts().failed_taps, wished ? 0 : 1);
+    EXPECT_EQ(experiment.result().interrupted, wished);
+  }
+}
+
 TEST(Experiment, ATapThatIsNotPermittedIsNeitherAnnouncedNorMade) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml");
   const auto backend = std::make_shared<ScriptedBackend>(std::vector<Contact>{});
