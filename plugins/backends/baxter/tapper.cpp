@@ -201,6 +201,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   SignedTap signed_tap(motion, plan, sign_);
   Mean tare;
   EvenDescent even;
+  bool learnt = false;
   int pulled = 0;
   double set_point = plan.hover;
   Joints command = at(plan.hover);
@@ -228,7 +229,11 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
         watch_.set_tare(zero_ + moving_);
       }
     } else if (fresh) {
-      if (even.add(signed_tap.tap().even_for(), reading)) learn_moving(even.mean() - zero_);
+      // Once, high up: lower down the bias of another pose would be taken for that of the motion.
+      if (!learnt && even.add(signed_tap.tap().even_for(), reading)) {
+        learnt = true;
+        learn_moving(even.mean() - zero_);
+      }
       pulled = sign_ * (felt.z() - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
