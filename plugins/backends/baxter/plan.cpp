@@ -36,7 +36,9 @@ void Tapper::check() {
   await_fit(!options_.dry_run);
   if (slow && !options_.dry_run) throw Error("", slow->reason, {}, Error::Kind::run);
   check_before_flight(seen_, options_, planner_, workspace_, !options_.dry_run);
-  for (const std::string& line : check_settings(seen_)) note_(line);
+  if (!options_.dry_run) {
+    for (const std::string& line : check_settings(seen_)) note_(line);
+  }
   try {
     if (options_.calibration) column({options_.calibration->at[0], options_.calibration->at[1]});
     if (options_.dry_run) try_reach();
