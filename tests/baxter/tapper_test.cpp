@@ -258,7 +258,7 @@ TEST(ATap, IsBelievedThoughTheForceIsAnotherWhileTheArmMoves) {
       EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.003) << offset;
     }
     ASSERT_FALSE(bench.notes.empty());
-    EXPECT_THAT(bench.notes.front(), StartsWith("coming down in the air the force reads "));
+    EXPECT_THAT(bench.notes.front(), StartsWith("coming down in the air the force along z reads "));
   }
 }
 

@@ -25,8 +25,8 @@ std::string Tapper::recover(const Fault& fault) {
   if (fault.then == Then::hold) return where;
   try {
     for (int attempt = 1;; ++attempt) {
-      outlast_reflex();
       try {
+        outlast_reflex();
         climb(way_up());
         settle(*watch_.last_sent());
         return "the arm was raised to the height of travel";
@@ -50,7 +50,8 @@ void Tapper::outlast_reflex() {
   watch_.expect_collision(true);
   next_ = seen_.now;
   const double patience = seen_.now + kReflexEnds;
-  while (seen_.now < patience && seen_.collision && seen_.collision->collision) step(seen_.joints->position);
+  const Joints here = seen_.joints->position;
+  while (seen_.now < patience && seen_.collision && seen_.collision->collision) step(here);
   watch_.expect_collision(false);
   step(seen_.joints->position);
 }
@@ -61,7 +62,7 @@ Fault Tapper::standstill() {
 
 /// Sends the joints, which keep the arm where it is, for a while; or less, where a rule comes to ask for silence. That
 /// rule, if one did.
-std::optional<Fault> Tapper::hold(const Joints& joints) {
+std::optional<Fault> Tapper::hold(Joints joints) {
   watch_.begin();
   next_ = seen_.now;
   for (double left = kHeld; left > 0.0; left -= kPeriod) {

@@ -25,7 +25,7 @@ constexpr double kStill = 0.002;     ///< rad in kStillFor
 constexpr double kStillFor = 0.1;    ///< s
 constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
 constexpr double kUnloading = 0.6;   ///< s after which an arm that trails by 0.35 s has turned around and is clear
-constexpr int kPulled = 3;           ///< new readings of a force that pulls: one alone may be noise
+constexpr int kPulled = 6;           ///< new readings of a force that pulls: what moving takes away from it is noisy
 
 /// For the first contact with a desk of which nobody knows how hard it is: at 1 cm/s and 4 N it stays below 8 N on
 /// 100 kN/m.
@@ -100,10 +100,13 @@ Contact Tapper::attempt(const TapRequest& request) {
     const Path bare = column(desk.target);
     go_to(bare.front());
     calibrate(descend(desk, gentle(options_.motion), bare));
+    learn_sign();
     down = column(request.target);
   }
   go_to(down.front());
-  return descend(request, options_.motion, down);
+  Contact contact = descend(request, options_.motion, down);
+  if (contact.outcome == Outcome::contact) learn_sign();
+  return contact;
 }
 
 /// The scene's zero moves to where a tap on the bare desk found it.
@@ -201,7 +204,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   SignedTap signed_tap(motion, plan, sign_);
   Mean tare;
   EvenDescent even;
-  bool learnt = false;
+  std::optional<double> moving;
   int pulled = 0;
   double set_point = plan.hover;
   Joints command = at(plan.hover);
@@ -211,8 +214,9 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     const bool taring = signed_tap.tap().taring();
     const bool fresh = watch_.fresh();
     const Eigen::Vector3d reading = seen_.endpoint->force;
-    const Eigen::Vector3d felt = signed_tap.tap().coming_down() ? Eigen::Vector3d(reading - moving_) : reading;
-    set_point = signed_tap.next(height(), felt.z(), fresh);
+    const bool coming_down = signed_tap.tap().coming_down();
+    const double felt = reading.z() - (coming_down ? moving_ : 0.0);
+    set_point = signed_tap.next(height(), felt, fresh);
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
@@ -222,19 +226,20 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     if (taring) {
       if (fresh) tare.add(reading);
       pulled = 0;
-      if (!signed_tap.tap().taring()) {
+      if (!signed_tap.tap().taring() && !signed_tap.tap().done()) {
         // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
         zero_ = tare.take();
         if (std::exchange(first, false)) at_hover = zero_;
-        watch_.set_tare(zero_ + moving_);
+        watch_.set_tare(zero_);
       }
     } else if (fresh) {
-      // Once, high up: lower down the bias of another pose would be taken for that of the motion.
-      if (!learnt && even.add(signed_tap.tap().even_for(), reading)) {
-        learnt = true;
-        learn_moving(even.mean() - zero_);
+      // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
+      // expected a soft contact.
+      if (!moving && plan.start >= plan.hover && even.add(signed_tap.tap().even_for(), reading)) {
+        moving = even.mean().z() - zero_.z();
       }
-      pulled = sign_ * (felt.z() - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
+      // An arm that goes up rubs the other way, which is no pull.
+      pulled = coming_down && sign_ * (felt - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
             "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
@@ -254,7 +259,8 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
                       "the force did not go back to its zero when the tool was clear: its zero moved "
                       "during the tap, and the contact may be none");
       }
-      if (sign_ == 0.0) learn_sign(signed_tap.sign());
+      if (moving) learn_moving(*moving);
+      shown_sign_ = signed_tap.sign();
       return {Outcome::contact, tap.height(), tap.peak_force(), 0.0, {}};
     case Outcome::timeout:
       return failed(Outcome::timeout, "the tap took longer than motion.timeout");
@@ -278,6 +284,7 @@ void Tapper::retreat(const Path& up) {
     }
   }
   await_height(up.end());
+  if (!tared) watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
 }
 
 void Tapper::expect_fit() {

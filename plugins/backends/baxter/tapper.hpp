@@ -63,7 +63,7 @@ class Tapper {
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up);
-  void learn_moving(const Eigen::Vector3d& difference);
+  void learn_moving(double difference);
   Eigen::Vector3d force_at_rest(const Joints& joints);
   bool believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const;
   std::string recover(const Fault& fault);
@@ -77,12 +77,12 @@ class Tapper {
   std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);
-  std::optional<Fault> hold(const Joints& joints);
+  std::optional<Fault> hold(Joints joints);
   bool interrupted() const;
   void take(Snapshot seen);
   double height() const;
   double travel_height() const;
-  void learn_sign(double sign);
+  void learn_sign();
 
   BaxterOptions options_;
   const Scene& scene_;
@@ -99,9 +99,10 @@ class Tapper {
   bool recovering_ = false;
   bool calibrated_ = false;
   double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
-  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();    ///< the force of the latest tare
-  Eigen::Vector3d moving_ = Eigen::Vector3d::Zero();  ///< what it reads beside while the arm comes down in the air
-  int told_ = 0;                                      ///< of how many taps moving_ was noted
+  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
+  double moving_ = 0.0;      ///< N along z that it reads beside while the arm comes down in the air
+  double shown_sign_ = 0.0;  ///< by the latest contact that was believed; 0 if nothing showed it
+  int told_ = 0;             ///< of how many taps moving_ was noted
 };
 
 }  // namespace palpate::baxter

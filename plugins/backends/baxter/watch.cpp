@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/watch.hpp"
 
-#include "tapping/guarded_tap.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -13,8 +11,6 @@ namespace {
 
 using Then = Fault::Then;
 using Button = StateReading::Button;
-
-constexpr double kPeriod = tapping::GuardedTap::kPeriod;
 
 std::string number(double value, int digits = 1) {
   std::ostringstream out;
@@ -120,6 +116,7 @@ void Watch::begin() {
   joints_.reset();
   too_strong_ = 0;
   last_force_.reset();
+  felt_at_.reset();
   collision_expected_ = false;
   tare_.reset();
 }
@@ -301,11 +298,14 @@ std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
 }
 
 std::optional<Fault> Watch::force(const Snapshot& seen) {
-  if (!tare_ || !fresh_) return std::nullopt;
+  if (!fresh_) return std::nullopt;
+  const double since = felt_at_ ? seen.now - *felt_at_ : 0.0;
+  felt_at_ = seen.now;
+  if (!tare_) return std::nullopt;
   const Eigen::Vector3d felt = seen.endpoint->force - *tare_;
   const double change =
       zero_ == Zero::follows ? felt.norm() : std::max(std::abs(felt.z()), felt.head<2>().norm() / kSideways);
-  if (zero_ == Zero::follows) *tare_ += felt * (kPeriod / kZeroFollows);
+  if (zero_ == Zero::follows) *tare_ += felt * std::min(1.0, since / kZeroFollows);
   too_strong_ = change > force_stop_ ? too_strong_ + 1 : 0;
   if (too_strong_ < kForceSamples) return std::nullopt;
   return Fault{"the force changed by " + number(change) +

@@ -128,6 +128,7 @@ class Watch {
   std::optional<Eigen::Vector3d> last_force_;
   double force_changed_ = 0.0;  ///< when it last was another
   int too_strong_ = 0;
+  std::optional<double> felt_at_;  ///< when the latest reading of the force was looked at
   double collision_received_ = -std::numeric_limits<double>::infinity();  ///< the latest
   bool collision_streams_ = false;                                        ///< it came twice within kStateFresh
   Delay joint_delay_;

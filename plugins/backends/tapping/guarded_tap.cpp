@@ -14,6 +14,8 @@ constexpr int kConsecutive = 3;
 /// many seconds is held up, and will not.
 constexpr double kNear = 0.001;
 constexpr double kHeldUp = 2.0;
+/// s by which an arm trails its set-point: for so long it does not move yet.
+constexpr double kTrail = 0.35;
 
 }  // namespace
 
@@ -65,7 +67,12 @@ double GuardedTap::next(double height, double force, bool fresh) {
       if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
       break;
     case Stage::unwind:
-      if (ramp(goal_, motion_.fine_speed) && arrived(height)) enter(Stage::settle);
+      if (above_ >= kConsecutive) {
+        set_point_ = height;
+        enter(Stage::back_off);
+      } else if (ramp(goal_, motion_.fine_speed) && arrived(height)) {
+        enter(Stage::settle);
+      }
       break;
     case Stage::fine:
       if (above_ >= kConsecutive) {
@@ -105,18 +112,7 @@ void GuardedTap::feel(double height, double force) {
   if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
 }
 
-bool GuardedTap::coming_down() const {
-  switch (stage_) {
-    case Stage::approach:
-    case Stage::descend:
-    case Stage::fine:
-    case Stage::bottom:
-    case Stage::stop:
-      return true;
-    default:
-      return false;
-  }
-}
+bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for() >= kTrail; }
 
 double GuardedTap::even_for() const {
   const bool even = stage_ == Stage::descend || stage_ == Stage::fine;
@@ -155,11 +151,13 @@ void GuardedTap::enter(Stage stage) {
       goal_ = motion_.type == MotionOptions::Type::paper ? std::max(descent_.floor, set_point_ - motion_.step)
                                                          : descent_.floor;
       break;
-    case Stage::back_off:
+    case Stage::back_off: {
       // From where the contact began: a soft object may have given way by more than that, and would be tared.
-      goal_ = std::min(descent_.hover, std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) +
-                                           motion_.back_off + (arm_ == Arm::real ? kFromAbove : 0.0));
+      const double more = arm_ == Arm::real ? kFromAbove : 0.0;
+      goal_ = std::min(descent_.hover + more,
+                       std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) + motion_.back_off + more);
       break;
+    }
     case Stage::unwind:
       goal_ = set_point_ - kFromAbove;
       break;
