@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -36,8 +37,8 @@ double hard_from(Type arm) { return arm == Type::lagged ? 5000 : 50000; }
 /// The campaign's taps on an arm, or `daily`.
 int taps_of(Type arm, int daily) {
   if (const char* taps = std::getenv("PALPATE_CAMPAIGN")) return std::atoi(taps);
-  if (palpate::test::kSanitized) daily /= 8;
-  return arm == Type::mujoco ? daily / 3 : daily;
+  if (palpate::test::kSanitized) daily = std::max(6, daily / 8);
+  return arm == Type::mujoco ? daily / 6 : daily;  // which takes seconds a tap
 }
 
 void report(const std::string& what, const Tally& tally) {
