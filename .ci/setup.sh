@@ -1,7 +1,62 @@
 # SPDX-License-Identifier: MIT
-# Set-up shared by ./palpate and ./check, to be sourced. All it says goes to stderr.
+# Set-up shared by ./palpate and ./check, to be sourced; lock_setup comes first. All it says goes to stderr.
 
 say() { printf '%s\n' "$*" >&2; }
+
+# lock FD NAME WHAT: waits until nobody else holds build/NAME.lock, and holds it, as FD, until that is closed or this shell
+# and all that it began have ended. Says for whom it waits.
+lock() {
+  mkdir -p "$root/build"
+  eval "exec $1>>\"\$root/build/$2.lock\""
+  if ! flock -n "$1"; then
+    read -r holder <"$root/build/$2.lock" && [ -d "/proc/$holder" ] || holder=
+    say "waiting for $3${holder:+: process $holder}"
+    flock "$1"
+  fi
+  echo $$ >"$root/build/$2.lock"
+}
+
+# One set-up of this folder at a time. What does not set up or build lets go of it first.
+lock_setup() { lock 9 setup "another set-up of this folder"; }
+unlock_setup() { exec 9>&-; }
+
+# state LOG: how far it is by its log: the last count, as of ninja or ctest, or else the last line.
+state() {
+  count='s|^\[* *\([0-9]\{1,\}\)/ *\([0-9]\{1,\}\)[] ].*|\1 of \2|p'
+  counted=$(tail -n 40 "$1" 2>/dev/null | sed -n "$count" | tail -n 1)
+  [ -n "$counted" ] || counted=$(tail -n 1 "$1" 2>/dev/null | tr -d '[:cntrl:]' | sed 's/\(.\{50\}\).*/\1/')
+  printf '%s' "$counted"
+}
+
+# follow WHAT LOG: says how far it is, on a terminal each second in one line, elsewhere in a line every half minute; until
+# it is ended, or this script.
+follow() {
+  waited=0
+  while sleep 1 >/dev/null 2>&1 && kill -0 $$ 2>/dev/null; do
+    waited=$((waited + 1))
+    if [ -t 2 ]; then
+      printf '\r\033[K%s: %s' "$1" "$(state "$2")" >&2
+    elif [ $((waited % 30)) = 0 ]; then
+      say "$1: $(state "$2")"
+    fi
+  done
+}
+
+# told WHAT LOG COMMAND...: runs the command, its output to the log alone, and says how far it is meanwhile.
+told() {
+  what=$1
+  output=$2
+  shift 2
+  : >"$output"
+  follow "$what" "$output" 8>&- 9>&- &
+  follower=$!
+  status=0
+  "$@" >"$output" 2>&1 || status=$?
+  kill $follower 2>/dev/null || true
+  wait $follower 2>/dev/null || true
+  [ ! -t 2 ] || printf '\r\033[K' >&2
+  return $status
+}
 
 # packages HEADING...: the packages under these headings of packages.txt.
 packages() {
@@ -24,6 +79,12 @@ missing() {
   [ $# -eq 0 ] || printf '%s\n' "$@" | grep -vxF -e "$installed" || true
 }
 
+# fetch: installs the packages of `list`, as root by `as_root`.
+fetch() {
+  $as_root apt-get update -q &&
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $list
+}
+
 # install HEADING...: installs what is missing, if it may.
 install() {
   look
@@ -39,15 +100,20 @@ install() {
   as_root=
   if [ "$(id -u)" != 0 ]; then
     as_root=sudo
-    if ! sudo -n true 2>/dev/null && ! { [ -t 0 ] && command -v sudo >/dev/null 2>&1; }; then as_root=none; fi
+    # Asks for the password, if it has to, before anything else is written to the terminal.
+    if ! sudo -n true 2>/dev/null && ! { [ -t 0 ] && command -v sudo >/dev/null 2>&1 && sudo -v; }; then as_root=none; fi
   fi
-  if [ "$as_root" = none ] || ! command -v apt-get >/dev/null 2>&1; then
+  if ! command -v apt-get >/dev/null 2>&1; then
     say "these packages are missing and cannot be installed from here: $list"
     return 0
   fi
+  if [ "$as_root" = none ]; then
+    say "packages are missing, which only root can install; going on without them. As root:"
+    say "  apt-get update && apt-get install --no-install-recommends $list"
+    return 0
+  fi
   say "installing $list"
-  if ! { $as_root apt-get update -q && DEBIAN_FRONTEND=noninteractive $as_root apt-get install -q -y --no-install-recommends $list; } \
-      >"$root/build/install.log" 2>&1; then
+  if ! told "installing packages" "$root/build/install.log" fetch; then
     tail -n 5 "$root/build/install.log" >&2
     say "installing failed, the whole story is in build/install.log; going on with what is there"
   fi
@@ -64,22 +130,20 @@ build() {
   if [ ! -f "$root/build/$preset/build.ninja" ] || [ ! -f "$known" ] || [ "$(cat "$known")" != "$installed" ]; then
     warnings=
     [ "${CI:-}" != true ] || warnings=-DPALPATE_WERROR=ON
-    if ! cmake --preset "$preset" -S "$root" $warnings >"$log" 2>&1; then
-      grep -A 4 -E 'CMake Error|Could NOT' "$log" >&2 || true
+    if ! told "configuring preset $preset" "$log" cmake --preset "$preset" -S "$root" $warnings; then
+      grep -A 4 -E 'CMake Error|Could NOT|: not found' "$log" >&2 || true
       say "configuring failed, the whole story is in build/$preset.log"
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
-    say "building preset $preset, about a minute or two"
+    # Minutes of one core that everything takes, and what ./palpate asks for.
+    whole=50
+    [ $# -eq 0 ] || whole=20
+    say "building preset $preset, about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time"
   fi
-  if ! ninja -C "$root/build/$preset" --quiet "$@" >"$log" 2>&1; then
-    grep -m 10 -E 'error|FAILED' "$log" >&2 || true
+  if ! NINJA_STATUS='[%f/%t] ' told "building preset $preset" "$log" ninja -C "$root/build/$preset" "$@"; then
+    grep -v '^\[' "$log" | grep -m 10 -E 'error|FAILED' >&2 || true
     say "building failed, the whole story is in build/$preset.log"
     exit 1
   fi
 }
-
-mkdir -p "$root/build"
-# One set-up at a time; the lock ends with this shell or with what it hands over to.
-exec 9>"$root/build/setup.lock"
-flock 9

@@ -72,6 +72,7 @@ cp -r /share/. $home
 if [ $who = user ]; then
   root=/share/palpate no_install=no
   . /share/palpate/.ci/setup.sh
+  lock_setup
   install core test
 fi
 chown -R $name: $home

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
 
+#include "record/files.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -56,11 +58,11 @@ std::string png_header(int width, int height, const std::string& output) {
 }
 
 std::string draw_png(const std::string& script, int width, int height, const fs::path& file) {
-  const fs::path temporary = fs::absolute(file.string() + ".tmp");
   const File input(std::tmpfile());
   const File trouble(std::tmpfile());
   if (!input || !trouble) return fmt::format("no temporary file could be made: {}", std::strerror(errno));
-  const std::string all = png_header(width, height, temporary.string()) + script;
+  Neighbour picture(file);
+  const std::string all = png_header(width, height, fs::absolute(picture.path()).string()) + script;
   if (std::fwrite(all.data(), 1, all.size(), input.get()) != all.size() || std::fflush(input.get()) != 0)
     return fmt::format("its script could not be written: {}", std::strerror(errno));
   ::lseek(::fileno(input.get()), 0, SEEK_SET);
@@ -81,14 +83,11 @@ std::string draw_png(const std::string& script, int width, int height, const fs:
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  std::error_code failed;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-    fs::rename(temporary, file, failed);
-    if (!failed) return {};
-    return fmt::format("gnuplot drew nothing: {}", first_line(trouble.get()));
-  }
-  fs::remove(temporary, failed);
-  return fmt::format("gnuplot failed: {}", first_line(trouble.get()));
+  const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (!ended_well || fs::is_empty(picture.path()))
+    return fmt::format("gnuplot {}: {}", ended_well ? "drew nothing" : "failed", first_line(trouble.get()));
+  picture.rename();
+  return {};
 }
 
 }  // namespace palpate

@@ -16,6 +16,14 @@ std::string text_at(const Row& row, const std::string& name) {
   return value != nullptr ? csv_cell(*value) : std::string();
 }
 
+std::optional<double> number_at(const Row& row, const std::string& name) {
+  const Scalar* value = row.find(name);
+  if (value == nullptr) return std::nullopt;
+  if (const auto* whole = std::get_if<std::int64_t>(value)) return static_cast<double>(*whole);
+  const auto* real = std::get_if<double>(value);
+  return real != nullptr ? std::optional(*real) : std::nullopt;
+}
+
 std::string spread(std::vector<double> values, const char* format, double scale) {
   if (values.empty()) return "-";
   std::sort(values.begin(), values.end());
@@ -25,7 +33,7 @@ std::string spread(std::vector<double> values, const char* format, double scale)
 
 struct Group {
   std::string name;
-  int initial_taps = 0;
+  std::optional<int> initial_taps;  ///< of those that are done
   int runs = 0;
   int dead = 0;
   int found = 0;
@@ -36,7 +44,8 @@ struct Group {
 }  // namespace
 
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
-                        const std::function<int(std::size_t job)>& initial_taps) {
+                        const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+  const bool only_seeds = sweep.keys == std::vector<std::string>{"seed"};
   std::vector<Group> groups;
   for (const Row& row : results) {
     std::string name;
@@ -45,26 +54,28 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
       if (key == "seed" || value.empty()) continue;
       name += (name.empty() ? "" : ", ") + (sweep.keys.size() > 2 ? key + "=" : std::string()) + value;
     }
+    // Where the seed alone is swept there is but one, and it has no value of its own.
+    if (name.empty()) name = only_seeds ? "all seeds" : "(none)";
     auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.name == name; });
     if (group == groups.end()) {
-      const auto job = static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job")));
-      group = groups.insert(groups.end(), Group{name, initial_taps(job), 0, 0, 0, 0, {}, {}, {}});
+      group = groups.insert(groups.end(), Group{name, {}, 0, 0, 0, 0, {}, {}, {}});
     }
     ++group->runs;
     if (text_at(row, "status") != "done") {
       ++group->failed;
       continue;
     }
-    const std::string hit = text_at(row, "first_hit_tap");
-    const bool dead = hit.empty() || std::stoi(hit) > group->initial_taps;
+    if (!group->initial_taps)
+      group->initial_taps = initial_taps(static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job"))));
+    const std::optional<double> hit = number_at(row, "first_hit_tap");
+    const bool dead = !hit || !group->initial_taps || *hit > *group->initial_taps;
     group->dead += dead ? 1 : 0;
-    group->found += hit.empty() ? 0 : 1;
-    const double on_surface = std::stod(text_at(row, "on_surface_taps"));
-    group->on_surface_all.push_back(on_surface);
+    group->found += hit ? 1 : 0;
+    const std::optional<double> on_surface = number_at(row, "on_surface_taps");
+    if (on_surface) group->on_surface_all.push_back(*on_surface);
     if (dead) continue;
-    group->on_surface_live.push_back(on_surface);
-    if (const std::string error = text_at(row, "rmse_height_m"); !error.empty())
-      group->rmse_live.push_back(std::stod(error));
+    if (on_surface) group->on_surface_live.push_back(*on_surface);
+    if (const std::optional<double> error = number_at(row, "rmse_height_m")) group->rmse_live.push_back(*error);
   }
   // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
   constexpr std::size_t kLongest = 32;
@@ -74,12 +85,13 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
                                                "on-surface, live", "on-surface, all", "height cm, live",
                                                behind ? "group" : ""}};
   for (const Group& group : groups) {
-    const int ended = std::max(1, group.runs - group.failed);
+    const int done = group.runs - group.failed;
+    const auto share = [&](int count) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * count / done) : "-"; };
     const std::string name = one_line(group.name);
-    lines.push_back({behind ? "" : name, std::to_string(group.runs), fmt::format("{:.1f}%", 100.0 * group.dead / ended),
-                     fmt::format("{:.1f}%", 100.0 * group.found / ended), std::to_string(group.failed),
-                     spread(group.on_surface_live, "{:.0f}", 1.0), spread(group.on_surface_all, "{:.0f}", 1.0),
-                     spread(group.rmse_live, "{:.1f}", 100.0), behind ? name : ""});
+    lines.push_back({behind ? "" : name, std::to_string(group.runs), group.initial_taps ? share(group.dead) : "-",
+                     share(group.found), std::to_string(group.failed), spread(group.on_surface_live, "{:.0f}", 1.0),
+                     spread(group.on_surface_all, "{:.0f}", 1.0), spread(group.rmse_live, "{:.1f}", 100.0),
+                     behind ? name : ""});
   }
   return aligned(lines, "lrrrrrrrl") +
          "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";

@@ -3,6 +3,7 @@
 
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "cli/interrupt.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -12,6 +13,7 @@
 #include <charconv>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -36,8 +38,21 @@ int conclude_part(const Sweep& sweep, const SweepReport& report) {
   return report.unfinished > 0 ? kBusy : kDone;
 }
 
-/// How many taps of a job are initial ones. Jobs with the same strategy, design and budget have as many: one config
-/// is read for all of them.
+/// The first config that can be read of the jobs of which `is_alike` holds; that of a damaged job cannot.
+template <class IsAlike>
+std::optional<ResolvedConfig> any_config(const Campaign& campaign, const IsAlike& is_alike) {
+  for (const Job& job : campaign.sweep.jobs) {
+    if (!is_alike(job)) continue;
+    try {
+      return campaign.config_of(static_cast<std::size_t>(job.index));
+    } catch (const Error&) {  // the next will do
+    }
+  }
+  return std::nullopt;
+}
+
+/// How many taps of a job are initial ones; none if no config tells. Jobs with the same strategy, design and budget
+/// have as many: one config is read for all of them.
 class InitialTaps {
  public:
   explicit InitialTaps(const Campaign& campaign) : campaign_(campaign) {
@@ -48,33 +63,43 @@ class InitialTaps {
     }
   }
 
-  int operator()(std::size_t job) {
-    std::vector<std::string> values;
-    for (const std::size_t i : deciding_) values.push_back(campaign_.sweep.jobs[job].values[i]);
-    const auto [known, is_new] = known_.try_emplace(std::move(values), 0);
-    if (is_new) {
-      const ExperimentOptions options = campaign_.config_of(job).options;
-      // All taps until the first hit are the search's: its dead starts are those that never hit.
-      known->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
-    }
+  std::optional<int> operator()(std::size_t job) {
+    const Values values = values_of(campaign_.sweep.jobs[job]);
+    const auto [known, is_new] = known_.try_emplace(values);
+    if (!is_new) return known->second;
+    const auto config = any_config(campaign_, [&](const Job& other) { return values_of(other) == values; });
+    if (!config) return std::nullopt;
+    const ExperimentOptions& options = config->options;
+    // All taps until the first hit are the search's: its dead starts are those that never hit.
+    known->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
     return known->second;
   }
 
  private:
+  using Values = std::vector<std::string>;
+
+  Values values_of(const Job& job) const {
+    Values values;
+    for (const std::size_t i : deciding_) values.push_back(job.values[i]);
+    return values;
+  }
+
   const Campaign& campaign_;
   std::vector<std::size_t> deciding_;  ///< of the swept keys
-  std::map<std::vector<std::string>, int> known_;
+  std::map<Values, std::optional<int>> known_;
 };
 
 int conclude_whole(const Campaign& campaign, const SweepReport& report) {
   const Sweep& sweep = campaign.sweep;
-  const ResolvedConfig config = campaign.config_of(0);
   const std::vector<std::optional<Row>> summaries = write_results(sweep);
   print_sweep(sweep, sweep_results(sweep, summaries), report, InitialTaps(campaign));
   if (report.interrupted) return kInterrupted;
-  const bool all_hold =
-      conclude(config.expectations, outcomes_of(sweep, summaries), {config.options.name, campaign.launch.junit, true});
-  return sweep_status(config.expectations, all_hold, !report.failures.empty() || report.unfinished > 0);
+  // What is expected stands in every job's config, and is judged of all.
+  const auto config = any_config(campaign, [](const Job&) { return true; });
+  if (!config) throw Error(sweep.directory.string(), "no job has a config.yaml that can be read", "put them back");
+  const bool all_hold = conclude(config->expectations, outcomes_of(sweep, summaries),
+                                 {config->options.name, campaign.launch.junit, true});
+  return sweep_status(config->expectations, all_hold, !report.failures.empty() || report.unfinished > 0);
 }
 
 }  // namespace
@@ -96,7 +121,12 @@ void check_builds(const Program& program, const Campaign& campaign) {
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
     std::error_code none;
     if (!std::filesystem::exists(directory / "manifest.json", none)) continue;
-    check_build(program.workshop, campaign.config_of(job), directory);
+    bool elsewhere = false;
+    try {
+      elsewhere = is_of_another_build(program.workshop, campaign.config_of(job), directory);
+    } catch (const Error&) {  // damaged: the job will say so, and costs itself alone
+    }
+    if (elsewhere) check_build(program.workshop, campaign.config_of(job), directory);
   }
 }
 
@@ -104,6 +134,7 @@ int run_campaign(Program& program, const Campaign& campaign) {
   const Sweep& sweep = campaign.sweep;
   const LaunchArguments& launch = campaign.launch;
   check_locks(sweep.directory);
+  listen_for_interrupts();
   const bool whole = campaign.only.empty();
   std::vector<std::size_t> jobs = campaign.only;
   if (whole) {

@@ -57,9 +57,10 @@ void TapTable::clear_live_line() const {
 
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
-    mention(fmt::format("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}\n", "tap", "source", "x cm",
-                        "y cm", "height cm", "contact", "max sd cm", "rmse cm", "IoU"),
-            stdout);
+    mention(
+        fmt::format("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm",
+                    "y cm", "height cm", "contact", "max sd cm", "rmse cm", "IoU", "(the last three before the tap)"),
+        stdout);
     header_ = true;
   }
   if (!terminal_) return;
@@ -175,7 +176,7 @@ void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failure
 }
 
 void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
-                 const std::function<int(std::size_t job)>& initial_taps) {
+                 const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
   fmt::print("{}", sweep_table(sweep, results, initial_taps));
   print_failures(sweep, report.failures);
   if (!report.failures.empty())

@@ -60,6 +60,6 @@ void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failure
 
 /// The table, the failures and the place of a sweep; `initial_taps` as sweep_table() asks for them.
 void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
-                 const std::function<int(std::size_t job)>& initial_taps);
+                 const std::function<std::optional<int>(std::size_t job)>& initial_taps);
 
 }  // namespace palpate::cli

@@ -2,6 +2,7 @@
 #include "cli/earlier.hpp"
 
 #include "cli/display.hpp"
+#include "cli/interrupt.hpp"
 #include "launch/children.hpp"
 #include "sweep/earlier_results.hpp"
 
@@ -24,6 +25,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
     progress.last = done == missing.size();
     line.show(progress);
   };
+  listen_for_interrupts();
   const bool all = in_children(
       missing.size(), together, [&](std::size_t i) { earlier.compute(program.workshop, missing[i]); },
       program.workshop.interrupted, show);

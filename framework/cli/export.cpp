@@ -24,6 +24,10 @@ fs::path prepare_folder(const ExportArguments& arguments) {
       throw Error(folder.string(), "is the directory of a run or a sweep, whose files would be overwritten",
                   "give another folder with --to, or none");
   }
+  if (arguments.to.empty()) {
+    make_inner_folder(folder);
+    return folder;
+  }
   fs::create_directories(folder, trouble);
   if (trouble) throw Error(folder.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
   return folder;

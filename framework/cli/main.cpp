@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The command line: which commands there are, what they are called with, and what becomes of errors and signals.
+// The command line: which commands there are, what they are called with, and what becomes of errors.
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/interrupt.hpp"
+#include "config/tree.hpp"
 
 #include <palpate/error.hpp>
 
@@ -13,17 +15,6 @@
 
 namespace palpate::cli {
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-/// The first Ctrl-C asks the run to stop after the tap under way, the second ends the program.
-extern "C" void on_key(int signal) {
-  if (interrupted.exchange(true)) std::_Exit(128 + signal);
-}
-
-/// A terminal that is closed says so more than once; so does a scheduler that ends a job, to each process of it, which
-/// also hears it from the one that started it. Nobody means to leave a robot's arm where it is by that.
-extern "C" void on_request(int) { interrupted = true; }
 
 struct Arguments {
   RunArguments run;
@@ -197,8 +188,15 @@ void add_one_run(CLI::App& app, Arguments& a, Action& action) {
   sub->callback([&] { action = [&](Program& program) { return export_run(program, a.exported); }; });
 }
 
-/// CLI11's own words, on one line.
-int usage_error(const CLI::Error& trouble) { throw Error("", trouble.what(), "see palpate --help"); }
+/// CLI11's own words, on one line, but of a command that there is not.
+int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::string& first) {
+  if (app.get_subcommands().empty() && !first.empty() && first.front() != '-') {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    throw Error("", fmt::format("no command '{}'", first), suggestion(first, names));
+  }
+  throw Error("", trouble.what(), "see palpate --help");
+}
 
 int perform(const Action& action, int argc, char** argv) {
   const Installation installation = find_installation();
@@ -229,11 +227,8 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::Success& wish) {
     return app.exit(wish);
   } catch (const CLI::Error& trouble) {
-    return usage_error(trouble);
+    return usage_error(app, trouble, argc > 1 ? argv[1] : "");
   }
-  std::signal(SIGINT, on_key);
-  std::signal(SIGTERM, on_request);
-  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
   return perform(action, argc, argv);
 }

@@ -7,11 +7,15 @@
 
 namespace palpate::cli {
 
-Recording read_one_run(const Program& program, const std::filesystem::path& directory) {
+void check_one_run(const std::filesystem::path& directory) {
   if (is_sweep(directory)) {
     throw Error(directory.string(), "is a sweep of many runs",
                 "give one of them: " + (directory / "jobs" / "<id>").string());
   }
+}
+
+Recording read_one_run(const Program& program, const std::filesystem::path& directory) {
+  check_one_run(directory);
   return read_recording(program.workshop, directory);
 }
 

@@ -7,7 +7,10 @@
 
 namespace palpate::cli {
 
-/// Reads the run in `directory`. Throws Error, that of a sweep saying which of its folders are runs.
+/// Throws Error for the directory of a sweep, saying which of its folders are runs.
+void check_one_run(const std::filesystem::path& directory);
+
+/// Reads the run in `directory`. Throws Error, as check_one_run() does.
 Recording read_one_run(const Program& program, const std::filesystem::path& directory);
 
 }  // namespace palpate::cli

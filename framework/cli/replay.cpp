@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/one_run.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@ namespace palpate::cli {
 
 int replay(Program& program, const std::string& directory) {
   constexpr std::size_t kShown = 10;
+  check_one_run(directory);
   const ReplayReport report = replay_run(program.workshop, directory);
   if (report.differences.empty()) {
     fmt::print("{} taps, {} numbers, all equal\n", report.taps, report.numbers);

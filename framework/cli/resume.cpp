@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/step.hpp"
 
 #include <palpate/error.hpp>
@@ -12,17 +13,21 @@
 namespace palpate::cli {
 namespace {
 
-/// Every job that will run is checked before the first does: config.yaml may have been changed since it was written.
+/// Every job that will run is checked before the first does: it may have been begun by another build.
 void check_jobs(const Program& program, Campaign& campaign) {
   const std::vector<std::size_t>& only = campaign.only;
   for (std::size_t i = 0; i < (only.empty() ? campaign.sweep.jobs.size() : only.size()); ++i) {
-    if (program.workshop.interrupted->load()) return;  // then none will run
     const std::size_t job = only.empty() ? i : only[i];
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
     if (read_ending(directory).state == RunStatus::State::done) continue;
-    const ResolvedConfig config = campaign.config_of(job);
-    campaign.one_at_a_time = campaign.one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
-    if (!campaign.options.force) check_build(program.workshop, config, directory);
+    bool elsewhere = false;
+    try {
+      const ResolvedConfig config = campaign.config_of(job);
+      campaign.one_at_a_time = campaign.one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
+      elsewhere = is_of_another_build(program.workshop, config, directory);
+    } catch (const Error&) {  // damaged: the job will say so, and costs itself alone
+    }
+    if (elsewhere && !campaign.options.force) check_build(program.workshop, campaign.config_of(job), directory);
   }
 }
 
@@ -60,6 +65,7 @@ int resume(Program& program, const ResumeArguments& arguments) {
     throw Error("command line", "--launcher slurm: " + arguments.directory + " is no sweep", "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
+  listen_for_interrupts();
   const std::unique_ptr<Step> step = Step::when(arguments.step, config.options, program.workshop.interrupted);
   std::unique_ptr<Journal> display;
   if (!arguments.launch.quiet) display = std::make_unique<TapTable>(config.options.taps);

@@ -2,9 +2,11 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/step.hpp"
 #include "config/yaml.hpp"
 #include "record/run_directory.hpp"
+#include "sweep/expand.hpp"
 
 #include <palpate/error.hpp>
 
@@ -16,8 +18,9 @@
 namespace palpate::cli {
 namespace {
 
-/// Every value with its place, one a line, and what a later choice of type left behind.
-void print_origins(const ResolvedConfig& config) {
+/// The groups with their files, every value with its place, one a line, and what a later choice of type left behind.
+void print_origins(const std::vector<Composer::Group>& groups, const ResolvedConfig& config) {
+  for (const Composer::Group& one : groups) fmt::print("# {} {}: {}\n", one.path, one.name, one.file.string());
   std::size_t width = 0;
   std::vector<std::pair<std::string, std::string>> lines;
   for (const ResolveNotes::Origin& one : config.notes.origins) {
@@ -29,6 +32,21 @@ void print_origins(const ResolvedConfig& config) {
   for (const auto& [text, place] : lines) fmt::print("{:<{}}  # {}\n", text, width, place);
   for (const ResolveNotes::Origin& one : config.notes.dropped) {
     fmt::print("# dropped: {} from {}, the type chosen later has no such option\n", one.path, one.place);
+  }
+}
+
+/// What `trouble` is about may be an override that is meant for `palpate sweep`: many values of a key.
+void refuse_axes(const std::vector<Override>& overrides, const std::vector<std::string>& texts, const Error& trouble) {
+  const auto mentions = [&](const std::string& text) { return trouble.reason().find(text) != std::string::npos; };
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const Override& one = overrides[i];
+    const bool about = one.value.is_scalar() && trouble.where() == one.value.place.text() &&
+                       (mentions(one.path + ":") || mentions("'" + one.value.text + "'"));
+    // A comma between digits is more often that of a number.
+    if (!about || mentions("decimal comma")) continue;
+    if (parse_axis(texts[i]).values.size() < 2) continue;
+    throw Error(trouble.where(), fmt::format("{} has several values, and a run takes one", one.path),
+                "'palpate sweep' runs all of them");
   }
 }
 
@@ -46,15 +64,22 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
 int run(Program& program, const RunArguments& arguments) {
   std::vector<Override> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
-  const Tree composed = program.composer.compose(arguments.config, overrides);
-  const ResolvedConfig config = resolve_experiment(composed, program.host);
+  Tree composed;
+  ResolvedConfig config;
+  try {
+    composed = program.composer.compose(arguments.config, overrides);
+    config = resolve_experiment(composed, program.host);
+  } catch (const Error& trouble) {
+    refuse_axes(overrides, arguments.overrides, trouble);
+    throw;
+  }
   if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
     fmt::print(stderr, "{}: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n",
                sweep->place.text());
   }
   if (arguments.print_config) {
     if (arguments.origins) {
-      print_origins(config);
+      print_origins(program.composer.groups(), config);
     } else {
       fmt::print("{}", to_yaml(config.tree));
     }
@@ -66,6 +91,7 @@ int run(Program& program, const RunArguments& arguments) {
     return kDone;
   }
   check_junit(arguments.junit);
+  listen_for_interrupts();
   const std::unique_ptr<Step> step = Step::when(arguments.step, config.options, program.workshop.interrupted);
   const bool table = !arguments.quiet && !arguments.json;
   std::unique_ptr<Journal> display;

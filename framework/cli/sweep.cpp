@@ -3,13 +3,11 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
-#include "launch/estimate.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -26,19 +24,9 @@ void print_jobs(const Sweep& sweep) {
   }
 }
 
-/// "1000 jobs, about 1.2 s of computing with 2 at a time"
-std::string size_words(const Program& program, const Campaign& campaign) {
-  const std::size_t jobs = campaign.sweep.jobs.size();
-  std::string words = fmt::format("{} job{}", jobs, jobs == 1 ? "" : "s");
-  const std::optional<Estimate> estimate = estimate_job(program.host, campaign.config_of, jobs);
-  if (!estimate) return words;
-  const char* const about = estimate->at_least ? "at least" : "about";
-  const double all = estimate->job_seconds * static_cast<double>(jobs);
-  if (campaign.launch.launcher == kSlurm)
-    return words + fmt::format(", {} {} of computing", about, duration_words(all));
-  const std::size_t together = std::min(jobs, static_cast<std::size_t>(workers_of(campaign)));
-  return words + fmt::format(", {} {} of computing with {} at a time", about,
-                             duration_words(all / static_cast<double>(together)), together);
+/// "1000 jobs". How long they take the line of progress says, once some have been measured.
+std::string size_words(const Sweep& sweep) {
+  return fmt::format("{} job{}", sweep.jobs.size(), sweep.jobs.size() == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -58,14 +46,14 @@ int sweep(Program& program, const SweepArguments& arguments) {
   const Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
   if (arguments.list) {
     print_jobs(plan.sweep);
-    if (!arguments.launch.quiet) mention(size_words(program, campaign) + "\n");
+    if (!arguments.launch.quiet) mention(size_words(plan.sweep) + "\n");
     return kDone;
   }
   const bool is_new = draft->publish(plan);
   draft.reset();
   if (!is_new) check_builds(program, campaign);
   if (!arguments.launch.quiet) {
-    mention(fmt::format("{} in {}{}\n", size_words(program, campaign), plan.sweep.directory.string(),
+    mention(fmt::format("{} in {}{}\n", size_words(plan.sweep), plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: what is missing is run"));
   }
   return run_campaign(program, campaign);

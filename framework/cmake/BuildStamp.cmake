@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Writes the commit that is checked out, and whether the tree differs from it, into OUTPUT, if that changed.
+# Writes the commit that is checked out, and whether the tree differs from it, into OUTPUT, if that changed. What git was
+# never told of, as notes and tables beside the sources, is no difference.
 set(commit "unknown")
 set(dirty "null")
 find_program(GIT git)
@@ -8,7 +9,7 @@ if(GIT)
                   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   if(NOT failed)
     set(commit ${found})
-    execute_process(COMMAND ${GIT} -C ${SOURCE} status --porcelain OUTPUT_VARIABLE changes ERROR_QUIET)
+    execute_process(COMMAND ${GIT} -C ${SOURCE} status --porcelain --untracked-files=no OUTPUT_VARIABLE changes ERROR_QUIET)
     set(dirty "false")
     if(changes)
       set(dirty "true")

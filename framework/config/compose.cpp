@@ -39,6 +39,24 @@ std::vector<fs::path> folders_of(const std::string& group) {
   return group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
 }
 
+/// Where a group's file was found: the folder beside which its bases are looked for.
+fs::path root_of(const fs::path& file, const std::string& group) {
+  const fs::path folder = file.parent_path();
+  return folder.filename() == group ? folder.parent_path() : folder;
+}
+
+/// The first file of a group in folders, empty if there is none.
+fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, const std::string& name) {
+  for (const fs::path& folder : folders_of(group)) {
+    for (const fs::path& root : roots) {
+      std::error_code ignored;
+      fs::path file = root / folder / (name + ".yaml");
+      if (fs::exists(file, ignored)) return file;
+    }
+  }
+  return {};
+}
+
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
 }  // namespace
@@ -93,6 +111,19 @@ void add_link(const std::string& group, const std::string& name, const Place& pl
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
 constexpr Layer kLayersOfGroup = 16;
 
+bool has(const fs::path& folder, fs::perms right) {
+  std::error_code none;
+  const fs::file_status status = fs::status(folder, none);
+  return fs::exists(status) && (status.permissions() & right) != fs::perms::none;
+}
+
+bool others_may_write(const fs::path& folder) { return has(folder, fs::perms::others_write); }
+
+/// Whether all users share a folder, each with files of their own, as the one for temporary files. Where others may
+/// write and also remove, the config itself may be theirs, and groups beside it make nothing worse: so are all folders
+/// of some mounted disks.
+bool is_common(const fs::path& folder) { return others_may_write(folder) && has(folder, fs::perms::sticky_bit); }
+
 /// A group that is chosen brings its types, those of the groups within it (a backend's motion) included.
 void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
   for (Tree::Entry& entry : content.entries) {
@@ -132,36 +163,44 @@ const Tree& Composer::load(const fs::path& file) {
   return files_.emplace(key, std::move(tree)).first->second;
 }
 
-std::vector<fs::path> Composer::roots(const fs::path& beside) const {
-  std::vector<fs::path> out;
-  for (fs::path folder = fs::absolute(beside).lexically_normal();; folder = folder.parent_path()) {
-    out.push_back(folder);
-    if (folder == folder.parent_path()) break;
+Composer::Roots Composer::roots(const fs::path& beside) const {
+  Roots out;
+  const auto add = [&](const fs::path& folder, bool is_open) { (is_open ? out.open : out.safe).push_back(folder); };
+  const fs::path own = (fs::current_path() / beside).lexically_normal();
+  add(own, is_common(own));
+  for (fs::path folder = own.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (folder.filename() != "configs") continue;
+    add(folder, is_common(folder));
+    break;
   }
-  out.push_back(fs::current_path() / "configs");
-  out.push_back(shipped_);
+  // Nobody chose this one: it is enough that others could have made it.
+  const fs::path working = fs::current_path();
+  add(working / "configs", others_may_write(working) || others_may_write(working / "configs"));
+  add(shipped_, false);
   return out;
 }
 
-fs::path Composer::find_group(const std::string& group, const std::string& name, const fs::path& beside) const {
-  const auto [place, is_new] = found_.try_emplace({group, name, beside.string()});
-  if (!is_new) return place->second;
-  for (const fs::path& folder : folders_of(group)) {
-    for (const fs::path& root : roots(beside)) {
-      std::error_code ignored;
-      const fs::path file = root / folder / (name + ".yaml");
-      if (!fs::exists(file, ignored)) continue;
-      place->second = shown(file);
-      return place->second;
+fs::path Composer::find_group(const std::string& group, const std::string& name, const Place& place,
+                              const fs::path& beside) const {
+  const std::array<std::string, 3> key{group, name, beside.string()};
+  if (const auto known = found_.find(key); known != found_.end()) return known->second;
+  const Roots places = roots(beside);
+  fs::path file = find_in(places.safe, group, name);
+  if (file.empty()) {
+    if (const fs::path doubtful = find_in(places.open, group, name); !doubtful.empty()) {
+      throw Error(place.text(), fmt::format("{} lies where others may put files", doubtful.string()),
+                  "move the config and its groups to a folder of your own");
     }
+  } else {
+    file = shown(file);
   }
-  return place->second;
+  return found_.emplace(key, std::move(file)).first->second;
 }
 
 std::vector<std::string> Composer::group_names(const std::string& group, const fs::path& beside) const {
   std::set<std::string> names;
   for (const fs::path& folder : folders_of(group)) {
-    for (const fs::path& root : roots(beside)) {
+    for (const fs::path& root : roots(beside).safe) {
       std::error_code none;
       for (const auto& entry : fs::directory_iterator(root / folder, none)) {
         if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
@@ -176,13 +215,13 @@ Error Composer::no_file(const std::string& group, const std::string& name, const
   const std::vector<std::string> names = group_names(group, beside);
   return {place.text(), fmt::format("no file {}/{}.yaml", group, name),
           !names.empty() ? suggestion(name, names)
-                         : "looked in the folders above the config, ./configs and the program's configs"};
+                         : "looked beside the config, in 'configs' above it, ./configs and the program's configs"};
 }
 
 Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
                              const fs::path& beside, std::vector<std::string>& chain) {
   add_link(group, name, place, chain);
-  const fs::path file = find_group(group, name, beside);
+  const fs::path file = find_group(group, name, place, beside);
   if (file.empty()) {
     if (is_plain(group)) throw no_file(group, name, place, beside);
     Tree content = Tree::map();
@@ -202,7 +241,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
       throw Error(base.place.text(), fmt::format("a {} may build only on another {}", group, group),
                   fmt::format("write '- {}: name'", group));
     }
-    Tree below = group_content(group, base.name, base.place, file.parent_path(), chain);
+    Tree below = group_content(group, base.name, base.place, root_of(file, group), chain);
     below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
     content.merge(below);
   }
@@ -270,6 +309,7 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
   const auto lay = [&](const Choice& choice) {
     std::vector<std::string> chain;
     Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+    note_group(choice, beside);
     content.shift_layer(layer);
     set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
     layer += kLayersOfGroup;
@@ -295,8 +335,9 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   const Choice choice = *last;
   choices.erase(std::remove_if(choices.begin(), choices.end(), is_strategy), choices.end());
   add_link(kStrategy, choice.name, choice.place, chain);
-  const fs::path file = find_group(kStrategy, choice.name, beside);
+  const fs::path file = find_group(kStrategy, choice.name, choice.place, beside);
   if (file.empty()) throw no_file(kStrategy, choice.name, choice.place, beside);
+  note_group(choice, beside);
   Tree own = load(file);
   own.set_layer(kGroupLayer);
   std::vector<Choice> inner = take_defaults(own);
@@ -304,15 +345,22 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   take_names(own, "", inner);
   const auto is_else = [](const Choice& one) { return !is_of_strategy(one.path); };
   inner.erase(std::remove_if(inner.begin(), inner.end(), is_else), inner.end());
-  lay_strategy(tree, inner, file.parent_path(), layer, chain);
-  lay_groups(tree, inner, file.parent_path(), layer);
+  const fs::path root = root_of(file, kStrategy);
+  lay_strategy(tree, inner, root, layer, chain);
+  lay_groups(tree, inner, root, layer);
   own.set_layer(layer);
   layer += kLayersOfGroup;
   tree.merge(own);
   return choice.layer;
 }
 
+void Composer::note_group(const Choice& choice, const fs::path& beside) {
+  fs::path file = find_group(last_key(choice.path), choice.name, choice.place, beside);
+  if (!file.empty()) groups_.push_back({choice.path, choice.name, std::move(file)});
+}
+
 Tree Composer::compose(const fs::path& file, const std::vector<Override>& overrides) {
+  groups_.clear();
   Tree own = load(file);
   const fs::path beside = fs::absolute(file).parent_path();
   std::vector<Choice> choices = take_defaults(own);
@@ -357,6 +405,7 @@ void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& be
   Tree& slot = tree.at_path(choice.path, choice.place);
   std::vector<std::string> chain;
   Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+  note_group(choice, beside);
   content.shift_layer(kFileLayer - 1);
   set_layer_of_type(content, choice.layer, choice.place);
   if (choice.path == kEffects) {

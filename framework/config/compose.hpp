@@ -37,8 +37,10 @@ bool is_of_strategy(const std::string& path);
 ///
 /// Groups are the keys `kernel`, `acquisition`, `fitting`, `footprint`, `backend`, `scene` and `expect`, wherever they
 /// stand (`height.kernel` too). A plain name there, in the file or as an override, chooses the file
-/// <folder>/<group>/<name>.yaml, in the first folder that has it of: the folders above the config, ./configs, and the
-/// program's own configs. A name without such a file is taken as the type of a plugin with default options.
+/// <folder>/<group>/<name>.yaml, in the first folder that has it of: the config's own, the nearest named `configs`
+/// above it, ./configs, and the program's own configs. A name without such a file is taken as the type of a plugin with
+/// default options. A group may name a program to be run, so it has to be the user's: what lies in a folder into which
+/// all users put files (the sticky bit, as /tmp has it), or in a ./configs that others may write, is refused in words.
 ///
 /// Two groups stand in one place. `scene.effects` is a set of effects, which takes the place of those that the scene
 /// has. `strategy` bundles settings of any keys that decide where to tap and what is believed: its file is a config
@@ -58,6 +60,15 @@ class Composer {
   /// groups and cycles.
   Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
 
+  /// A group that was read from a file.
+  struct Group {
+    std::string path;  ///< where it went, `height.kernel`
+    std::string name;
+    std::filesystem::path file;
+  };
+  /// Those of the last composition, in the order in which they were laid.
+  const std::vector<Group>& groups() const { return groups_; }
+
  private:
   struct Choice {
     std::string path;  ///< where the group goes
@@ -71,8 +82,11 @@ class Composer {
   /// A plugin inside another, for example an item of a list: it is there only once the whole tree is.
   void choose_inner(Tree& tree, const Choice& choice, const std::filesystem::path& beside);
   void take_names(Tree& tree, const std::string& path, std::vector<Choice>& choices) const;
-  std::filesystem::path find_group(const std::string& group, const std::string& name,
+  /// The group's file, empty if there is none. Throws Error, with `place`, where only one is that others may have put
+  /// there.
+  std::filesystem::path find_group(const std::string& group, const std::string& name, const Place& place,
                                    const std::filesystem::path& beside) const;
+  void note_group(const Choice& choice, const std::filesystem::path& beside);
   Error no_file(const std::string& group, const std::string& name, const Place& place,
                 const std::filesystem::path& beside) const;
   /// Lays the groups over `tree`, each on layers of its own from `layer` on, which becomes the next free one.
@@ -82,13 +96,18 @@ class Composer {
   Layer lay_strategy(Tree& tree, std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer,
                      std::vector<std::string>& chain);
   std::vector<std::string> group_names(const std::string& group, const std::filesystem::path& beside) const;
-  std::vector<std::filesystem::path> roots(const std::filesystem::path& beside) const;
+  /// Folders to look in, the first first; and those that are passed over because others may have put something there.
+  struct Roots {
+    std::vector<std::filesystem::path> safe, open;
+  };
+  Roots roots(const std::filesystem::path& beside) const;
   /// What a group's file says, on layer 0, laid over what it builds on, on the layers below.
   Tree group_content(const std::string& group, const std::string& name, const Place& place,
                      const std::filesystem::path& beside, std::vector<std::string>& chain);
 
   std::filesystem::path shipped_;
   std::map<std::filesystem::path, Tree> files_;
+  std::vector<Group> groups_;
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.
   mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
 };

@@ -27,16 +27,17 @@ class Resolver final : public Fields {
     }
   }
 
-  /// The options of a plugin: `type` was read by the caller, and options older than it may be dropped.
-  void set_type(const Tree& type) {
+  /// The options of `plugin`: `type` was read by the caller, and options older than it may be dropped.
+  void set_type(const Tree& type, std::string plugin) {
     known_.emplace_back("type");
+    plugin_ = std::move(plugin);
     type_layer_ = std::max(type_layer_, type.layer);
     // What the type needs is missing where it was chosen, not in the group file that it was laid over.
     if (type.place.file) output_.place = type.place;
   }
 
-  /// Refuses keys that no field has claimed.
-  Tree finish() {
+  /// Refuses keys that no field has claimed. `elsewhere`: see resolve().
+  Tree finish(const std::vector<std::string>& elsewhere = {}) {
     if (input_ != nullptr) {
       for (const Tree::Entry& entry : input_->entries) {
         if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
@@ -44,7 +45,8 @@ class Resolver final : public Fields {
           notes_.dropped.push_back({path_ + entry.key, place_text(entry.value)});
           continue;
         }
-        throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), suggestion(entry.key, known_));
+        known_.insert(known_.end(), elsewhere.begin(), elsewhere.end());
+        refuse_unknown(entry, known_);
       }
     }
     return std::move(output_);
@@ -281,13 +283,47 @@ class Resolver final : public Fields {
     return tree;
   }
 
+  /// `known`: what it may have been meant for.
+  [[noreturn]] void refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const {
+    const std::string reason = fmt::format("unknown option '{}'", entry.key);
+    if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));
+    const std::string hint = suggestion(entry.key, known);
+    // A list of all that is known says little without the name of what knows it.
+    const bool listed = hint.rfind("known: ", 0) == 0;
+    const std::string of = !plugin_.empty() ? plugin_ : owner();
+    throw Error(entry.place.text(), reason + (listed && !(path_.empty() && plugin_.empty()) ? " of " + of : ""), hint);
+  }
+
+  /// Whether a key is a dotted path, as the command line takes them, that begins with a known option.
+  static bool is_below_one_of(const std::string& key, const std::vector<std::string>& known) {
+    const auto dot = key.find('.');
+    return dot != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, dot)) != known.end();
+  }
+
+  /// What a dotted key stands for, as a file has it: `weight: {clip: yes}`.
+  static std::string nested(const Tree::Entry& entry) {
+    std::string out;
+    std::string braces;
+    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+      end = entry.key.find('.', begin);
+      out += entry.key.substr(begin, end == std::string::npos ? end : end - begin) + ": ";
+      if (end == std::string::npos) continue;
+      out += "{";
+      braces += "}";
+    }
+    constexpr std::size_t kShort = 40;
+    const std::string& text = entry.value.text;
+    const bool short_value = entry.value.is_scalar() && text.size() < kShort && text.find('\n') == std::string::npos;
+    return out + (short_value ? entry.value.text : "...") + braces;
+  }
+
   /// Before complaining that `missing` is missing: perhaps it is there under a name that is nearly right.
   void refuse_misspelt(const std::string& missing) const {
     if (input_ == nullptr) return;
     for (const Tree::Entry& entry : input_->entries) {
       const bool known = std::find(known_.begin(), known_.end(), entry.key) != known_.end();
-      if (known || nearest(entry.key, {missing}).empty()) continue;
-      throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), suggestion(entry.key, {missing}));
+      if (known || (nearest(entry.key, {missing}).empty() && !is_below_one_of(entry.key, {missing}))) continue;
+      refuse_unknown(entry, {missing});
     }
   }
 
@@ -356,7 +392,7 @@ class Resolver final : public Fields {
       choice.type = type->text;
     }
     Resolver inner(&tree, path + ".", plugins_, notes_, output_.place);
-    inner.set_type(type != nullptr ? *type : tree);
+    inner.set_type(type != nullptr ? *type : tree, choice.kind + "/" + choice.type);
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
     list_plugin(choice, at, inner);
     Tree options = inner.finish();
@@ -370,6 +406,7 @@ class Resolver final : public Fields {
 
   const Tree* input_;
   std::string path_;
+  std::string plugin_;  ///< whose options these are; "" for none
   const PluginSource& plugins_;
   ResolveNotes& notes_;
   Tree output_;
@@ -380,9 +417,14 @@ class Resolver final : public Fields {
 }  // namespace
 
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes) {
+  return resolve(options, input, plugins, notes, {});
+}
+
+Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
+             const std::vector<std::string>& elsewhere) {
   Resolver resolver(&input, "", plugins, notes, input.place);
   options.list(resolver);
-  return resolver.finish();
+  return resolver.finish(elsewhere);
 }
 
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,

@@ -16,6 +16,9 @@ Tree parse_yaml(const std::string& text, const std::string& file);
 /// Reads and parses a file, which must be a regular file of at most 1 MiB. Throws Error.
 Tree read_yaml(const std::filesystem::path& path);
 
+/// Throws Error, naming `file`, for a config that read_yaml() would not read once to_yaml() has written it.
+void check_readable(const Tree& config, const std::string& file);
+
 /// A single value as it stands behind the `=` of an override; its places have no lines. What does not parse as YAML is
 /// taken as text.
 Tree parse_value(const std::string& text, const std::string& file);

@@ -21,7 +21,7 @@ void Experiment::run(Journal& journal, int most_taps) {
     journal.announce(*tap);
     if (!perform(*tap)) return stop(kStoppedByUser);
     journal.record(*tap, clock_.take());
-    if (tap->contact.ends_run) fail(tap->contact);
+    check_backend(tap->contact);
   }
 }
 

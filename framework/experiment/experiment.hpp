@@ -81,7 +81,8 @@ class Experiment {
   TapRequest request_of(const TapRecord& tap) const;
   Contact touch(const TapRecord& tap);
   void absorb(const Target& target, const Contact& contact, Source source);
-  [[noreturn]] void fail(const Contact& last) const;
+  /// Throws Error where the backend cannot go on, by its own word or because one tap after the other came to nothing.
+  void check_backend(const Contact& last);
   void show_belief();
   void count(const Contact& contact, Source source);
 
@@ -104,6 +105,7 @@ class Experiment {
   std::optional<Target> previous_;
   std::optional<Truth> truth_;
   std::int64_t budget_ = 0;  ///< of taps
+  int failed_in_a_row_ = 0;  ///< of this process: somebody has looked at the arm before a run is carried on
   RunResult result_;
 };
 

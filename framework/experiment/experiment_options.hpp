@@ -61,6 +61,7 @@ struct StopOptions : Options {
   std::optional<double> max_standard_deviation;
   std::optional<double> expected_rmse;
   std::optional<double> robot_time;
+  std::optional<std::int64_t> failed_in_a_row;
   void list(Fields& fields) override;
 };
 

@@ -2,6 +2,7 @@
 #include "experiment/resolved.hpp"
 
 #include "config/hash.hpp"
+#include "config/yaml.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -33,11 +34,12 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   input.erase("sweep");
   input.erase("expect");
   ResolvedConfig out;
-  out.tree = resolve(out.options, input, plugins, out.notes);
+  out.tree = resolve(out.options, input, plugins, out.notes, {"defaults", "strategy", "sweep", "expect"});
   if (const Tree* expect = composed.find("expect")) {
     out.expectations = read_expectations(expect);
     if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
   }
+  check_readable(out.tree, composed.place.text());
   out.id = id_of(out.tree);
   return out;
 }

@@ -4,6 +4,8 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -116,9 +118,20 @@ Contact Experiment::touch(const TapRecord& tap) {
   return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused, contact.ends_run};
 }
 
-void Experiment::fail(const Contact& last) const {
-  const std::string reason = last.reason.empty() ? "cannot go on, and gives no reason" : last.reason;
-  throw Error("backend/" + options_.backend.type, reason, {}, Error::Kind::run);
+void Experiment::check_backend(const Contact& last) {
+  const auto fail = [&](const std::string& reason, const std::string& hint = {}) {
+    throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
+  };
+  if (last.ends_run) fail(last.reason.empty() ? "cannot go on, and gives no reason" : last.reason);
+  if (last.outcome == Outcome::contact) failed_in_a_row_ = 0;
+  if (last.outcome == Outcome::contact || last.outcome == Outcome::unreachable || stop_wished()) return;
+  constexpr std::int64_t kOfARobot = 3;
+  const std::optional<std::int64_t> most =
+      options_.stop.failed_in_a_row || backend_->repeatable() ? options_.stop.failed_in_a_row : kOfARobot;
+  if (!most || ++failed_in_a_row_ < *most) return;
+  fail(fmt::format("{} failed, the last so: {}", *most == 1 ? "a tap" : fmt::format("{} taps in a row", *most),
+                   last.reason.empty() ? "no reason given" : last.reason),
+       "see to it, then 'palpate resume --retry-failed' carries on; stop.failed_in_a_row sets how many");
 }
 
 void Experiment::show_belief() {

@@ -47,7 +47,8 @@ struct Missing {
 Missing find_missing(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool retry_failed, int most_attempts);
 
 /// Has `launcher` run what is `missing` of `jobs` and waits until it has none in its hands, or until `interrupted`,
-/// when it cancels them. `progress` is called when something changed and at least every half second.
+/// when it cancels them. `progress` is called when something changed and at least every half second. Throws Error where
+/// the sweep's directory is moved or removed meanwhile, when it has cancelled them.
 void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress);
 

@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <optional>
+#include <sstream>
 
 #include <unistd.h>
 
@@ -31,7 +32,7 @@ class Attempt {
     const fs::path file = directory / kAttempts;
     std::error_code none;
     // A kill or a full disk may have left half a line, of the first attempt, too.
-    if (fs::exists(file, none)) fs::resize_file(file, read_json_lines(file).bytes);
+    if (fs::exists(file, none)) cut_file(file, read_json_lines(file).bytes);
     log_ = AppendFile(file);
     Row row = line();
     row.add("after_tap", taps);
@@ -66,14 +67,21 @@ void write_failure(const fs::path& directory, const std::string& id, const std::
   write_file(directory / "summary.json", to_json_text(row));
 }
 
+bool has_ended(const fs::path& directory) {
+  const RunStatus::State state = read_ending(directory).state;
+  return state == RunStatus::State::done || state == RunStatus::State::failed;
+}
+
 /// Under the lock: the run, and a summary whatever becomes of it.
 JobEnd carry_on(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                 const ResumeOptions& options) {
   try {
     return resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   } catch (const Error& trouble) {
+    std::error_code none;
+    if (!fs::exists(held.path(), none)) throw;  // nothing can be recorded there any more
     // What failed before the run could begin has left no summary.
-    if (held.status().state != RunStatus::State::failed) write_failure(held.path(), config.id, trouble.what());
+    if (!has_ended(held.path())) write_failure(held.path(), config.id, trouble.what());
     return JobEnd::failed;
   }
 }
@@ -82,6 +90,10 @@ JobEnd carry_on(const Workshop& workshop, const ResolvedConfig& config, RunDirec
 
 JobEnd run_job(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory,
                const ResumeOptions& options) {
+  refuse_link(directory.parent_path());
+  refuse_link(directory);
+  std::error_code none;
+  if (!fs::is_directory(directory, none)) throw Error(directory.string(), "is gone", {}, Error::Kind::run);
   std::optional<RunDirectory> held;
   try {
     held.emplace(directory);
@@ -89,12 +101,18 @@ JobEnd run_job(const Workshop& workshop, const ResolvedConfig& config, const fs:
     if (trouble.kind() == Error::Kind::busy) return JobEnd::busy;
     throw;
   }
-  const RunStatus status = held->status();
-  if (status.state == RunStatus::State::done) return JobEnd::done;
-  if (status.state == RunStatus::State::failed && !options.retry_failed) return JobEnd::failed;
-  Attempt attempt(directory, status.taps);
+  const RunStatus::State state = read_ending(directory).state;
+  if (state == RunStatus::State::done) return JobEnd::done;
+  if (state == RunStatus::State::failed && !options.retry_failed) return JobEnd::failed;
+  std::optional<Attempt> attempt;
+  try {
+    attempt.emplace(directory, read_record(directory).taps);
+  } catch (const Error& trouble) {  // its record or its list of attempts is damaged
+    if (!has_ended(directory)) write_failure(directory, config.id, trouble.what());
+    return JobEnd::failed;
+  }
   const JobEnd end = carry_on(workshop, config, *held, options);
-  attempt.end(end == JobEnd::done ? "done" : end == JobEnd::failed ? "failed" : "interrupted");
+  attempt->end(end == JobEnd::done ? "done" : end == JobEnd::failed ? "failed" : "interrupted");
   return end;
 }
 
@@ -102,15 +120,19 @@ int attempts_of(const fs::path& directory) {
   std::error_code none;
   if (!fs::exists(directory / kAttempts, none)) return 0;
   int attempts = 0;
-  for (const Row& row : read_json_lines(directory / kAttempts).rows) attempts += row.find("end") == nullptr ? 1 : 0;
+  std::istringstream lines(read_file(directory / kAttempts));
+  // A damaged line was one, too: asking how often is no time to fail.
+  for (std::string line; std::getline(lines, line) && !lines.eof();) {
+    const std::optional<Row> row = parse_json_row(line);
+    attempts += row && row->find("end") != nullptr ? 0 : 1;
+  }
   return attempts;
 }
 
 void record_failure(const fs::path& directory, const std::string& id, const std::string& reason) {
   try {
     const RunDirectory held(directory);
-    const RunStatus::State state = held.status().state;
-    if (state == RunStatus::State::done || state == RunStatus::State::failed) return;
+    if (has_ended(directory)) return;
     write_failure(directory, id, reason);
   } catch (const Error& trouble) {
     if (trouble.kind() != Error::Kind::busy) throw;

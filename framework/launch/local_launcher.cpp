@@ -97,15 +97,31 @@ bool LocalLauncher::start(std::size_t job) {
   return true;
 }
 
+JobEnd LocalLauncher::run(std::size_t job) const {
+  std::optional<ResolvedConfig> config;
+  try {
+    config.emplace(config_of_(job));
+  } catch (const Error& trouble) {
+    std::error_code none;
+    // One that was deleted has not failed: `palpate sweep` puts it back.
+    if (!std::filesystem::exists(directory_of(job) / "config.yaml", none)) throw;
+    record_failure(directory_of(job), sweep_.jobs[job].id, trouble.what());
+    return JobEnd::failed;
+  }
+  return run_job(workshop_, *config, directory_of(job), options_.resume);
+}
+
 void LocalLauncher::be_child(std::size_t job) {
   // Between fork and this call the parent may have died already.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent_) ::_exit(kUnrecorded);
   ::setpgid(0, 0);
   int status = kUnrecorded;
   try {
-    status = status_of(run_job(workshop_, config_of_(job), directory_of(job), options_.resume));
+    status = status_of(run(job));
   } catch (const std::exception& trouble) {
-    mention(job, trouble.what());
+    std::error_code none;
+    // Who conducts the sweep says once that all of it is gone.
+    if (std::filesystem::exists(sweep_.directory, none)) mention(job, trouble.what());
   } catch (...) {
     mention(job, "something was thrown that is no exception");
   }

@@ -56,6 +56,8 @@ class LocalLauncher final : public Launcher {
   /// Returns false where this process may have no more files or children, and has to go on with those it has.
   bool start(std::size_t job);
   [[noreturn]] void be_child(std::size_t job);
+  /// In the child. A config that cannot be read fails its job alone.
+  JobEnd run(std::size_t job) const;
   void reap(const Child& child, State& state);
   void conclude(std::size_t job, int wait_status, State& state);
   /// Whether an exit status is a job's own: a plugin that calls exit(0) or exit(1) leaves no result behind.

@@ -134,8 +134,8 @@ fs::path SlurmLauncher::make_folder() const {
     throw Error(all.string(), "Slurm cannot write logs below a folder with a backslash or a line end in its name",
                 "rename it");
   }
+  make_inner_folder(all);
   std::error_code trouble;
-  fs::create_directories(all, trouble);
   // Another submission may be looking for its number, too: who makes the folder has it.
   for (int number = 1; !trouble; ++number) {
     fs::path folder = all / std::to_string(number);

@@ -4,6 +4,8 @@
 #include "config/describe.hpp"
 #include "config/hash.hpp"
 #include "config/tree.hpp"
+#include "plugin/apart.hpp"
+#include "plugin/named.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
@@ -31,6 +33,10 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 namespace {
+
+// What is said of a library by who looked at it begins with one of these.
+constexpr char kSound = 'S';
+constexpr char kBroken = 'B';
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& step, const std::string& reason,
                          const std::string& hint = {}) {
@@ -149,6 +155,20 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
   }
 }
 
+/// What keeps all plugins of a folder from being found; "" if it has some.
+std::string trouble_of_folder(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder, none)) return "does not exist";
+  if (!fs::is_directory(folder, none)) return "is a file";
+  const std::vector<std::string> all = PluginHost::kinds();
+  const bool any = std::any_of(all.begin(), all.end(), [&](const std::string& kind) {
+    const fs::directory_iterator entries(folder / kind, none);
+    return std::any_of(begin(entries), end(entries),
+                       [](const auto& entry) { return entry.path().extension() == ".so"; });
+  });
+  return any ? "" : "holds no plugin, which is KIND/NAME.so in it";
+}
+
 }  // namespace
 
 /// One loaded library. Closed when the last object made by it is gone.
@@ -244,6 +264,13 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
     if (fs::exists(fs::symlink_status(file, none))) found.push_back(std::move(file));
   }
   if (found.empty()) {
+    for (const fs::path& folder : folders_) {
+      const std::string trouble = trouble_of_folder(folder);
+      if (!trouble.empty()) {
+        throw Error("", fmt::format("no plugin {}/{}", kind, name),
+                    fmt::format("the folder {} {}, see PALPATE_PLUGIN_PATH", folder.string(), trouble));
+      }
+    }
     std::vector<std::string> names;
     for (const auto& [other, file] : files(kind)) names.push_back(other);
     throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, names));
@@ -270,7 +297,18 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { object = manifest.create(fields, context); });
   });
   // The deleter owns the library, which therefore outlives the object.
-  return {object, [holder](void* gone) { holder->manifest().destroy(gone); }};
+  return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest().destroy(gone); }});
+}
+
+std::string PluginHost::look(const std::string& kind, const std::string& name) const {
+  try {
+    std::string answer = kSound + std::string(library(kind, name)->manifest().summary);
+    describe_fields([&](Fields& fields) { describe(kind, name, fields); });
+    libraries_.clear();  // a library may break down over its end, too
+    return answer;
+  } catch (const Error& trouble) {
+    return kBroken + std::string(trouble.what());
+  }
 }
 
 std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::string& name) const {
@@ -284,11 +322,10 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
       if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
       PluginListing row{one, stem, found.second, {}, {}};
       try {
-        const char* summary = library(one, stem)->manifest().summary;
-        describe_fields([&](Fields& fields) { describe(one, stem, fields); });
-        row.summary = summary;
+        const std::string answer = look_apart([&] { return look(one, stem); });
+        (answer.front() == kSound ? row.summary : row.trouble) = answer.substr(1);
       } catch (const Error& trouble) {
-        row.trouble = trouble.what();
+        row.trouble = fmt::format("{}: loading: {}, build or copy it again", found.second.string(), trouble.what());
       }
       out.push_back(std::move(row));
     }

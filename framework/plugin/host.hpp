@@ -68,6 +68,8 @@ class PluginHost final : public PluginSource, public PluginFactory {
 
  private:
   class Library;
+  /// Loads a library, has it list its options, and lets go of all: for a process that ends then. What is said of it.
+  std::string look(const std::string& kind, const std::string& name) const;
   std::shared_ptr<const Library> library(const std::string& kind, const std::string& name) const;
   std::vector<std::pair<std::string, std::filesystem::path>> files(const std::string& kind) const;
 

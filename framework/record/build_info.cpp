@@ -2,7 +2,7 @@
 #include "record/build_info.hpp"
 
 #include "config/hash.hpp"
-#include "config/yaml.hpp"
+#include "record/json.hpp"
 
 #include <palpate/error.hpp>
 
@@ -97,7 +97,7 @@ Tree describe_build(const Installation& installation, const PluginHost& host, co
   // Kept beside the program, not in it: a commit that changes no code leaves the program's bytes alone.
   const fs::path commit = installation.plugins / "build.json";
   std::error_code none;
-  Tree stamp = fs::exists(commit, none) ? read_yaml(commit) : Tree::map();
+  Tree stamp = fs::exists(commit, none) ? read_json(commit) : Tree::map();
   for (const char* key : {"commit", "dirty"}) {
     const Tree* value = stamp.find(key);
     out.at(key) = value != nullptr ? *value : Tree{};

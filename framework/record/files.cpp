@@ -3,6 +3,9 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -10,6 +13,8 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace palpate {
@@ -20,6 +25,14 @@ namespace {
 
 [[noreturn]] void fail(const fs::path& file, const char* action) {
   throw Error(file.string(), std::string(action) + ": " + std::strerror(errno), {}, Error::Kind::run);
+}
+
+/// Opens what is to be written, but no link: whoever made that would choose what is overwritten.
+int open_to_write(const fs::path& file, int flags) {
+  const int descriptor = ::open(file.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor >= 0) return descriptor;
+  if (errno == ELOOP) refuse_link(file);
+  fail(file, "cannot be opened");
 }
 
 void write_all(int descriptor, const std::string& text, const fs::path& file) {
@@ -35,11 +48,7 @@ void write_all(int descriptor, const std::string& text, const fs::path& file) {
 /// asked after without taking it.
 const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
-int open_lock(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) fail(file, "cannot be opened");
-  return descriptor;
-}
+int open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT); }
 
 /// Closes on leaving, errors on the way included.
 struct Descriptor {
@@ -49,21 +58,65 @@ struct Descriptor {
   }
 };
 
+constexpr const char* kTemporary = ".tmp";
+
 }  // namespace
 
+Neighbour::Neighbour(const fs::path& file) : file_(file) {
+  std::uint64_t unforeseen = 0;
+  if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen) fail(file, "no random name for it");
+  path_ = file.string() + fmt::format(".{:016x}{}", unforeseen, kTemporary);
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(file, "cannot be made");
+}
+
+Neighbour::~Neighbour() {
+  ::close(descriptor_);
+  if (!path_.empty()) ::unlink(path_.c_str());
+}
+
+void Neighbour::rename() {
+  if (::rename(path_.c_str(), file_.c_str()) != 0) fail(file_, "cannot be renamed to");
+  path_.clear();
+}
+
 void write_file(const fs::path& file, const std::string& text, bool sync) {
-  const fs::path temporary = file.string() + ".tmp";
-  {
-    const Descriptor out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
-    if (out.value < 0) fail(temporary, "cannot be made");
-    write_all(out.value, text, temporary);
-    if (sync && ::fsync(out.value) != 0) fail(temporary, "cannot be synced");
-  }
-  if (::rename(temporary.c_str(), file.c_str()) != 0) fail(file, "cannot be renamed to");
+  Neighbour neighbour(file);
+  write_all(neighbour.descriptor(), text, file);
+  if (sync && ::fsync(neighbour.descriptor()) != 0) fail(file, "cannot be synced");
+  neighbour.rename();
   if (sync) {
     const Descriptor folder{::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
     if (folder.value >= 0) ::fsync(folder.value);
   }
+}
+
+void remove_neighbours(const fs::path& folder, std::initializer_list<const char*> names) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const fs::path& file = entry.path();
+    if (file.extension() != kTemporary) continue;
+    const auto of = [&](const char* name) { return file.stem().stem() == name; };
+    if (names.size() == 0 || std::any_of(names.begin(), names.end(), of)) fs::remove(file, none);
+  }
+}
+
+void cut_file(const fs::path& file, std::uintmax_t bytes) {
+  const Descriptor out{open_to_write(file, O_WRONLY)};
+  if (::ftruncate(out.value, static_cast<off_t>(bytes)) != 0) fail(file, "cannot be cut");
+}
+
+void refuse_link(const fs::path& path) {
+  std::error_code none;
+  if (!fs::is_symlink(path, none)) return;
+  throw Error(path.string(), "is a link, and nothing is written through one", "remove it", Error::Kind::run);
+}
+
+void make_inner_folder(const fs::path& folder) {
+  refuse_link(folder);
+  std::error_code trouble;
+  fs::create_directories(folder, trouble);
+  if (trouble) throw Error(folder.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
 }
 
 std::string read_file(const fs::path& file) {
@@ -75,9 +128,7 @@ std::string read_file(const fs::path& file) {
 }
 
 AppendFile::AppendFile(const fs::path& file)
-    : file_(file), descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail(file, "cannot be opened");
-}
+    : file_(file), descriptor_(open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {}
 
 AppendFile::~AppendFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -95,6 +146,13 @@ AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
 void AppendFile::append(const std::string& text, bool sync) {
   write_all(descriptor_, text, file_);
   if (sync && ::fdatasync(descriptor_) != 0) fail(file_, "cannot be synced");
+}
+
+bool AppendFile::is_in_place() const {
+  struct stat named {};
+  struct stat open {};
+  return ::stat(file_.c_str(), &named) == 0 && ::fstat(descriptor_, &open) == 0 && named.st_dev == open.st_dev &&
+         named.st_ino == open.st_ino;
 }
 
 FileLock::FileLock(const fs::path& file) : descriptor_(open_lock(file)) {

@@ -1,16 +1,53 @@
 // SPDX-License-Identifier: MIT
 // Files that survive kills: written whole under another name and renamed, or appended line by line; and locks that
-// end with their process.
+// end with their process. The folders may come from somebody else: none follows a link that lies in the place of what
+// it writes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 
 namespace palpate {
 
 /// Writes `text` to a temporary neighbour and renames it to `file`: readers see the old content or the new, never a
-/// part. With `sync` content and name are on the disk when it returns. Throws Error.
+/// part, and a link is replaced. With `sync` content and name are on the disk when it returns. Throws Error.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
+
+/// A file on its way to its name: made empty beside it, under one that nobody could have foreseen, and removed where it
+/// does not get there.
+class Neighbour {
+ public:
+  /// Throws Error.
+  explicit Neighbour(const std::filesystem::path& file);
+  ~Neighbour();
+  Neighbour(const Neighbour&) = delete;
+  Neighbour& operator=(const Neighbour&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  int descriptor() const { return descriptor_; }
+  /// Takes the place of `file`. Throws Error.
+  void rename();
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+};
+
+/// Removes what kills left behind in `folder` of files on their way to `names`, or, without any, of all. For who
+/// alone may write those.
+void remove_neighbours(const std::filesystem::path& folder, std::initializer_list<const char*> names);
+
+/// Keeps the first `bytes` of a file. Throws Error.
+void cut_file(const std::filesystem::path& file, std::uintmax_t bytes);
+
+/// Throws Error where `path`, a part of a record, is a link: what is written would lie where another person chose.
+void refuse_link(const std::filesystem::path& path);
+
+/// Makes `folder`, a part of a record, if need be. Throws Error, where it is a link, too.
+void make_inner_folder(const std::filesystem::path& folder);
 
 /// The whole content. Throws Error.
 std::string read_file(const std::filesystem::path& file);
@@ -27,6 +64,9 @@ class AppendFile {
 
   /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error.
   void append(const std::string& text, bool sync);
+
+  /// Whether the name that it was opened by still leads to it.
+  bool is_in_place() const;
 
  private:
   std::filesystem::path file_;

@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "record/json.hpp"
 
+#include "record/files.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-#include <iterator>
+#include <algorithm>
 
 namespace palpate {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Far beyond what is ever written, and little enough to be held in memory.
+constexpr std::uintmax_t kMostBytes = 64 << 20;
+constexpr std::size_t kMostValues = 1'000'000;
+constexpr std::size_t kMostLevels = 100;
+/// Of all names in a row: what is nested deeply repeats in each the names of all that is around it.
+constexpr std::size_t kMostNameBytes = 1 << 20;
 
 /// Takes the events of the parser as they come: a tree of all values would cost more than the reading itself. Returns
 /// false for what is no row, which ends the parsing.
@@ -53,7 +61,8 @@ class RowReader final : public nlohmann::json_sax<Json> {
 
   template <class T>
   bool add(T value) {
-    if (ends_.empty()) return false;
+    name_bytes_ += name_.size();
+    if (ends_.empty() || name_bytes_ > kMostNameBytes) return false;
     row_.fields.emplace_back(name_, std::move(value));
     return true;
   }
@@ -61,7 +70,72 @@ class RowReader final : public nlohmann::json_sax<Json> {
   Row& row_;
   std::string name_;               ///< of the value to come, dotted
   std::vector<std::size_t> ends_;  ///< lengths of the names of the open objects
+  std::size_t name_bytes_ = 0;     ///< of the fields so far
 };
+
+/// Builds a tree from the same events. Scalars that are no strings are kept as they are written.
+class TreeReader final : public nlohmann::json_sax<Json> {
+ public:
+  Tree tree;
+  std::size_t bytes = 0;            ///< read when it was found to be no JSON
+  const char* objection = nullptr;  ///< to what is JSON, and yet not read
+
+  bool null() override { return add({}); }
+  bool boolean(bool value) override { return add(Tree::scalar(value ? "true" : "false")); }
+  bool number_integer(number_integer_t value) override { return add(Tree::scalar(std::to_string(value))); }
+  bool number_unsigned(number_unsigned_t value) override { return add(Tree::scalar(std::to_string(value))); }
+  bool number_float(number_float_t, const string_t& text) override { return add(Tree::scalar(text)); }
+  bool string(string_t& value) override { return add(Tree::scalar(std::move(value), true)); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Tree::map()); }
+  bool start_array(std::size_t) override { return open(Tree::list()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& key) override {
+    open_.back()->entries.push_back({std::move(key), {}, {}});
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception&) override {
+    bytes = position;
+    return false;
+  }
+
+ private:
+  /// Where the value to come belongs. What is open does not move: only the innermost grows.
+  Tree& place() {
+    if (open_.empty()) return tree;
+    Tree& inner = *open_.back();
+    return inner.is_map() ? inner.entries.back().value : inner.items.emplace_back();
+  }
+  Tree* put(Tree value) {
+    if (open_.empty() && !value.is_map()) objection = "is not a JSON object";
+    if (open_.size() > kMostLevels) objection = "is nested too deeply";
+    if (++values_ > kMostValues) objection = "holds too many values";
+    if (objection != nullptr) return nullptr;
+    Tree& at = place();
+    at = std::move(value);
+    return &at;
+  }
+  bool add(Tree value) { return put(std::move(value)) != nullptr; }
+  bool open(Tree empty) {
+    open_.push_back(put(std::move(empty)));
+    return open_.back() != nullptr;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  std::vector<Tree*> open_;
+  std::size_t values_ = 0;
+};
+
+/// "file:line:column" behind so many bytes of its text.
+std::string place_behind(const std::filesystem::path& file, const std::string& text, std::size_t bytes) {
+  const std::string read = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
+  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
+  return fmt::format("{}:{}:{}", file.string(), line, read.size() - (read.rfind('\n') + 1) + 1);
+}
 
 void append(std::string& out, const Tree& tree, const std::string& indent) {
   const std::string inner = indent + "  ";
@@ -91,6 +165,14 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
   }
 }
 
+std::string read_bounded(const std::filesystem::path& file) {
+  std::error_code trouble;
+  const auto bytes = std::filesystem::file_size(file, trouble);
+  if (!trouble && bytes > kMostBytes)
+    throw Error(file.string(), "is too large for what it should hold", "the file is damaged: put it back as it was");
+  return read_file(file);
+}
+
 }  // namespace
 
 std::optional<Row> parse_json_row(const std::string& text) {
@@ -101,9 +183,7 @@ std::optional<Row> parse_json_row(const std::string& text) {
 }
 
 JsonLines read_json_lines(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string(), "cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = read_file(file);
   JsonLines out;
   int line = 0;
   for (std::size_t begin = 0;;) {
@@ -117,6 +197,21 @@ JsonLines read_json_lines(const std::filesystem::path& file) {
     out.bytes = begin;
   }
   return out;
+}
+
+Row read_json_row(const std::filesystem::path& file, const std::string& remedy) {
+  std::optional<Row> row = parse_json_row(read_bounded(file));
+  if (!row) throw Error(file.string(), "is not a JSON object", remedy);
+  return std::move(*row);
+}
+
+Tree read_json(const std::filesystem::path& file) {
+  const std::string text = read_bounded(file);
+  TreeReader reader;
+  if (Json::sax_parse(text, &reader)) return std::move(reader.tree);
+  const char* const remedy = "the file is damaged: put it back as it was, or remove it";
+  if (reader.objection != nullptr) throw Error(file.string(), reader.objection, remedy);
+  throw Error(place_behind(file, text, reader.bytes), "is not valid JSON", remedy);
 }
 
 std::string to_json(const Tree& tree) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// JSON in, and trees as JSON out. The only door to the JSON library.
+// JSON in and out, as rows and as trees. The only door to the JSON library.
 #pragma once
 
 #include "config/tree.hpp"
@@ -13,8 +13,11 @@
 namespace palpate {
 
 /// One JSON object as a row: nested objects joined by dots. None for anything that is not one valid object without
-/// lists.
+/// lists, or whose names take over 1 MiB once they are joined.
 std::optional<Row> parse_json_row(const std::string& text);
+
+/// The same of a file of at most 64 MiB. Throws Error for anything else, with `remedy`.
+Row read_json_row(const std::filesystem::path& file, const std::string& remedy);
 
 /// The objects of a file, one a line. A last line without its line end was cut off by a kill and is left out; `bytes`
 /// then says where it begins. Throws Error for any other line that is no object.
@@ -23,6 +26,10 @@ struct JsonLines {
   std::uintmax_t bytes = 0;  ///< of the complete lines
 };
 JsonLines read_json_lines(const std::filesystem::path& file);
+
+/// The JSON object in a file of at most 64 MiB, in which nothing is nested deeper than 100 levels: what to_json() wrote
+/// comes back as it was. Throws Error.
+Tree read_json(const std::filesystem::path& file);
 
 /// A tree as indented JSON: unquoted scalars stand as they are (numbers, true, false), quoted ones become strings.
 std::string to_json(const Tree& tree);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/junit.hpp"
 
-#include "record/utf8.hpp"
+#include "config/utf8.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/recording.hpp"
 
-#include "record/files.hpp"
 #include "record/json.hpp"
+#include "record/run_directory.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
@@ -61,11 +61,8 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
   if (out.rows.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
   for (std::size_t i = 0; i < out.rows.size(); ++i)
     out.taps.push_back(past_tap(out.rows[i], fmt::format("{}: tap {}", file.string(), i + 1)));
-  const fs::path summary = directory / "summary.json";
-  std::error_code none;
-  if (!fs::exists(summary, none)) return out;
-  out.summary = parse_json_row(read_file(summary));
-  if (!out.summary) throw Error(summary.string(), "is not a JSON object", "the file is damaged");
+  out.summary = read_summary(directory);
+  if (out.summary) check_complete(*out.summary, static_cast<int>(out.rows.size()), directory);
   return out;
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "record/row.hpp"
 
-#include "record/utf8.hpp"
+#include "config/utf8.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -69,6 +71,34 @@ std::string csv_text(const std::string& text) {
   }
   return out + "\"";
 }
+
+namespace {
+
+bool is_number(const std::string& text) {
+  const std::size_t sign = text.front() == '+' || text.front() == '-' ? 1 : 0;
+  const char* const begin = text.data() + sign;
+  const char* const end = text.data() + text.size();
+  double value = 0.0;
+  // A sign of its own, infinity and the like are no numbers of a table.
+  return begin != end && (std::isdigit(static_cast<unsigned char>(*begin)) != 0 || *begin == '.') &&
+         std::from_chars(begin, end, value).ptr == end;
+}
+
+/// For a spreadsheet, which computes what begins like a formula: an apostrophe makes it a text. Whatever has
+/// apostrophes in front of that gets one more, so that taking one away gives back the same text.
+std::string guarded(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of("' \t\r\n");
+  const bool computed = begin != std::string::npos && std::string_view("=+-@").find(text[begin]) != std::string::npos;
+  return computed && !is_number(text) ? "'" + text : text;
+}
+
+/// As it stands in a file.
+std::string file_cell(const Scalar& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text != nullptr ? csv_text(guarded(*text)) : csv_cell(value);
+}
+
+}  // namespace
 
 std::string csv_cell(const Scalar& value) {
   struct Visitor {
@@ -156,7 +186,7 @@ std::string to_csv(const std::vector<Row>& rows) {
   const std::vector<std::string> header = names_of(rows);
   if (header.empty()) return {};
   std::string out;
-  for (const std::string& name : header) out += (out.empty() ? "" : ",") + csv_text(name);
+  for (const std::string& name : header) out += (out.empty() ? "" : ",") + csv_text(guarded(name));
   out += "\n";
   for (const Row& row : rows) {
     std::string line;
@@ -165,9 +195,9 @@ std::string to_csv(const std::vector<Row>& rows) {
       if (&name != &header.front()) line += ",";
       // Rows have their fields in the same order, some lacking: a second look from the start is rarely needed.
       if (at < row.fields.size() && row.fields[at].first == name) {
-        line += csv_cell(row.fields[at++].second);
+        line += file_cell(row.fields[at++].second);
       } else if (const Scalar* value = row.find(name)) {
-        line += csv_cell(*value);
+        line += file_cell(*value);
       }
     }
     out += line + "\n";

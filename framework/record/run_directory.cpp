@@ -42,16 +42,37 @@ const char* state_name(RunStatus::State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+std::optional<Row> read_summary(const fs::path& directory) {
+  std::error_code none;
+  if (!fs::exists(directory / kSummary, none)) return std::nullopt;
+  // A power cut may leave its name without its content.
+  return read_json_row(directory / kSummary,
+                       "the file is damaged: remove it, and 'palpate resume' makes it anew from the taps");
+}
+
+std::optional<Row> read_outcome(const fs::path& directory) {
+  try {
+    return read_summary(directory);
+  } catch (const Error& trouble) {
+    Row failed;
+    failed.add("status", "failed");
+    failed.add("stop_reason", trouble.what());
+    return failed;
+  }
+}
+
+void check_complete(const Row& summary, int recorded, const fs::path& directory) {
+  const Scalar* taps = summary.find("taps");
+  const auto* made = taps != nullptr ? std::get_if<std::int64_t>(taps) : nullptr;
+  if (text_at(summary, "status") != "done" || made == nullptr || *made <= recorded) return;
+  throw Error((directory / kTaps).string(), fmt::format("holds {} of the {} taps that were made", recorded, *made),
+              "the file was cut: put it back, or remove summary.json, and 'palpate resume' makes the others again");
+}
+
 RunStatus read_ending(const fs::path& directory) {
   RunStatus out;
   std::error_code none;
-  if (fs::exists(directory / kSummary, none)) {
-    const std::optional<Row> summary = parse_json_row(read_file(directory / kSummary));
-    if (!summary) {
-      // As a power cut leaves it: the name is there and the content was never written.
-      throw Error((directory / kSummary).string(), "is not a JSON object",
-                  "the file is damaged: remove it, and 'palpate resume' makes it anew from the taps");
-    }
+  if (const std::optional<Row> summary = read_outcome(directory)) {
     out.state = text_at(*summary, "status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
     out.stop_reason = text_at(*summary, "stop_reason");
   } else if (fs::exists(directory / kTaps, none)) {
@@ -68,6 +89,7 @@ RunStatus read_record(const fs::path& directory) {
   if (fs::exists(directory / kTaps, none)) {
     for (const Row& row : read_json_lines(directory / kTaps).rows) out.taps += is_intent(row) ? 0 : 1;
   }
+  if (out.state == RunStatus::State::done) check_complete(read_summary(directory).value(), out.taps, directory);
   return out;
 }
 
@@ -79,13 +101,22 @@ RunStatus read_status(const fs::path& directory) {
   return out;
 }
 
-RunDirectory::RunDirectory(fs::path directory) : path_(made(std::move(directory))), lock_(path_ / kLock) {}
+RunDirectory::RunDirectory(fs::path directory) : path_(made(std::move(directory))), lock_(path_ / kLock) {
+  remove_neighbours(path_, {"config.yaml", "manifest.json", "taps.csv", "surface.csv", kSummary});
+  remove_neighbours(path_ / "maps", {});
+}
+
+void RunDirectory::check_in_place() const {
+  if (taps_.is_in_place()) return;
+  throw Error(path_.string(), "was moved or removed while a run was writing there",
+              "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
+}
 
 std::vector<PastTap> RunDirectory::recover() {
   std::error_code none;
   if (!fs::exists(path_ / kTaps, none)) return {};
   JsonLines lines = read_json_lines(path_ / kTaps);
-  fs::resize_file(path_ / kTaps, lines.bytes);
+  cut_file(path_ / kTaps, lines.bytes);
   std::optional<Row> intent;
   for (Row& row : lines.rows) {
     if (is_intent(row)) {
@@ -111,7 +142,7 @@ void RunDirectory::recover_timings() {
   std::error_code none;
   if (!fs::exists(path_ / kTimings, none)) return;
   const std::string text = read_file(path_ / kTimings);
-  fs::resize_file(path_ / kTimings, text.rfind('\n') + 1);
+  cut_file(path_ / kTimings, text.rfind('\n') + 1);
   std::istringstream lines(text.substr(0, text.rfind('\n') + 1));
   std::string line;
   std::getline(lines, line);
@@ -140,6 +171,7 @@ void RunDirectory::open(bool announce, bool sync) {
 }
 
 void RunDirectory::announce(const TapRecord& tap) {
+  check_in_place();
   if (announce_) taps_.append(to_json_line(intent_row(tap)) + "\n", sync_);
 }
 

@@ -28,8 +28,17 @@ struct RunStatus {
   std::string stop_reason;  ///< of a finished run: why it stopped or failed
 };
 
+/// Its summary.json; none for a run that has not ended. Throws Error for a damaged one.
+std::optional<Row> read_summary(const std::filesystem::path& directory);
+
+/// The same for who looks at many: a damaged one is that of a failed run, with the damage for its reason.
+std::optional<Row> read_outcome(const std::filesystem::path& directory);
+
+/// Throws Error if `summary` is that of a finished run in `directory` with more taps than are `recorded`.
+void check_complete(const Row& summary, int recorded, const std::filesystem::path& directory);
+
 /// State and reason of a run directory, as cheaply as they can be told: the taps are not counted, and it is not asked
-/// who holds it. Throws Error for a damaged one.
+/// who holds it. Of a damaged summary, as read_outcome().
 RunStatus read_ending(const std::filesystem::path& directory);
 
 /// Whether a living process holds it.
@@ -62,6 +71,9 @@ class RunDirectory final : public Journal {
   /// Opens taps.jsonl and timings.csv for what follows. With `announce` each tap is announced before it is made;
   /// with `sync` lines are forced to disk.
   void open(bool announce, bool sync);
+
+  /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
+  void check_in_place() const;
 
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;

@@ -4,6 +4,7 @@
 #include "config/yaml.hpp"
 #include "experiment/experiment.hpp"
 #include "record/json.hpp"
+#include "record/recording.hpp"
 #include "record/summary.hpp"
 
 #include <palpate/error.hpp>
@@ -39,15 +40,14 @@ std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config
 std::string recorded_build(const fs::path& directory) {
   std::error_code none;
   if (!fs::exists(directory / "manifest.json", none)) return {};
-  const Tree manifest = read_yaml(directory / "manifest.json");
+  const Tree manifest = read_json(directory / "manifest.json");
   const Tree* build = manifest.find("build");
   return build != nullptr ? build->text : std::string();
 }
 
 /// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
 void note_resume(const Workshop& workshop, const ResolvedConfig& config, const RunDirectory& directory, int from) {
-  Tree manifest = read_yaml(directory.path() / "manifest.json");
-  // JSON is YAML: strings come back quoted, numbers plain, so the tree can be written as it was read.
+  Tree manifest = read_json(directory.path() / "manifest.json");
   Tree entry = Tree::map();
   entry.at("after_tap") = Tree::scalar(std::to_string(from));
   entry.at("build") = quoted(build_hash(workshop.host, config.notes.plugins));
@@ -59,7 +59,7 @@ void note_resume(const Workshop& workshop, const ResolvedConfig& config, const R
 /// Notes in the manifest what the taps have shown of the robot.
 void note_learnt(const RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
   if (learnt.empty()) return;
-  Tree manifest = read_yaml(directory.path() / "manifest.json");
+  Tree manifest = read_json(directory.path() / "manifest.json");
   Tree& notes = manifest.at("learnt");
   notes = Tree::map();
   for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, quoted(one.value)});
@@ -113,7 +113,7 @@ class Relay final : public Journal {
   void write_maps(int number) const {
     const std::string text = maps_csv(experiment_.candidates(), experiment_.belief());
     if (text.empty()) return;
-    fs::create_directories(directory_.path() / "maps");
+    make_inner_folder(directory_.path() / "maps");
     directory_.write(fmt::format("maps/tap_{:03}.csv", number), text);
   }
 
@@ -163,6 +163,7 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   } catch (...) {
     failure = "a plugin threw something that is no exception";
   }
+  directory.check_in_place();
   // A model that failed once is not asked again.
   if (!failure.empty()) result = experiment.counts();
   note_learnt(directory, experiment.backend().learnt());
@@ -176,11 +177,7 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   return report;
 }
 
-RunReport report_done(const fs::path& directory) {
-  const std::optional<Row> summary = parse_json_row(read_file(directory / "summary.json"));
-  if (!summary) throw Error((directory / "summary.json").string(), "is not a JSON object", "the file is damaged");
-  return {directory, true, false, *summary};
-}
+RunReport report_done(const fs::path& directory) { return {directory, true, false, read_summary(directory).value()}; }
 
 }  // namespace
 
@@ -241,10 +238,14 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   return config;
 }
 
-void check_build(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
+bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
   const std::string build = recorded_build(directory);
-  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins)) return;
-  if (read_record(directory).taps == 0) return;
+  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins)) return false;
+  return read_record(directory).taps > 0;
+}
+
+void check_build(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
+  if (!is_of_another_build(workshop, config, directory)) return;
   throw Error(directory.string(), "this run was begun by another build of palpate or its plugins",
               "--force carries on all the same, and the manifest will say so");
 }
@@ -272,6 +273,8 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   Experiment experiment = build_experiment(workshop, config, directory);
   if (supervisor != nullptr) check_worth_asking(config, experiment);
   experiment.resume(past);
+  // Where no tap is left to make nothing reads the models that the loop had built, and the summary would lack them.
+  if (!held.rows().empty()) read_as_recorded(held.rows().back(), experiment.belief());
   if (recorded_build(directory).empty()) {
     held.write("manifest.json", manifest_text(workshop, config));
   } else {

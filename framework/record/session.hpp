@@ -68,7 +68,11 @@ RunReport resume_run(const Workshop& workshop, const std::filesystem::path& dire
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                       const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
 
-/// Throws Error if the run in `directory` has taps of another build than this one.
+/// Whether the run in `directory` has taps of another build than this one. Throws Error for a damaged one.
+bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config,
+                         const std::filesystem::path& directory);
+
+/// Throws Error if it has.
 void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);
 
 /// A number that came out differently in a replay.

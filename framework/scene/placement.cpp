@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -18,6 +19,12 @@ bool separates(const Body& a, const Body& b, double dx, double dy) {
   return a.reach(dx, dy) + b.reach(-dx, -dy) <= dx * (b.x() - a.x()) + dy * (b.y() - a.y());
 }
 
+/// How far the body reaches beyond the area, where it does most; not positive if it lies wholly inside.
+double beyond(const Body& body, const Area& area) {
+  return std::max({body.reach(-1, 0) - body.x(), body.x() - (area.width - body.reach(1, 0)),
+                   body.reach(0, -1) - body.y(), body.y() - (area.depth - body.reach(0, 1))});
+}
+
 /// Draws until the body lies wholly inside the area.
 void draw_inside(Body& body, const Area& area, Random& random, std::size_t number) {
   constexpr int kTries = 100'000;
@@ -26,9 +33,7 @@ void draw_inside(Body& body, const Area& area, Random& random, std::size_t numbe
     const double x = area.width * random.uniform();
     const double y = area.depth * random.uniform();
     body.place(x, y, rotation);
-    const bool inside = x >= body.reach(-1, 0) && x <= area.width - body.reach(1, 0) && y >= body.reach(0, -1) &&
-                        y <= area.depth - body.reach(0, 1);
-    if (inside) return;
+    if (beyond(body, area) <= 0.0) return;
   }
   throw Error(fmt::format("scene.objects.{}", number), "does not fit into the area",
               "make the object smaller or the area larger");
@@ -62,6 +67,19 @@ bool separate(const Body& a, const Body& b) {
     if (separates(a, b, cosine * along + sine * across, cosine * across - sine * along)) return true;
   }
   return false;
+}
+
+void check_inside(const std::vector<Body>& bodies, const Area& area) {
+  constexpr double kRounding = 1e-9;
+  constexpr double kMillimetre = 1e-3;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double outside = beyond(bodies[i], area);
+    if (outside <= kRounding) continue;
+    throw Error(fmt::format("scene.objects.{}", i),
+                fmt::format("reaches {:.3g} mm beyond the area of {:.6g} x {:.6g} mm", outside / kMillimetre,
+                            area.width / kMillimetre, area.depth / kMillimetre),
+                "move it by 'at', turn it, or make the area larger");
+  }
 }
 
 void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed) {

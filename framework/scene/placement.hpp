@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects at places drawn from the seed.
+// Objects wholly inside the area, where the config puts them or at places drawn from the seed.
 #pragma once
 
 #include "scene/body.hpp"
@@ -14,6 +14,10 @@ namespace palpate {
 /// Whether a vertical plane separates two bodies, so that neither is over the other. May say no of two that are apart
 /// by less than a thousandth of their size; never says yes of two that overlap.
 bool separate(const Body& a, const Body& b);
+
+/// Throws Error, its `where` the path in the config, for the first body that does not lie wholly inside the area: no
+/// tap would find what is outside, and no error measure would miss it.
+void check_inside(const std::vector<Body>& bodies, const Area& area);
 
 /// Draws rotation and position of each body until all lie wholly inside the area and none overlaps another: uniform
 /// over all such poses. Each has a stream of random numbers of its own, so that one more object leaves the draws of the

@@ -26,7 +26,11 @@ class Desk final : public Scene {
       bodies.emplace_back(make_shape(object, context_), object.tilt);
       bodies.back().place(object.at[0], object.at[1], object.rotation);
     }
-    if (options.placement == SceneOptions::Placement::random) place_at_random(bodies, area_, seed);
+    if (options.placement == SceneOptions::Placement::random) {
+      place_at_random(bodies, area_, seed);
+    } else {
+      check_inside(bodies, area_);
+    }
     bodies_ = std::move(bodies);
   }
 

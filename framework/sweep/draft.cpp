@@ -86,7 +86,8 @@ void SweepDraft::replace_lost(const Sweep& sweep) const {
     const fs::path directory = job_directory(sweep, job);
     std::error_code none;
     if (fs::exists(directory / "config.yaml", none)) continue;
-    make_folder(directory);
+    refuse_link(directory.parent_path());
+    make_inner_folder(directory);
     write_file(directory / "config.yaml", read_file(folder_ / "jobs" / job.id / "config.yaml"));
   }
 }
@@ -98,9 +99,7 @@ bool SweepDraft::publish(const SweepPlan& plan) {
     return false;
   }
   write_file(folder_ / "config.yaml", to_yaml(plan.config));
-  std::string manifest;
-  for (const Job& job : plan.sweep.jobs) manifest += to_json_line(manifest_row(plan.sweep.keys, job)) + "\n";
-  write_file(folder_ / "manifest.jsonl", manifest);
+  write_file(folder_ / "manifest.jsonl", manifest_text(plan.sweep, directory.filename().string()));
   make_folder(directory.parent_path());
   std::error_code trouble;
   fs::rename(folder_, directory, trouble);

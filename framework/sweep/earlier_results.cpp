@@ -75,6 +75,8 @@ std::optional<Row> EarlierResults::kept(std::size_t job, int taps) const {
 
 void EarlierResults::compute(const Workshop& workshop, std::size_t job) const {
   const fs::path directory = job_directory(sweep_, sweep_.jobs[job]);
+  refuse_link(directory.parent_path());
+  refuse_link(directory);
   std::vector<int> shorter;
   std::copy_if(taps_.begin(), taps_.end(), std::back_inserter(shorter),
                [&](int count) { return is_longer(job, count); });

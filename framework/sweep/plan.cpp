@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/plan.hpp"
 
+#include "config/yaml.hpp"
 #include "sweep/written_config.hpp"
 
 #include <palpate/error.hpp>
@@ -258,7 +259,8 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   planner.finish();
   plan.name = first->options.name;
   plan.config = written_config(file, base, description, *first, host);
-  plan.sweep.directory = runs / slug(plan.name) / sweep_id(plan.config, plan.sweep.jobs);
+  check_readable(plan.config, file.string());
+  plan.sweep.directory = runs / slug(plan.name) / sweep_id(plan.config, plan.sweep);
   return plan;
 }
 

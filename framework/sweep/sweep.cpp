@@ -18,6 +18,11 @@ namespace palpate {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr const char* kSweep = "sweep";  ///< the field with the id
+
+/// A line of manifest.jsonl but for the sweep's id, which is a hash of these.
 Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
   Row row;
   row.add("job", job.index);
@@ -30,14 +35,44 @@ Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
   return row;
 }
 
-std::string sweep_id(const Tree& config, const std::vector<Job>& jobs) {
+std::string text_at(const Row& row, const std::string& name) {
+  const Scalar* value = row.find(name);
+  const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+  return text != nullptr ? *text : std::string();
+}
+
+/// The texts at `name` 0, 1, ... for as long as there are any.
+std::vector<std::string> texts_at(const Row& row, const std::string& name) {
+  std::vector<std::string> out;
+  for (const auto& [field, value] : row.fields) {
+    if (field != fmt::format("{}_{}", name, out.size())) continue;
+    if (const auto* text = std::get_if<std::string>(&value)) out.push_back(*text);
+  }
+  return out;
+}
+
+bool is_id(const std::string& text) { return text.size() == kIdLength && begins_with_id(text); }
+
+}  // namespace
+
+std::string manifest_text(const Sweep& sweep, const std::string& id) {
+  std::string text;
+  for (const Job& job : sweep.jobs) {
+    Row row = manifest_row(sweep.keys, job);
+    row.add(kSweep, id);
+    text += to_json_line(row) + "\n";
+  }
+  return text;
+}
+
+std::string sweep_id(const Tree& config, const Sweep& sweep) {
   Tree identity = Tree::map();
   // As it reads back: what is compared later is the file.
   for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
     if (enters_id(entry.key)) identity.entries.push_back(std::move(entry));
   }
   std::string all = identity.canonical();
-  for (const Job& job : jobs) all += job.id;
+  for (const Job& job : sweep.jobs) all += to_json_line(manifest_row(sweep.keys, job)) + "\n";
   return hash_of(all).substr(0, kIdLength);
 }
 
@@ -66,21 +101,26 @@ Sweep read_sweep(const fs::path& directory) {
   // Complete before the first job began: a line without its end is damage, not work under way.
   if (lines.bytes != fs::file_size(file))
     throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
+  if (lines.rows.empty()) throw Error(file.string(), "lists no job", "the file is damaged");
+  sweep.keys = texts_at(lines.rows.front(), "key");
+  const std::string id = text_at(lines.rows.front(), kSweep);
   for (const Row& row : lines.rows) {
-    Job job;
-    job.index = static_cast<int>(sweep.jobs.size());
-    for (const auto& [name, value] : row.fields) {
-      const auto* text = std::get_if<std::string>(&value);
-      if (text == nullptr) continue;
-      if (name == "id") job.id = *text;
-      if (name.compare(0, 6, "value_") == 0) job.values.push_back(*text);
-      if (name.compare(0, 4, "key_") == 0 && sweep.jobs.empty()) sweep.keys.push_back(*text);
+    const Job job{static_cast<int>(sweep.jobs.size()), text_at(row, "id"), texts_at(row, "value")};
+    // What is read must be all that the line says, and an id is the name of a folder: nothing of it is believed before.
+    const bool whole = is_id(job.id) && job.values.size() == sweep.keys.size();
+    Row said = whole ? manifest_row(sweep.keys, job) : Row();
+    if (whole && said.fields == row.fields) {
+      throw Error(directory.string(), "an older palpate made this sweep: nothing tells whether its jobs were changed",
+                  "results.csv is good still; 'palpate sweep' on config.yaml in it makes it anew");
     }
-    sweep.jobs.push_back(std::move(job));
+    said.add(kSweep, id);
+    if (!whole || said.fields != row.fields) {
+      throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is no job of this sweep",
+                  "the file is damaged: put it back as it was");
+    }
+    sweep.jobs.push_back(job);
   }
-  if (sweep.jobs.empty()) throw Error((directory / "manifest.jsonl").string(), "lists no job", "the file is damaged");
-  const std::string name = fs::absolute(directory / "").lexically_normal().parent_path().filename().string();
-  if (begins_with_id(name) && sweep_id(read_run_config(directory), sweep.jobs) != name.substr(0, kIdLength)) {
+  if (sweep_id(read_run_config(directory), sweep) != id) {
     throw Error(directory.string(), "config.yaml or manifest.jsonl was changed since this sweep began",
                 "put the old one back, or run the changed config with 'palpate sweep'");
   }
@@ -89,6 +129,7 @@ Sweep read_sweep(const fs::path& directory) {
 
 std::vector<std::optional<Row>> write_results(const Sweep& sweep) {
   const FileLock lock = FileLock::wait_for(sweep.directory / "lock");
+  remove_neighbours(sweep.directory, {"results.csv"});
   std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
   write_file(sweep.directory / "results.csv", to_csv(sweep_results(sweep, summaries)));
   return summaries;
@@ -97,12 +138,7 @@ std::vector<std::optional<Row>> write_results(const Sweep& sweep) {
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
   std::vector<std::optional<Row>> summaries;
   for (const Job& job : sweep.jobs) {
-    summaries.emplace_back();
-    const fs::path file = job_directory(sweep, job) / "summary.json";
-    std::error_code none;
-    if (!fs::exists(file, none)) continue;
-    summaries.back() = parse_json_row(read_file(file));
-    if (!summaries.back()) throw Error(file.string(), "is not a JSON object", "the file is damaged");
+    summaries.push_back(read_outcome(job_directory(sweep, job)));
   }
   return summaries;
 }

@@ -26,17 +26,18 @@ struct Sweep {
   std::vector<Job> jobs;
 };
 
-/// A line of manifest.jsonl.
-Row manifest_row(const std::vector<std::string>& keys, const Job& job);
+/// The name of a sweep's directory: a hash of its resolved config, as written, and of its keys and jobs.
+std::string sweep_id(const Tree& config, const Sweep& sweep);
 
-/// The name of a sweep's directory: a hash of its resolved config, as written, and of its jobs.
-std::string sweep_id(const Tree& config, const std::vector<Job>& jobs);
+/// manifest.jsonl: a job a line. Each carries the sweep's id, so that a change is noticed whatever the folder is
+/// called.
+std::string manifest_text(const Sweep& sweep, const std::string& id);
 
 /// Whether `directory` holds a sweep.
 bool is_sweep(const std::filesystem::path& directory);
 
-/// Reads the manifest of a sweep. Throws Error when it is damaged, or when config or manifest are not those that the
-/// directory is named after.
+/// Reads the manifest of a sweep. Throws Error when it is damaged, or when config or manifest are not those that it
+/// began with.
 Sweep read_sweep(const std::filesystem::path& directory);
 
 /// What it is called: as all its jobs are if that was said on the command line, else as its config says.
@@ -45,7 +46,7 @@ std::string sweep_name(const Sweep& sweep);
 /// jobs/<id>
 std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 
-/// The summary of each job, none for those that have not ended. Throws Error for a damaged one.
+/// The summary of each job, none for those that have not ended; see read_outcome().
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
 /// The rows of results.csv: job, id, the swept keys, then the fields of the summary, for jobs that ended.

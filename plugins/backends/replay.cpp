@@ -6,11 +6,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <vector>
 
 namespace palpate::backends {
@@ -49,40 +49,30 @@ Outcome outcome_of(const std::string& name, const std::string& where) {
   return found->second;
 }
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else if (c != '\r') {
-      cells.back() += c;
-    }
-  }
-  return cells;
+/// Text as palpate wrote it: before what a spreadsheet would compute stands an apostrophe.
+std::string unguarded(const std::string& cell) {
+  const std::size_t begin = cell.find_first_not_of("' \t\r\n");
+  const bool guarded =
+      begin != std::string::npos && cell.front() == '\'' && std::strchr("=+-@", cell[begin]) != nullptr;
+  return guarded ? cell.substr(1) : cell;
 }
 
 /// The rows of a CSV file by column name; only what a contact needs.
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file), in_(file) {
-    std::string line;
-    if (!in_ || !std::getline(in_, line))
-      throw Error(file, "cannot be read", "backend.record names a run directory or a CSV file");
-    const std::vector<std::string> names = split(line);
-    for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
+    if (!in_ || !read_row()) throw Error(file, "cannot be read", "backend.record names a run directory or a CSV file");
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (!columns_.emplace(cells_[i], i).second)
+        throw Error(file, "has two columns '" + cells_[i] + "'", "take one away, or name it otherwise");
+    }
     for (const char* needed : {"x", "y", "outcome", "height"}) {
       if (columns_.count(needed) == 0) throw Error(file, std::string("has no column '") + needed + "'");
     }
   }
 
   bool next() {
-    std::string line;
-    if (!std::getline(in_, line)) return false;
-    ++line_;
-    cells_ = split(line);
+    if (!read_row()) return false;
     if (cells_.size() != columns_.size()) throw Error(where(), "has another number of cells than the header");
     return true;
   }
@@ -91,7 +81,7 @@ class Table {
 
   std::string text(const std::string& column) const {
     const auto found = columns_.find(column);
-    return found == columns_.end() ? std::string() : cells_[found->second];
+    return found == columns_.end() ? std::string() : unguarded(cells_[found->second]);
   }
 
   /// The number in a cell; `absent` where the column or the cell is empty.
@@ -104,12 +94,45 @@ class Table {
     return value;
   }
 
+  /// The same, where it counts something.
+  int count(const std::string& column) const {
+    const double value = number(column, 0.0);
+    if (value < 0.0 || value > std::numeric_limits<int>::max() || value != std::floor(value))
+      throw Error(where(), column + ": '" + text(column) + "' is not a whole number from 0 on");
+    return static_cast<int>(value);
+  }
+
  private:
+  /// False at the end of the file. A cell in quotes may hold commas, line ends and, doubled, quotes.
+  bool read_row() {
+    if (in_.peek() == std::ifstream::traits_type::eof()) return false;
+    line_ = next_line_;
+    cells_.assign(1, {});
+    bool quoted = false;
+    for (char c; in_.get(c);) {
+      next_line_ += c == '\n' ? 1 : 0;
+      if (c == '"' && !(quoted && in_.peek() == '"')) {
+        quoted = !quoted;
+      } else if (quoted) {
+        if (c == '"') in_.get();
+        cells_.back() += c;
+      } else if (c == '\n') {
+        break;
+      } else if (c == ',') {
+        cells_.emplace_back();
+      } else if (c != '\r') {
+        cells_.back() += c;
+      }
+    }
+    return true;
+  }
+
   std::string file_;
   std::ifstream in_;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string> cells_;
-  int line_ = 1;
+  int line_ = 1;       ///< where the row begins
+  int next_line_ = 1;  ///< where the next one does
 };
 
 std::vector<Recorded> read_record(const std::string& path) {
@@ -119,7 +142,7 @@ std::vector<Recorded> read_record(const std::string& path) {
   constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   while (table.next()) {
     Recorded one;
-    one.number = static_cast<int>(table.number("tap", 0.0));
+    one.number = table.count("tap");
     one.place = {table.number("x", kMissing), table.number("y", kMissing)};
     one.contact.outcome = outcome_of(table.text("outcome"), table.where());
     one.contact.height = table.number("height", kMissing);

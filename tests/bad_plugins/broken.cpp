@@ -7,8 +7,11 @@
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
 
+#include <csignal>
 #include <stdexcept>
 #include <string>
+
+#include <unistd.h>
 
 namespace broken {
 
@@ -19,6 +22,17 @@ double defined_nowhere();
 struct OwnException final : std::exception {
   const char* what() const noexcept override { return "an exception of its own"; }
 };
+
+#ifdef CRASHES_WHEN_LOADED
+[[gnu::constructor]] void crash() { std::raise(SIGSEGV); }
+#elif defined(HANGS_WHEN_LOADED)
+[[gnu::constructor]] void hang() {
+  while (::pause() != 0) {
+  }
+}
+#elif defined(ENDS_WHEN_LOADED)
+[[gnu::constructor]] void end() { ::_exit(0); }
+#endif
 
 struct NoOptions : palpate::Options {
   void list(palpate::Fields&) override {

@@ -159,6 +159,25 @@ TEST(Connect, AMasterThatDoesNotAnswerIsNotWaitedFor) {
   }
 }
 
+TEST(Connect, AMasterThatNestsItsAnswerWithoutEndIsNoMaster) {
+  const TemporaryFolder folder;
+  const std::filesystem::path script =
+      folder.write("master.py",
+                   "import socket\n"
+                   "server = socket.create_server(('127.0.0.1', 0))\n"
+                   "print(server.getsockname()[1], flush=True)\n"
+                   "while True:\n"
+                   "    guest = server.accept()[0]\n"
+                   "    guest.recv(65536)\n"
+                   "    body = b'<params>' + 180000 * b'<value><array><data>'\n"
+                   "    guest.sendall(b'HTTP/1.1 200 OK\\r\\nContent-length: %d\\r\\n\\r\\n' % len(body) + body)\n"
+                   "    guest.close()\n");
+  const Child master({"python3", "-SE", script.string()}, folder.path());
+  ASSERT_TRUE(eventually([&] { return master.out().find('\n') != std::string::npos; }));
+  const std::string port = master.out().substr(0, master.out().find('\n'));
+  EXPECT_THAT(refusal_of("http://127.0.0.1:" + port), HasSubstr("what answers there is no ROS"));
+}
+
 TEST(Connect, ANetworkWithoutARobotIsToldByWhatNobodyPublishes) {
   const RobotLab lab;
   EXPECT_THAT(

@@ -7,11 +7,16 @@
 #include "support/sanitizers.hpp"
 #include "support/terminal.hpp"
 
+#include <palpate/random.hpp>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <thread>
 
 namespace palpate::test {
 namespace {
@@ -151,6 +156,76 @@ TEST(RobotRun, KilledInATapLeavesTheArmHoldingAndIsResumedWithTheTapUnknown) {
   const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_THAT(outcomes(run), ElementsAre("contact", "unknown", "contact", "contact"));
+}
+
+/// How often the tip came down from the height of travel, by the robot's own account.
+int descents(const RobotLab& lab) {
+  int out = 0;
+  bool up = false;
+  for (const Cells& row : lab.trace()) {
+    const double z = std::stod(row.at("z"));
+    if (z > 0.125) up = true;
+    if (z > 0.11 || !up) continue;
+    up = false;
+    ++out;
+  }
+  return out;
+}
+
+TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
+  const char* wanted = std::getenv("PALPATE_KILLS");
+  const int kills = wanted != nullptr ? std::atoi(wanted) : 3;
+  const int taps = 2 * kills + 3;
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  Random random(5, "run_test");
+  const fs::path runs = lab.folder() / "runs";
+  const auto begun = [&] {
+    std::error_code none;
+    for (const auto& entry : fs::recursive_directory_iterator(runs, none)) {
+      if (entry.path().filename() == "config.yaml") return true;
+    }
+    return false;
+  };
+  const auto next_words = [&]() -> std::vector<std::string> {
+    if (!begun()) return run_words(taps);
+    return {"resume", only_run(runs).string(), "--quiet"};
+  };
+  const auto lines = [&] {
+    const std::string text = begun() ? text_of(only_run(runs) / "taps.jsonl") : "";
+    return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+  };
+  for (int i = 0; i < kills; ++i) {
+    const int before = lines();
+    const std::unique_ptr<Child> program = lab.start_palpate(next_words());
+    // A quarter of the kills comes at any moment of the start, the others in or between taps.
+    if (random.uniform() > 0.25) {
+      ASSERT_TRUE(logged(runs, before + 1 + (i % 2))) << program->err();
+    }
+    // The very subject is a kill at a moment that nothing announces.
+    std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(random.uniform() * 1'000'000)));
+    ASSERT_TRUE(program->running()) << "it was to be killed, not to end: " << program->err();
+    program->signal(SIGKILL);
+    program->wait();
+  }
+  const Ended last = lab.palpate(next_words(), 3000.0);
+  ASSERT_EQ(last.status, 0) << last.err;
+  lab.end_robot();
+
+  int number = 0;
+  int contacts = 0;
+  for (const Row& row : results(only_run(runs))) {
+    EXPECT_EQ(field(row, "tap"), std::to_string(++number)) << "none lost, none twice";
+    contacts += field(row, "outcome") == "contact" ? 1 : 0;
+  }
+  EXPECT_EQ(number, taps);
+  EXPECT_GE(contacts, taps - kills) << "at most one a kill is unknown";
+  EXPECT_GE(descents(lab), contacts) << "each was made";
+  EXPECT_LE(descents(lab), taps) << "none was made twice";
+  RecordProperty("kills", kills);
+  RecordProperty("contacts", contacts);
+  RecordProperty("unknown", taps - contacts);
+  RecordProperty("descents", descents(lab));
 }
 
 TEST(RobotRun, InterruptedHoldsRaisesTheArmLogsTheTapAndIsResumed) {

@@ -23,6 +23,8 @@ using namespace baxter::description;
 constexpr double kGravity = 9.81;  // m/s^2
 constexpr double kStep = 2e-4;     // s: MuJoCo's contacts are best when they may be harder than what is pressed
 constexpr int kInPeriod = 50;      // steps
+constexpr int kTogether = 5;       // steps that are one where nothing is near
+constexpr double kNear = 0.005;    // m of the tip above the scene, more than it moves in a period
 constexpr double kPlate = 0.02;    // kg: what the tip meets, so light that the spring below it is what it feels
 constexpr double kClear = 0.002;   // m of the tip above the scene, more than a tip that bounces rises
 constexpr double kRadius = 0.004;  // m, of the tip
@@ -124,7 +126,10 @@ class Mujoco final : public Mechanics {
   void advance(const Joints& reference) override {
     state_.peak = 0.0;
     state_.depth = 0.0;
-    for (int i = 0; i < kInPeriod; ++i) step(reference);
+    const bool near = data_->ncon > 0 || data_->site_xpos[3 * tip_ + 2] < surface() + kNear;
+    const int together = near ? 1 : kTogether;
+    model_->opt.timestep = together * kStep;
+    for (int i = 0; i < kInPeriod; i += together) step(reference, together);
     measure();
   }
 
@@ -161,8 +166,8 @@ class Mujoco final : public Mechanics {
     return rest_.get();
   }
 
-  void step(const Joints& reference) {
-    motors_.follow(reference);
+  void step(const Joints& reference, int together) {
+    for (int i = 0; i < together; ++i) motors_.follow(reference);
     const Joints carried = weight(position());
     state_.effort = motors_.torque(position(), speed(), carried);
     // The part of the damping that depends on the joints' own speed is among what MuJoCo steps implicitly.

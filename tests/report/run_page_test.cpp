@@ -72,7 +72,7 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
                   "return document.getElementById('surface').data.map((trace) => trace.type)",
                   "window.before = JSON.stringify(document.getElementById('surface').data[0].z); "
                   "document.getElementById('truth').click()",
-                  GetParam() ? "await document.getElementById('surface').data.length === 4"
+                  GetParam() ? "await document.getElementById('surface').data.length === 6"
                              : "await JSON.stringify(document.getElementById('surface').data[0].z) !== window.before",
                   "document.getElementById('truth').focus()", "key ARROW_RIGHT", drawn(1),
                   "return document.getElementById('map_deviation') !== null"});
@@ -90,6 +90,30 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
   EXPECT_THAT(seen.values.at(4).get<std::string>(), HasSubstr("Before the first tap."));
   EXPECT_EQ(seen.values.at(5).at(0), GetParam() ? "surface" : "heatmap");
   EXPECT_EQ(seen.values.back(), !GetParam()) << "what the colours of the surface say is a map where there is none";
+}
+
+TEST_F(ReportedRun, ShowsMarksAboveTheSurfaceAndTheNextTap) {
+  const fs::path directory = reported({"seed=4"});
+  const Browsed seen = test::browse(
+      directory / "report.html",
+      {drawn(17), "key ARROW_LEFT", drawn(16),
+       "const data = document.getElementById('surface').data; const of = (name) => data.find((t) => t.name === name);"
+       "return {x: of('next').x, y: of('next').y, on: of('on the object').z, pins: of('pins').z}"},
+      true);
+  ASSERT_EQ(seen.trouble, "");
+  const json& shown = seen.values.at(0);
+  const std::vector<Cells> taps = csv_rows(text_of(directory / "taps.csv"));
+  ASSERT_EQ(shown.at("x").size(), 1U);
+  EXPECT_NEAR(shown.at("x").at(0).get<double>(), 100 * std::stod(taps.at(16).at("x")), 1e-6);
+  EXPECT_NEAR(shown.at("y").at(0).get<double>(), 100 * std::stod(taps.at(16).at("y")), 1e-6);
+  std::size_t on = 0;
+  for (std::size_t i = 0; i < 16; ++i) {
+    if (taps[i].at("on_surface") != "true") continue;
+    EXPECT_GT(shown.at("on").at(on).get<double>(), 100 * std::stod(taps[i].at("height")) + 0.3) << "on a pin";
+    ++on;
+  }
+  EXPECT_EQ(shown.at("on").size(), on);
+  EXPECT_EQ(shown.at("pins").size(), 3 * (16 + 1));
 }
 
 TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
@@ -171,8 +195,8 @@ TEST_F(ReportedRun, KeepsToItsAxesNamesAllHyperparametersAndTakesTimesByTheirTap
   const Browsed seen = test::browse(
       directory / "report.html",
       {drawn(20), "document.getElementById('truth').click()",
-       "await document.getElementById('surface').data.length === 4",
-       "const e = document.getElementById('surface'); const z = [...e.data[0].z.flat(), ...e.data[3].z.flat()];"
+       "await document.getElementById('surface').data.length === 6",
+       "const e = document.getElementById('surface'); const z = [...e.data[0].z.flat(), ...e.data[5].z.flat()];"
        "return [e.layout.scene.zaxis.range, Math.min(...z), Math.max(...z)]",
        "return [...document.querySelectorAll('.plot')].flatMap((plot) => (plot.data ?? []).map((trace) => trace.name))",
        "const plots = [...document.querySelectorAll('.plot')];"

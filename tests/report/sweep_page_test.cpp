@@ -24,6 +24,7 @@ using test::text_of;
 using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 
 class SweepNumbers : public test::SweepPages {};
 
@@ -133,7 +134,9 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
               boxes,
               choose("up", ""),
               drawn(7),
-              data_of("cells_mean", "[d[0].type, d[0].y, d[0].error_y.array, l.xaxis.ticktext]"),
+              data_of("cells_mean",
+                      "[d[0].type, d[0].y, d[0].error_y.array, l.xaxis.ticktext, "
+                      "e.closest('figure').querySelector('figcaption').textContent]"),
               "return getComputedStyle(document.getElementById('cells_spread').closest('figure')).display",
               choose("cost", "taps"),
               drawn(8),
@@ -189,6 +192,8 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   }
   const json& points = seen.values.at(12);
   EXPECT_EQ(points.at(0), "scatter");
+  EXPECT_THAT(points.at(4).get<std::string>(),
+              MatchesRegex("Mean over [a-z, ]+ of the jobs that are done; bars: standard deviation\\."));
   for (std::size_t i = 0; i < 3; ++i) {
     const std::vector<double> values = column(rows, "on_surface_taps", 1.0, [&](const Cells& row) {
       return row.at("kernel.length_scale") == points.at(3).at(i);

@@ -34,6 +34,7 @@ TemporaryFolder::~TemporaryFolder() {
 fs::path TemporaryFolder::write(const std::string& name, const std::string& text) const {
   const fs::path file = path_ / name;
   fs::create_directories(file.parent_path());
+  if (fs::is_symlink(file)) fs::remove(file);  // or what it leads to, far from here, would be written
   std::ofstream(file, std::ios::binary) << text;
   return file;
 }

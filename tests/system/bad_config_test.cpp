@@ -83,7 +83,14 @@ std::vector<Case> cases() {
            "weight, surface, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, tie_tolerance, "
            "accuracy, "
            "threads, "
-           "instruction_set, stop, scene, backend, log"),
+           "instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
+      line("DottedKeyInAFile", "weight.clip: yes",
+           "bad.yaml:10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
+      line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
+           "bad.yaml:10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),
+      whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",
+            "bad.yaml:9:1: unknown option 'backend.type', write backend: {type: simulator}"),
+      line("TypoInAKeyThatOthersRead", "expct: {}", "bad.yaml:10:1: unknown option 'expct', did you mean 'expect'?"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",
             "configs/kernel/rbf.yaml:3:3: unknown option 'length_scal', did you mean 'length_scale'?"),
       typed("TypoInAnOverride", {"kernel.length_scal=2cm"},
@@ -93,7 +100,7 @@ std::vector<Case> cases() {
       whole("TypoInAGroupThatIsNeeded", without("  - backend") + "backnd: {type: simulator}\n",
             "bad.yaml:9:1: unknown option 'backnd', did you mean 'backend'?"),
       line("OptionOfAnotherPlugin", "acquisition: {type: weighted, count: 4}",
-           "bad.yaml:10:31: unknown option 'count', known: type"),
+           "bad.yaml:10:31: unknown option 'count' of acquisition/weighted, known: type"),
       line("UnknownNameOfAChoice", "posterior: dens",
            "bad.yaml:10:12: posterior: unknown value 'dens', did you mean 'dense'?"),
 
@@ -153,7 +160,8 @@ std::vector<Case> cases() {
       line("TabForIndent", "initial:\n\tcount: 3",
            "bad.yaml:11:7: not valid YAML: illegal map value, look here or above for a missing bracket or quote, a "
            "wrong indent or a tab"),
-      line("TwoDocuments", "---\nseed: 1", "bad.yaml:11:1: a second document begins here, remove the '---' before it"),
+      line("TwoDocuments", "---\nseed: 1",
+           "bad.yaml:11:1: a second document begins here, remove a '---' or a stray sign here or before"),
       line("DeepNesting", "name2: " + std::string(200, '[') + std::string(200, ']'),
            "bad.yaml:10:108: nested too deeply, at most 100 levels"),
 
@@ -208,7 +216,7 @@ std::vector<Case> cases() {
             "bad.yaml:10:18: initial.count: 2 taps, but there are only 1 candidates, take fewer first taps or more "
             "candidates"),
       line("ASearchOfSomeTaps", "initial: {design: search, count: 3}",
-           "bad.yaml:10:27: unknown option 'count', known: design, smallest"),
+           "bad.yaml:10:27: unknown option 'count' of initial, known: design, smallest"),
       line("ASearchForWhatIsTooLarge", "initial: {design: search, smallest: 23 cm}",
            "bad.yaml:10:37: initial.smallest: is not below the sides of the area, name the least width of the object"),
       line("ASearchForNothing", "initial: {design: search, smallest: 0 cm}",
@@ -288,6 +296,15 @@ std::vector<Case> cases() {
       typed("GroupNameWithAPathOnTheCommandLine", {"kernel=../rbf"},
             "command line: '../rbf' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path"),
 
+      typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
+            "command line: acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
+      typed("ManyValues", {"posterior=dense,grid"},
+            "command line: posterior has several values, and a run takes one, 'palpate sweep' runs all of them"),
+      typed("ARange", {"seed=range(0,5)"},
+            "command line: seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+      typed("ListThatIsOneValue", {"scene.objects.0.at=[3,4]"},
+            "command line: scene.objects.0.at: '3' lacks its unit, write a length like '1.7 cm'"),
+
       // Sweeps
       sweep("BadSweepRange", "sweep:\n  grid:\n    seed: range(0)\n", {},
             std::string("bad.yaml:12:11: seed: 'range(0)' is not understood") + kRangeHint),
@@ -346,13 +363,13 @@ TEST(Validate, NamesEveryBadConfigInALineAndMovesNothing) {
   EXPECT_FALSE(fs::exists(folder.path() / "runs"));
 }
 
-TEST(Run, OfANameThatIsNotUtf8LeavesARecordThatCanBeRead) {
+TEST(Run, OfANameThatIsNotUtf8IsRefusedBecauseNoRecordCouldHoldIt) {
   const TemporaryFolder folder;
   folder.write("good.yaml", kGood);
-  ASSERT_EQ(test::palpate({"run", "good.yaml", "name=a\xff", "--quiet"}, folder.path()).status, 0);
-  const Ended status = test::palpate({"status", test::only_run(folder.path() / "runs").string()}, folder.path());
-  EXPECT_EQ(status.err, "");
-  EXPECT_EQ(status.status, 0);
+  const Ended ended = test::palpate({"run", "good.yaml", "name=a\xff", "--quiet"}, folder.path());
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(ended.err, "command line: not UTF-8, write it in UTF-8\n");
+  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
 }
 
 }  // namespace

@@ -165,6 +165,33 @@ TEST(BadPlugin, CutShortNeverCrashesTheProgram) {
   expect_refused(folder.path(), "cut4096", kPlace, "not a complete shared library");
 }
 
+TEST(BadPlugin, WithAFlippedBitIsListedOrListedPast) {
+  const TemporaryFolder folder;
+  const std::string whole = text_of(plugin_folder() / "kernel" / "rbf.so");
+  constexpr std::size_t kFlips = 120;
+  for (std::size_t i = 0; i < kFlips; ++i) {
+    std::string bytes = whole;
+    bytes[i * whole.size() / kFlips] ^= static_cast<char>(1 << i % 8);
+    folder.write("kernel/flip" + std::to_string(i) + ".so", bytes);
+  }
+  const Ended ended = palpate({"plugins"}, folder.path(), search(folder.path()));
+  EXPECT_EQ(ended.status, 1) << ended.err;
+  EXPECT_EQ(lines(ended.err), static_cast<long>(kFlips))
+      << "each is another plugin than its file's name says, or worse";
+  for (std::size_t i = 0; i < kFlips; ++i) EXPECT_THAT(ended.err, HasSubstr("/flip" + std::to_string(i) + ".so: "));
+  EXPECT_THAT(ended.out, HasSubstr("matern52"));
+}
+
+TEST(BadPlugin, ThatTakesItsProcessDownIsListedWithHow) {
+  for (const auto& [name, how] : std::vector<std::pair<std::string, std::string>>{
+           {"crashes_when_loaded", "crashed, signal 11 (Segmentation fault)"},
+           {"hangs_when_loaded", "came to no end within 5 s"},
+           {"ends_when_loaded", "ended the program with status 0"}}) {
+    const fs::path file = bad_plugin_folder(name) / "kernel" / (name + ".so");
+    expect_listed_as_broken(bad_plugin_folder(name), file.string() + ": loading: " + how, ", build or copy it again\n");
+  }
+}
+
 TEST(BadPlugin, WhoseBytesBehindTheHeaderAreZeroIsRefused) {
   // What a copy leaves that was cut by a crash after the file had got its length.
   const TemporaryFolder folder;
@@ -252,8 +279,8 @@ TEST(ThrowingPlugin, WhatIsNoExceptionIsToldToo) {
 
 TEST(ThrowingPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
   for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
-           {"throws_in_score", "no score today"},
-           {"throws_number_in_score", "a plugin threw something that is no exception"}}) {
+           {"throws_in_score", "acquisition/throws_in_score: no score today"},
+           {"throws_number_in_score", "acquisition/throws_number_in_score: threw something that is no exception"}}) {
     const TemporaryFolder here;
     here.write("exp.yaml", config_with("acquisition", name));
     const Ended ended = palpate({"run", "exp.yaml"}, here.path(), search(bad_plugin_folder(name)));

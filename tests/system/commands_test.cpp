@@ -11,6 +11,8 @@
 #include <csignal>
 #include <fstream>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace palpate {
@@ -159,6 +161,7 @@ TEST(Run, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("taps: 9"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("taps: 9 +# command line"));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("# kernel rbf: .*configs/kernel/rbf.yaml\n"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("kernel.length_scale: 0.017 m +# .*configs/kernel/rbf.yaml:4:17"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("tie_tolerance: 1e-08 +# default"));
   EXPECT_THAT(run.out,
@@ -233,6 +236,38 @@ TEST(Run, InterruptedInASimulationItEndsWith130AndResumedItEqualsTheUnbrokenOne)
   ASSERT_EQ(test::palpate({"run", paper(), "taps=4", "--quiet", "--runs", "unbroken"}, folder.path()).status, 0);
   EXPECT_EQ(text_of(directory / "taps.jsonl"), text_of(only_run(folder.path() / "unbroken") / "taps.jsonl"))
       << "the tap that was broken off was made again, as if nothing had happened";
+}
+
+TEST(Groups, InAWorkingFolderThatOthersMayWriteAreNotTaken) {
+  const TemporaryFolder folder;
+  folder.write("configs/backend/mine.yaml", "backend: {type: simulator}\n");
+  folder.write("mine/x.yaml", "strategy: default\nscene: object_i\nbackend: mine\n");
+  const std::vector<std::string> words{"validate", "mine/x.yaml"};
+  EXPECT_EQ(test::palpate(words, folder.path()).status, 0);
+  const auto refused_with = [&](const fs::path& open) {
+    fs::permissions(open, fs::perms::others_write, fs::perm_options::add);
+    const Ended ended = test::palpate(words, folder.path());
+    fs::permissions(open, fs::perms::others_write, fs::perm_options::remove);
+    EXPECT_EQ(ended.status, 2);
+    return ended.err;
+  };
+  for (const fs::path& open : {folder.path(), folder.path() / "configs"}) {
+    EXPECT_THAT(refused_with(open), HasSubstr("configs/backend/mine.yaml lies where others may put files"));
+  }
+}
+
+TEST(Commands, ThatDoNotTapEndAtOnceAtTheFirstSignal) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.write("sweep/config.yaml", "").parent_path() / "manifest.jsonl";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    test::Child child({test::program_file().string(), "status", "sweep"}, folder.path());
+    int writer = -1;  // can be opened once the program reads, which then waits for what never comes
+    while (child.running() && (writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) < 0) ::usleep(1000);
+    child.signal(signal);
+    EXPECT_EQ(child.wait(60).status, 128 + signal);
+    ::close(writer);
+  }
 }
 
 TEST(Run, ARunThatAnotherProcessHoldsEndsWith75) {
@@ -381,6 +416,32 @@ TEST(CommandLine, WrongUsageIsOneLineWithStatus2) {
     EXPECT_EQ(lines(ended.err), 1) << ended.err;
     EXPECT_EQ(ended.out, "");
   }
+}
+
+TEST(CommandLine, ACommandThatThereIsNotIsToldTheNearest) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(test::palpate({"runn", paper()}, folder.path()).err, "no command 'runn', did you mean 'run'?\n");
+  EXPECT_THAT(test::palpate({"frobnicate"}, folder.path()).err,
+              StartsWith("no command 'frobnicate', known: run, sweep, resume, "));
+}
+
+TEST(CommandLine, WhatMayNotBeReadIsNotCalledMissing) {
+  const TemporaryFolder folder;
+  folder.write("closed/one.yaml", "seed: 1\n");
+  folder.write("two.yaml", "seed: 1\n");
+  fs::permissions(folder.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
+  fs::permissions(folder.path() / "closed", fs::perms::owner_read | fs::perms::owner_write);
+  fs::permissions(folder.path() / "two.yaml", fs::perms::none);
+  const auto refusal = [&](const std::string& file) {
+    std::vector<std::string> words{test::program_file().string(), "validate", file};
+    // root may read everything
+    if (::geteuid() == 0)
+      words.insert(words.begin(), {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
+    return test::run_program(words, folder.path()).err;
+  };
+  EXPECT_EQ(refusal("closed/one.yaml"), "closed/one.yaml: cannot be read, check the permissions of its folder\n");
+  EXPECT_EQ(refusal("two.yaml"), "two.yaml: cannot be read, check its permissions\n");
+  fs::permissions(folder.path() / "closed", fs::perms::owner_all);
 }
 
 }  // namespace

@@ -386,6 +386,7 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
   EXPECT_EQ(
       refused({"explain", sweep.string(), "1"}),
       sweep.string() + ": is a sweep of many runs, give one of them: " + (sweep / "jobs" / "<id>").string() + "\n");
+  EXPECT_EQ(refused({"replay", sweep.string()}), refused({"explain", sweep.string(), "1"}));
   for (const auto& job : fs::directory_iterator(sweep / "jobs"))
     EXPECT_THAT(explain(job.path(), 4), HasSubstr("Tap 4 of 4, run object_i ("));
 }

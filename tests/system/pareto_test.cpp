@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `palpate pareto` as a user calls it: table, files, the config of the cheapest setting, and what it refuses.
 #include "record/json.hpp"
+#include "record/session.hpp"
+#include "sweep/sweep.hpp"
 #include "system/shipped.hpp"
 
 #include <gmock/gmock.h>
@@ -181,10 +183,13 @@ TEST(Pareto, ANameFullOfCommandsIsOnlyAName) {
   std::string config = text_of(directory / "config.yaml");
   config.replace(config.find("name: "), config.find('\n') - config.find("name: "), "name: |-\n  " + evil);
   folder.write((directory / "config.yaml").string(), config);
-  std::string manifest = text_of(directory / "manifest.jsonl");
-  for (std::size_t at = manifest.find("weighted"); at != std::string::npos; at = manifest.find("weighted", at))
-    manifest.replace(at, 8, "`touch owned` x'; system('touch owned')");
-  folder.write((directory / "manifest.jsonl").string(), manifest);
+  Sweep sweep = read_sweep(directory);
+  for (Job& job : sweep.jobs) {
+    for (std::string& value : job.values)
+      value = value == "weighted" ? "`touch owned` x'; system('touch owned')" : value;
+  }
+  folder.write((directory / "manifest.jsonl").string(),
+               manifest_text(sweep, sweep_id(read_run_config(directory), sweep)));
   const Ended ended = pareto(folder, directory, "robot_seconds", "rmse_m");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, StartsWith("picture: "));

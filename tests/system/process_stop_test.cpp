@@ -119,6 +119,41 @@ for ask in asks():
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\nbegin\ntap 4\ntap 5\n");
 }
 
+/// Answers as the letters of the file `fate` say: c a contact, u unreachable, n no contact; behind them contacts.
+constexpr const char* kFated = R"(
+for ask in asks():
+    note(f"tap {ask['tap']}")
+    fate = open("fate").read().ljust(1000, "c")[ask["tap"] - 1]
+    if fate == "c": contact(ask)
+    else: tell(ask, outcome={"u": "unreachable", "n": "no_contact"}[fate], seconds=120, reason="the gripper is open")
+)";
+
+TEST_F(ARobotsRun, FailsAfterThreeTapsInARowThatCameToNothingAndIsCarriedOnOnceSomebodyHasLooked) {
+  folder_.write("fate", "ncnnununn");
+  const Ended ended = palpate(run(kFated, {"taps=17"}));
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_EQ(
+      ended.err,
+      "backend/process: 3 taps in a row failed, the last so: the gripper is open, see to it, then 'palpate resume "
+      "--retry-failed' carries on; stop.failed_in_a_row sets how many\n");
+  EXPECT_EQ(outcomes().size(), 6U) << "what cannot be reached neither counts nor makes up for anything";
+  EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
+  EXPECT_EQ(resume().status, 0) << "it counts anew, or the tap that failed next would have ended it";
+  EXPECT_EQ(outcomes().size(), 17U);
+}
+
+TEST_F(ARobotsRun, IsGivenUpAsLateAsTheConfigSays) {
+  folder_.write("fate", "ncnnnnncc");
+  EXPECT_EQ(palpate(run(kFated, {"taps=9", "stop.failed_in_a_row=6"})).status, 0);
+  EXPECT_EQ(palpate(run(kFated, {"taps=9", "stop.failed_in_a_row=5", "--runs", "others"})).status, 1);
+}
+
+TEST_F(ARobotsRun, OfTapsThatCanBeRepeatedIsNotGivenUpUnlessTheConfigSaysSo) {
+  folder_.write("fate", "nnnnnnnnn");
+  EXPECT_EQ(palpate(run(kFated, {"taps=9", "backend.repeatable=true"})).status, 0);
+  EXPECT_EQ(palpate(run(kFated, {"taps=9", "backend.repeatable=true", "stop.failed_in_a_row=9"})).status, 1);
+}
+
 TEST_F(ARobotsRun, StartsNoSecondProgramBesideOneThatOutlivedItsRun) {
   std::vector<std::string> words = run(R"(
 note(str(os.getpid()))

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <csignal>
 #include <set>
+#include <sstream>
 
 namespace palpate {
 namespace {
@@ -197,6 +198,58 @@ TEST_F(ProcessRun, AMissingProgramIsOneLineAndLeavesNoRun) {
 
 TEST_F(ProcessRun, TheShippedConfigsAreValid) {
   EXPECT_EQ(test::palpate({"validate", config("process.yaml")}, folder_.path()).status, 0);
+}
+
+TEST_F(ProcessRun, AProgramThatSaysTooMuchHasItsFirstAndLastWordsKept) {
+  const Ended ended =
+      test::palpate(run({"taps=4", "initial.count=4",
+                         command("print('the first word', file=sys.stderr)\n"
+                                 "for ask in asks():\n"
+                                 "    for i in range(40000): print('%010d, %020d' % (ask['tap'], i), file=sys.stderr)\n"
+                                 "    contact(ask)\n"
+                                 "print('the last word', file=sys.stderr)\n")}),
+                    folder_.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const std::string text = diary();
+  const std::size_t said = 4 * 40000 * 33 + std::string("the first word\nthe last word\n").size();
+  EXPECT_LT(text.size(), 800'000U);
+  EXPECT_EQ(text.substr(0, 15), "the first word\n");
+  EXPECT_EQ(text.substr(text.size() - 14), "the last word\n");
+  const std::size_t note = text.find("\n[here ");
+  ASSERT_NE(note, std::string::npos);
+  EXPECT_EQ(text.find("[here ", note + 2), std::string::npos);
+  // What it says while the middle is cut out may be lost: no more than a pipe or a page of it.
+  const double left_out = std::stod(text.substr(note + 7));
+  EXPECT_NEAR(left_out + static_cast<double>(text.size() - 43), static_cast<double>(said), 200'000.0);
+}
+
+TEST_F(ProcessRun, WhatAProgramStartedIsEndedWithItWhereverItWent) {
+  const Ended ended = test::palpate(
+      run({"taps=2", "initial.count=2",
+           command(
+               "import subprocess\n"
+               "def start(words, **more):\n"
+               "    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, **more).pid\n"
+               "pids = [start(['sleep', '600'], start_new_session=True)]\n"
+               "pids.append(start(['sleep', '600'], preexec_fn=os.setpgrp))\n"
+               "pids.append(start(['env', '-i', '/bin/sleep', '600'], start_new_session=True))\n"
+               "left = subprocess.run(['setsid', 'sh', '-c', 'setsid sleep 600 >/dev/null 2>&1 & echo $!'], "
+               "stdout=subprocess.PIPE)\n"
+               "pids.append(int(left.stdout))\n"
+               "chain = subprocess.Popen(['setsid', 'sh', '-c', 'sleep 600 >/dev/null & echo $!; wait'], "
+               "stdout=subprocess.PIPE)\n"
+               "pids += [chain.pid, int(chain.stdout.readline())]\n"
+               "print(' '.join(map(str, pids)), file=sys.stderr, flush=True)\n"
+               "for ask in asks(): contact(ask)\n")}),
+      folder_.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  std::istringstream pids(diary());
+  int count = 0;
+  for (long pid = 0; pids >> pid; ++count) {
+    EXPECT_FALSE(test::running(pid)) << pid;
+    if (test::running(pid)) ::kill(static_cast<pid_t>(pid), SIGKILL);
+  }
+  EXPECT_EQ(count, 6);
 }
 
 }  // namespace

@@ -31,8 +31,9 @@ constexpr const char* kQuestion = "Enter taps, q ends: ";
 class StepRun : public testing::Test {
  protected:
   StepRun() {
-    folder_.write("program.py", test::python("open('asked', 'w')\nfor ask in asks():\n"
-                                             "    tell(ask, outcome='contact', height=ask['x'], force=8, seconds=1)"));
+    folder_.write("program.py",
+                  test::python("open('asked', 'w')\nfor ask in asks():\n"
+                               "    tell(ask, outcome='contact', height=ask['x'] / 2, force=8, seconds=1)"));
   }
 
   /// Four taps of a program that is taken for a robot, two of them of the initial design.

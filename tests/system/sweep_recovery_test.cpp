@@ -109,6 +109,26 @@ class Recovery : public testing::Test {
   std::string plugins_ = "PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("dies").string();
 };
 
+TEST_F(Recovery, ASweepWhoseDirectoryIsMovedOrRemovedStopsAndSaysWhatToDo) {
+  for (const bool moved : {true, false}) {
+    const auto child = begun(40);
+    const fs::path before = directory();
+    fs::rename(before, folder_.path() / "moved");
+    if (!moved) fs::remove_all(folder_.path() / "moved");
+    const Ended ended = child->wait(120.0);
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_EQ(ended.err, fs::relative(before, folder_.path()).string() +
+                             ": was moved or removed while its jobs were under way, where it was moved to, 'palpate "
+                             "resume' carries on; otherwise begin it again with 'palpate sweep'\n");
+    EXPECT_FALSE(fs::exists(before)) << "nothing grows in its place";
+    if (moved) {
+      EXPECT_EQ(palpate({"resume", "moved", "--quiet"}).status, 0);
+      EXPECT_EQ(lines(text_of(folder_.path() / "moved" / "results.csv")), 41);
+      fs::remove_all(folder_.path() / "moved");
+    }
+  }
+}
+
 TEST_F(Recovery, AJobThatCrashesCostsItselfAlone) {
   const Ended ended = palpate(dying("none,crash,exit,fail"));
   EXPECT_EQ(ended.status, 1);
@@ -197,9 +217,10 @@ TEST_F(Recovery, TwoLaunchersShareTheWorkAndRunNoJobTwice) {
   expect_whole(6);
 }
 
-TEST_F(Recovery, AChangedConfigIsRefusedBeforeAnythingRuns) {
+TEST_F(Recovery, AChangedConfigOfAJobFailsThatJobAndOneOfTheSweepRefusesItAll) {
   ASSERT_EQ(palpate(dying("none,fail")).status, 1);
   fs::remove(job(0) / "summary.json");
+  for (const char* name : {"summary.json", "attempts.jsonl", "taps.jsonl"}) fs::remove(job(1) / name);
   const std::string config = text_of(job(1) / "config.yaml");
   std::string changed = config;
   changed.replace(changed.find("taps: 17"), 8, "taps: 18");
@@ -207,10 +228,11 @@ TEST_F(Recovery, AChangedConfigIsRefusedBeforeAnythingRuns) {
     folder_.write(fs::relative(file, folder_.path()).string(), text);
   };
   write(job(1) / "config.yaml", changed);
-  const Ended of_job = resume({"--retry-failed"});
-  EXPECT_EQ(of_job.status, 2);
-  EXPECT_THAT(of_job.err, HasSubstr("config.yaml was changed"));
-  EXPECT_EQ(attempts(0), 1);
+  const Ended of_job = resume();
+  EXPECT_EQ(of_job.status, 1);
+  EXPECT_THAT(of_job.out, AllOf(HasSubstr("failed: job 1"), HasSubstr("config.yaml was changed")));
+  EXPECT_EQ(attempts(0), 2) << "the other has run";
+  EXPECT_EQ(attempts(1), 0);
   write(job(1) / "config.yaml", config);
 
   const fs::path file = directory() / "config.yaml";
@@ -221,7 +243,7 @@ TEST_F(Recovery, AChangedConfigIsRefusedBeforeAnythingRuns) {
   EXPECT_EQ(of_sweep.status, 2);
   EXPECT_THAT(of_sweep.err, HasSubstr("was changed since this sweep began"));
   EXPECT_EQ(lines(of_sweep.err), 1);
-  EXPECT_EQ(attempts(0), 1);
+  EXPECT_EQ(attempts(0), 2);
 }
 
 TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
@@ -309,9 +331,10 @@ TEST_F(Recovery, OfADamagedResultItIsSaidHowToMakeItAnew) {
   const std::string summary = fs::relative(job(1) / "summary.json", folder_.path()).string();
   folder_.write(summary, "");
   for (const Ended& ended : {palpate({"status", directory().string()}), resume()}) {
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_THAT(ended.err, AllOf(HasSubstr(job(1).string()), HasSubstr("remove it, and 'palpate resume'")));
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr(job(1).string()),
+                                 HasSubstr("remove it, and 'palpate resume'")));
   }
+  EXPECT_EQ(resume().status, 1);
   fs::remove(folder_.path() / summary);
   EXPECT_EQ(resume().status, 0);
   EXPECT_EQ(lines(text_of(job(1) / "taps.jsonl")), 4);

@@ -93,6 +93,18 @@ TEST(Sweep, GivesTheSameBytesAsSingleRunsWithAnyNumberOfWorkers) {
   }
 }
 
+TEST(Sweep, SaysOfItsTimeOnlyWhatItHasMeasured) {
+  const TemporaryFolder folder;
+  // Whatever the arm takes, before a job has run nobody knows.
+  const std::vector<std::string> words{"sweep", paper(), "seed=range(0,3)", "taps=3", "backend.pace=0.002"};
+  std::vector<std::string> list = words;
+  list.emplace_back("--list");
+  EXPECT_EQ(test::palpate(list, folder.path()).err, "3 jobs\n");
+  const Ended ended = test::palpate(words, folder.path());
+  EXPECT_THAT(ended.err,
+              StartsWith("3 jobs in " + fs::relative(only_run(folder.path() / "runs"), folder.path()).string() + "\n"));
+}
+
 TEST(Sweep, ABadValueIsRefusedBeforeAnyJobStarts) {
   const TemporaryFolder folder;
   const Ended ended = test::palpate({"sweep", paper(), "taps=5,17,0"}, folder.path());

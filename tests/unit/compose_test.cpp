@@ -5,6 +5,7 @@ namespace palpate {
 namespace {
 
 using test::TemporaryFolder;
+namespace fs = std::filesystem;
 
 /// Files in a folder of their own, and what composing them gives.
 class Compose : public test::ComposeFixture {
@@ -151,12 +152,6 @@ TEST_F(Compose, BuildsAGroupOnAnotherOfItsKind) {
   EXPECT_EQ(value("kernel: wide\n", "kernel.nu"), "1.5");
 }
 
-TEST_F(Compose, TakesTheGroupFileThatIsNearestToTheConfig) {
-  folder_.write("deep/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scale: 8 cm\n");
-  const auto file = folder_.write("deep/er/c.yaml", "kernel: rbf\n");
-  EXPECT_EQ(Composer("/nonexistent").compose(file, {}).find_path("kernel.length_scale")->text, "8 cm");
-}
-
 TEST_F(Compose, FallsBackToTheShippedGroups) {
   const TemporaryFolder elsewhere;
   const auto file = elsewhere.write("c.yaml", "kernel: rough\n");
@@ -301,6 +296,63 @@ TEST(OverrideText, IsRefusedWithAnEmptyPartOfItsPath) {
     EXPECT_EQ(refused_override(std::string(path) + "=1"),
               std::string("command line: '") + path + "' is not a dotted path, write it like kernel.length_scale");
   }
+}
+
+/// Folders in which a group of one name lies, and what a config somewhere among them takes.
+class GroupFolders : public ::testing::Test {
+ protected:
+  void kernel(const std::string& folder) {
+    folder_.write(folder + "/kernel/mine.yaml", "kernel: {type: rbf, name: " + folder + "}\n");
+  }
+  void rights(const std::string& folder, unsigned mode) {
+    fs::permissions(folder_.path() / folder, static_cast<fs::perms>(mode));
+  }
+  /// Which folder the config's kernel comes from; what is said if it is refused.
+  std::string from(const std::string& config) {
+    const fs::path file = folder_.write(config, "kernel: mine\n");
+    Composer composer(folder_.path() / "shipped");
+    try {
+      const Tree tree = composer.compose(file, {});
+      const Tree* name = tree.find_path("kernel.name");
+      EXPECT_EQ(composer.groups().size(), name == nullptr ? 0U : 1U);
+      return name == nullptr ? "none" : name->text;
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(GroupFolders, AreTheConfigsOwnThenTheNearestNamedConfigsThenTheShippedOnes) {
+  kernel("shipped");
+  EXPECT_EQ(from("a/configs/b/c/x.yaml"), "shipped");
+  kernel("a/configs");
+  EXPECT_EQ(from("a/configs/b/c/x.yaml"), "a/configs");
+  kernel("a/configs/b/c");
+  EXPECT_EQ(from("a/configs/b/c/x.yaml"), "a/configs/b/c");
+}
+
+TEST_F(GroupFolders, AreNotAnyOthersAboveTheConfig) {
+  kernel(".");
+  kernel("a");
+  kernel("configs/a/b");
+  kernel("configs");
+  EXPECT_EQ(from("a/b/x.yaml"), "none");
+  EXPECT_EQ(from("configs/a/c/configs/x.yaml"), "configs");
+  kernel("shipped");
+  EXPECT_EQ(from("configs/a/c/configs/d/x.yaml"), "shipped") << "only the nearest";
+}
+
+TEST_F(GroupFolders, ThatAllUsersShareArePassedOverAndNamed) {
+  kernel("all");
+  rights("all", 01777);
+  EXPECT_EQ(from("all/x.yaml"),
+            (folder_.path() / "all/x.yaml:1:9: ").string() + (folder_.path() / "all/kernel/mine.yaml").string() +
+                " lies where others may put files, move the config and its groups to a folder of your own");
+  kernel("shipped");
+  EXPECT_EQ(from("all/x.yaml"), "shipped");
+  rights("all", 0777);
+  EXPECT_EQ(from("all/x.yaml"), "all") << "there the config itself may be another's, as on some mounted disks";
 }
 
 }  // namespace

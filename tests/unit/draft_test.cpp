@@ -2,6 +2,9 @@
 #include "sweep/draft.hpp"
 
 #include "config/yaml.hpp"
+#include "record/session.hpp"
+
+#include <palpate/error.hpp>
 
 #include "support/runs.hpp"
 
@@ -56,6 +59,82 @@ TEST_F(Draft, AppearsUnderItsNameAtOnceAndWhole) {
     EXPECT_EQ(text_of(job_directory(sweep, sweep.jobs[i]) / "config.yaml"),
               to_yaml(planned_config(planned, composer_, test::shared_host(), i).tree));
   }
+}
+
+/// Why a sweep is not read; "" if it is.
+std::string refusal(const fs::path& directory) {
+  try {
+    read_sweep(directory);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+class PublishedDraft : public Draft {
+ protected:
+  PublishedDraft() {
+    SweepDraft draft(runs_);
+    const SweepPlan planned = plan(draft);
+    draft.publish(planned);
+    directory_ = planned.sweep.directory;
+    manifest_ = text_of(directory_ / "manifest.jsonl");
+  }
+  void write(const std::string& manifest) const { write_file(directory_ / "manifest.jsonl", manifest); }
+
+  fs::path directory_;
+  std::string manifest_;
+};
+
+TEST_F(PublishedDraft, IsRefusedOnceAnyBitOfItsManifestHasChanged) {
+  ASSERT_EQ(refusal(directory_), "");
+  for (std::size_t at = 0; at < manifest_.size(); ++at) {
+    std::string changed = manifest_;
+    changed[at] = static_cast<char>(static_cast<unsigned char>(changed[at]) ^ (1U << (at % 7)));
+    write(changed);
+    EXPECT_NE(refusal(directory_), "") << "byte " << at;
+  }
+}
+
+TEST_F(PublishedDraft, IsRefusedWithoutOneOfItsLinesOrInAnotherOrder) {
+  const std::size_t first = manifest_.find('\n') + 1;
+  const std::size_t second = manifest_.find('\n', first) + 1;
+  write(manifest_.substr(0, manifest_.rfind('\n', manifest_.size() - 2) + 1));
+  EXPECT_THAT(refusal(directory_), testing::HasSubstr("was changed since this sweep began"));
+  write(manifest_.substr(first));
+  EXPECT_THAT(refusal(directory_),
+              testing::HasSubstr("manifest.jsonl:1: is no job of this sweep, the file is damaged"));
+  write(manifest_.substr(first, second - first) + manifest_.substr(0, first) + manifest_.substr(second));
+  EXPECT_THAT(refusal(directory_),
+              testing::HasSubstr("manifest.jsonl:1: is no job of this sweep, the file is damaged"));
+}
+
+TEST_F(PublishedDraft, IsCheckedUnderWhateverNameItHas) {
+  const fs::path moved = folder_.path() / "mine";
+  fs::rename(directory_, moved);
+  EXPECT_EQ(read_sweep(moved).jobs.size(), 6U);
+  directory_ = moved;
+  const auto at = manifest_.rfind("matern52");
+  write(manifest_.substr(0, at) + "rbf" + manifest_.substr(at + 8));
+  EXPECT_THAT(refusal(moved), testing::HasSubstr("was changed since this sweep began"));
+}
+
+TEST_F(PublishedDraft, HasNoJobWhoseFolderIsElsewhereThoughTheIdsAreMadeToFit) {
+  for (const char* id : {"../../victim", "..", "", "0123456789a", "0123456789abc", "0123456789AB"}) {
+    Sweep sweep{directory_, {"seed"}, {{0, id, {"0"}}}};
+    write(manifest_text(sweep, sweep_id(read_run_config(directory_), sweep)));
+    EXPECT_THAT(refusal(directory_), testing::HasSubstr("manifest.jsonl:1: is no job of this sweep")) << id;
+  }
+}
+
+TEST_F(PublishedDraft, OfAnOlderPalpateIsRefusedWithWhatToDo) {
+  std::string old = manifest_;
+  for (std::size_t at = old.find(", \"sweep\""); at != std::string::npos; at = old.find(", \"sweep\""))
+    old.erase(at, old.find('}', at) - at);
+  write(old);
+  EXPECT_EQ(refusal(directory_), directory_.string() +
+                                     ": an older palpate made this sweep: nothing tells whether its jobs were changed, "
+                                     "results.csv is good still; 'palpate sweep' on config.yaml in it makes it anew");
 }
 
 TEST_F(Draft, ASweepThatExistsIsLeftAlone) {

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <utility>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -68,6 +69,10 @@ ino_t inode(const fs::path& file) {
   struct stat status {};
   EXPECT_EQ(::stat(file.c_str(), &status), 0) << file;
   return status.st_ino;
+}
+
+std::ptrdiff_t entries(const fs::path& folder) {
+  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
 }
 
 TEST(Lock, IsBusyWhileAnotherProcessHoldsIt) {
@@ -155,14 +160,58 @@ TEST(WriteFile, ReplacesByRenamingSoThatAReaderKeepsTheOldContent) {
 TEST(WriteFile, LeavesNoTemporaryFile) {
   const TemporaryFolder folder;
   write_file(folder.path() / "x", "a", true);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+  EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(WriteFile, IsNotHinderedByATemporaryFileOfAKilledProcess) {
+TEST(WriteFile, FollowsNoLinkThatSomebodyPutInItsPlace) {
   const TemporaryFolder folder;
-  folder.write("x.tmp", "half of something longer");
+  const fs::path victim = folder.write("victim", "mine");
+  fs::create_symlink(victim, folder.path() / "x.tmp");  // as earlier builds named what they wrote first
+  fs::create_symlink(victim, folder.path() / "x");
   write_file(folder.path() / "x", "new");
+  EXPECT_EQ(text_of(victim), "mine");
   EXPECT_EQ(text_of(folder.path() / "x"), "new");
+  EXPECT_FALSE(fs::is_symlink(folder.path() / "x"));
+}
+
+TEST(WriteFile, GivesItsFilesTheRightsOfAnyOther) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "x", "a");
+  EXPECT_EQ(fs::status(folder.path() / "x").permissions(), fs::status(folder.write("y", "a")).permissions());
+}
+
+TEST(Neighbours, WithoutNamesAreAllRemoved) {
+  const TemporaryFolder folder;
+  folder.write("tap_004.csv.0123456789abcdef.tmp", "half of it");
+  folder.write("tap_004.csv", "whole");
+  remove_neighbours(folder.path(), {});
+  EXPECT_FALSE(fs::exists(folder.path() / "tap_004.csv.0123456789abcdef.tmp"));
+  EXPECT_TRUE(fs::exists(folder.path() / "tap_004.csv"));
+}
+
+TEST(Neighbours, OfTheNamedFilesAloneAreRemoved) {
+  const TemporaryFolder folder;
+  for (const char* name : {"x.csv.0123456789abcdef.tmp", "y.csv.0123456789abcdef.tmp", "x.csv", "x.csv.tmp"}) {
+    folder.write(name, "half");
+  }
+  remove_neighbours(folder.path(), {"x.csv"});
+  EXPECT_FALSE(fs::exists(folder.path() / "x.csv.0123456789abcdef.tmp"));
+  EXPECT_EQ(entries(folder.path()), 3);
+}
+
+TEST(InnerFolder, IsMadeButNeverALink) {
+  const TemporaryFolder folder;
+  make_inner_folder(folder.path() / "a");
+  make_inner_folder(folder.path() / "a");
+  EXPECT_TRUE(fs::is_directory(folder.path() / "a"));
+  fs::create_directory_symlink(folder.path() / "a", folder.path() / "b");
+  try {
+    make_inner_folder(folder.path() / "b");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              (folder.path() / "b").string() + ": is a link, and nothing is written through one, remove it");
+  }
 }
 
 TEST(WriteFile, SaysWhyAPlaceCannotBeWritten) {
@@ -170,7 +219,7 @@ TEST(WriteFile, SaysWhyAPlaceCannotBeWritten) {
     write_file("/nonexistent/x", "a");
     FAIL() << "written";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "/nonexistent/x.tmp: cannot be made: No such file or directory");
+    EXPECT_STREQ(error.what(), "/nonexistent/x: cannot be made: No such file or directory");
     EXPECT_EQ(error.kind(), Error::Kind::run);
   }
 }
@@ -186,17 +235,26 @@ TEST(WriteFile, SaysWhyAFolderCannotBeReplaced) {
   }
 }
 
-TEST(WriteFile, SaysThatADiskIsFull) {
+TEST(WriteFile, ThatIsRefusedItsBytesSaysWhyAndLeavesTheOldFileAndNoOther) {
   const TemporaryFolder folder;
-  fs::create_symlink("/dev/full", folder.path() / "x.tmp");
+  const fs::path file = folder.write("x", "old");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  // As a full disk would: a limit of this process on the length of files.
+  const auto heard = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit little{1000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
+  std::string said = "written";
   try {
-    write_file(folder.path() / "x", "a");
-    FAIL() << "written";
+    write_file(file, std::string(5000, 'a'));
   } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              (folder.path() / "x.tmp").string() + ": cannot be written: No space left on device");
+    said = error.what();
   }
-  EXPECT_FALSE(fs::exists(folder.path() / "x"));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, heard);
+  EXPECT_EQ(said, file.string() + ": cannot be written: File too large");
+  EXPECT_EQ(text_of(file), "old");
+  EXPECT_EQ(entries(folder.path()), 1);
 }
 
 TEST(ReadFile, ReturnsEveryByte) {
@@ -235,6 +293,36 @@ TEST(AppendFile, WritesAtTheEndEvenIfAnotherHasWrittenMeanwhile) {
   second.append("2", false);
   first.append("3", false);
   EXPECT_EQ(text_of(file), "123");
+}
+
+TEST(AppendFile, AndLockAndCutFollowNoLink) {
+  const TemporaryFolder folder;
+  const fs::path victim = folder.write("victim", "mine");
+  const fs::path link = folder.path() / "log";
+  fs::create_symlink(victim, link);
+  const auto refused = [&](const auto& write) {
+    try {
+      write();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("written");
+  };
+  const std::string words = link.string() + ": is a link, and nothing is written through one, remove it";
+  EXPECT_EQ(refused([&] { AppendFile(link).append("x", false); }), words);
+  EXPECT_EQ(refused([&] { FileLock{link}; }), words);
+  EXPECT_EQ(refused([&] { cut_file(link, 0); }), words);
+  EXPECT_EQ(text_of(victim), "mine");
+}
+
+TEST(AppendFile, KnowsWhetherItIsStillWhereItWasOpened) {
+  const TemporaryFolder folder;
+  AppendFile log(folder.path() / "log");
+  EXPECT_TRUE(log.is_in_place());
+  fs::rename(folder.path() / "log", folder.path() / "elsewhere");
+  EXPECT_FALSE(log.is_in_place());
+  folder.write("log", "");
+  EXPECT_FALSE(log.is_in_place()) << "another file of that name";
 }
 
 TEST(AppendFile, SaysWhyItCannotWrite) {

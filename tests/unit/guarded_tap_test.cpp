@@ -221,6 +221,22 @@ TEST(GuardedTap, PutsItsSetPointWhereTheArmIsOnceItFeelsAContact) {
   EXPECT_DOUBLE_EQ(set_point, measured);
 }
 
+TEST(GuardedTap, OfARealArmGoesOnWhereTheForceDoesNotLast) {
+  for (const char* yaml : {"{type: continuous}", "{type: paper}"}) {
+    const MotionOptions options = motion(yaml);
+    const Descent descent = plan_descent(options, 0.0, {});
+    // A zero that has wandered by 60 % of the threshold in the air, and noise on it that goes three times too far.
+    int loud = 0;
+    const auto wandered = [&](int, double position) {
+      if (position > 0.101) return 0.0;
+      return loud++ < 3 ? 1.2 * options.threshold : 0.6 * options.threshold;
+    };
+    const Trial run(options, descent, 0.03, 1e6, wandered, GuardedTap::Arm::real);
+    EXPECT_EQ(run.tap.outcome(), Outcome::contact) << yaml;
+    EXPECT_NEAR(run.tap.height(), 0.03, 0.002) << yaml;
+  }
+}
+
 TEST(GuardedTap, OfTwoStagesGoesOnAfterAContactThatWasNone) {
   const MotionOptions options = motion("{type: two_stage}");
   const Descent descent = plan_descent(options, 0.0, {});

@@ -139,6 +139,21 @@ TEST(PluginHost, NamesWithoutANeighbourListWhatThereIs) {
   EXPECT_THAT(refusal_of("fitting", "zzzzzzzzzzzz"), HasSubstr("no plugin fitting/zzzzzzzzzzzz, known: ceres, fixed"));
 }
 
+TEST(PluginHost, AFolderWithoutPluginsIsNamedRatherThanANeighbour) {
+  const TemporaryFolder folder;
+  const auto refusal_with = [&](const fs::path& other) {
+    return refusal([&] { make<Kernel>(PluginHost({other, test::plugin_folder()}), "mattern52"); });
+  };
+  const std::string begin = "no plugin kernel/mattern52, the folder ";
+  const fs::path missing = folder.path() / "missing";
+  EXPECT_EQ(refusal_with(missing), begin + missing.string() + " does not exist, see PALPATE_PLUGIN_PATH");
+  folder.write("kernel.so", "");
+  EXPECT_EQ(refusal_with(folder.path()),
+            begin + folder.path().string() + " holds no plugin, which is KIND/NAME.so in it, see PALPATE_PLUGIN_PATH");
+  const fs::path file = folder.path() / "kernel.so";
+  EXPECT_EQ(refusal_with(file), begin + file.string() + " is a file, see PALPATE_PLUGIN_PATH");
+}
+
 TEST(PluginHost, RefusesNamesWithAPath) {
   for (const char* name : {"../kernel/rbf", "/etc/passwd", "rbf.so", ".", "", "a b"}) {
     EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not the name of a plugin")) << name;

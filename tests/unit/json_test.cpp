@@ -37,6 +37,17 @@ TEST(JsonRow, IsNoneForWhatIsNotOneFlatObject) {
   }
 }
 
+TEST(JsonRow, IsNoneWhereEveryNameRepeatsWhatIsAroundIt) {
+  // 240 KB would become fields with 400 MB of names.
+  std::string deep;
+  std::string ends;
+  for (int i = 0; i < 20'000; ++i) {
+    deep += R"({"a":1,"b":)";
+    ends += '}';
+  }
+  EXPECT_FALSE(parse_json_row(deep + "1" + ends));
+}
+
 TEST(JsonRow, ReadsBackWhatARowWrites) {
   Row row;
   row.add("a.b", 0.1);
@@ -104,11 +115,47 @@ TEST(JsonTree, KeepsPlainScalarsAndQuotesTheOthers) {
             "\"f\": null\n}\n");
 }
 
-TEST(JsonTree, ComesBackFromTheYamlReader) {
-  Tree tree = Tree::map();
+TEST(JsonTree, ComesBackFromItsFileAsItWas) {
+  Tree tree = parse_yaml("a: [1, -2, 1.50, 1e-3, true, ~, {b: [[]]}, {}]\nc: []\n", "c.yaml");
   tree.at("text") = Tree::scalar("line\nbreak \"quoted\" \\ \x01 \xc3\xa4", true);
-  tree.at("number") = Tree::scalar("1");
-  EXPECT_EQ(parse_yaml(to_json(tree), "manifest.json").canonical(), tree.canonical());
+  for (int i = 0; i < 5000; ++i) tree.at("many").entries.push_back({"key " + std::to_string(i), {}, tree.at("text")});
+  tree.at("many").kind = Tree::Kind::map;
+  const TemporaryFolder folder;
+  const Tree again = read_json(folder.write("manifest.json", to_json(tree)));
+  EXPECT_EQ(again.canonical(), tree.canonical());
+  EXPECT_EQ(to_json(again), to_json(tree));
+}
+
+std::string refusal_of(const std::string& text) {
+  const TemporaryFolder folder;
+  try {
+    read_json(folder.write("manifest.json", text));
+  } catch (const Error& error) {
+    return std::string(error.what()).substr(folder.path().string().size() + 1);
+  }
+  return "accepted";
+}
+
+TEST(JsonTree, IsRefusedInOneLineWhereItsFileIsDamaged) {
+  const std::string remedy = ", the file is damaged: put it back as it was, or remove it";
+  EXPECT_EQ(refusal_of(""), "manifest.json:1:1: is not valid JSON" + remedy);
+  EXPECT_EQ(refusal_of("{\n  \"a\": 1\n},"), "manifest.json:3:2: is not valid JSON" + remedy);
+  EXPECT_EQ(refusal_of("{\"a\": \"\xff\"}"), "manifest.json:1:8: is not valid JSON" + remedy);
+  for (const char* text : {"1", "\"a\"", "[]", "[{}]"})
+    EXPECT_EQ(refusal_of(text), "manifest.json: is not a JSON object" + remedy) << text;
+  std::string deep = "{\"a\": ";
+  for (int i = 0; i < 100'000; ++i) deep += "[";
+  EXPECT_EQ(refusal_of(deep), "manifest.json: is nested too deeply" + remedy);
+  std::string many = "{\"a\": [0";
+  for (int i = 0; i < 1'000'000; ++i) many += ",0";
+  EXPECT_EQ(refusal_of(many + "]}"), "manifest.json: holds too many values" + remedy);
+}
+
+TEST(JsonTree, IsNotReadFromAFileLargerThanAnyThatIsWritten) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("manifest.json", "{}");
+  std::filesystem::resize_file(file, (64U << 20) + 1);
+  EXPECT_THROW(read_json(file), Error);
 }
 
 TEST(Json, TellsValidFromInvalid) {

@@ -2,6 +2,7 @@
 // Every kind of broken mesh file is refused in one line that names the file, the reason and, where there is one, the
 // remedy.
 #include "support/plugins.hpp"
+#include "support/sanitizers.hpp"
 #include "support/support.hpp"
 #include "support/tessellate.hpp"
 
@@ -120,6 +121,42 @@ TEST_F(MeshFile, OverWhichTheReaderBreaksDownIsRefused) {
                       "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nelement face 2\n"
                       "property list uchar int vertex_indices\nend_header\nabcdef"),
               HasSubstr("cannot be read as ply: assimp broke down over it, export it again"));
+}
+
+TEST_F(MeshFile, OfAnyLineEndMeansTheSame) {
+  const std::string whole = ply(block());
+  for (const char* end : {"\r", "\r\n"}) {
+    std::string other;
+    for (const char c : whole) other += c == '\n' ? end : std::string(1, c);
+    const std::string header = other.substr(0, other.find("end_header"));
+    EXPECT_THAT(refusal("a.ply", header + "end_header" + end + "0 0 0" + end),
+                HasSubstr("is cut short: its header promises more rows than there are"));
+    EXPECT_THAT(refusal("a.ply", header + "\nend_header\n0 0 0\n"), HasSubstr("is cut short: its header promises"));
+    EXPECT_EQ(refusal("a.ply", other), "accepted");
+  }
+}
+
+TEST_F(MeshFile, WhoseHeaderCountsNoRowsIsRefused) {
+  const std::string whole = ply(block());
+  const std::size_t at = whole.find("element vertex ") + 15;
+  for (const char* count : {"-5", "4e9", "9999999999", ""}) {
+    std::string other = whole;
+    other.replace(at, other.find('\n', at) - at, count);
+    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not say how many rows of 'vertex' follow"));
+  }
+}
+
+TEST_F(MeshFile, ThatTakesFarMoreMemoryThanItsSizeIsRefused) {
+  if (kSanitized) GTEST_SKIP() << "memory cannot be limited there";
+  // One face of as many corners: 12 bytes for each.
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nelement face 1\n"
+      "property list uint uint vertex_indices\nend_header\n";
+  const std::uint32_t corners = 400'000'000;
+  bytes.append(4, '\0');
+  bytes.append(reinterpret_cast<const char*>(&corners), sizeof corners);
+  bytes.append(16, '\0');
+  EXPECT_THAT(refusal("a.ply", bytes), HasSubstr("takes more memory than any sound file of its size, export it again"));
 }
 
 TEST_F(MeshFile, WithATriangleTwiceIsRefused) {

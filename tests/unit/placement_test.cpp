@@ -117,9 +117,9 @@ TEST(FixedPlacement, OfThePapersObjectsHasTheSameBitsAsTheClosedForms) {
   EXPECT_EQ(slope->highest(), 0.08);
 }
 
-std::string refusal(const std::vector<std::string>& objects) {
+std::string refusal(const std::vector<std::string>& objects, const std::string& placement = ", placement: random") {
   try {
-    scene_of(objects, 1, ", placement: random");
+    scene_of(objects, 1, placement);
   } catch (const Error& error) {
     return error.what();
   }
@@ -138,4 +138,22 @@ TEST(RandomPlacement, SaysWhenObjectsDoNotFitTogether) {
 }
 
 }  // namespace
+TEST(FixedPlacement, RefusesAnObjectThatReachesBeyondTheArea) {
+  const std::string hint = " mm beyond the area of 400 x 400 mm, move it by 'at', turn it, or make the area larger";
+  const std::string block = "{type: block, length: 10 cm, width: 4 cm, at: ";
+  EXPECT_EQ(refusal({block + "[41 cm, 5 cm]}"}, ""), "scene.objects.0: reaches 60" + hint);
+  EXPECT_EQ(refusal({"{type: cone, at: [10 cm, 10 cm]}", block + "[30 cm, 1.5 cm]}"}, ""),
+            "scene.objects.1: reaches 5" + hint);
+}
+
+TEST(FixedPlacement, CountsWhatTheObjectCoversAsItStands) {
+  const std::string block = "{type: block, length: 10 cm, width: 4 cm, height: 10 cm, at: ";
+  EXPECT_EQ(refusal({block + "[5 cm, 2 cm]}"}, ""), "accepted") << "it touches two edges";
+  EXPECT_EQ(refusal({block + "[2 cm, 5 cm], rotation: 90 deg}"}, ""), "accepted");
+  EXPECT_THAT(refusal({block + "[2 cm, 5 cm]}"}, ""), testing::HasSubstr("reaches 30 mm beyond"));
+  EXPECT_THAT(refusal({block + "[5 cm, 2 cm], rotation: 45 deg}"}, ""), testing::HasSubstr("reaches 29.5 mm beyond"))
+      << "(10 + 4) / 2 / sqrt 2 - 2 cm";
+  EXPECT_THAT(refusal({block + "[5 cm, 2 cm], tilt: 20 deg}"}, ""), testing::HasSubstr("mm beyond"));
+}
+
 }  // namespace palpate::test

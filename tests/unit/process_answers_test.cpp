@@ -32,7 +32,8 @@ std::vector<Odd> odd_answers() {
   const std::string deep(60000, '[');
   const std::string endless(70000, 'x');
   const std::string nan = "is not JSON, which has no NaN and no Infinity";
-  const std::string far = "has a 'height' more than 10 m from 0: it is in metres";
+  const std::string far =
+      "has a 'height' that is more than 10 m down or above the arm's way, desk and motion.hover: it is in metres";
   return {
       odd("Nothing", "", "is not JSON", false),
       odd("Garbage", "moving to 3", "is not JSON", false),
@@ -56,10 +57,13 @@ std::vector<Odd> odd_answers() {
       odd("NoHeight", R"({"tap": 2, "outcome": "contact", "seconds": 1})", "lacks 'height'", true),
       odd("NullHeight", R"({"tap": 2, "outcome": "contact", "height": null, "seconds": 1})", "lacks 'height'", true),
       odd("Millimetres", R"({"tap": 2, "outcome": "contact", "height": 70, "seconds": 1})", far, true),
+      odd("AboveTheWayOfTheArm", R"({"tap": 2, "outcome": "contact", "height": 0.1351, "seconds": 1})", far, true),
       odd("FarBelow", R"({"tap": 2, "outcome": "contact", "height": -1e300, "seconds": 1})", far, true),
       odd("NoSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07})", "lacks 'seconds'", true),
       odd("NegativeSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07, "seconds": -1})",
-          "has a 'seconds' that is negative", true),
+          "has a 'seconds' that is negative or longer than a day", true),
+      odd("SecondsOfAnAge", R"({"tap": 2, "outcome": "contact", "height": 0.07, "seconds": 86400.1})",
+          "has a 'seconds' that is negative or longer than a day", true),
       odd("FlagForForce", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "force": true})",
           "has a 'force' that is not a number", true),
       odd("NoReason", R"({"tap": 2, "outcome": "no_contact", "seconds": 1})", "lacks 'reason'", true),

@@ -77,6 +77,37 @@ TEST_F(ReplayBackend, AnswersAlikeWhateverCameBefore) {
   EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height, first);
 }
 
+TEST_F(ReplayBackend, ATableWithTwoColumnsOfOneNameIsRefused) {
+  const std::string line = refusal("x,y,outcome,height,x\n1,1,contact,1,1\n");
+  EXPECT_THAT(line, HasSubstr("scan.csv: has two columns 'x', take one away, or name it otherwise"));
+}
+
+TEST_F(ReplayBackend, ANumberOfATapThatIsNoneIsRefused) {
+  for (const char* number : {"1e300", "-1", "1.5", "2147483648"}) {
+    EXPECT_THAT(refusal(std::string("tap,x,y,outcome,height\n") + number + ",0.1,0.1,contact,0.1\n"),
+                HasSubstr(std::string("scan.csv:2: tap: '") + number + "' is not a whole number from 0 on"));
+  }
+}
+
+TEST_F(ReplayBackend, CellsInQuotesMayHoldCommasQuotesAndLineEnds) {
+  const auto backend = open(
+      "x,y,outcome,height,\"a \"\"note\"\", long\"\r\n"
+      "0.1,0.1,\"contact\",0.07,\"said \"\"no\"\",\nthen yes\"\r\n"
+      "0.2,0.2,contact,0.08,\r\n");
+  EXPECT_EQ(tap(*backend, 1, 0.1, 0.1).height, 0.07);
+  EXPECT_EQ(tap(*backend, 1, 0.2, 0.2).height, 0.08);
+  EXPECT_THAT(refusal("x,y,outcome,height,note\n1,1,contact,1,\"a\nb\"\n1,1,touched,1,\n"),
+              HasSubstr("scan.csv:4: unknown outcome 'touched'"));
+  EXPECT_THAT(refusal("x,y,outcome,height,\"=note\"\n1,1,\"contact,1,1\n"),
+              HasSubstr("scan.csv:2: has another number of"));
+}
+
+TEST_F(ReplayBackend, TakesTheApostropheAwayThatKeepsSpreadsheetsFromComputing) {
+  EXPECT_THAT(refusal("x,y,outcome,height\n1,1,'=1+1,1\n"), HasSubstr("unknown outcome '=1+1'"));
+  EXPECT_THAT(refusal("x,y,outcome,height\n1,1,''=1,1\n"), HasSubstr("unknown outcome ''=1'"));
+  EXPECT_THAT(refusal("x,y,outcome,height\n1,1,'contact,1\n"), HasSubstr("unknown outcome ''contact'"));
+}
+
 TEST_F(ReplayBackend, RecordedFailureStaysAFailure) {
   const Contact contact = tap(*open(kRecord), 4, 0.2, 0.2);
   EXPECT_EQ(contact.outcome, Outcome::timeout);

@@ -118,7 +118,7 @@ TEST(Resolve, TakesTheWordNoneForAnAbsentNumber) {
 TEST(Resolve, RefusesAnUnknownOptionAndSuggestsTheNearest) {
   EXPECT_EQ(refused_line("whol: 3"), "c.yaml:1:1: unknown option 'whol', did you mean 'whole'?");
   EXPECT_EQ(refusal<Everything>("group: {width: 1 m, depth: 2 m}"),
-            "c.yaml:1:21: unknown option 'depth', known: width");
+            "c.yaml:1:21: unknown option 'depth' of group, known: width");
 }
 
 TEST(Resolve, RefusesTheOptionOfACaseThatWasNotChosen) {
@@ -233,7 +233,8 @@ TEST(ResolvePlugin, RefusesAMissingOneAMissingTypeAndAnUnknownType) {
 }
 
 TEST(ResolvePlugin, RefusesAnOptionThatTheTypeOfTheSameFileLacks) {
-  EXPECT_EQ(refusal<Pair>("kernel: {type: smooth, nu: 2.5}\n"), "c.yaml:1:24: unknown option 'nu', known: type, scale");
+  EXPECT_EQ(refusal<Pair>("kernel: {type: smooth, nu: 2.5}\n"),
+            "c.yaml:1:24: unknown option 'nu' of kernel/smooth, known: type, scale");
 }
 
 TEST(ResolvePlugin, DropsAndListsOptionsThatALaterTypeLacks) {

@@ -112,7 +112,8 @@ TEST(ResolvedConfig, TakesASearchInPlaceOfCountedTaps) {
   EXPECT_EQ(refused_config({"initial.design=search", "initial.smallest=22.9 cm"}), "accepted");
   EXPECT_EQ(refused_config({"initial.design=search", "initial.smallest=23 cm"}),
             "command line: initial.smallest: is not below the sides of the area, name the least width of the object");
-  EXPECT_EQ(refused_config({"initial.smallest=1 cm"}), "command line: unknown option 'smallest', known: design, count");
+  EXPECT_EQ(refused_config({"initial.smallest=1 cm"}),
+            "command line: unknown option 'smallest' of initial, known: design, count");
 }
 
 TEST(Slug, KeepsLettersDigitsAndThreeSigns) { EXPECT_EQ(slug("Object_I-2.b"), "Object_I-2.b"); }

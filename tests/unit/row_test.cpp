@@ -53,6 +53,29 @@ TEST(CsvText, IsQuotedOnlyWhereItMustBe) {
   EXPECT_EQ(csv_text("a\rb"), "\"a\rb\"");
 }
 
+TEST(Csv, HoldsNothingThatASpreadsheetWouldCompute) {
+  const auto cell = [](const std::string& text) {
+    Row row;
+    row.add("a", text);
+    const std::string csv = to_csv({row});
+    return csv.substr(2, csv.size() - 3);
+  };
+  EXPECT_EQ(cell("=1+1"), "'=1+1");
+  EXPECT_EQ(cell("@SUM(A1)"), "'@SUM(A1)");
+  EXPECT_EQ(cell("+1+1"), "'+1+1");
+  EXPECT_EQ(cell("-1 cm"), "'-1 cm");
+  EXPECT_EQ(cell(" =1"), "' =1");
+  EXPECT_EQ(cell("=cmd|'/c calc',A1"), "\"'=cmd|'/c calc',A1\"");
+  EXPECT_EQ(cell("'=1"), "''=1") << "taking one away gives back the text, whatever it was";
+  for (const char* plain : {"-1.5", "+2e-3", "-.5", "1-1", "'quoted'", "", "'", "-0"}) EXPECT_EQ(cell(plain), plain);
+  for (const char* computed : {"-inf", "+nan", "-0x10", "--1", "-1-1", "+", "-"})
+    EXPECT_EQ(cell(computed), "'" + std::string(computed));
+  Row row;
+  row.add("=note", 1);
+  EXPECT_EQ(to_csv({row}), "'=note\n1\n");
+  EXPECT_EQ(csv_cell(std::string("-1 cm")), "-1 cm") << "what is shown to people stays as it is";
+}
+
 TEST(JsonText, EscapesQuotesBackslashesAndControls) {
   EXPECT_EQ(json_quoted("a\"b\\c\nd\te\x01"
                         "f\x1f"),

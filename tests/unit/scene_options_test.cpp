@@ -41,7 +41,7 @@ TEST(SceneOptions, RefuseATiltOfMoreThan80Degrees) {
 }
 
 TEST(SceneOptions, RefuseFieldsOfAnotherShape) {
-  EXPECT_EQ(refusal("{type: cylinder, length: 8 cm}"), "unknown option 'length'");
+  EXPECT_EQ(refusal("{type: cylinder, length: 8 cm}"), "unknown option 'length' of objects.0");
   EXPECT_EQ(refusal("{type: cube}"), "objects.0.type: unknown value 'cube'");
 }
 

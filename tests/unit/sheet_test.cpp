@@ -104,6 +104,24 @@ TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
   EXPECT_EQ(relief_of({tapped}, middle, area, 0.0).top, 0.7);
 }
 
+TEST(InSightTest, LeavesOutWhatTheSurfaceHidesFromTheSide) {
+  const Area area{0.2, 0.2};
+  const Candidates candidates = grid_by_count(area, 20);
+  Snapshot snapshot;
+  snapshot.surface = Eigen::VectorXd::Zero(candidates.size());
+  // A wall across the middle, 10 cm high: seen from 30 degrees above, it hides what lies up to 17 cm behind it.
+  for (int i = 0; i < candidates.size(); ++i) {
+    if (std::abs(candidates.points(i, 1) - 0.1) < 0.01) snapshot.surface(i) = 0.1;
+  }
+  snapshot.marks = {{1, TapMark::Kind::off, 0.1, 0.05, 0.0},
+                    {2, TapMark::Kind::on, 0.1, 0.1, 0.1},
+                    {3, TapMark::Kind::off, 0.1, 0.15, 0.0},
+                    {4, TapMark::Kind::on, 0.1, 0.15, 0.12}};
+  std::vector<int> seen;
+  for (const TapMark& mark : in_sight(snapshot, candidates, area).marks) seen.push_back(mark.tap);
+  EXPECT_EQ(seen, (std::vector<int>{1, 2, 4}));
+}
+
 TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
   Sheet sheet(400, 300);
   Snapshot snapshot;

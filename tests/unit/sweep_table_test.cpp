@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <sstream>
 
 namespace palpate {
@@ -54,6 +55,43 @@ TEST(SweepTable, KeepsItsNumbersToTheWidthOfAScreenThoughGroupsHaveLongNames) {
   }
   EXPECT_THAT(table, HasSubstr("  " + name + "\n"));
   EXPECT_EQ(table.find(name), table.find('\n') + 1 + at) << "under its header";
+}
+
+/// The table of one job of each of two seeds, with these fields beside its status.
+std::string table_of_seeds(const std::string& status, const std::optional<int>& initial_taps, const Row& fields = {}) {
+  const Sweep sweep{"runs/x/0123456789ab", {"seed"}, {{0, "id", {"0"}}, {1, "id", {"1"}}}};
+  std::vector<Row> results;
+  for (const Job& job : sweep.jobs) {
+    Row row = fields;
+    row.add("job", job.index);
+    row.add("seed", job.values.front());
+    row.add("status", status);
+    results.push_back(std::move(row));
+  }
+  return sweep_table(sweep, results, [&](std::size_t) { return initial_taps; });
+}
+
+TEST(SweepTable, HasNoSharesOfAGroupInWhichNoJobIsDone) {
+  EXPECT_THAT(table_of_seeds("failed", 3), HasSubstr("\nall seeds     2            -      -       2 "));
+}
+
+TEST(SweepTable, HasNoDeadStartsWhereNoConfigTellsWhichTapsWereInitial) {
+  Row fields;
+  fields.add("first_hit_tap", 2);
+  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall seeds     2         0.0%  100.0%       0 "));
+  EXPECT_THAT(table_of_seeds("done", std::nullopt, fields),
+              HasSubstr("\nall seeds     2            -  100.0%       0 "));
+}
+
+TEST(SweepTable, LeavesOutWhatIsNoNumber) {
+  Row fields;
+  for (const char* name : {"first_hit_tap", "on_surface_taps", "rmse_height_m"}) fields.add(name, "x");
+  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall seeds     2       100.0%   0.0%       0 "));
+}
+
+TEST(SweepTable, NamesAGroupOfJobsThatHaveNoneOfTheKeys) {
+  const std::string table = table_of({"kernel.alpha", "seed"}, {{"", "1"}, {"0.5", "1"}});
+  EXPECT_THAT(table, HasSubstr("\n(none) "));
 }
 
 TEST(SweepTable, HasALineAGroupWhateverIsInItsName) {

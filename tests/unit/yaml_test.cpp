@@ -123,7 +123,47 @@ TEST(Yaml, RefusesTags) {
 }
 
 TEST(Yaml, RefusesASecondDocument) {
-  EXPECT_EQ(refusal("a: 1\n---\nb: 2\n"), "c.yaml:3:1: a second document begins here, remove the '---' before it");
+  EXPECT_EQ(refusal("a: 1\n---\nb: 2\n"),
+            "c.yaml:3:1: a second document begins here, remove a '---' or a stray sign here or before");
+}
+
+TEST(Yaml, RefusesAStrayCommaInsteadOfReadingDocumentsWithoutEnd) {
+  const std::string refused = "a second document begins here, remove a '---' or a stray sign here or before";
+  EXPECT_EQ(refusal("{name: x},"), "c.yaml:1:10: " + refused);
+  EXPECT_EQ(refusal("#\n,"), "c.yaml:2:1: " + refused);
+  EXPECT_EQ(parse_value("{a: 1},", "command line").text, "{a: 1},") << "what does not parse is text";
+}
+
+TEST(Yaml, RefusesAQuoteThatDoesNotEnd) {
+  for (const char* quote : {"\"", "'"}) {
+    const std::string begun = std::string(quote) + "x";
+    EXPECT_EQ(refusal("a: 1\nb: " + begun + "\n"), "c.yaml:2:4: the quote that begins here does not end, close it");
+    EXPECT_THAT(refusal("a: 1\nb: " + begun), testing::HasSubstr("illegal EOF in scalar")) << "yaml-cpp's own words";
+    EXPECT_EQ(refusal("a: " + begun + "\nb: 1\nc: 2\n"),
+              "c.yaml:1:4: the quote that begins here does not end, close it");
+    EXPECT_EQ(refusal("a: [" + begun + quote + ", " + begun + quote + "]\n"), "accepted");
+  }
+  EXPECT_EQ(refusal("\xef\xbb\xbf"
+                    "a: 'x\n"),
+            "c.yaml:1:4: the quote that begins here does not end, close it");
+  EXPECT_EQ(refusal("a: 'it''s'\nb: \"a \\\" b\"\nc: ''\n\"d\": |\n  'x\n"), "accepted");
+  EXPECT_EQ(refusal("a: 'it''\n"), "c.yaml:1:4: the quote that begins here does not end, close it");
+}
+
+TEST(Yaml, RefusesBytesThatAreNotUtf8AndSaysWhere) {
+  EXPECT_EQ(refusal("a: 1\nname: caf\xe9\n"), "c.yaml:2:10: not UTF-8, save the file as UTF-8");
+  EXPECT_EQ(refusal("name: caf\xc3\xa9\n"), "accepted");
+  EXPECT_THROW(parse_value("caf\xe9", "command line"), Error);
+}
+
+TEST(Yaml, RefusesAMapOfMoreThanAThousandKeysBeforeItCompares) {
+  const auto keys = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "k" + std::to_string(i) + ": 1\n";
+    return text;
+  };
+  EXPECT_EQ(refusal(keys(1000)), "accepted");
+  EXPECT_EQ(refusal(keys(90'000)), "c.yaml:1001:1: too many keys, a map has at most 1000");
 }
 
 TEST(Yaml, AllowsOneDocumentBetweenMarkers) { EXPECT_EQ(refusal("---\na: 1\n...\n"), "accepted"); }
@@ -245,6 +285,29 @@ TEST(Yaml, ReadsBackWhatItWrites) {
 TEST(Yaml, WritesBlocksForMapsAndOneLineForPlainLists) {
   EXPECT_EQ(to_yaml(parse_yaml("{a: {b: 1}, c: [1 cm, 2 cm], d: {}}", "c.yaml")),
             "a:\n  b: 1\nc: [1 cm, 2 cm]\nd: {}\n");
+}
+
+TEST(YamlWriter, TellsWhatItsReaderWouldRefuse) {
+  Tree tree = Tree::map();
+  tree.at("list") = Tree::list();
+  std::vector<Tree>& items = tree.at("list").items;
+  items.assign(99'998, Tree::scalar("1"));
+  check_readable(tree, "c.yaml");
+  EXPECT_EQ(parse_yaml(to_yaml(tree), "config.yaml").canonical(), tree.canonical());
+  const auto refused = [&] {
+    try {
+      check_readable(tree, "c.yaml");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const std::string refusal =
+      "c.yaml: too large with all that it leaves to defaults, at most 1 MiB and 100000 values in config.yaml";
+  items.push_back(Tree::scalar("1"));
+  EXPECT_EQ(refused(), refusal);
+  items.assign(2, Tree::scalar(std::string(1 << 19, 'x')));
+  EXPECT_EQ(refused(), refusal);
 }
 
 }  // namespace

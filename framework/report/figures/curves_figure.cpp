@@ -20,7 +20,7 @@ namespace {
 /// One line of a panel: values after so many taps.
 struct Curve {
   std::string name;
-  std::vector<std::pair<int, double>> points;
+  std::vector<std::pair<double, double>> points;
 };
 
 struct Panel {
@@ -144,7 +144,7 @@ Panel phases_panel(const Recording& recording) {
   while (std::getline(lines, line) && !lines.eof()) {  // a line without its end was cut off by a kill
     std::istringstream cells(line);
     std::string cell;
-    int tap = 0;
+    double tap = 0.0;
     for (std::size_t i = 0; i < curves.size(); ++i) {
       if (!std::getline(cells, cell, ','))
         throw Error(file.string(), "has a line that is too short", "the file is damaged");
@@ -152,7 +152,7 @@ Panel phases_panel(const Recording& recording) {
       const double value = std::strtod(cell.c_str(), &end);
       if (cell.empty() || *end != '\0')
         throw Error(file.string(), "has '" + cell + "' for a number", "the file is damaged");
-      if (i == 0) tap = static_cast<int>(value);
+      if (i == 0) tap = value;
       if (i > 0 && value > 0.0) curves[i].points.emplace_back(tap, 1e3 * value);
     }
   }

@@ -17,9 +17,8 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Figure>& figures) {
+  make_inner_folder(folder);
   std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error(folder.string(), "cannot be made: " + failed.message(), {}, Error::Kind::run);
   for (const auto& [name, sheet] : figures) {
     // An older picture would be that of another script.
     fs::remove(folder / (name + ".png"), failed);

@@ -18,9 +18,12 @@ Figure surface_figure(const Recording& recording, const Experiment& experiment, 
   Sheet sheet(1000, 700);
   const Raster raster(experiment.candidates(), experiment.scene().area());
   sheet.data("surface", raster.surface(last.surface, last.deviation));
-  sheet.taps("last", last);
+  const Snapshot seen = in_sight(last, experiment.candidates(), experiment.scene().area());
+  sheet.taps("last", seen);
   sheet.text(recording.config.options.name, 30, 16, 15);
-  sheet.text("surface " + after_words(last), 30, 44, 11);
+  const auto behind = last.marks.size() - seen.marks.size();
+  sheet.text("surface " + after_words(last) + (behind > 0 ? fmt::format("; {} of them behind it", behind) : ""), 30, 44,
+             11);
   // Where nothing is known of an object's level, its deviation is of no size that means anything.
   const double most = std::min(last.deviation.maxCoeff(), last.largest_deviation);
   const Colours colours{Palette::cividis, 0.0, 100.0 * std::max(1e-6, most), "standard deviation [cm]"};

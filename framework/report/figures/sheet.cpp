@@ -77,6 +77,25 @@ Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidate
   return out;
 }
 
+Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const Area& area) {
+  const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
+  // A tap lies on the surface, and its mark reaches above it: what is higher by less hides nothing.
+  const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
+  const double margin = 0.06 * height;
+  const auto hidden = [&](const TapMark& mark) {
+    for (double way = step;; way += step) {
+      const double x = mark.x + way * std::sin(kTurn);
+      const double y = mark.y - way * std::cos(kTurn);
+      const double z = mark.height + margin + way * std::cos(kTilt) / std::sin(kTilt);
+      if (x < 0.0 || x > area.width || y < 0.0 || y > area.depth) return false;
+      if (snapshot.surface(candidates.nearest(x, y, area)) > z) return true;
+    }
+  };
+  Snapshot out = snapshot;
+  out.marks.erase(std::remove_if(out.marks.begin(), out.marks.end(), hidden), out.marks.end());
+  return out;
+}
+
 Raster::Raster(const Candidates& candidates, const Area& area)
     : candidates_(candidates),
       area_(area),

@@ -28,6 +28,9 @@ struct Colours {
   std::string label;  ///< with its unit
 };
 
+/// The snapshot without the marks that the surface hides when it is seen from the side.
+Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const Area& area);
+
 /// Where candidates are drawn: their cells over the area, every cell once unless there are more than a picture can
 /// show.
 class Raster {

@@ -4,6 +4,7 @@
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/tap_row.hpp"
 #include "report/page/assets.hpp"
@@ -13,6 +14,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
+#include <unordered_map>
 
 namespace palpate {
 namespace {
@@ -81,12 +84,15 @@ std::string text_of(const Tree& tree) {
 
 /// The config as lines of path, value and origin: that of the manifest, which knows the files behind config.yaml.
 std::string json_of_config(const Recording& recording, const Tree& manifest) {
-  const Tree* known = manifest.find("origins");
+  std::unordered_map<std::string, std::string> known;
+  if (const Tree* origins = manifest.find("origins")) {
+    for (const Tree::Entry& entry : origins->entries) known.emplace(entry.key, entry.value.text);
+  }
   std::vector<std::string> lines;
   for (const ResolveNotes::Origin& one : recording.config.notes.origins) {
-    const Tree* place = known != nullptr ? known->find(one.path) : nullptr;
-    lines.push_back(json_texts(
-        {one.path, text_of(*recording.config.tree.find_path(one.path)), place != nullptr ? place->text : one.place}));
+    const auto place = known.find(one.path);
+    lines.push_back(json_texts({one.path, text_of(*recording.config.tree.find_path(one.path)),
+                                place != known.end() ? place->second : one.place}));
   }
   return json_list(lines);
 }
@@ -126,7 +132,7 @@ std::vector<int> every(int stride, int last) {
 
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
   const fs::path& directory = recording.directory;
-  const Tree manifest = is_there(directory / "manifest.json") ? read_yaml(directory / "manifest.json") : Tree::map();
+  const Tree manifest = is_there(directory / "manifest.json") ? read_json(directory / "manifest.json") : Tree::map();
   std::vector<std::pair<std::string, std::string>> data{
       {"version", json_quoted(kVersion)},
       {"run", json_of_run(recording)},

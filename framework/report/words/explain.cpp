@@ -203,7 +203,7 @@ class Explanation {
     if (!score) return page_.say("The record holds no score.");
     const int out = left_out();
     const int allowed = playback_.experiment().candidates().size() - out;
-    const int ties = static_cast<int>(std::lround(evidence.number("ties").value_or(1.0)));
+    const double ties = evidence.number("ties").value_or(1.0);
     const auto second = evidence.number("runner_up.score");
     const double best = second ? std::max(*score, *second) : *score;
     const double bound = options_.tie_tolerance * (std::abs(best) + scale);
@@ -218,7 +218,7 @@ class Explanation {
           ". {} of {} are tied: within {:.2g} of the best (tie_tolerance), where rounding must not decide. Of these "
           "the "
           "lowest index is taken (they are counted along x, row by row).",
-          ties == allowed ? "All" : std::to_string(ties), counted(allowed, "candidate"), bound);
+          ties == allowed ? "All" : fmt::format("{}", ties), counted(allowed, "candidate"), bound);
     }
     page_.say(text);
     if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);

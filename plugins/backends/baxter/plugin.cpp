@@ -26,7 +26,9 @@ class Diary {
 
   /// Writes what has been noted so far.
   void write() {
-    if (!directory_.empty()) std::ofstream(directory_ + "/baxter.txt", std::ios::app) << waiting_;
+    const std::string file = directory_ + "/baxter.txt";
+    // A record from somebody else may hold a link there, to a file of this user.
+    if (!directory_.empty() && !std::filesystem::is_symlink(file)) std::ofstream(file, std::ios::app) << waiting_;
     waiting_.clear();
   }
 
@@ -34,7 +36,7 @@ class Diary {
   std::string bag() const {
     for (int part = 1;; ++part) {
       std::string file = directory_ + "/baxter" + (part > 1 ? "-" + std::to_string(part) : "") + ".bag";
-      if (!std::filesystem::exists(file)) return file;
+      if (!std::filesystem::exists(std::filesystem::symlink_status(file))) return file;
     }
   }
 
@@ -99,7 +101,8 @@ class Baxter final : public Backend {
     return sign.empty() ? std::vector<Learnt>() : std::vector<Learnt>{{"force_sign", sign}};
   }
 
-  bool repeatable() const override { return false; }
+  /// A dry run moves nothing: its taps are no failures of a robot, and put nothing at risk.
+  bool repeatable() const override { return options_.dry_run; }
   bool scene_is_truth() const override { return false; }
   bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
 

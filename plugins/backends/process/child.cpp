@@ -67,14 +67,17 @@ class Start {
   void hand_over(const Descriptor& file) { ::posix_spawn_file_actions_adddup2(&actions_, file.number(), ++inherited_); }
 
   /// The process, or -1 with errno set.
-  pid_t operator()(const std::string& file, const std::vector<std::string>& words) {
+  pid_t operator()(const std::string& file, const std::vector<std::string>& words, const std::string& mark) {
     // Files that the program holds open without the flag, as streams of the standard library do.
     ::posix_spawn_file_actions_addclosefrom_np(&actions_, inherited_ + 1);
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
+    std::vector<char*> environment{const_cast<char*>(mark.c_str())};  // the first of a name counts
+    for (char** one = environ; *one != nullptr; ++one) environment.push_back(*one);
+    environment.push_back(nullptr);
     pid_t pid = -1;
-    errno = ::posix_spawn(&pid, file.c_str(), &actions_, &attributes_, arguments.data(), environ);
+    errno = ::posix_spawn(&pid, file.c_str(), &actions_, &attributes_, arguments.data(), environment.data());
     return errno == 0 ? pid : -1;
   }
 
@@ -116,32 +119,17 @@ bool glance(const Descriptor& descriptor, short events, Clock::time_point until)
 
 }  // namespace
 
-void Descriptor::close() {
-  if (number_ >= 0) ::close(number_);
-  number_ = -1;
-}
-
-Descriptor above_standard(int number) {
-  if (number < 0) fail("cannot open a pipe or file", errno);
-  Descriptor low(number);
-  if (number > STDERR_FILENO) return low;
-  return above_standard(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
-}
-
 Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
              const Descriptor* kept)
     : diary_(diary) {
   Pipe in;
   Pipe out;
-  const Descriptor err = above_standard(
-      ::open(diary.empty() ? "/dev/null" : diary.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
-  if (!diary.empty()) diary_begin_ = ::lseek(err.number(), 0, SEEK_END);
   Start start;
   start.hand_over(in.to_read);
   start.hand_over(out.to_write);
-  start.hand_over(err);
+  start.hand_over(diary_.descriptor());
   if (kept != nullptr) start.hand_over(*kept);
-  pid_ = start(file, words);
+  pid_ = start(file, words, descent_.mark());
   if (pid_ < 0) fail("cannot start '" + file + "'", errno);
   input_ = std::move(in.to_write);
   output_ = std::move(out.to_read);
@@ -149,15 +137,15 @@ Child::Child(const std::string& file, const std::vector<std::string>& words, con
 }
 
 Child::~Child() {
+  descent_.look(pid_);
   input_.close();
   if (!wait_for_end()) {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
   // Before it is reaped, so that the number of the group is still its own: what it started must not outlive it either.
-  ::kill(-pid_, SIGKILL);
-  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  descent_.end(pid_);
+  diary_.trim();
 }
 
 Child::Heard Child::send(const std::string& text, const Patience& patience) {
@@ -177,6 +165,7 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
 
 Child::Heard Child::hear(std::string& line, const Patience& patience) {
   for (;;) {
+    diary_.trim();
     const auto end = heard_.find('\n');
     line = heard_.substr(0, end);
     if (line.size() > kLongestLine) return Heard::too_long;
@@ -209,7 +198,7 @@ std::string Child::fate() {
     const char* name = ::sigdescr_np(info.si_status);
     how = "was ended by signal " + std::to_string(info.si_status) + (name ? std::string(" (") + name + ")" : "");
   }
-  const std::string words = last_words();
+  const std::string words = diary_.last_words();
   return words.empty() ? how : how + ", its last words: " + shown(words);
 }
 
@@ -219,26 +208,14 @@ bool Child::gone() const {
   return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT | WNOHANG) != 0 || info.si_pid != 0;
 }
 
-bool Child::wait_for_end() const {
+bool Child::wait_for_end() {
   const auto until = Clock::now() + kGrace;
   while (!gone()) {
+    diary_.trim();
     if (Clock::now() >= until) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
-}
-
-/// The last line with text of its stderr since it was started.
-std::string Child::last_words() const {
-  if (diary_.empty()) return {};
-  const Descriptor in(::open(diary_.c_str(), O_RDONLY | O_CLOEXEC));
-  const off_t size = ::lseek(in.number(), 0, SEEK_END);
-  std::array<char, 1024> some;
-  const off_t begin = std::max(diary_begin_, size - static_cast<off_t>(some.size()));
-  const ssize_t got = ::pread(in.number(), some.data(), some.size(), begin);
-  std::string text(some.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-  text.erase(text.find_last_not_of(" \r\n") + 1);
-  return text.substr(text.find_last_of('\n') + 1);
 }
 
 }  // namespace palpate::process

@@ -2,41 +2,19 @@
 // A program under way, spoken to in lines. It knows nothing of taps.
 #pragma once
 
+#include "process/descent.hpp"
+#include "process/descriptor.hpp"
+#include "process/diary.hpp"
+
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <sys/types.h>
 
 namespace palpate::process {
-
-/// An open file of this process, closed in those that it starts.
-class Descriptor {
- public:
-  Descriptor() = default;
-  /// Takes over `number`; -1 stands for none.
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() { close(); }
-
-  int number() const { return number_; }
-  void close();
-
- private:
-  int number_ = -1;
-};
-
-/// Takes over `number`, what opening a file gave, under one above the standard ones even where this process was started
-/// without them: a child gets its own standard files first, and they must not hit what it gets after them. Throws Error
-/// with the reason in errno if `number` is negative.
-Descriptor above_standard(int number);
 
 /// How often a wait looks whether the user wants to stop.
 constexpr std::chrono::milliseconds kGlance{20};
@@ -66,8 +44,8 @@ class Child {
   /// it cannot be started.
   Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
         const Descriptor* kept = nullptr);
-  /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM, then SIGKILL, each to the whole group.
-  /// Afterwards nothing of it is left.
+  /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM to its group; then SIGKILL to all that
+  /// it started, wherever that has gone. Afterwards nothing of it is left.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -84,14 +62,13 @@ class Child {
 
  private:
   bool gone() const;
-  bool wait_for_end() const;
-  std::string last_words() const;
+  bool wait_for_end();
 
-  std::string diary_;
-  off_t diary_begin_ = 0;  ///< what others wrote into it before
-  Descriptor input_;       ///< we write
-  Descriptor output_;      ///< we read
-  std::string heard_;      ///< and not yet taken
+  Diary diary_;
+  Descent descent_;
+  Descriptor input_;   ///< we write
+  Descriptor output_;  ///< we read
+  std::string heard_;  ///< and not yet taken
   pid_t pid_ = -1;
 };
 

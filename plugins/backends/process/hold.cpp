@@ -15,7 +15,7 @@
 namespace palpate::process {
 
 std::optional<Hold> Hold::take(const std::string& file, const Patience& patience) {
-  Descriptor lock = above_standard(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  Descriptor lock = open_recorded(file, O_RDWR);
   // Asked again and again: a wait in the kernel could not be broken off.
   while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) {

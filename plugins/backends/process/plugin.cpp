@@ -161,21 +161,27 @@ class Process final : public Backend {
     }
     switch (heard) {
       case Child::Heard::line:
-        answer = process::read_answer(line, request.number);
+        answer = process::read_answer(line, request.number, context_.scene.desk() + options_.motion.hover);
+        answered_ = true;
         if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
         return answer;
       case Child::Heard::ended:
         return failed(child_->fate());
       case Child::Heard::late:
-        return failed(
-            line.empty() ? "did not answer in time" : "did not end its answer in time: " + process::shown(line),
-            Outcome::timeout);
+        return failed(line.empty() ? not_answered() : "did not end its answer in time: " + process::shown(line),
+                      Outcome::timeout);
       case Child::Heard::too_long:
         return failed("answered with an endless line: " + process::shown(line));
       case Child::Heard::interrupted:
         break;
     }
     return interrupted();
+  }
+
+  /// What keeps a program's first answer from arriving is most often its own buffer.
+  std::string not_answered() const {
+    return std::string("did not answer in time") +
+           (answered_ ? "" : ", nor ever before: does it flush its output after each line?");
   }
 
   static process::Answer interrupted() { return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}}; }
@@ -189,6 +195,7 @@ class Process final : public Backend {
   std::vector<std::string> words_;
   std::string file_;
   std::unique_ptr<Child> child_;
+  bool answered_ = false;  ///< at least once, by any process of it
 };
 
 PALPATE_PLUGIN(Backend, Process, "process", "any program, asked and answering in JSON lines")

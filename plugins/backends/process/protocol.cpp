@@ -16,9 +16,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestPiece = 80;
 constexpr std::size_t kLongestReason = 200;
-/// Metres from the height 0 of the scene. No arm is that long; a height of the paper's objects in millimetres is beyond
-/// it.
-constexpr double kFarthestHeight = 10.0;
+/// Metres below the height 0 of the scene. No arm is that long; a depth in millimetres is beyond it.
+constexpr double kDeepest = 10.0;
+constexpr double kLongest =
+    86400.0;  ///< seconds: a day. No tap takes that long; milliseconds of a tap may be beyond it
 
 /// Options as JSON in SI, from their field list: an option that the motion gains is sent along without a line here.
 class Written final : public Fields {
@@ -160,13 +161,15 @@ class Reader {
   const Json& answer_;
 };
 
-Contact read_contact(Reader& reader) {
+Contact read_contact(Reader& reader, double highest) {
   constexpr double kAny = std::numeric_limits<double>::max();
   Contact out;
   out.outcome = reader.outcome();
-  out.seconds = reader.number("seconds", 0.0, kAny, "that is negative");
+  out.seconds = reader.number("seconds", 0.0, kLongest, "that is negative or longer than a day");
   if (out.outcome == Outcome::contact) {
-    out.height = reader.number("height", -kFarthestHeight, kFarthestHeight, "more than 10 m from 0: it is in metres");
+    out.height = reader.number("height", -kDeepest, highest,
+                               "that is more than 10 m down or above the arm's way, desk and motion.hover: it is in "
+                               "metres");
     if (reader.has("force")) out.force = reader.number("force", 0.0, kAny, "that is negative");
   }
   out.ends_run = reader.flag("ends_run");
@@ -208,7 +211,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   return ask.dump() + "\n";
 }
 
-Answer read_answer(const std::string& line, int tap) {
+Answer read_answer(const std::string& line, int tap, double highest) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
@@ -219,7 +222,7 @@ Answer read_answer(const std::string& line, int tap) {
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
   if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false, ends_run);
   Reader reader(json);
-  Contact contact = read_contact(reader);
+  Contact contact = read_contact(reader, highest);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
   return {true, true, std::move(contact)};
 }

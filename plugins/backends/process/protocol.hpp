@@ -25,7 +25,8 @@ struct Answer {
   /// Ends the run if the program says so, even in an answer that is refused.
   Contact contact;
 };
-Answer read_answer(const std::string& line, int tap);
+/// `highest`, metres: no height above it is believed, because there the arm would have hit the thing on its way.
+Answer read_answer(const std::string& line, int tap, double highest);
 
 /// A piece of foreign text, quoted to stand within one line: cut where it is long, '?' for all but printable ASCII.
 std::string shown(const std::string& text);

@@ -61,7 +61,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::rest:
-      if (waited(motion_.pause)) finish(Outcome::contact, height);
+      if (waited(motion_.pause)) conclude(height);
       break;
     case Stage::back_off:
       if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
@@ -82,7 +82,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::stop:
-      if (waited(kWatched)) finish(Outcome::contact, onset_of_descent(trace_).value_or(first_));
+      if (waited(kWatched)) conclude(onset_of_descent(trace_).value_or(first_));
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {
@@ -105,11 +105,24 @@ void GuardedTap::feel(double height, double force) {
     ++summed_;
   }
   if (taring()) return;
+  if ((stage_ == Stage::stop || stage_ == Stage::rest) && !waited(kWatched + kPeriod)) {
+    sum_ += force;
+    ++summed_;
+  }
   const double felt = force - zero_;
   peak_ = std::max(peak_, felt);
   above_ = felt > threshold() ? above_ + 1 : 0;
   const bool coming_down = stage_ == Stage::descend || stage_ == Stage::bottom;
   if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
+}
+
+/// The contact is one, or the descent goes on where it is. What followed the three loud readings is above the threshold
+/// on average if something is touched, the more so as the arm trails and still comes down; if noise was all that they
+/// had, on a zero that has wandered, it is not. To stand there longer would be to press longer.
+void GuardedTap::conclude(double height) {
+  const bool lasts = summed_ == 0 || sum_ / summed_ - zero_ > motion_.threshold;
+  if (arm_ == Arm::simulated || lasts) return finish(Outcome::contact, height);
+  enter(Stage::descend);
 }
 
 bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for() >= kTrail; }
@@ -136,6 +149,7 @@ void GuardedTap::tare_in_pause() {
 }
 
 void GuardedTap::enter(Stage stage) {
+  const bool resumed = stage_ == Stage::stop;
   stage_ = stage;
   entered_ = periods_;
   above_ = 0;
@@ -147,7 +161,7 @@ void GuardedTap::enter(Stage stage) {
       goal_ = std::min(descent_.hover, set_point_ + motion_.adaptive_hover->clearance);
       break;
     case Stage::descend:
-      trace_.clear();
+      if (!resumed) trace_.clear();
       goal_ = motion_.type == MotionOptions::Type::paper ? std::max(descent_.floor, set_point_ - motion_.step)
                                                          : descent_.floor;
       break;

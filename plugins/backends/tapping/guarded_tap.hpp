@@ -22,6 +22,7 @@ namespace palpate::tapping {
 ///   slowly to a gentler threshold; the height is that of the second contact. No second contact within twice the way
 ///   back means that the first was none, and the descent goes on.
 /// - continuous: the set-point is put where the arm is, and the height is that of the onset (onset.hpp).
+/// A contact of a real arm is believed if the force lasts; if not, the descent goes on.
 class GuardedTap {
  public:
   /// Of the control loop: Baxter's joint states come at 100 Hz.
@@ -65,6 +66,7 @@ class GuardedTap {
   void feel(double height, double force);
   void enter(Stage stage);
   void touched(double height);
+  void conclude(double height);
   void tare_in_pause();
   void descend(double height);
   bool ramp(double goal, double speed);

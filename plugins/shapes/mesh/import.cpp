@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <new>
 #include <sstream>
 #include <string_view>
 
@@ -74,28 +76,45 @@ void check_stl(const std::string& bytes, const std::string& file) {
   }
 }
 
-/// A PLY tells in its header how many rows follow; where some are missing, assimp repeats the last, or worse.
+/// How many lines end in `text`, whichever of CR, LF and CRLF does that.
+std::size_t line_ends(std::string_view text) {
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    out += text[i] == '\r' || (text[i] == '\n' && (i == 0 || text[i - 1] != '\r')) ? 1 : 0;
+  }
+  return out;
+}
+
+/// A PLY tells in its header how many rows follow; where some are missing, assimp repeats the last, or worse. To assimp
+/// CR, LF and CRLF each end a line.
 void check_ply(const std::string& bytes, const std::string& file) {
-  const std::string end_of_header = "\nend_header";
-  const std::size_t header = bytes.find(end_of_header);
+  const std::string_view last = "end_header";
+  std::size_t header = bytes.find(last, 1);
+  while (header != std::string::npos && bytes[header - 1] != '\n' && bytes[header - 1] != '\r')
+    header = bytes.find(last, header + 1);
   if (header == std::string::npos) {
     throw Error(file, "is no PLY or cut short: the line 'end_header' is missing", kExportAgain);
   }
-  std::istringstream lines(bytes.substr(0, header));
+  std::string lines = bytes.substr(0, header);
+  std::replace(lines.begin(), lines.end(), '\r', '\n');
+  std::istringstream in(lines);
   std::size_t rows = 0;
   bool text = false;
-  for (std::string line; std::getline(lines, line);) {
+  for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);
-    std::string word, name;
-    std::size_t count = 0;
-    words >> word >> name;
+    std::string word, name, count;
+    words >> word >> name >> count;
     if (word == "format") text = name == "ascii";
-    if (word == "element" && words >> count) rows += count;
+    if (word != "element") continue;
+    // Nine digits: more rows than the longest file that is read has bytes need ten.
+    if (count.empty() || count.size() > 9 || count.find_first_not_of("0123456789") != std::string::npos)
+      throw Error(file, "its header does not say how many rows of '" + name + "' follow", kExportAgain);
+    rows += std::stoul(count);
   }
-  const auto body = bytes.begin() + static_cast<std::ptrdiff_t>(header + end_of_header.size());
+  const std::string_view body = std::string_view(bytes).substr(header + last.size());
   // The last row may lack its line break, the line end_header has one. A row of bytes has one at least.
-  const auto there = static_cast<std::size_t>(
-      text ? std::count(body, bytes.end(), '\n') - (bytes.back() == '\n' ? 1 : 0) : bytes.end() - body);
+  const std::size_t there =
+      text ? line_ends(body) - (body.empty() || (body.back() != '\n' && body.back() != '\r') ? 0 : 1) : body.size();
   if (there < rows) throw Error(file, "is cut short: its header promises more rows than there are", kExportAgain);
 }
 
@@ -173,6 +192,28 @@ class Pipe {
   int ends_[2];
 };
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PALPATE_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PALPATE_SANITIZED
+#endif
+#endif
+
+/// Far more than assimp needs for any sound file of so many bytes; what would take more is told by `out_of_memory`.
+void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*out_of_memory)()) {
+#ifndef PALPATE_SANITIZED  // for a sanitizer's own memory has terabytes of addresses, of which it takes more at will
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t most = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes;
+  const rlimit memory{most, most};
+  setrlimit(RLIMIT_AS, &memory);
+  std::set_new_handler(out_of_memory);
+#endif
+}
+
+const Pipe* pipe_of_child = nullptr;
+
 /// In the process of its own: answers 'T' and the triangles, or 'E', reason and hint.
 [[noreturn]] void answer(const Pipe& pipe, const std::string& bytes, const std::string& file,
                          const std::string& format) {
@@ -184,6 +225,12 @@ class Pipe {
   alarm(static_cast<unsigned>(12 * seconds));  // and where it waits for ever
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // a failed assertion of assimp would be a second line
+  pipe_of_child = &pipe;
+  limit_memory(bytes.size(), [] {
+    constexpr std::string_view kWords = "Etakes more memory than any sound file of its size\nexport it again";
+    pipe_of_child->write_all(kWords.data(), kWords.size());
+    _exit(0);
+  });
   try {
     const Soup soup = triangles_by_assimp(bytes, file, format);
     pipe.write_all("T", 1);

@@ -159,7 +159,7 @@ class SurfaceView {
   caption() {
     if (this.flat) return "Reconstructed height.";
     return this.spatial
-      ? "Reconstructed surface, coloured by the standard deviation of its height; discs: taps on the object, crosses: taps off it. Drag to turn."
+      ? "Reconstructed surface, coloured by the standard deviation of its height; on pins, discs: taps on the object, crosses: taps off it, red diamond: the next. Drag to turn."
       : "Reconstructed height. (This browser has no WebGL: the surface is a map instead of a picture in three dimensions.)";
   }
 
@@ -181,7 +181,7 @@ class SurfaceView {
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{surfacecolor:.2f} cm<extra></extra>",
     };
     const { on, off } = tapsUntil(this.data.taps, moment.taps);
-    const lift = 0.015 * (this.range[1] - this.range[0]);  // or half of every mark would be inside of the surface
+    const lift = this.lift();
     const points = (taps, name, marker) => ({
       type: "scatter3d",
       mode: "markers",
@@ -193,13 +193,44 @@ class SurfaceView {
       hovertemplate: "%{text}<extra></extra>",
       marker,
     });
+    const next = moment.next ? [{ ...moment.next, height: this.heightAt(frame, moment.next) / kCentimetres }] : [];
+    const star = points(next, "next", { symbol: "diamond", size: 6, color: "#e8112d", line: { color: "#ffffff", width: 1 } });
+    star.text = next.map(() => `next, tap ${moment.taps + 1}`);
     const out = [
       surface,
+      this.pins([...on, ...off, ...next], lift),
       points(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: { color: "#000000", width: 2 } }),
       points(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }),
+      star,
     ];
     if (this.withTruth && this.truth) out.push(this.wireframe());
     return out;
+  }
+
+  /// How far above their places the marks of taps are, or half of every mark would be inside of the surface.
+  lift() {
+    return 0.06 * (this.range[1] - this.range[0]);
+  }
+
+  /// Lines from the places of taps up to their marks.
+  pins(taps, lift) {
+    const along = (of) => taps.flatMap((tap) => [...of(tap), null]);
+    return {
+      type: "scatter3d",
+      mode: "lines",
+      name: "pins",
+      x: along((tap) => [tap.x * kCentimetres, tap.x * kCentimetres]),
+      y: along((tap) => [tap.y * kCentimetres, tap.y * kCentimetres]),
+      z: along((tap) => [tap.height * kCentimetres, tap.height * kCentimetres + lift]),
+      line: { color: "#000000", width: 2 },
+      hoverinfo: "skip",
+    };
+  }
+
+  /// The believed height at a place, centimetres.
+  heightAt(frame, { x, y }) {
+    const nearest = (centres, at) => centres.reduce((best, centre, i) => (Math.abs(centre - at) < Math.abs(centres[best] - at) ? i : best), 0);
+    return this.heights[frame][nearest(this.data.y, y)][nearest(this.data.x, x)];
   }
 
   /// What the colours of the surface say, as a map over the plane.
@@ -226,7 +257,7 @@ class SurfaceView {
   layout() {
     if (!this.spatial) return layout({ ...planeAxes(this.data), showlegend: false });
     const low = Math.min(this.range[0], this.data.run.desk * kCentimetres);
-    const range = [low, this.range[1] + 0.05 * (this.range[1] - low) + 0.1];
+    const range = [low, this.range[1] + this.lift() + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.run.width, this.data.run.depth].map((metres) => metres * kCentimetres);
     const side = Math.max(width, depth) / 1.3;  // fills the room as the camera stands
     return layout({

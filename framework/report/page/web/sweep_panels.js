@@ -139,7 +139,7 @@ class CellsPanel {
       customdata: groups.map(({ jobs }, i) => this.hover(jobs, [key], metric, found[i])),
       hovertemplate: "%{customdata}<extra></extra>",
     };
-    say("cells_mean", "Mean ", foreign(this.others(key)), " of the jobs that are done; bars: standard deviation.");
+    say("cells_mean", "Mean ", foreign(this.others(key)), "; bars: standard deviation.");
     const more = { xaxis: placesAxis(plain(brief(key.name)), namesOf(key)), yaxis: axis(judged(this.sweep, metric)) };
     return drawIn("cells_mean", [trace], more, 380);
   }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include <xmlrpcpp/XmlRpcException.h>
 #include <xmlrpcpp/XmlRpcValue.h>
@@ -16,7 +17,8 @@ using XmlRpc::XmlRpcValue;
 using Why = Unreached::Why;
 
 constexpr const char* kCaller = "/palpate";
-constexpr std::size_t kLongest = 16'000'000;  ///< bytes of an answer; a whole network's description has some 10'000
+constexpr std::size_t kLongest = 4'000'000;  ///< bytes of an answer; a whole network's description has some 10'000
+constexpr std::size_t kDeepest = 64;         ///< elements within elements; that description has 17
 
 // ---- XML-RPC: one question, one answer, over a connection of its own ----
 
@@ -46,9 +48,43 @@ std::string http_body(Wire& wire, Deadline deadline) {
   return body;
 }
 
+/// Whether elements end as they begin and are not nested too deeply. The library reads by recursion, one step for each
+/// value within a value, and looks for a member's name wherever that may be: so the name must be where it belongs.
+bool is_sound(std::string_view xml) {
+  std::vector<std::string_view> open;
+  bool in_member = false;  // and before its name
+  for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
+    const std::size_t end = xml.find_first_of("<>", ++at);
+    if (end == std::string_view::npos || end == at || xml[end] == '<' || xml[at] == '!') return false;
+    const std::string_view tag = xml.substr(at, end - at);
+    if (std::exchange(in_member, tag == "member") && tag != "name") return false;
+    if (tag.front() == '/') {
+      if (open.empty() || open.back() != tag.substr(1)) return false;
+      open.pop_back();
+    } else if (tag.front() != '?' && tag.back() != '/') {
+      open.push_back(tag);
+      if (open.size() > kDeepest) return false;
+    }
+  }
+  return open.empty();
+}
+
 /// The third part of ROS' answers, whose first is 1 for success; an invalid value if it was not a success.
-XmlRpcValue call(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
-                 Deadline deadline) {
+XmlRpcValue read_answer(const std::string& xml) {
+  const std::size_t start = xml.find("<value>");
+  int offset = static_cast<int>(start);
+  XmlRpcValue parts;
+  if (start == std::string::npos || xml.find("<fault>") != std::string::npos || !is_sound(xml) ||
+      !parts.fromXml(xml, &offset) || parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
+    throw Unreached(Why::nonsense, "what answers there is no ROS");
+  }
+  if (static_cast<int>(parts[0]) != 1) return {};
+  return parts[2];
+}
+
+/// The answer to a question, as it came.
+std::string ask(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
+                Deadline deadline) {
   std::string body = "<?xml version=\"1.0\"?>\r\n<methodCall><methodName>" + method + "</methodName>\r\n<params>";
   for (const XmlRpcValue& argument : arguments) body += "<param>" + argument.toXml() + "</param>";
   body += "</params></methodCall>\r\n";
@@ -56,16 +92,12 @@ XmlRpcValue call(const Address& address, const std::string& method, const std::v
   wire.send("POST /RPC2 HTTP/1.1\r\nUser-Agent: palpate\r\nHost: ros\r\nContent-Type: text/xml\r\nContent-length: " +
                 std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" + body,
             deadline);
-  const std::string answer = http_body(wire, deadline);
-  const std::size_t start = answer.find("<value>");
-  int offset = static_cast<int>(start);
-  XmlRpcValue parts;
-  if (start == std::string::npos || answer.find("<fault>") != std::string::npos || !parts.fromXml(answer, &offset) ||
-      parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
-    throw Unreached(Why::nonsense, "what answers there is no ROS");
-  }
-  if (static_cast<int>(parts[0]) != 1) return {};
-  return parts[2];
+  return http_body(wire, deadline);
+}
+
+XmlRpcValue call(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
+                 Deadline deadline) {
+  return read_answer(ask(address, method, arguments, deadline));
 }
 
 /// The same, with what the library throws at answers of another form.
@@ -169,11 +201,15 @@ void Master::greet(Deadline deadline) const {
   understood([&] { return call(address_, "getPid", {XmlRpcValue(kCaller)}, deadline); });
 }
 
-Graph Master::graph(Deadline deadline) const {
+Graph read_graph(const std::string& xml) {
   return understood([&] {
-    XmlRpcValue state = call(address_, "getSystemState", {XmlRpcValue(kCaller)}, deadline);
+    XmlRpcValue state = read_answer(xml);
     return Graph{nodes_of(state[0]), nodes_of(state[1]), nodes_of(state[2])};
   });
+}
+
+Graph Master::graph(Deadline deadline) const {
+  return read_graph(ask(address_, "getSystemState", {XmlRpcValue(kCaller)}, deadline));
 }
 
 std::optional<std::string> Master::parameter(const std::string& name, Deadline deadline) const {

@@ -33,6 +33,9 @@ struct Graph {
   static const std::vector<std::string>& of(const Nodes& nodes, std::string_view name);
 };
 
+/// The network in a master's own words: its answer to getSystemState, XML-RPC. Throws Unreached.
+Graph read_graph(const std::string& xml);
+
 /// The master. All members throw Unreached.
 class Master {
  public:

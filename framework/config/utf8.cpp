@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "record/utf8.hpp"
+#include "config/utf8.hpp"
 
 namespace palpate {
 
@@ -16,6 +16,16 @@ std::size_t utf8_length(std::string_view text) {
   const bool refused = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
                        (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
   return refused ? 0 : length;
+}
+
+std::size_t utf8_prefix(std::string_view text) {
+  std::size_t valid = 0;
+  while (valid < text.size()) {
+    const std::size_t length = utf8_length(text.substr(valid));
+    if (length == 0) break;
+    valid += length;
+  }
+  return valid;
 }
 
 }  // namespace palpate

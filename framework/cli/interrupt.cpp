@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "cli/interrupt.hpp"
+
+#include <csignal>
+#include <cstdlib>
+
+namespace palpate::cli {
+namespace {
+
+/// The first Ctrl-C asks the run to stop after the tap under way, the second ends the program.
+extern "C" void on_key(int signal) {
+  if (interrupted.exchange(true)) std::_Exit(128 + signal);
+}
+
+/// A terminal that is closed says so more than once; so does a scheduler that ends a job, to each process of it, which
+/// also hears it from the one that started it. Nobody means to leave a robot's arm where it is by that.
+extern "C" void on_request(int) { interrupted = true; }
+
+}  // namespace
+
+std::atomic<bool> interrupted{false};
+
+void listen_for_interrupts() {
+  std::signal(SIGINT, on_key);
+  std::signal(SIGTERM, on_request);
+  if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// What runs, sweeps and robots left behind, changed by somebody else.
+#include "fuzz/ground.hpp"
+#include "fuzz/harness.hpp"
+
+#include "record/recording.hpp"
+#include "record/session.hpp"
+#include "sweep/draft.hpp"
+#include "sweep/plan.hpp"
+
+#include <palpate/error.hpp>
+
+#include <array>
+
+namespace palpate::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Installation& installation() {
+  static const Installation one{fs::path(PALPATE_BUILD_FOLDER) / "palpate",
+                                fs::path(PALPATE_BUILD_FOLDER) / "lib" / "palpate", shipped_configs()};
+  return one;
+}
+
+const Workshop& workshop() {
+  static const Workshop one{host(), installation(), {"palpate"}, nullptr};
+  return one;
+}
+
+/// A run so small that it can be replayed a thousand times in a second.
+const std::vector<std::string> kSmall{"taps=4", "initial.count=2", "candidates.count=5", "scene=object_i"};
+
+fs::path sound_run() {
+  Composer composer(shipped_configs());
+  std::vector<Override> overrides;
+  for (const std::string& one : kSmall) overrides.push_back(parse_override(one));
+  const ResolvedConfig config =
+      load_experiment(composer, host(), shipped_configs() / "paper" / "object_i.yaml", overrides);
+  const fs::path directory = directory_of(config, ground().path() / "runs");
+  start_run(workshop(), config, directory, true, nullptr, nullptr);
+  return directory;
+}
+
+fs::path sound_sweep() {
+  Composer composer(shipped_configs());
+  std::vector<std::string> words = kSmall;
+  words.insert(words.end(), {"seed=range(0,3)", "kernel=rbf,matern52"});
+  const fs::path runs = ground().path() / "sweeps";
+  SweepDraft draft(runs);
+  const SweepPlan plan = plan_sweep(composer, host(), shipped_configs() / "paper" / "object_i.yaml", words, runs,
+                                    [&](const Job& job, const ResolvedConfig& config) { draft.add(job, config); });
+  draft.publish(plan);
+  return plan.sweep.directory;
+}
+
+/// Puts other bytes into a file for a while.
+class Changed {
+ public:
+  Changed(fs::path file, const std::string& bytes) : file_(std::move(file)), sound_(read_file(file_)) {
+    write_file(file_, bytes);
+  }
+  ~Changed() { write_file(file_, sound_); }
+  Changed(const Changed&) = delete;
+  Changed& operator=(const Changed&) = delete;
+
+ private:
+  fs::path file_;
+  std::string sound_;
+};
+
+template <class Read>
+void attempt(const Read& read) {
+  try {
+    read();
+  } catch (const Error&) {
+  }
+}
+
+/// The file that the first byte stands for, and the other bytes.
+template <std::size_t N>
+std::pair<std::string, std::string> divided(const std::string& bytes, const std::array<const char*, N>& files) {
+  if (bytes.empty()) return {files.front(), ""};
+  return {files[static_cast<unsigned char>(bytes.front()) % N], bytes.substr(1)};
+}
+
+}  // namespace
+
+void record(const std::string& bytes) {
+  static const fs::path run = sound_run();
+  static const std::array<const char*, 4> files{"taps.jsonl", "summary.json", "manifest.json", "timings.csv"};
+  const auto [name, content] = divided(bytes, files);
+  const Changed changed(run / name, content);
+  attempt([&] { read_status(run); });
+  attempt([&] { check_build(workshop(), load_run(host(), run), run); });
+  attempt([&] { replay_run(workshop(), run); });
+}
+
+void plan(const std::string& bytes) {
+  static const fs::path sweep = sound_sweep();
+  static const std::array<const char*, 2> files{"manifest.jsonl", "config.yaml"};
+  const auto [name, content] = divided(bytes, files);
+  const Changed changed(sweep / name, content);
+  attempt([&] {
+    const Sweep read = read_sweep(sweep);
+    sweep_results(read, sweep_summaries(read));
+    sweep_name(read);
+  });
+}
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/ros/graph.hpp"
+#include "fuzz/harness.hpp"
+
+namespace palpate::fuzz {
+
+void xmlrpc(const std::string& bytes) {
+  try {
+    baxter::read_graph(bytes);
+  } catch (const baxter::Unreached&) {
+  }
+}
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Configs, words of a command line, and what programs answer.
+#include "fuzz/ground.hpp"
+#include "fuzz/harness.hpp"
+
+#include "config/quantity.hpp"
+#include "config/yaml.hpp"
+#include "experiment/resolved.hpp"
+#include "process/protocol.hpp"
+#include "sweep/condition.hpp"
+#include "sweep/description.hpp"
+
+#include <palpate/error.hpp>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace palpate::fuzz {
+
+void config(const std::string& bytes) {
+  try {
+    const std::filesystem::path file = ground().write("config.yaml", bytes);
+    Composer composer(shipped_configs());
+    const ResolvedConfig first = load_experiment(composer, host(), file, {});
+    Composer again(shipped_configs());
+    const ResolvedConfig second = load_experiment(again, host(), ground().write("again.yaml", to_yaml(first.tree)), {});
+    if (first.id != second.id) throw std::logic_error("written and read again, it is another config");
+  } catch (const Error&) {
+  }
+}
+
+namespace {
+
+/// Whatever `read` does, as long as it is done or refused in words.
+template <class Read>
+void attempt(const Read& read) {
+  try {
+    read();
+  } catch (const Error&) {
+  }
+}
+
+}  // namespace
+
+void words(const std::string& bytes) {
+  attempt([&] { parse_override(bytes); });
+  attempt([&] {
+    const SweepDescription sweep(nullptr, parse_sweep_words({bytes}));
+    if (sweep.size() == 0) return;
+    overrides_of(sweep.at(0));
+    overrides_of(sweep.at(sweep.size() - 1));
+    sweep.written();
+  });
+  attempt([&] {
+    const Condition condition(Tree::scalar(bytes, true));
+    condition.holds([](const std::string& name) { return std::optional<std::string>(name); }, {"taps", "seed"});
+  });
+  attempt([&] {
+    const std::optional<AnyQuantity> quantity = any_quantity(bytes);
+    if (!quantity) return;
+    const Tree again = Tree::scalar(write_quantity(quantity->value, quantity->unit));
+    if (read_quantity(again, "it", quantity->unit) != quantity->value) {
+      throw std::logic_error("a quantity, written and read again, is another");
+    }
+  });
+}
+
+void answer(const std::string& bytes) {
+  constexpr double kHighest = 0.135;
+  const process::Answer answer = process::read_answer(bytes, 2, kHighest);
+  if (!answer.accepted) return;
+  if (!answer.in_step) throw std::logic_error("an answer to another tap was accepted");
+  const Contact& contact = answer.contact;
+  const bool plain = std::isfinite(contact.height) && std::isfinite(contact.force) && std::isfinite(contact.seconds);
+  if (!plain || contact.height > kHighest || contact.force < 0.0 || contact.seconds < 0.0) {
+    throw std::logic_error("a number that no arm can have felt was accepted");
+  }
+}
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// Whatever a plugin's functions throw, whichever of them it was, is told with its name.
+#include "plugin/named.hpp"
+
+#include <palpate/acquisition.hpp>
+#include <palpate/backend.hpp>
+#include <palpate/error.hpp>
+#include <palpate/fitting.hpp>
+#include <palpate/footprint.hpp>
+#include <palpate/kernel.hpp>
+#include <palpate/shape.hpp>
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace palpate {
+namespace {
+
+[[noreturn]] void fail() { throw std::runtime_error("it broke"); }
+
+struct BrokenKernel final : Kernel {
+  void covariance(const PointsView&, const PointsView&, MatrixOut) const override { fail(); }
+  void variance(const PointsView&, VectorOut) const override { fail(); }
+  bool separable() const override { fail(); }
+  void axis_covariance(int, const VectorView&, const VectorView&, MatrixOut) const override { fail(); }
+  std::vector<KernelParameter> parameters() const override { fail(); }
+  bool differentiable() const override { fail(); }
+  void set_parameters(const VectorView&) override { fail(); }
+  void derivatives(const PointsView&, const PointsView&, VectorOut, MatrixOut) const override { fail(); }
+};
+
+struct BrokenFitting final : Fitting {
+  bool due(int) const override { fail(); }
+  std::string objection(const Kernel&) const override { fail(); }
+  FitSummary fit(FitProblem&, Random&) const override { fail(); }
+};
+
+struct BrokenFootprint final : Footprint {
+  bool is_weight() const override { fail(); }
+  void add(const Touch&) override { fail(); }
+  void probability(const PointsView&, VectorOut) override { fail(); }
+  std::vector<FootprintNumber> numbers() const override { fail(); }
+  std::string remark() const override { fail(); }
+};
+
+struct BrokenAcquisition final : Acquisition {
+  void score(const Belief&, VectorOut) const override { fail(); }
+  Product product() const override { fail(); }
+  double prior_scale() const override { fail(); }
+};
+
+struct BrokenBackend final : Backend {
+  Contact tap(const TapRequest&) override { fail(); }
+  bool repeatable() const override { fail(); }
+  std::vector<std::string> describe(const TapRequest&) override { fail(); }
+  std::vector<Learnt> learnt() const override { fail(); }
+  bool wants_prediction() const override { fail(); }
+  void show(const Belief&) override { fail(); }
+  bool scene_is_truth() const override { fail(); }
+};
+
+struct BrokenShape final : Shape {
+  double first_hit(const Line&) const override { fail(); }
+  double support(const Eigen::Vector3d&) const override { fail(); }
+  double top(double, double) const override { fail(); }
+};
+
+template <class Broken, class Interface>
+std::shared_ptr<Interface> broken() {
+  return std::static_pointer_cast<Interface>(
+      named(Interface::kKind, "mine", std::shared_ptr<Interface>(std::make_shared<Broken>())));
+}
+
+template <class Call>
+std::string said(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
+  const Points points = Points::Zero(2, 2);
+  Eigen::VectorXd vector = Eigen::VectorXd::Zero(2);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2, 2);
+  const auto kernel = broken<BrokenKernel, Kernel>();
+  const std::string of_kernel = "kernel/mine: it broke";
+  EXPECT_EQ(said([&] { kernel->covariance(points, points, matrix); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->variance(points, vector); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->separable(); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->axis_covariance(0, vector, vector, matrix); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->parameters(); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->differentiable(); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->set_parameters(vector); }), of_kernel);
+  EXPECT_EQ(said([&] { kernel->derivatives(points, points.topRows(1), vector, matrix); }), of_kernel);
+
+  const auto fitting = broken<BrokenFitting, Fitting>();
+  double number = 1.0;
+  FitProblem problem{points, *kernel, number, 0.0, {}};
+  Random random(1, "test");
+  EXPECT_EQ(said([&] { fitting->due(1); }), "fitting/mine: it broke");
+  EXPECT_EQ(said([&] { fitting->objection(*kernel); }), "fitting/mine: it broke");
+  EXPECT_EQ(said([&] { fitting->fit(problem, random); }), "fitting/mine: it broke");
+
+  const auto footprint = broken<BrokenFootprint, Footprint>();
+  EXPECT_EQ(said([&] { footprint->is_weight(); }), "footprint/mine: it broke");
+  EXPECT_EQ(said([&] { footprint->add({}); }), "footprint/mine: it broke");
+  EXPECT_EQ(said([&] { footprint->probability(points, vector); }), "footprint/mine: it broke");
+  EXPECT_EQ(said([&] { footprint->numbers(); }), "footprint/mine: it broke");
+  EXPECT_EQ(said([&] { footprint->remark(); }), "footprint/mine: it broke");
+
+  const auto acquisition = broken<BrokenAcquisition, Acquisition>();
+  EXPECT_EQ(said([&] { acquisition->product(); }), "acquisition/mine: it broke");
+  EXPECT_EQ(said([&] { acquisition->prior_scale(); }), "acquisition/mine: it broke");
+
+  const auto backend = broken<BrokenBackend, Backend>();
+  EXPECT_EQ(said([&] { backend->tap({}); }), "backend/mine: it broke");
+  EXPECT_EQ(said([&] { backend->repeatable(); }), "backend/mine: it broke");
+  EXPECT_EQ(said([&] { backend->describe({}); }), "backend/mine: it broke");
+  EXPECT_EQ(said([&] { backend->learnt(); }), "backend/mine: it broke");
+  EXPECT_EQ(said([&] { backend->wants_prediction(); }), "backend/mine: it broke");
+  EXPECT_EQ(said([&] { backend->scene_is_truth(); }), "backend/mine: it broke");
+
+  const auto shape = broken<BrokenShape, Shape>();
+  EXPECT_EQ(said([&] { shape->first_hit({}); }), "shape/mine: it broke");
+  EXPECT_EQ(said([&] { shape->support({}); }), "shape/mine: it broke");
+  EXPECT_EQ(said([&] { shape->top(0.0, 0.0); }), "shape/mine: it broke");
+}
+
+TEST(NamedPlugin, KeepsPlaceReasonAndRemedyOfAnError) {
+  struct Arm final : Backend {
+    Contact tap(const TapRequest& request) override {
+      if (request.number == 1) throw Error("arm.txt:3", "has no joint", "add one", Error::Kind::busy);
+      throw 42;
+    }
+    bool repeatable() const override { return true; }
+    bool scene_is_truth() const override { return false; }
+  };
+  const auto backend = broken<Arm, Backend>();
+  TapRequest request;
+  request.number = 1;
+  try {
+    backend->tap(request);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "backend/mine: arm.txt:3: has no joint, add one");
+    EXPECT_EQ(error.kind(), Error::Kind::busy);
+  }
+  request.number = 2;
+  EXPECT_EQ(said([&] { backend->tap(request); }), "backend/mine: threw something that is no exception");
+  EXPECT_TRUE(backend->repeatable());
+}
+
+}  // namespace
+}  // namespace palpate
