@@ -45,13 +45,17 @@ fs::path root_of(const fs::path& file, const std::string& group) {
   return folder.filename() == group ? folder.parent_path() : folder;
 }
 
-/// The first file of a group in folders, empty if there is none.
+/// The first file of a group in folders, empty if there is none. Throws Error where a folder may not be searched: what it
+/// would have given is not what a later one gives.
 fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, const std::string& name) {
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots) {
-      std::error_code ignored;
+      std::error_code trouble;
       fs::path file = root / folder / (name + ".yaml");
-      if (fs::exists(file, ignored)) return file;
+      if (fs::exists(file, trouble)) return file;
+      if (trouble == std::errc::permission_denied) {
+        throw Error(file.string(), "cannot be looked for", "check the permissions of its folder");
+      }
     }
   }
   return {};

@@ -110,9 +110,6 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   std::string_view rest = text.substr(length);
   rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   const std::string_view number = text.substr(0, length);
-  if (!rest.empty() && rest[0] == ',') {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' has a decimal comma", name, text), "write a point");
-  }
   if (looks_octal(number)) {
     throw Error(tree.place.text(), fmt::format("{}: '{}' has a leading zero", name, text),
                 "octal numbers are not read: write it without the zero");
@@ -183,6 +180,9 @@ std::vector<std::string> unit_names(Unit unit) {
 
 double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   const auto [number, symbol] = split(tree, name, unit);
+  if (!symbol.empty() && symbol[0] == ',') {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has a decimal comma", name, tree.text), "write a point");
+  }
   if (unit == Unit::none) {
     if (!symbol.empty()) {
       throw Error(tree.place.text(), fmt::format("{}: '{}' is not a plain number", name, tree.text),

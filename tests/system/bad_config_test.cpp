@@ -300,6 +300,8 @@ std::vector<Case> cases() {
             "command line: acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ManyValues", {"posterior=dense,grid"},
             "command line: posterior has several values, and a run takes one, 'palpate sweep' runs all of them"),
+      typed("ManyWholeNumbers", {"seed=1,2"},
+            "command line: seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ARange", {"seed=range(0,5)"},
             "command line: seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ListThatIsOneValue", {"scene.objects.0.at=[3,4]"},

@@ -30,6 +30,9 @@ double instructions(const std::string& program, int taps) {
 TEST(TapCost, OfAPerfectTapIsThatOfASimulatorWithTheEffectsCompiledOut) {
   if (kSanitized) GTEST_SKIP() << "sanitizers and valgrind do not go together";
   if (!std::filesystem::exists(kValgrind)) GTEST_SKIP() << "valgrind is not installed";
+  for (const char* program : {PALPATE_TAP_COST, PALPATE_TAP_COST_WITHOUT_EFFECTS}) {
+    if (!std::filesystem::exists(program)) GTEST_SKIP() << "what measures is built by ./check --all";
+  }
   constexpr int kTaps = 4000;
   // What the start of the program costs is taken off: it varies with the environment, not with the taps.
   const auto per_tap = [](const std::string& program) {

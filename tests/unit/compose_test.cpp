@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "unit/compose_fixture.hpp"
 
+#include <unistd.h>
+
 namespace palpate {
 namespace {
 
@@ -330,6 +332,39 @@ TEST_F(GroupFolders, AreTheConfigsOwnThenTheNearestNamedConfigsThenTheShippedOne
   EXPECT_EQ(from("a/configs/b/c/x.yaml"), "a/configs");
   kernel("a/configs/b/c");
   EXPECT_EQ(from("a/configs/b/c/x.yaml"), "a/configs/b/c");
+}
+
+/// Somebody whom rights of files bind, as long as it lives: root is not.
+class Anybody {
+ public:
+  Anybody() : was_(::geteuid()) { EXPECT_EQ(::seteuid(was_ == 0 ? 65534 : was_), 0); }
+  ~Anybody() { EXPECT_EQ(::seteuid(was_), 0); }
+
+ private:
+  uid_t was_;
+};
+
+TEST_F(GroupFolders, ThatMayNotBeSearchedAreNotTakenForEmptyOnes) {
+  kernel("shipped");
+  kernel("a");
+  rights(".", 0755);
+  const fs::path config = folder_.write("a/x.yaml", "kernel: mine\n");
+  rights("a/kernel", 0600);
+  std::string said = "nothing";
+  {
+    const Anybody anybody;
+    if (::euidaccess(config.c_str(), R_OK) != 0) {
+      GTEST_SKIP() << "nobody else may enter the folder for temporary files";
+    }
+    try {
+      Composer(folder_.path() / "shipped").compose(config, {});
+    } catch (const Error& error) {
+      said = error.what();
+    }
+  }
+  EXPECT_THAT(said, ::testing::EndsWith("a/kernel/mine.yaml: cannot be looked for, check the permissions of its folder"));
+  rights("a/kernel", 0755);
+  EXPECT_EQ(from("a/x.yaml"), "a");
 }
 
 TEST_F(GroupFolders, AreNotAnyOthersAboveTheConfig) {

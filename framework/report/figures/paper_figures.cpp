@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 namespace palpate {
@@ -100,8 +101,9 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
   Sheet sheet(sheet_width(columns) + 30, static_cast<int>(first.top + first.height + 88));
   const Raster raster(progress.candidates, progress.area);
   const auto deviation = [](const Snapshot& m) -> const auto& { return m.deviation; };
-  const Colours doubt{Palette::cividis, 0.0, 100.0 * largest(progress.snapshots, 1e-6, deviation),
-                      "standard deviation [cm]"};
+  double least = std::numeric_limits<double>::infinity();
+  for (const Snapshot& one : progress.snapshots) least = std::min(least, one.deviation.minCoeff());
+  const Colours doubt = deviation_colours(least, largest(progress.snapshots, 0.0, deviation));
   const Colours scores = score_colours(progress);
   const Relief relief = relief_of(progress.snapshots, progress.candidates.points, progress.area, progress.desk);
   sheet.text(title, kLeft, 14, 15);
@@ -111,13 +113,15 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
     sheet.data("surface_" + key, raster.surface(snapshot.surface, snapshot.deviation));
     sheet.data("scores_" + key, raster.matrix(snapshot.scores));
     sheet.taps(key, snapshot);
+    sheet.taps("seen_" + key, in_sight(snapshot, progress.candidates, progress.area));
   }
   for (std::size_t i = 0; i < columns; ++i) {
     const std::string key = key_of(progress, i);
     const double left = kLeft + kStep * static_cast<double>(i);
     sheet.text(iteration_words(progress.iterations[i], progress.snapshots[i]), left + 0.5 * first.width, kHead, 11,
                Sheet::Align::centre);
-    sheet.surface({left - 4, kHead + kWords, first.width + 26, kSurface}, raster, "surface_" + key, key, doubt, relief);
+    sheet.surface({left - 4, kHead + kWords, first.width + 26, kSurface}, raster, "surface_" + key, "seen_" + key, doubt,
+                  relief);
     sheet.map({left, first.top, first.width, first.height}, raster, "scores_" + key, key, scores);
   }
   const double right = kLeft + kStep * static_cast<double>(columns - 1) + first.width + 22;

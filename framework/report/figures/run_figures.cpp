@@ -24,9 +24,7 @@ Figure surface_figure(const Recording& recording, const Experiment& experiment, 
   const auto behind = last.marks.size() - seen.marks.size();
   sheet.text("surface " + after_words(last) + (behind > 0 ? fmt::format("; {} of them behind it", behind) : ""), 30, 44,
              11);
-  // Where nothing is known of an object's level, its deviation is of no size that means anything.
-  const double most = std::min(last.deviation.maxCoeff(), last.largest_deviation);
-  const Colours colours{Palette::cividis, 0.0, 100.0 * std::max(1e-6, most), "standard deviation [cm]"};
+  const Colours colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
   sheet.surface(
       {90, 80, 740, 510}, raster, "surface", "last", colours,
       relief_of({last}, experiment.candidates().points, experiment.scene().area(), experiment.scene().desk()));

@@ -38,7 +38,8 @@ std::string axis(char name, double length) {
 
 std::string colour_range(const Colours& colours) {
   return gnuplot_palette(colours.palette) +
-         fmt::format("set cbrange [{}:{}]\n", number(colours.low), number(colours.high));
+         fmt::format("set cbrange [{}:{}]\n{}", number(colours.low), number(colours.high),
+                     colours.logarithmic ? "set logscale cb\n" : "");
 }
 
 // How surfaces are seen: from so far above, turned so far.
@@ -49,6 +50,15 @@ constexpr double kTurn = kTurnDegrees * kPi / 180.0;
 constexpr int kBarSteps = 128;
 
 }  // namespace
+
+Colours deviation_colours(double least, double most) {
+  constexpr double kFloor = 1e-6;       // a micrometre: below it nothing is measured
+  constexpr double kWorthRatios = 5.0;  // from here on a linear scale hides the lower half of them
+  least = std::max(least, kFloor);
+  most = std::max(most, kFloor);
+  const bool logarithmic = most > kWorthRatios * least;
+  return {Palette::cividis, logarithmic ? 100.0 * least : 0.0, 100.0 * most, "standard deviation [cm]", logarithmic};
+}
 
 std::string centimetres(double value) { return fmt::format("{:.10g}", 100.0 * value); }
 
@@ -254,6 +264,7 @@ void Sheet::bar(const Box& box, const Colours& colours) {
   settings += fmt::format("unset xtics\nunset ytics\nset xrange [-0.5:1.5]\nset yrange [-0.5:{}]\n", kBarSteps - 0.5);
   settings += fmt::format("set y2range [{}:{}]\nset y2tics nomirror out scale 0.5 font ',9'\n", number(colours.low),
                           number(colours.high));
+  if (colours.logarithmic) settings += "set logscale y2\n";
   if (!colours.label.empty()) upright(colours.label, box.left + box.width + 68, box.top + 0.5 * box.height, 10);
   plot(box, settings, "plot $bar matrix using 1:2:3 with image");
 }

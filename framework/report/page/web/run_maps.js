@@ -110,6 +110,28 @@ function mapPanels(data, maps) {
   return panels;
 }
 
+/// Colours for standard deviations of the height, centimetres, as in the figures: by ratios if the largest is more than
+/// five times the least, or all that was touched would look alike beside what was not.
+function deviationColours(lines, [least, most]) {
+  const bar = { title: { text: "standard deviation [cm]", side: "right" }, thickness: 12, len: 0.8 };
+  const floor = 1e-4;
+  const [low, high] = [Math.max(least, floor), Math.max(most, floor)];
+  if (high <= 5 * low) return { surfacecolor: lines, cmin: 0, cmax: high, colorbar: bar };
+  const ticks = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power) {
+    for (const digit of [1, 2, 5]) {
+      const value = digit * 10 ** power;
+      if (value >= low && value <= high) ticks.push(value);
+    }
+  }
+  return {
+    surfacecolor: lines.map((line) => line.map((value) => Math.log10(Math.max(value, floor)))),
+    cmin: Math.log10(low),
+    cmax: Math.log10(high),
+    colorbar: { ...bar, tickvals: ticks.map(Math.log10), ticktext: ticks.map((value) => shown(value, 1)) },
+  };
+}
+
 const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
 
 /// The whole area, centimetres equally long in both directions.
@@ -173,12 +195,10 @@ class SurfaceView {
       x: this.x,
       y: this.y,
       z: this.heights[frame],
-      surfacecolor: this.deviations[frame],
-      cmin: 0,
-      cmax: extent([this.deviations[frame]])[1],  // of this moment: a fit may change it a hundredfold
+      ...deviationColours(this.deviations[frame], extent([this.deviations[frame]])),  // a fit may change them a hundredfold
       colorscale: kUnknown,
-      colorbar: { title: { text: "standard deviation [cm]", side: "right" }, thickness: 12, len: 0.8 },
-      hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{surfacecolor:.2f} cm<extra></extra>",
+      customdata: this.deviations[frame],
+      hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{customdata:.2f} cm<extra></extra>",
     };
     const { on, off } = tapsUntil(this.data.taps, moment.taps);
     const lift = this.lift();
