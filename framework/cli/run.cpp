@@ -13,7 +13,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <string>
 
 namespace palpate::cli {
 namespace {
@@ -50,6 +52,20 @@ void refuse_axes(const std::vector<Override>& overrides, const std::vector<std::
   }
 }
 
+/// The models that taps will be chosen from, with who reads them; in comments, as what is printed is a config.
+void print_models(const Program& program, const ResolvedConfig& config) {
+  try {
+    std::map<std::string, std::string> models;
+    for (const ModelReader& one : readers_of(program.workshop, config)) {
+      std::string& who = models[one.model];
+      who += (who.empty() ? "" : ", ") + one.who;
+    }
+    for (const auto& [model, who] : models) fmt::print("# {}: {}\n", model, who);
+  } catch (const Error& trouble) {
+    fmt::print("# this config cannot be run: {}\n", trouble.what());
+  }
+}
+
 void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
   const RunStatus status = read_status(directory);
   fmt::print("{}: {} taps of {} with {}, kernel {}, seed {}\n", config.options.name, config.options.taps,
@@ -82,6 +98,7 @@ int run(Program& program, const RunArguments& arguments) {
       print_origins(program.composer.groups(), config);
     } else {
       fmt::print("{}", to_yaml(config.tree));
+      print_models(program, config);
     }
     return kDone;
   }

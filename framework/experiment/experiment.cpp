@@ -13,6 +13,7 @@ namespace palpate {
 void Experiment::run(Journal& journal, int most_taps) {
   budget_ = std::min<std::int64_t>(options_.taps, most_taps);
   for (;;) {
+    belief_.update();
     show_belief();
     if (std::optional<std::string> reason = stop_reason()) return stop(*reason);
     std::optional<TapRecord> tap = choose_next();
@@ -35,18 +36,23 @@ std::optional<TapRecord> Experiment::choose_next() {
     if (tap.candidate < 0) return std::nullopt;
   }
   tap.target = candidates_.target(tap.candidate);
-  if (backend_->wants_prediction()) tap.predicted = predict(tap.candidate);
+  if (backend_->wants_prediction()) {
+    ask(Quantity::height);
+    tap.predicted = predict(tap.candidate);
+  }
   describe_state(tap);
   return tap;
 }
 
 void Experiment::choose_by_score(TapRecord& tap) {
   const PhaseClock::Scope acquire(clock_, Phase::acquire);
+  ask_for_strategy();
   Pick picked = pick_best();
   tap.source = Source::acquisition;
   if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
     tap.source = Source::fallback;
     tap.why = *picked.flat;
+    ask(kFallbackReads);
     picked = chooser_.pick(VectorScores(belief_.uncertainty()), allowed_, 1.0, options_.tie_tolerance);
   }
   tap.candidate = picked.candidate;
@@ -67,18 +73,18 @@ bool Experiment::perform(TapRecord& tap) {
   return true;
 }
 
-std::optional<std::string> Experiment::stop_reason() const {
+std::optional<std::string> Experiment::stop_reason() {
   if (stop_wished()) return kStoppedByUser;
   if (result_.taps >= budget_) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";
-  if (stop.max_standard_deviation && !starting() &&
+  if (starting()) return std::nullopt;
+  ask_for_strategy();
+  if (stop.max_standard_deviation &&
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
   }
-  if (stop.expected_rmse && !starting() && good_enough(forecaster_->forecast(belief_), *stop.expected_rmse)) {
-    return "expected_rmse";
-  }
+  if (stop.expected_rmse && good_enough(*forecast(), *stop.expected_rmse)) return "expected_rmse";
   return std::nullopt;
 }
 

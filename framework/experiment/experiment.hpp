@@ -43,7 +43,7 @@ class Experiment {
   /// What was counted so far, without errors: builds and computes nothing.
   const RunResult& counts() const { return result_; }
 
-  /// The result as of now; computes what only the record needs, building models that the loop did not.
+  /// The result as of now. Where the truth is known, with the errors of the final models, whoever has read them.
   RunResult result();
 
   /// Chooses the next tap as run() does, whatever the budget, and describes the state that it is chosen from; makes
@@ -54,18 +54,30 @@ class Experiment {
   Preview preview(const TapRecord& tap) const;
 
   /// What the acquisition gives each candidate as of now: asked again, which changes nothing (its law).
-  Eigen::VectorXd scores() const;
+  Eigen::VectorXd scores();
+
+  /// Every reader of every model, before any is built. What is recorded of a tap are the models that these have asked
+  /// for until then.
+  std::vector<ModelReader> readers() const;
+
+  /// Has the belief hold these quantities from now on, and choose_next() describe them, as if the strategy read them.
+  void ask(Quantities quantities);
+
+  /// The errors as of now, none where no truth is known. For people who watch: what is recorded stays the same.
+  Errors errors();
 
   const Candidates& candidates() const { return candidates_; }
   const Scene& scene() const { return *scene_; }
   const Backend& backend() const { return *backend_; }
   const TapBelief& belief() const { return belief_; }
+  /// The quantities of the belief that belong to the record.
+  Quantities recorded() const { return belief_.known(asked_); }
   PhaseClock& clock() { return clock_; }
   /// The scene at the candidates; null where the backend taps another world.
   const Truth* truth();
 
  private:
-  std::optional<std::string> stop_reason() const;
+  std::optional<std::string> stop_reason();
   bool stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
   void stop(const std::string& reason) { result_.stop_reason = reason; }
   /// Whether the next tap is the initial design's. A search is over with the first hit, or when it has looked
@@ -84,6 +96,13 @@ class Experiment {
   /// Throws Error where the backend cannot go on, by its own word or because one tap after the other came to nothing.
   void check_backend(const Contact& last);
   void show_belief();
+  static constexpr Quantities kFallbackReads = Quantity::uncertainty;
+  /// What the strategy and the rules that end a run read, from the first tap on that they choose.
+  Quantities strategy_reads() const;
+  void ask_for_strategy() { ask(strategy_reads()); }
+  /// What the surface is made of.
+  Quantities surface_reads() const;
+  std::optional<Forecast> forecast();
   void count(const Contact& contact, Source source);
 
   ExperimentOptions options_;
@@ -94,6 +113,7 @@ class Experiment {
   std::optional<Search> search_;  ///< the other one
   PhaseClock clock_;
   TapBelief belief_;
+  Quantities asked_;                      ///< by those whose models are recorded
   std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
   std::shared_ptr<Acquisition> acquisition_;
   std::shared_ptr<Backend> backend_;

@@ -56,6 +56,8 @@ class Forecaster {
 
   /// `belief` knows of the same contacts; builds the models that the reconstruction needs.
   Forecast forecast(const TapBelief& belief) const;
+  /// Contacts on an object so far; without one it forecasts nothing, and reads nothing of the belief.
+  int hits() const { return hits_; }
 
  private:
   double squares_ = 0.0;  ///< of the heights

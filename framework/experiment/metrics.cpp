@@ -47,10 +47,10 @@ Eigen::VectorXd reconstruction(const TapBelief& belief) {
   return (on.array() >= 0.5).select(belief.height_mean(), Eigen::VectorXd::Constant(on.size(), belief.desk()));
 }
 
-Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
+Errors errors_of(const TapBelief& belief, Quantities known, const Truth& truth) {
   Errors out;
-  const bool knows_outline = belief.outline_known();
-  if (belief.surface_process()) {
+  const bool knows_outline = known.has(Quantity::probability);
+  if (known.has(Quantity::height)) {
     out.rmse_height = rmse(belief.height_mean(), truth, true);
     if (!belief.two_part()) {  // the reconstruction is the height mean
       out.rmse = rmse(belief.height_mean(), truth, false);
@@ -63,12 +63,6 @@ Errors errors_so_far(const TapBelief& belief, const Truth& truth) {
   }
   if (knows_outline) out.footprint_iou = footprint_iou(belief.probability(), truth);
   return out;
-}
-
-Errors final_errors(const TapBelief& belief, const Truth& truth) {
-  belief.height_mean();
-  belief.probability();
-  return errors_so_far(belief, truth);
 }
 
 Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped) {

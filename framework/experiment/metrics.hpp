@@ -33,11 +33,9 @@ std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool 
 /// Intersection over union of the cells where `probability` >= 1/2 with those on an object.
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth);
 
-/// The errors so far of the models that the loop has built; builds none.
-Errors errors_so_far(const TapBelief& belief, const Truth& truth);
-
-/// The errors of the final models; builds what is missing.
-Errors final_errors(const TapBelief& belief, const Truth& truth);
+/// The errors of what is `known` of the belief, which must be there: without the outline no surface of two parts has
+/// any, without the height none has.
+Errors errors_of(const TapBelief& belief, Quantities known, const Truth& truth);
 
 /// Does the height model know what it does not know? Over the cells on an object that were not tapped, noise included.
 struct Calibration {

@@ -17,11 +17,13 @@ Candidates make_candidates(const CandidateOptions& options, const Area& area) {
   return grid_by_count(area, static_cast<int>(*options.count));
 }
 
+constexpr Quantities kErrorsRead = Quantity::height | Quantity::probability;
+
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 
-ProcessState state_of(const TapBelief::Quantity& quantity) {
-  const Process& process = *quantity.process;
-  const int output = quantity.output;
+ProcessState state_of(const TapBelief::Output& one) {
+  const Process& process = *one.process;
+  const int output = one.output;
   ProcessState out;
   out.kernel = process.kernel().parameters();
   out.settings = process.settings(output);
@@ -31,7 +33,7 @@ ProcessState state_of(const TapBelief::Quantity& quantity) {
   out.engine = process.engine();
   out.engine_reason = process.engine_reason();
   out.error_bound = process.error_bound();
-  if (quantity.last_fit != nullptr) out.fit = *quantity.last_fit;
+  if (one.last_fit != nullptr) out.fit = *one.last_fit;
   return out;
 }
 
@@ -59,7 +61,60 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
 }
 
 void Experiment::resume(const std::vector<PastTap>& past) {
-  for (const PastTap& tap : past) absorb(tap.target, tap.contact, tap.source);
+  for (const PastTap& tap : past) {
+    absorb(tap.target, tap.contact, tap.source);
+    // Who chose it has read for it.
+    if (backend_->wants_prediction()) asked_ = asked_ | Quantity::height;
+    if (tap.source != Source::initial) asked_ = asked_ | strategy_reads();
+    if (tap.source == Source::fallback) asked_ = asked_ | kFallbackReads;
+  }
+  ask(asked_);
+}
+
+void Experiment::ask(Quantities quantities) {
+  asked_ = asked_ | quantities;
+  belief_.ask(quantities);
+}
+
+Quantities Experiment::surface_reads() const {
+  return belief_.two_part() ? Quantity::height | Quantity::probability : Quantity::height;
+}
+
+Quantities Experiment::strategy_reads() const {
+  Quantities out = acquisition_->reads();
+  if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
+  if (options_.stop.expected_rmse) out = out | surface_reads();
+  return out;
+}
+
+std::vector<ModelReader> Experiment::readers() const {
+  std::vector<ModelReader> out;
+  const auto add = [&](Quantities reads, const std::string& who) {
+    for (const std::string& model : belief_.models_of(reads)) out.push_back({model, who});
+  };
+  add(acquisition_->reads(), "acquisition " + options_.acquisition.type);
+  if (options_.fallback == ExperimentOptions::Fallback::uncertainty) {
+    add(kFallbackReads, "fallback uncertainty, from its first use on");
+  }
+  if (options_.stop.max_standard_deviation) add(Quantity::uncertainty, "stop.max_standard_deviation");
+  if (options_.stop.expected_rmse) add(surface_reads(), "stop.expected_rmse");
+  Quantities backend = backend_->reads();
+  if (backend_->wants_prediction()) backend = backend | Quantity::height;
+  add(backend, "backend " + options_.backend.type);
+  return out;
+}
+
+std::optional<Forecast> Experiment::forecast() {
+  if (!forecaster_) return std::nullopt;
+  if (forecaster_->hits() > 0) ask(surface_reads());
+  return forecaster_->forecast(belief_);
+}
+
+Errors Experiment::errors() {
+  const Truth* known = truth();
+  if (known == nullptr) return {};
+  belief_.ask(kErrorsRead);
+  return errors_of(belief_, kErrorsRead, *known);
 }
 
 void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
@@ -74,7 +129,8 @@ void Experiment::absorb(const Target& target, const Contact& contact, Source sou
   if (!touched || options_.repeat == ExperimentOptions::Repeat::forbid) allowed_[candidate] = false;
 }
 
-Eigen::VectorXd Experiment::scores() const {
+Eigen::VectorXd Experiment::scores() {
+  ask_for_strategy();
   Eigen::VectorXd out(candidates_.size());
   acquisition_->score(belief_, out);
   return out;
@@ -107,7 +163,7 @@ TapRequest Experiment::request_of(const TapRecord& tap) const {
 
 Preview Experiment::preview(const TapRecord& tap) const {
   Preview out{tap.predicted, backend_->describe(request_of(tap))};
-  if (!out.expected && belief_.surface_process()) out.expected = predict(tap.candidate);
+  if (!out.expected && recorded().has(Quantity::height)) out.expected = predict(tap.candidate);
   return out;
 }
 
@@ -136,7 +192,9 @@ void Experiment::check_backend(const Contact& last) {
 
 void Experiment::show_belief() {
   const PhaseClock::Scope log(clock_, Phase::log);
-  if (result_.taps > 0) backend_->show(belief_);
+  if (result_.taps == 0) return;
+  ask(backend_->reads());
+  backend_->show(belief_);
 }
 
 void Experiment::count(const Contact& contact, Source source) {
@@ -161,46 +219,47 @@ const Truth* Experiment::truth() {
 
 void Experiment::describe_state(TapRecord& tap) {
   const PhaseClock::Scope log(clock_, Phase::log);
-  if (forecaster_) tap.forecast = forecaster_->forecast(belief_);
-  if (const TapBelief::Quantity height = belief_.height_process()) {
+  tap.forecast = forecast();
+  const Quantities known = recorded();
+  if (known.has(Quantity::uncertainty)) {
     tap.uncertainty = belief_.uncertainty()(tap.candidate);
     const Eigen::VectorXd& variance = belief_.all_taps_variance();
     tap.max_standard_deviation = std::sqrt(variance.maxCoeff());
     tap.mean_standard_deviation = variance.cwiseSqrt().mean();
-    tap.height_process = state_of(height);
+    tap.height_process = state_of(belief_.height_process());
   }
-  if (belief_.two_part()) {
-    if (const TapBelief::Quantity surface = belief_.surface_process()) tap.surface_process = state_of(surface);
-  }
-  if (const TapBelief::Quantity weight = belief_.weight_process()) {
+  if (belief_.two_part() && known.has(Quantity::height)) tap.surface_process = state_of(belief_.surface_process());
+  if (known.has(Quantity::weight)) {
     tap.weight = belief_.weight()(tap.candidate);
     tap.min_weight = belief_.weight_mean().minCoeff();
     tap.max_weight = belief_.weight_mean().maxCoeff();
-    tap.weight_process = state_of(weight);
+    tap.weight_process = state_of(belief_.weight_process());
   }
-  if (const Footprint* footprint = belief_.footprint()) {
+  if (known.has(Quantity::probability) && !belief_.footprint_is_weight()) {
+    const Footprint* footprint = belief_.footprint();
     tap.probability = belief_.probability()(tap.candidate);
     tap.footprint = FootprintState{footprint->numbers(), footprint->remark()};
   }
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
-  if (const Truth* known = truth()) {
-    tap.true_on_surface = known->on(tap.candidate);
-    tap.errors = errors_so_far(belief_, *known);
+  if (const Truth* real = truth()) {
+    tap.true_on_surface = real->on(tap.candidate);
+    tap.errors = errors_of(belief_, known, *real);
   }
 }
 
 RunResult Experiment::result() {
   RunResult out = result_;
-  if (forecaster_) out.forecast = forecaster_->forecast(belief_);
+  belief_.update();
+  out.forecast = forecast();
   out.interrupted = out.stop_reason == kStoppedByUser;
   if (const Truth* known = truth()) {
-    out.errors = final_errors(belief_, *known);
+    out.errors = errors();
     out.calibration = calibration(belief_, *known, tapped_);
   }
-  const auto take = [&](const TapBelief::Quantity& quantity, std::optional<ProcessState>& state) {
-    if (!quantity) return;
-    const Process& process = *quantity.process;
-    state = state_of(quantity);
+  const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {
+    if (!one) return;
+    const Process& process = *one.process;
+    state = state_of(one);
     out.jitter_max = std::max(out.jitter_max, state->jitter);
     out.interventions["jitter"] += process.jitter_raised();
     out.interventions["pivoted"] += process.pivoted();

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <string>
 
 namespace palpate {
@@ -90,6 +91,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     heights_.outputs.push_back(label);
   }
   footprint_ = context.create<Footprint>(options.footprint);
+  footprint_type_ = options.footprint.type;
   if (footprint_->is_weight()) footprint_.reset();
   if (two_part_) {
     object_ =
@@ -117,30 +119,87 @@ void TapBelief::observe(const Target& place, const Contact& contact, bool initia
   heights_.data.push_back(datum);
   if (!joined_) labels_.data.push_back(datum);
   if (on) object_.data.push_back(datum);
+  current_ = false;
 }
 
-Process& TapBelief::ready(Model& model, int output) const {
+Quantities TapBelief::known(Quantities asked) const {
+  const bool of_weight = asked.has(Quantity::weight) || (asked.has(Quantity::probability) && !footprint_);
+  const bool of_heights = asked.has(Quantity::uncertainty) || (asked.has(Quantity::height) && !two_part_) ||
+                          (of_weight && joined_);
+  Quantities out = asked;
+  if (of_weight) out = out | Quantity::weight;
+  if (of_weight && !footprint_) out = out | Quantity::probability;
+  if (of_heights) out = out | Quantity::uncertainty;
+  if (of_heights && !two_part_) out = out | Quantity::height;
+  return out;
+}
+
+std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
+  const bool of_weight = quantities.has(Quantity::weight) || (quantities.has(Quantity::probability) && !footprint_);
+  std::vector<std::string> out;
+  if (quantities.has(Quantity::uncertainty) || (quantities.has(Quantity::height) && !two_part_)) {
+    out.emplace_back("height process");
+  }
+  if (quantities.has(Quantity::height) && two_part_) out.emplace_back("surface process");
+  if (of_weight) out.emplace_back("weight process");
+  if (quantities.has(Quantity::probability) && footprint_) out.push_back("footprint " + footprint_type_);
+  return out;
+}
+
+void TapBelief::ask(Quantities wanted) {
+  const Quantities all = known(wanted);
   const PhaseClock::Scope infer(clock_, Phase::infer);
+  if (all.has(Quantity::uncertainty)) show(heights_, 0);
+  if (all.has(Quantity::weight)) show(joined_ ? heights_ : labels_, label_output());
+  if (two_part_ && all.has(Quantity::height)) show(object_, 0);
+  if (footprint_ && all.has(Quantity::probability) && !footprint_asked_) {
+    footprint_asked_ = true;
+    current_ = false;
+  }
+  update();
+}
+
+void TapBelief::show(Model& model, int output) {
   if (!model.process) {
     PosteriorSettings posterior = posterior_;
     if (&model != &heights_) posterior.score = simd::Score::none;
     model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior);
+  } else if (model.process->shown() > output) {
+    return;
   }
+  model.process->show(output + 1);
+  model.stale = true;
+  current_ = false;
+}
+
+void TapBelief::update() {
+  if (current_) return;
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  for (Model* model : {&heights_, &labels_, &object_}) {
+    if (model->process) take_in(*model);
+  }
+  if (heights_.stale) map_heights();
+  if (labels_.stale) map_labels();
+  if (object_.stale) map_object();
+  if (footprint_asked_) map_footprint();
+  current_ = true;
+}
+
+void TapBelief::take_in(Model& model) {
+  // One by one, fits included: a process that is asked for late, or after a resume, goes through the very states that
+  // one which was there from the first tap went through.
   Process& process = *model.process;
-  process.show(output + 1);
-  // One by one, fits included: a process that is read late, or after a resume, goes through the very states that one
-  // read at every tap went through.
   while (process.size() < static_cast<int>(model.data.size())) {
     const Datum& datum = model.data[static_cast<std::size_t>(process.size())];
     const std::array<double, 2> values{model.of_labels ? datum.label : datum.height, datum.label};
     process.add(datum.place,
                 Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(model.outputs.size())));
     if (model.fitting->due(process.size())) fit(model);
+    model.stale = true;
   }
-  return process;
 }
 
-void TapBelief::fit(Model& model) const {
+void TapBelief::fit(Model& model) {
   const PhaseClock::Scope fit(clock_, Phase::fit);
   const int taps = model.process->size();
   Random random = context_.random(model.name, static_cast<std::uint64_t>(taps));
@@ -149,9 +208,9 @@ void TapBelief::fit(Model& model) const {
   if (model.fit.failed) ++failed_fits_;
 }
 
-TapBelief::Quantity TapBelief::quantity(Model& model, int output) const {
+TapBelief::Output TapBelief::output(const Model& model, int output) {
   if (!model.process || model.process->shown() <= output) return {};
-  const Process& process = ready(model, output);
+  const Process& process = *model.process;
   const bool fitted = model.fit_at > 0 && model.fit_at == process.size();
   return {&process, output, fitted ? &model.fit : nullptr};
 }
@@ -165,85 +224,58 @@ void TapBelief::form(Product product) {
 
 const Scores* TapBelief::formed() const {
   if (posterior_.score == simd::Score::none) return nullptr;
-  return &ready(heights_, posterior_.score == simd::Score::variance ? 0 : 1);
+  return output(heights_, posterior_.score == simd::Score::variance ? 0 : 1).process;
 }
 
-template <class Read>
-const Eigen::VectorXd& TapBelief::read(Map& map, Model& model, int output, Read read) const {
-  const int known = static_cast<int>(model.data.size());
-  if (map.taps != known) {
-    const Process& process = ready(model, output);
-    const PhaseClock::Scope infer(clock_, Phase::infer);
-    map.values.resize(candidates_.size());
-    read(process, map.values);
-    map.taps = known;
+namespace {
+
+/// The values of a map, of its right size.
+Eigen::VectorXd& room(std::optional<Eigen::VectorXd>& map, int size) {
+  if (!map) map.emplace(size);
+  return *map;
+}
+
+}  // namespace
+
+void TapBelief::map_heights() {
+  const Process& process = *heights_.process;
+  const int size = candidates_.size();
+  process.read_relative_variance(room(uncertainty_, size));
+  process.read_variance(0, room(variance_, size));
+  if (!two_part_) {
+    process.read_mean(0, room(height_mean_, size));
+    height_mean_->array() += desk_;
   }
-  return map.values;
+  if (joined_ && process.shown() > label_output()) map_labels();
+  heights_.stale = false;
 }
 
-const Eigen::VectorXd& TapBelief::uncertainty() const {
-  return read(uncertainty_map_, heights_, 0,
-              [](const Process& process, Eigen::VectorXd& out) { process.read_relative_variance(out); });
+void TapBelief::map_labels() {
+  labels().process->read_mean(label_output(), room(weight_mean_, candidates_.size()));
+  const auto clipped = weight_mean_->cwiseMax(0.0).cwiseMin(1.0);
+  if (clip_) weight_ = clipped;
+  if (!footprint_) probability_ = clipped;
+  labels_.stale = false;
 }
 
-const Eigen::VectorXd& TapBelief::weight_mean() const {
-  return read(weight_mean_map_, labels(), label_output(),
-              [this](const Process& process, Eigen::VectorXd& out) { process.read_mean(label_output(), out); });
+void TapBelief::map_object() {
+  const Process& process = *object_.process;
+  process.read_mean(0, room(height_mean_, candidates_.size()));
+  height_mean_->array() += desk_;
+  process.read_variance(0, room(object_variance_, candidates_.size()));
+  object_.stale = false;
 }
 
-const Eigen::VectorXd& TapBelief::weight() const {
-  if (!clip_) return weight_mean();
-  return read(weight_map_, labels(), label_output(), [this](const Process& process, Eigen::VectorXd& out) {
-    process.read_mean(label_output(), out);
-    out = out.cwiseMax(0.0).cwiseMin(1.0);
-  });
-}
-
-Footprint& TapBelief::ready_footprint() const {
+void TapBelief::map_footprint() {
+  if (probability_ && touches_taken_ == touches_.size()) return;
   for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
-  return *footprint_;
+  footprint_->probability(candidates_.points, room(probability_, candidates_.size()));
 }
 
-const Footprint* TapBelief::footprint() const {
-  if (!footprint_read_) return nullptr;
-  const PhaseClock::Scope infer(clock_, Phase::infer);
-  return &ready_footprint();
-}
-
-const Eigen::VectorXd& TapBelief::probability() const {
-  if (!footprint_) {
-    return read(probability_map_, labels(), label_output(), [this](const Process& process, Eigen::VectorXd& out) {
-      process.read_mean(label_output(), out);
-      out = out.cwiseMax(0.0).cwiseMin(1.0);
-    });
-  }
-  const int known = static_cast<int>(touches_.size());
-  if (probability_map_.taps != known) {
-    const PhaseClock::Scope infer(clock_, Phase::infer);
-    probability_map_.values.resize(candidates_.size());
-    ready_footprint().probability(candidates_.points, probability_map_.values);
-    probability_map_.taps = known;
-    footprint_read_ = true;
-  }
-  return probability_map_.values;
-}
-
-const Eigen::VectorXd& TapBelief::height_mean() const {
-  return read(mean_map_, surface(), 0, [this](const Process& process, Eigen::VectorXd& out) {
-    process.read_mean(0, out);
-    out.array() += desk_;
-  });
-}
-
-const Eigen::VectorXd& TapBelief::all_taps_variance() const {
-  return read(all_taps_map_, heights_, 0,
-              [](const Process& process, Eigen::VectorXd& out) { process.read_variance(0, out); });
-}
-
-const Eigen::VectorXd& TapBelief::height_variance() const {
-  if (!two_part_) return all_taps_variance();
-  return read(variance_map_, surface(), 0,
-              [](const Process& process, Eigen::VectorXd& out) { process.read_variance(0, out); });
+const Eigen::VectorXd& TapBelief::kept(const Map& map) const {
+  if (!map) throw std::logic_error("a map of the belief is read for which nobody asked");
+  if (!current_) throw std::logic_error("a map of the belief is read that is older than the last tap");
+  return *map;
 }
 
 double TapBelief::height_noise() const {

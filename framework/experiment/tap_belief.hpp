@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the taps so far say: the height process and the weight process over the candidates, the footprint, and of
-// `surface: two_part` the process of the heights on an object; each built when it is first read and never before. Where
+// `surface: two_part` the process of the heights on an object; each built when it is asked for and never before. Where
 // heights and labels have the same kernel and the same ratio of noise to signal they are two outputs of one process,
 // with one factorisation.
 #pragma once
@@ -23,59 +23,73 @@ namespace palpate {
 /// The loops that a config's instruction_set means on this processor.
 const simd::Table& loops_of(const ExperimentOptions& options);
 
-/// The belief behind the acquisitions, and what the metrics and the record want beyond it.
+/// The belief behind the acquisitions, and what the metrics and the record want beyond it. A plain value: taps are
+/// noted by observe(), quantities asked for by ask(), the maps brought up to date by update(); what reads, computes
+/// nothing. A map that nobody asked for, or that update() has not seen the last tap of, throws std::logic_error.
 class TapBelief final : public Belief {
  public:
   /// `candidates`, `context` and `clock` must outlive the belief.
   TapBelief(const ExperimentOptions& options, const Candidates& candidates, const Context& context, PhaseClock& clock);
 
-  /// Takes a tap, `initial` if the initial design chose it, to the record of the belief; a process absorbs it when next
-  /// read. Only contacts reach the models: heights above the desk, and labels 1 or 0 by the scene's rule.
+  /// Notes a tap, `initial` if the initial design chose it. Only contacts reach the models: heights above the desk, and
+  /// labels 1 or 0 by the scene's rule.
   void observe(const Target& place, const Contact& contact, bool initial = false);
+
+  /// From now on these quantities are kept: builds the models that they lack, with all taps so far, and updates. Models
+  /// go through the very states that they would have had, had they been there from the first tap.
+  void ask(Quantities wanted);
+
+  /// Has the models take in the taps noted since, one by one, fits included, and their maps follow.
+  void update();
+
+  /// The models behind some quantities, by their names: "height process", "footprint shape".
+  std::vector<std::string> models_of(Quantities quantities) const;
+
+  /// What can be read where `asked` was asked for: also what comes from the same models.
+  Quantities known(Quantities asked) const;
 
   // Belief, for acquisitions.
   const Points& candidates() const override { return candidates_.points; }
   Area area() const override { return context_.scene.area(); }
   int taps() const override { return taps_; }
   int initial_taps() const override { return initial_taps_; }
-  const Eigen::VectorXd& uncertainty() const override;
-  const Eigen::VectorXd& weight() const override;
-  const Eigen::VectorXd& probability() const override;
-  const Eigen::VectorXd& height_mean() const override;
-  const Eigen::VectorXd& height_variance() const override;
+  const Eigen::VectorXd& uncertainty() const override { return kept(uncertainty_); }
+  const Eigen::VectorXd& weight() const override { return kept(clip_ ? weight_ : weight_mean_); }
+  const Eigen::VectorXd& probability() const override { return kept(probability_); }
+  const Eigen::VectorXd& height_mean() const override { return kept(height_mean_); }
+  const Eigen::VectorXd& height_variance() const override { return kept(two_part_ ? object_variance_ : variance_); }
 
   /// Variance of the height process, all taps seen, square metres: height_variance() unless the surface is two_part.
-  const Eigen::VectorXd& all_taps_variance() const;
+  /// There where the uncertainty is.
+  const Eigen::VectorXd& all_taps_variance() const { return kept(variance_); }
 
   /// The mean of the weight process as it comes, whatever `weight.clip` says.
-  const Eigen::VectorXd& weight_mean() const;
+  const Eigen::VectorXd& weight_mean() const { return kept(weight_mean_); }
 
-  /// Says, before the first tap, that scores are such a product: then formed() has them, with bounds that come out of
+  /// Says, before the first ask(), that scores are such a product: then formed() has them, with bounds that come out of
   /// the update of the maps, valid until the next tap. It is null for other scores, and where heights and labels have
   /// no common process.
   void form(Product product);
   const Scores* formed() const;
 
-  /// What the belief knows of one quantity.
-  struct Quantity {
+  /// One output of a process.
+  struct Output {
     const Process* process = nullptr;
     int output = 0;
     const FitSummary* last_fit = nullptr;  ///< the fit after the latest tap; null if none was due then
     explicit operator bool() const { return process != nullptr; }
   };
-  /// The processes as far as they were built, up to date with all taps; null if nothing has read them. u comes from
-  /// the height process, height_mean() and height_variance() from the surface process: the same one for
-  /// `surface: single`, that of the taps on an object for `two_part`.
-  Quantity height_process() const { return quantity(heights_, 0); }
-  Quantity weight_process() const { return quantity(labels(), label_output()); }
-  Quantity surface_process() const { return quantity(surface(), 0); }
+  /// The processes as far as they were built, null if nothing has asked for them. u comes from the height process,
+  /// height_mean() and height_variance() from the surface process: the same one for `surface: single`, that of the taps
+  /// on an object for `two_part`.
+  Output height_process() const { return output(heights_, 0); }
+  Output weight_process() const { return output(labels(), label_output()); }
+  Output surface_process() const { return output(surface(), 0); }
   bool two_part() const { return two_part_; }
-  /// Whether the outline is known without building anything: the probability was read, or the weight that it is.
-  bool outline_known() const { return footprint_ ? footprint_read_ : static_cast<bool>(weight_process()); }
   /// Whether the probability is the weight, clipped: then what is shown of the outline is w, else p.
   bool footprint_is_weight() const { return !footprint_; }
-  /// The footprint, up to date with all taps, if it is not the weight and was read; else null.
-  const Footprint* footprint() const;
+  /// The footprint, if it is not the weight and was asked for; else null.
+  const Footprint* footprint() const { return footprint_asked_ ? footprint_.get() : nullptr; }
 
   /// Fits that found nothing better and kept the old values.
   int failed_fits() const { return failed_fits_; }
@@ -92,12 +106,8 @@ class TapBelief final : public Belief {
     double height;
     double label;
   };
-  /// A map that is computed when first read after a change.
-  struct Map {
-    Eigen::VectorXd values;
-    int taps = -1;  ///< contacts that it knows of
-  };
-  /// A process and all that it is made from; built when first read.
+  using Map = std::optional<Eigen::VectorXd>;
+  /// A process and all that it is made from; built when it is asked for.
   struct Model {
     const char* name = "";
     std::shared_ptr<Kernel> kernel;
@@ -106,6 +116,7 @@ class TapBelief final : public Belief {
     bool of_labels = false;  ///< the first output is the labels
     std::vector<Datum> data;
     std::unique_ptr<Process> process;
+    bool stale = false;  ///< its maps are older than the process
     FitSummary fit;
     int fit_at = 0;  ///< taps that the process had at its latest fit
   };
@@ -113,15 +124,18 @@ class TapBelief final : public Belief {
   Model make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
                    const ProcessSettings& settings) const;
   bool equal_for_good(const ExperimentOptions& options) const;
-  Model& labels() const { return joined_ ? heights_ : labels_; }
+  const Model& labels() const { return joined_ ? heights_ : labels_; }
   int label_output() const { return joined_ ? 1 : 0; }
-  Model& surface() const { return two_part_ ? object_ : heights_; }
-  Quantity quantity(Model& model, int output) const;
-  Process& ready(Model& model, int output) const;
-  void fit(Model& model) const;
-  Footprint& ready_footprint() const;
-  template <class Read>
-  const Eigen::VectorXd& read(Map& map, Model& model, int output, Read read) const;
+  const Model& surface() const { return two_part_ ? object_ : heights_; }
+  static Output output(const Model& model, int output);
+  void show(Model& model, int output);
+  void take_in(Model& model);
+  void fit(Model& model);
+  void map_heights();
+  void map_labels();
+  void map_object();
+  void map_footprint();
+  const Eigen::VectorXd& kept(const Map& map) const;
 
   const Candidates& candidates_;
   const Context& context_;
@@ -133,17 +147,17 @@ class TapBelief final : public Belief {
   bool joined_ = false;  ///< heights and labels are two outputs of one process
   int taps_ = 0;
   int initial_taps_ = 0;
-  // Lazily filled by const readers: a belief is used by one thread.
-  mutable Model heights_;
-  mutable Model labels_;                  ///< unless joined
-  mutable Model object_;                  ///< heights of the taps on an object
+  bool current_ = true;  ///< update() has seen all taps
+  Model heights_;
+  Model labels_;                          ///< unless joined
+  Model object_;                          ///< heights of the taps on an object
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
-  std::vector<Touch> touches_;            ///< of the footprint
-  mutable std::size_t touches_taken_ = 0;
-  mutable bool footprint_read_ = false;
-  mutable int failed_fits_ = 0;
-  mutable Map uncertainty_map_, weight_map_, weight_mean_map_, probability_map_, mean_map_, variance_map_,
-      all_taps_map_;
+  std::string footprint_type_;
+  bool footprint_asked_ = false;
+  std::vector<Touch> touches_;  ///< of the footprint
+  std::size_t touches_taken_ = 0;
+  int failed_fits_ = 0;
+  Map uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
 };
 
 }  // namespace palpate

@@ -99,6 +99,12 @@ struct Preview {
   std::vector<std::string> motion;     ///< what the backend says that it would do, in lines
 };
 
+/// A model and who reads it: "weight process" and "acquisition weighted".
+struct ModelReader {
+  std::string model;
+  std::string who;
+};
+
 /// Learns of every tap, in time.
 class Journal {
  public:
@@ -108,6 +114,9 @@ class Journal {
   virtual bool permits(const TapRecord& /*tap*/) { return true; }
   /// The tap is chosen; nothing has moved.
   virtual void announce(const TapRecord& tap) = 0;
+  /// Whether taps are told with the errors of the state that they were chosen from, however little the strategy reads;
+  /// else with those that the record has.
+  virtual bool follows_errors() const { return false; }
   /// The tap is over. `seconds` is the time since the last tap, by phase.
   virtual void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) = 0;
 };

@@ -39,7 +39,7 @@ bool Factor::append(const VectorView& covariance, double diagonal) {
   return true;
 }
 
-void Factor::inverse_row(int i, VectorOut out) const {
+void Factor::inverse_row(int i, VectorOut out) {
   // c^T L = e_i^T, thus L^T c = e_i: the leading block of L^T, and the row's own entry 1 / L_ii.
   const double last = 1.0 / pivot(i);
   double* const c = scratch_.data();

@@ -36,7 +36,7 @@ class Factor {
   double last_pivot() const { return pivot(size_ - 1); }
 
   /// Row i of L^-1, i + 1 values, into `out` of as many. O(i^2).
-  void inverse_row(int i, VectorOut out) const;
+  void inverse_row(int i, VectorOut out);
 
   /// log det K = 2 sum log L_ii.
   double log_determinant() const { return log_determinant_; }
@@ -58,8 +58,8 @@ class Factor {
   const simd::Table* loops_;
   int size_ = 0;
   int capacity_ = 0;
-  simd::Lines<double> rows_;             ///< packed: see table.hpp
-  mutable simd::Lines<double> scratch_;  ///< a vector, aligned
+  simd::Lines<double> rows_;     ///< packed: see table.hpp
+  simd::Lines<double> scratch_;  ///< a vector, aligned
   double log_determinant_ = 0.0;
   Extreme largest_;
   Extreme smallest_;

@@ -14,6 +14,37 @@
 namespace palpate {
 namespace {
 
+/// A belief of which a plugin may read what it said it reads.
+class Declared final : public Belief {
+ public:
+  /// `belief` must outlive it.
+  Declared(const Belief& belief, Quantities reads) : belief_(belief), reads_(reads) {}
+  const Points& candidates() const override { return belief_.candidates(); }
+  Area area() const override { return belief_.area(); }
+  int taps() const override { return belief_.taps(); }
+  int initial_taps() const override { return belief_.initial_taps(); }
+  const Eigen::VectorXd& uncertainty() const override {
+    return declared(Quantity::uncertainty, "the uncertainty u").uncertainty();
+  }
+  const Eigen::VectorXd& weight() const override { return declared(Quantity::weight, "the weight w").weight(); }
+  const Eigen::VectorXd& probability() const override {
+    return declared(Quantity::probability, "the probability p").probability();
+  }
+  const Eigen::VectorXd& height_mean() const override { return declared(Quantity::height, "the height").height_mean(); }
+  const Eigen::VectorXd& height_variance() const override {
+    return declared(Quantity::height, "the height").height_variance();
+  }
+
+ private:
+  const Belief& declared(Quantity one, const char* name) const {
+    if (reads_.has(one)) return belief_;
+    throw Error("", std::string("reads ") + name + ", which its reads() does not name", "add it there", Error::Kind::run);
+  }
+
+  const Belief& belief_;
+  Quantities reads_;
+};
+
 template <class Interface>
 class Named : public Interface {
  public:
@@ -71,8 +102,11 @@ class NamedKernel final : public Named<Kernel> {
 class NamedAcquisition final : public Named<Acquisition> {
  public:
   using Named::Named;
+  Quantities reads() const override {
+    return in_plugin([](const Acquisition& inner) { return inner.reads(); });
+  }
   void score(const Belief& belief, VectorOut out) const override {
-    in_plugin([&](const Acquisition& inner) { inner.score(belief, out); });
+    in_plugin([&](const Acquisition& inner) { inner.score(Declared(belief, inner.reads()), out); });
   }
   Product product() const override {
     return in_plugin([](const Acquisition& inner) { return inner.product(); });
@@ -134,8 +168,11 @@ class NamedBackend final : public Named<Backend> {
   bool wants_prediction() const override {
     return in_plugin([](const Backend& inner) { return inner.wants_prediction(); });
   }
+  Quantities reads() const override {
+    return in_plugin([](const Backend& inner) { return inner.reads(); });
+  }
   void show(const Belief& belief) override {
-    in_plugin([&](Backend& inner) { inner.show(belief); });
+    in_plugin([&](Backend& inner) { inner.show(Declared(belief, inner.reads())); });
   }
   bool scene_is_truth() const override {
     return in_plugin([](const Backend& inner) { return inner.scene_is_truth(); });

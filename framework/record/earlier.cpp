@@ -65,8 +65,6 @@ std::vector<Row> summaries_after(const Workshop& workshop, const Recording& reco
   std::vector<Row> rows;
   for (const int count : taps) {
     playback.advance_to(count);
-    // A run of this budget would have built no more.
-    read_as_recorded(recording.rows[static_cast<std::size_t>(count) - 1], playback.experiment().belief());
     RunResult result = playback.experiment().result();
     result.stop_reason = "tap budget";
     // A kill may have lost lines of the times, which no run depends on.

@@ -31,15 +31,19 @@ class Absent final : public Backend {
 
 }  // namespace
 
-void read_as_recorded(const Row& row, const Belief& belief) {
+std::shared_ptr<Backend> no_backend(bool truth_known) { return std::make_shared<Absent>(truth_known); }
+
+Quantities recorded_quantities(const Row& row) {
   const auto has = [&](const char* field) {
     const Scalar* value = row.find(field);
     return value != nullptr && !std::holds_alternative<std::monostate>(*value);
   };
-  if (has("height_process.signal")) belief.uncertainty();
-  if (has("weight_process.signal")) belief.weight();
-  if (has("surface_process.signal")) belief.height_mean();
-  if (has("p")) belief.probability();
+  Quantities out;
+  if (has("height_process.signal")) out = out | Quantity::uncertainty;
+  if (has("weight_process.signal")) out = out | Quantity::weight;
+  if (has("surface_process.signal")) out = out | Quantity::height;
+  if (has("p")) out = out | Quantity::probability;
+  return out;
 }
 
 bool Recording::truth_known() const {
@@ -69,7 +73,7 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
 Playback::Playback(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
       experiment_(std::make_unique<Experiment>(recording.config.options, workshop.host, workshop.interrupted,
-                                               std::make_shared<Absent>(recording.truth_known()))) {}
+                                               no_backend(recording.truth_known()))) {}
 
 void Playback::advance_to(int taps) {
   const auto begin = recording_.taps.begin();

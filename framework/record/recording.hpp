@@ -32,9 +32,11 @@ struct Recording {
 /// Throws Error for a directory without a recorded tap, a damaged one, and one whose config is not that of its id.
 Recording read_recording(const Workshop& workshop, const std::filesystem::path& directory);
 
-/// Reads of `belief` what was built when the tap of `row` was chosen: models are built when they are read, and reading
-/// more than the run did would fill fields that its record leaves empty; reading less, leave some empty.
-void read_as_recorded(const Row& row, const Belief& belief);
+/// Stands in for a backend where nothing is tapped: tap() throws.
+std::shared_ptr<Backend> no_backend(bool truth_known);
+
+/// What was read of the belief when the tap of `row` was chosen, by the models that the row tells of.
+Quantities recorded_quantities(const Row& row);
 
 /// Brings the models of a recorded run to the state that they had after any of its taps, from the taps alone: what is
 /// read of them there is what the run would have read. Writes nothing, moves nothing: there is no backend.

@@ -26,15 +26,10 @@ class Recorded final : public Backend {
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return recording_.truth_known(); }
   bool wants_prediction() const override { return predicted_; }
-  void show(const Belief& belief) override {
-    // After the last tap: a run that found no further candidate has looked for one.
-    const auto taps = static_cast<std::size_t>(belief.taps());
-    if (taps < recording_.rows.size()) {
-      read_as_recorded(recording_.rows[taps], belief);
-    } else {
-      read_as_recorded(recording_.rows.back(), belief);
-      if (recording_.summary) read_as_recorded(*recording_.summary, belief);
-    }
+  /// What the run's own backend read when it was shown the first tap, while the initial design chose.
+  Quantities reads() const override {
+    const auto& taps = recording_.taps;
+    return taps.size() > 1 && taps[1].source == Source::initial ? recorded_quantities(recording_.rows[1]) : Quantities();
   }
 
  private:
@@ -93,6 +88,8 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   }
   if (!recording.summary) return report;
   const Row& summary = *recording.summary;
+  // A run that found no further candidate had looked for one, which this one is not asked for.
+  experiment.ask(recorded_quantities(summary));
   // A failed run asks its models nothing any more: see carry_out().
   const bool failed = recording.failed();
   RunResult result = failed ? experiment.counts() : experiment.result();

@@ -19,7 +19,7 @@ namespace {
 
 Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
 
-std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config) {
+std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config, const Experiment& experiment) {
   Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
   Tree& line = out.at("command_line");
   line = Tree::list();
@@ -32,6 +32,13 @@ std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config
   dropped = Tree::map();
   for (const ResolveNotes::Origin& one : config.notes.dropped)
     dropped.entries.push_back({one.path, {}, quoted(one.place)});
+  Tree& models = out.at("models");
+  models = Tree::map();
+  for (const ModelReader& one : experiment.readers()) {
+    Tree& who = models.at(one.model);
+    who.kind = Tree::Kind::list;
+    who.items.push_back(quoted(one.who));
+  }
   out.at("resumed") = Tree::list();
   return to_json(out);
 }
@@ -98,7 +105,9 @@ class Relay final : public Journal {
       if (maps_) write_maps(tap.number);
       directory_.announce(tap);
     }
-    if (company_.observer != nullptr) company_.observer->announce(tap);
+    if (company_.observer == nullptr) return;
+    if (company_.observer->follows_errors()) errors_ = experiment_.errors();
+    company_.observer->announce(tap);
   }
 
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override {
@@ -106,12 +115,16 @@ class Relay final : public Journal {
       const PhaseClock::Scope log(experiment_.clock(), Phase::log);
       directory_.record(tap, seconds);
     }
-    if (company_.observer != nullptr) company_.observer->record(tap, seconds);
+    if (company_.observer == nullptr) return;
+    if (!company_.observer->follows_errors()) return company_.observer->record(tap, seconds);
+    TapRecord told = tap;
+    told.errors = errors_;
+    company_.observer->record(told, seconds);
   }
 
  private:
   void write_maps(int number) const {
-    const std::string text = maps_csv(experiment_.candidates(), experiment_.belief());
+    const std::string text = maps_csv(experiment_);
     if (text.empty()) return;
     make_inner_folder(directory_.path() / "maps");
     directory_.write(fmt::format("maps/tap_{:03}.csv", number), text);
@@ -121,6 +134,7 @@ class Relay final : public Journal {
   Experiment& experiment_;
   RunDirectory& directory_;
   Company company_;
+  Errors errors_;  ///< of the state that the tap under way was chosen from, for who follows them
 };
 
 /// Builds the experiment. What only building finds out names an option; the config knows where that was written.
@@ -181,6 +195,12 @@ RunReport report_done(const fs::path& directory) { return {directory, true, fals
 
 }  // namespace
 
+std::vector<ModelReader> readers_of(const Workshop& workshop, const ResolvedConfig& config) {
+  const bool is_robot = workshop.host.one_at_a_time({{Backend::kKind, config.options.backend.type}});
+  return Experiment(config.options, workshop.host, workshop.interrupted, is_robot ? no_backend(false) : nullptr)
+      .readers();
+}
+
 fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {
   return runs / slug(config.options.name) / config.id;
 }
@@ -216,7 +236,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
                 Error::Kind::busy);
   }
   held.write("config.yaml", to_yaml(config.tree));
-  held.write("manifest.json", manifest_text(workshop, config));
+  held.write("manifest.json", manifest_text(workshop, config, experiment));
   return carry_out(config, held, experiment, {observer, supervisor}, watch);
 }
 
@@ -273,10 +293,8 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   Experiment experiment = build_experiment(workshop, config, directory);
   if (supervisor != nullptr) check_worth_asking(config, experiment);
   experiment.resume(past);
-  // Where no tap is left to make nothing reads the models that the loop had built, and the summary would lack them.
-  if (!held.rows().empty()) read_as_recorded(held.rows().back(), experiment.belief());
   if (recorded_build(directory).empty()) {
-    held.write("manifest.json", manifest_text(workshop, config));
+    held.write("manifest.json", manifest_text(workshop, config, experiment));
   } else {
     note_resume(workshop, config, held, static_cast<int>(past.size()));
   }

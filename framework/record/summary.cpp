@@ -124,6 +124,7 @@ bool depends_on_machine(const std::string& field) {
 }
 
 std::string surface_csv(Experiment& experiment) {
+  experiment.ask(Quantity::height | Quantity::probability);
   const TapBelief& belief = experiment.belief();
   const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
   const Eigen::VectorXd gated = belief.two_part() ? reconstruction(belief) : Eigen::VectorXd();
@@ -136,16 +137,20 @@ std::string surface_csv(Experiment& experiment) {
                    {"true_height", truth != nullptr ? &truth->height : nullptr}});
 }
 
-std::string maps_csv(const Candidates& candidates, const TapBelief& belief) {
+std::string maps_csv(const Experiment& experiment) {
+  const TapBelief& belief = experiment.belief();
+  const Quantities known = experiment.recorded();
   std::vector<Column> columns;
-  if (belief.surface_process()) {
+  if (known.has(Quantity::height)) {
     columns.insert(columns.end(),
                    {{"height_mean", &belief.height_mean()}, {"height_variance", &belief.height_variance()}});
   }
-  if (belief.height_process()) columns.emplace_back("u", &belief.uncertainty());
-  if (belief.weight_process()) columns.emplace_back("w", &belief.weight());
-  if (belief.footprint() != nullptr) columns.emplace_back("p", &belief.probability());
-  return columns.empty() ? std::string() : grid_csv(candidates, columns);
+  if (known.has(Quantity::uncertainty)) columns.emplace_back("u", &belief.uncertainty());
+  if (known.has(Quantity::weight)) columns.emplace_back("w", &belief.weight());
+  if (known.has(Quantity::probability) && !belief.footprint_is_weight()) {
+    columns.emplace_back("p", &belief.probability());
+  }
+  return columns.empty() ? std::string() : grid_csv(experiment.candidates(), columns);
 }
 
 }  // namespace palpate

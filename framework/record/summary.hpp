@@ -34,7 +34,7 @@ bool depends_on_machine(const std::string& field);
 /// The candidate grid: x, y, height mean and standard deviation, on-surface probability, reconstruction, truth.
 std::string surface_csv(Experiment& experiment);
 
-/// The maps of the models that are built, as CSV; "" if there are none.
-std::string maps_csv(const Candidates& candidates, const TapBelief& belief);
+/// The maps of the models that are recorded, as CSV; "" if there are none.
+std::string maps_csv(const Experiment& experiment);
 
 }  // namespace palpate

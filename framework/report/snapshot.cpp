@@ -32,6 +32,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   }
   out.next = experiment.choose_next();
   out.scores = experiment.scores();
+  experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
   out.surface = reconstruction(belief);
   out.deviation = belief.height_variance().cwiseSqrt();
   out.uncertainty = belief.uncertainty();

@@ -23,6 +23,7 @@ class GridSearch final : public Acquisition {
   using Options = GridOptions;
   GridSearch(const Options& options, const Context&) : count_(options.count) {}
 
+  Quantities reads() const override { return {}; }
   /// 1 at the place that is due, falling to 0 at the area's far corner: the candidate nearest to it wins.
   void score(const Belief& belief, VectorOut out) const override {
     const Area area = belief.area();

@@ -11,6 +11,7 @@ class Inside final : public Acquisition {
   using Options = NoOptions;
   Inside(const Options&, const Context&) {}
 
+  Quantities reads() const override { return Quantity::uncertainty | Quantity::probability; }
   void score(const Belief& belief, VectorOut out) const override {
     out = belief.uncertainty().cwiseMax(0.0).cwiseSqrt().cwiseProduct(belief.probability());
   }

@@ -23,6 +23,11 @@ class Mixture final : public Acquisition {
     for (const PluginChoice& one : options.acquisitions) parts_.push_back(context.create<Acquisition>(one));
   }
 
+  Quantities reads() const override {
+    Quantities all;
+    for (const auto& one : parts_) all = all | one->reads();
+    return all;
+  }
   void score(const Belief& belief, VectorOut out) const override {
     Eigen::VectorXd part(out.size());
     out.setZero();

@@ -13,6 +13,7 @@ class Outline final : public Acquisition {
   using Options = NoOptions;
   Outline(const Options&, const Context&) {}
 
+  Quantities reads() const override { return Quantity::probability; }
   void score(const Belief& belief, VectorOut out) const override {
     const auto bits = [](double p) { return p > 0.0 ? -p * std::log2(p) : 0.0; };
     out = belief.probability().unaryExpr([&](double p) { return bits(p) + bits(1.0 - p); });

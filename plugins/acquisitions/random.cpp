@@ -10,6 +10,7 @@ class RandomSearch final : public Acquisition {
   using Options = NoOptions;
   RandomSearch(const Options&, const Context& context) : seed_(context.seed) {}
 
+  Quantities reads() const override { return {}; }
   void score(const Belief& belief, VectorOut out) const override {
     // A stream a tap: the score stays a pure function of the belief, and a resumed run draws the same.
     Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.taps()));

@@ -11,6 +11,7 @@ class Weighted final : public Acquisition {
   using Options = NoOptions;
   Weighted(const Options&, const Context&) {}
 
+  Quantities reads() const override { return Quantity::uncertainty | Quantity::weight; }
   void score(const Belief& belief, VectorOut out) const override {
     out = belief.uncertainty().cwiseProduct(belief.weight());
   }

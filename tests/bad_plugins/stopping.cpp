@@ -18,6 +18,7 @@ class Backend final : public palpate::Backend {
   }
   bool repeatable() const override { return false; }
   bool scene_is_truth() const override { return false; }
+  palpate::Quantities reads() const override { return palpate::Quantity::height; }
   void show(const palpate::Belief& belief) override { shown_ += belief.height_mean().sum(); }
 
  private:

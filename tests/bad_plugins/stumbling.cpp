@@ -17,9 +17,12 @@ class Acquisition final : public palpate::Acquisition {
  public:
   using Options = NoOptions;
   Acquisition(const Options&, const palpate::Context&) {}
-  void score(const palpate::Belief&, palpate::VectorOut) const override {
+  palpate::Quantities reads() const override { return palpate::Quantity::uncertainty; }
+  void score([[maybe_unused]] const palpate::Belief& belief, [[maybe_unused]] palpate::VectorOut out) const override {
 #ifdef THROWS_NUMBER
     throw 42;
+#elif defined(READS_UNTOLD)
+    out = belief.uncertainty() + belief.weight();
 #else
     throw OwnException();
 #endif

@@ -36,13 +36,22 @@ class ScriptedBelief final : public Belief {
   Area area() const override { return {0.23, 0.23}; }
   int taps() const override { return taps_; }
   int initial_taps() const override { return 3; }
-  const Eigen::VectorXd& uncertainty() const override { return uncertainty_; }
-  const Eigen::VectorXd& weight() const override { return weight_; }
-  const Eigen::VectorXd& probability() const override { return probability_; }
-  const Eigen::VectorXd& height_mean() const override { return mean_; }
-  const Eigen::VectorXd& height_variance() const override { return variance_; }
+  const Eigen::VectorXd& uncertainty() const override { return seen(Quantity::uncertainty, uncertainty_); }
+  const Eigen::VectorXd& weight() const override { return seen(Quantity::weight, weight_); }
+  const Eigen::VectorXd& probability() const override { return seen(Quantity::probability, probability_); }
+  const Eigen::VectorXd& height_mean() const override { return seen(Quantity::height, mean_); }
+  const Eigen::VectorXd& height_variance() const override { return seen(Quantity::height, variance_); }
+
+  /// What was read of it so far.
+  Quantities read() const { return read_; }
 
  private:
+  const Eigen::VectorXd& seen(Quantity one, const Eigen::VectorXd& map) const {
+    read_ = read_ | one;
+    return map;
+  }
+
+  mutable Quantities read_;
   int taps_;
   Points points_;
   Eigen::VectorXd uncertainty_, weight_, probability_, mean_, variance_;
@@ -83,6 +92,15 @@ TEST_P(AcquisitionContract, GivesEveryCandidateAFiniteScore) {
   for (const ScriptedBelief& belief : beliefs()) {
     EXPECT_TRUE(score(*acquisition_, belief).allFinite()) << belief.taps() << " taps";
   }
+}
+
+TEST_P(AcquisitionContract, ReadsWhatItSaysThatItReadsAndAllOfThat) {
+  Quantities read;
+  for (const ScriptedBelief& belief : beliefs()) {
+    score(*acquisition_, belief);  // throws for what it did not say
+    read = read | belief.read();
+  }
+  EXPECT_TRUE(read == acquisition_->reads()) << "models that it does not read were built for it";
 }
 
 TEST_P(AcquisitionContract, IsPure) {

@@ -29,6 +29,7 @@ Outside run(const std::vector<double>& heights, const std::vector<std::string>& 
   Outside out;
   experiment.run(out.collected);
   out.result = experiment.result();
+  experiment.ask(Quantity::height | Quantity::weight);
   EXPECT_TRUE(experiment.belief().height_mean().allFinite());
   EXPECT_TRUE(experiment.belief().height_variance().allFinite());
   EXPECT_GE(experiment.belief().height_variance().minCoeff(), 0.0);

@@ -110,6 +110,7 @@ void expect_sound_run(const std::string& labels, int taps, std::vector<std::stri
     EXPECT_TRUE(*tap.probability >= 0.0 && *tap.probability <= 1.0) << tap.number;
     for (const FootprintNumber& one : tap.footprint->numbers) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
   }
+  experiment.ask(Quantity::probability | Quantity::height);
   EXPECT_TRUE(all_probabilities(experiment.belief().probability()));
   EXPECT_TRUE(experiment.belief().height_mean().allFinite());
 }

@@ -37,6 +37,7 @@ class ScriptedBackend final : public Backend {
       : answers_(std::move(answers)), truth_(truth) {}
   std::vector<TapRequest> requests;
   std::function<void(const Belief&)> reading;
+  Quantities read;  ///< by `reading`
 
   Contact tap(const TapRequest& request) override {
     requests.push_back(request);
@@ -45,6 +46,7 @@ class ScriptedBackend final : public Backend {
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_; }
+  Quantities reads() const override { return read; }
   void show(const Belief& belief) override {
     if (reading) reading(belief);
   }

@@ -77,6 +77,7 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
     for (int i = 0; i < candidates.size(); ++i) truth.height(i) = surface->observed(i);
     std::vector<bool> tapped(static_cast<std::size_t>(candidates.size()), false);
     for (const TapRecord& tap : collector.taps) tapped[static_cast<std::size_t>(tap.candidate)] = true;
+    experiment.ask(Quantity::height);
     sum += *calibration(experiment.belief(), truth, tapped).coverage_95;
   }
   return sum / kSurfaces;

@@ -90,9 +90,11 @@ TEST(LastTap, IsAPastTapLikeAnyOtherForARunThatIsCarriedOn) {
 }
 
 /// The taps of a run whose backend reads with `reading`.
-std::vector<TapRecord> taps_shown(const ResolvedConfig& config, std::function<void(const Belief&)> reading) {
+std::vector<TapRecord> taps_shown(const ResolvedConfig& config, Quantities read,
+                                  std::function<void(const Belief&)> reading) {
   const auto backend = scripted({touch(0.0), touch(0.09), touch(0.05), touch(0.07)});
   backend->reading = std::move(reading);
+  backend->read = read;
   Experiment experiment(config.options, test::shared_host(), nullptr, backend);
   Collector collector;
   experiment.run(collector);
@@ -105,6 +107,7 @@ TEST(ShownBelief, HasTheTapThatWasJustMade) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4"});
   const auto backend = scripted({touch(0.0), touch(0.09), touch(0.05), touch(0.07)});
   Experiment experiment(config.options, test::shared_host(), nullptr, backend);
+  backend->read = Quantity::height;
   backend->reading = [&](const Belief& belief) {
     ++shown;
     ASSERT_EQ(belief.taps(), shown);
@@ -146,8 +149,9 @@ TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
     for (const char* models : {"surface=single", "surface=two_part", "weight.hyperparameters=shared"}) {
       const ResolvedConfig config = shipped_config(
           "paper/object_i.yaml", {acquisition, models, "fitting=ceres", "height.signal=5 cm", "candidates.count=12"});
-      const std::vector<TapRecord> quiet = taps_shown(config, {});
-      const std::vector<TapRecord> read = taps_shown(config, [](const Belief& belief) {
+      const std::vector<TapRecord> quiet = taps_shown(config, {}, {});
+      const Quantities all = Quantity::height | Quantity::weight | Quantity::uncertainty;
+      const std::vector<TapRecord> read = taps_shown(config, all, [](const Belief& belief) {
         EXPECT_TRUE(belief.height_variance().allFinite() && belief.weight().allFinite());
         EXPECT_TRUE(belief.height_mean().allFinite() && belief.uncertainty().allFinite());
       });

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/experiment.hpp"
+#include "record/row.hpp"
+#include "record/tap_row.hpp"
 #include "support/runs.hpp"
 
 #include <palpate/error.hpp>
@@ -10,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 namespace palpate {
 namespace {
@@ -58,6 +61,78 @@ TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
   EXPECT_EQ(experiment.belief().weight_process().process, nullptr);
   EXPECT_FALSE(collector.taps.back().max_standard_deviation.has_value());
   EXPECT_FALSE(collector.taps.back().errors.rmse.has_value());
+}
+
+TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
+  const auto readers = [](const std::vector<std::string>& words) {
+    std::vector<std::string> out;
+    const ResolvedConfig config = shipped_config("paper/object_i.yaml", words);
+    Experiment experiment(config.options, test::shared_host(), nullptr);
+    for (const ModelReader& one : experiment.readers()) out.push_back(one.model + ": " + one.who);
+    EXPECT_FALSE(experiment.belief().height_process() || experiment.belief().weight_process());
+    return out;
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(readers({}), ElementsAre("height process: acquisition weighted", "weight process: acquisition weighted",
+                                       "height process: fallback uncertainty, from its first use on"));
+  EXPECT_THAT(readers({"acquisition=random", "fallback=none"}), ElementsAre());
+  EXPECT_THAT(readers({"acquisition=outline", "footprint=shape", "fallback=none", "surface=two_part",
+                       "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
+              ElementsAre("footprint shape: acquisition outline", "height process: stop.max_standard_deviation",
+                          "surface process: stop.expected_rmse", "footprint shape: stop.expected_rmse"));
+  EXPECT_THAT(readers({"acquisition=random", "fallback=none", "backend.motion.adaptive_hover={clearance: 2cm}"}),
+              ElementsAre("height process: backend simulator"));
+}
+
+TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
+  class Follower final : public Journal {
+   public:
+    explicit Follower(Experiment& experiment) : experiment_(experiment) {}
+    std::vector<TapRecord> taps;
+    std::vector<Errors> errors;
+    void announce(const TapRecord&) override { errors.push_back(experiment_.errors()); }
+    void record(const TapRecord& tap, const std::array<double, kPhases>&) override { taps.push_back(tap); }
+
+   private:
+    Experiment& experiment_;
+  };
+  for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=outline"}) {
+    const ResolvedConfig config = shipped_config("paper/object_i.yaml", {acquisition, "surface=two_part"});
+    Experiment alone(config.options, test::shared_host(), nullptr);
+    Collector collector;
+    alone.run(collector);
+    Experiment followed(config.options, test::shared_host(), nullptr);
+    Follower follower(followed);
+    followed.run(follower);
+    ASSERT_EQ(follower.taps.size(), collector.taps.size());
+    for (std::size_t i = 0; i < collector.taps.size(); ++i) {
+      EXPECT_EQ(to_json_line(tap_row(follower.taps[i])), to_json_line(tap_row(collector.taps[i]))) << acquisition;
+      ASSERT_TRUE(follower.errors[i].rmse && follower.errors[i].footprint_iou);
+      if (i > 0 && collector.taps[i - 1].on_surface == true) EXPECT_LT(*follower.errors[i].rmse, 1.0);
+    }
+    EXPECT_EQ(*followed.result().errors.rmse, *alone.result().errors.rmse);
+    EXPECT_FALSE(collector.taps.back().errors.rmse.has_value()) << "nobody reads the surface for the strategy";
+  }
+}
+
+TEST(Belief, ThatNobodyAskedForOrThatIsOldIsNotRead) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4"});
+  Experiment experiment(config.options, test::shared_host(), nullptr);
+  EXPECT_THROW(experiment.belief().weight(), std::logic_error);
+  experiment.ask(Quantity::weight);
+  EXPECT_NO_THROW(experiment.belief().weight());
+  class Early final : public Journal {
+   public:
+    explicit Early(const Experiment& experiment) : experiment_(experiment) {}
+    void announce(const TapRecord&) override { EXPECT_NO_THROW(experiment_.belief().weight()); }
+    void record(const TapRecord&, const std::array<double, kPhases>&) override {
+      EXPECT_THROW(experiment_.belief().weight(), std::logic_error) << "the models have not taken in the tap yet";
+    }
+
+   private:
+    const Experiment& experiment_;
+  } early(experiment);
+  experiment.run(early);
 }
 
 TEST(Experiment, WeightedScoreIsTheProductOfUncertaintyAndWeight) {
@@ -129,7 +204,7 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
   EXPECT_EQ(result.on_surface_taps, 1);
   EXPECT_EQ(result.off_surface_taps, 1);
   EXPECT_EQ(result.failed_taps, 4);
-  experiment.belief().height_mean();
+  experiment.ask(Quantity::height);
   EXPECT_EQ(experiment.belief().height_process().process->size(), 2);
   std::set<int> places;
   for (const TapRecord& tap : collector.taps) places.insert(tap.candidate);
@@ -147,6 +222,7 @@ TEST(Experiment, AHeightThatIsNotANumberIsRefusedAsAFailedTap) {
     EXPECT_THAT(collector.taps[1].contact.reason, ::testing::HasSubstr("not a finite number"));
     const RunResult result = experiment.result();
     EXPECT_EQ(result.interventions.at("height_refused"), 1);
+    experiment.ask(Quantity::height);
     EXPECT_TRUE(experiment.belief().height_mean().allFinite());
   }
 }
@@ -154,6 +230,7 @@ TEST(Experiment, AHeightThatIsNotANumberIsRefusedAsAFailedTap) {
 TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
   class Broken final : public Acquisition {
    public:
+    Quantities reads() const override { return {}; }
     void score(const Belief&, VectorOut out) const override { out.setConstant(std::nan("")); }
     double prior_scale() const override { return 1.0; }
   };

@@ -85,7 +85,7 @@ TEST(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
     }
   }
   const Process& height = *experiment.belief().height_process().process;
-  const TapBelief::Quantity label = experiment.belief().weight_process();
+  const TapBelief::Output label = experiment.belief().weight_process();
   const ProcessSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);

@@ -46,6 +46,7 @@ struct BrokenFootprint final : Footprint {
 };
 
 struct BrokenAcquisition final : Acquisition {
+  Quantities reads() const override { fail(); }
   void score(const Belief&, VectorOut) const override { fail(); }
   Product product() const override { fail(); }
   double prior_scale() const override { fail(); }
@@ -57,6 +58,7 @@ struct BrokenBackend final : Backend {
   std::vector<std::string> describe(const TapRequest&) override { fail(); }
   std::vector<Learnt> learnt() const override { fail(); }
   bool wants_prediction() const override { fail(); }
+  Quantities reads() const override { fail(); }
   void show(const Belief&) override { fail(); }
   bool scene_is_truth() const override { fail(); }
 };

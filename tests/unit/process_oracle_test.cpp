@@ -108,6 +108,7 @@ class Comparison final : public Journal {
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
     oracle_.add(tap.target, tap.contact.height, *tap.on_surface ? 1.0 : 0.0);
     hits += *tap.on_surface ? 1 : 0;
+    experiment_.ask(Quantity::height | Quantity::weight);
     const TapBelief& belief = experiment_.belief();
     worst_mean = std::max(worst_mean, difference(oracle_.height, belief.height_mean()));
     worst_mean = std::max(worst_mean, difference(oracle_.weight, belief.weight_mean()));

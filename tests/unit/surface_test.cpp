@@ -22,10 +22,13 @@ struct Alone {
         scene(build_scene(config.options.scene, 1, test::shared_host())),
         context{test::shared_host(), *scene, 1, nullptr},
         candidates(grid_by_count(scene->area(), 9)),
-        belief(config.options, candidates, context, clock) {}
+        belief(config.options, candidates, context, clock) {
+    belief.ask(Quantity::height | Quantity::probability);
+  }
 
   void touch(int candidate, double height) {
     belief.observe(candidates.target(candidate), {Outcome::contact, height, 8.0, 1.0, {}});
+    belief.update();
   }
 
   ResolvedConfig config;
@@ -94,7 +97,7 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
   // The oracle takes differences of a million in 19 digits, with a matrix of condition 1e7.
   EXPECT_LT((one.belief.height_mean() - mean).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT((one.belief.height_variance() - variance).cwiseAbs().maxCoeff(), 1e-5);
-  one.belief.uncertainty();
+  one.belief.ask(Quantity::uncertainty);
   EXPECT_EQ(one.belief.height_process().process->size(), 6) << "u comes from all taps";
 }
 
@@ -123,7 +126,7 @@ class Mapper final : public Journal {
   explicit Mapper(Experiment& experiment) : experiment_(experiment) {}
   std::vector<TapRecord> taps;
   std::string last;
-  void announce(const TapRecord&) override { last = maps_csv(experiment_.candidates(), experiment_.belief()); }
+  void announce(const TapRecord&) override { last = maps_csv(experiment_); }
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override { taps.push_back(tap); }
 
  private:
@@ -144,27 +147,16 @@ TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
   EXPECT_EQ(mapper.last.substr(0, mapper.last.find('\n')), "x,y,u,w");
 }
 
-/// Reads the height as an acquisition might.
-class Reader final : public Journal {
- public:
-  explicit Reader(Experiment& experiment) : experiment_(experiment) {}
-  TapRecord last;
-  void announce(const TapRecord&) override { experiment_.belief().height_mean(); }
-  void record(const TapRecord& tap, const std::array<double, kPhases>&) override { last = tap; }
-
- private:
-  Experiment& experiment_;
-};
-
-TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyReadsIt) {
+TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
   const ResolvedConfig config = shipped_config("paper/object_i_right.yaml", {"seed=3", "surface=two_part"});
   Experiment experiment(config.options, test::shared_host(), nullptr);
-  Reader reader(experiment);
-  experiment.run(reader);
-  const TapRecord& tap = reader.last;
+  experiment.ask(Quantity::height);
+  Collector collector;
+  experiment.run(collector);
+  const TapRecord& tap = collector.taps.back();
   ASSERT_TRUE(tap.surface_process && tap.errors.rmse && tap.errors.rmse_height);
   EXPECT_EQ(tap.surface_process->settings.mean_ratio, 1000.0);
-  EXPECT_EQ(maps_csv(experiment.candidates(), experiment.belief()).substr(0, 31), "x,y,height_mean,height_variance");
+  EXPECT_EQ(maps_csv(experiment).substr(0, 31), "x,y,height_mean,height_variance");
 }
 
 TEST(TwoPart, StopsAtTheVeryTapThatTheSingleSurfaceStopsAt) {

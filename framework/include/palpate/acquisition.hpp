@@ -15,12 +15,15 @@ enum class Product {
 };
 
 /// Laws, checked by the contract tests: the score is a pure function of the belief (same belief, same bytes; no clock,
-/// no state), finite, and fills every candidate.
+/// no state), finite, and fills every candidate; it reads what reads() says, and all of that.
 class Acquisition {
  public:
   static constexpr const char* kKind = "acquisition";
 
   virtual ~Acquisition() = default;
+
+  /// What score() reads, the same from birth to death: the models of these are built, and no others.
+  virtual Quantities reads() const = 0;
 
   /// Scores all candidates at once; `out` has M elements. The candidate of the highest score is tapped next.
   virtual void score(const Belief& belief, VectorOut out) const = 0;

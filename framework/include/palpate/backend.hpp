@@ -64,9 +64,11 @@ class Backend {
   /// Whether taps depend on what the models expect. If so, the loop builds the process of the heights for it.
   virtual bool wants_prediction() const { return false; }
 
+  /// What show() reads, the same from birth to death.
+  virtual Quantities reads() const { return {}; }
+
   /// Called after every tap, once it is recorded and the belief has it, and at the start of a run that is carried on:
-  /// for a robot whose surface people watch. Maps are computed for it when it reads them, as for a strategy; whatever
-  /// it reads, the taps are the same. An Error ends the run.
+  /// for a robot whose surface people watch. Whatever it reads, the taps are the same. An Error ends the run.
   virtual void show(const Belief& /*belief*/) {}
 
   /// Whether the scene of the config is the very world that is tapped, so that errors against it mean something.

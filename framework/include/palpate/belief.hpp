@@ -7,8 +7,33 @@
 
 namespace palpate {
 
-/// What is believed after the taps so far, over the candidates. A map is computed when it is first read after a tap,
-/// and the process behind it is built when a map of it is first read at all: who reads pays for what is read.
+/// What there is to read of a belief beside places and counts.
+enum class Quantity : unsigned {
+  uncertainty = 1,  ///< u
+  weight = 2,       ///< w
+  probability = 4,  ///< p
+  height = 8,       ///< mean and variance
+};
+
+/// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.
+class Quantities {
+ public:
+  constexpr Quantities() = default;
+  constexpr Quantities(Quantity one) : bits_(static_cast<unsigned>(one)) {}  // NOLINT: one of them is a set of one
+  constexpr bool has(Quantity one) const { return (bits_ & static_cast<unsigned>(one)) != 0; }
+  friend constexpr Quantities operator|(Quantities a, Quantities b) {
+    a.bits_ |= b.bits_;
+    return a;
+  }
+  friend constexpr bool operator==(Quantities a, Quantities b) { return a.bits_ == b.bits_; }
+
+ private:
+  unsigned bits_ = 0;
+};
+constexpr Quantities operator|(Quantity a, Quantity b) { return Quantities(a) | Quantities(b); }
+
+/// What is believed after the taps so far, over the candidates. The models behind it are built for those who say that
+/// they read them: a plugin may read the quantities of its reads(), and any other throws Error, which names both.
 /// References stay valid until the next tap. M is the number of candidates.
 class Belief {
  public:

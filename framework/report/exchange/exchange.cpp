@@ -41,6 +41,7 @@ std::string header_text(const std::string& text) {
 }
 
 ReconstructedSurface reconstruct(Experiment& experiment) {
+  experiment.ask(Quantity::height | Quantity::probability);
   const TapBelief& belief = experiment.belief();
   ReconstructedSurface out{surface_mesh(experiment.candidates(), reconstruction(belief)),
                            belief.height_variance().cwiseSqrt(), belief.probability(), std::nullopt};

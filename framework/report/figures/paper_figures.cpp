@@ -113,7 +113,9 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
     sheet.data("surface_" + key, raster.surface(snapshot.surface, snapshot.deviation));
     sheet.data("scores_" + key, raster.matrix(snapshot.scores));
     sheet.taps(key, snapshot);
-    sheet.taps("seen_" + key, in_sight(snapshot, progress.candidates, progress.area));
+    Snapshot seen = in_sight(snapshot, progress.candidates, progress.area);
+    seen.next.reset();  // it stands in the map
+    sheet.taps("seen_" + key, seen);
   }
   for (std::size_t i = 0; i < columns; ++i) {
     const std::string key = key_of(progress, i);

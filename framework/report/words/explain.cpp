@@ -20,8 +20,7 @@ namespace {
 
 /// The errors of the models of `experiment` as fields of a tap, null where no truth is known.
 Row errors_row(Experiment& experiment) {
-  const Truth* truth = experiment.truth();
-  const Errors errors = truth != nullptr ? final_errors(experiment.belief(), *truth) : Errors{};
+  const Errors errors = experiment.errors();
   Row row;
   row.add("rmse_m", errors.rmse);
   row.add("rmse_on_surface_m", errors.rmse_on_surface);
@@ -45,14 +44,8 @@ class Explanation {
     playback_.advance_to(number_ - 1);
     Experiment& experiment = playback_.experiment();
     const TapBelief& belief = experiment.belief();
-    // All three, so that the choice describes them whatever the strategy reads.
-    belief.uncertainty();
-    belief.height_mean();
-    if (belief.footprint_is_weight()) {
-      belief.weight_mean();
-    } else {
-      belief.probability();
-    }
+    // All of them, so that the choice describes them whatever the strategy reads.
+    experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
     candidate_ = experiment.candidates().nearest(tap_.target.x, tap_.target.y, experiment.scene().area());
     now_ = experiment.choose_next();
     const Evidence evidence(row_, computed_row());
@@ -100,7 +93,7 @@ class Explanation {
     at.ties.reset();
     at.runner_up.reset();
     at.runner_up_score.reset();
-    if (const Truth* truth = experiment.truth()) at.errors = final_errors(belief, *truth);
+    at.errors = experiment.errors();
     return tap_row(at);
   }
 

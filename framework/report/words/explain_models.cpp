@@ -216,8 +216,8 @@ void explain_models(Page& page, const Evidence& evidence, const ExperimentOption
   const PluginChoice& height_kernel = height.kernel ? *height.kernel : options.kernel;
   const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
   const bool shared = weight.hyperparameters == WeightOptions::Hyperparameters::shared;
-  const TapBelief::Quantity heights = belief.height_process();
-  const TapBelief::Quantity labels = belief.weight_process();
+  const TapBelief::Output heights = belief.height_process();
+  const TapBelief::Output labels = belief.weight_process();
   explain_process(
       page, evidence,
       {"Height process", "height_process.", true, height_kernel, height_fitting, heights.process, now.height_process});

@@ -91,6 +91,7 @@ class Baxter final : public Backend {
 
   std::vector<std::string> describe(const TapRequest& request) override { return tapper_.describe(request); }
 
+  Quantities reads() const override { return view_ ? Quantity::height : Quantities(); }
   void show(const Belief& belief) override {
     if (!view_) return;
     view_->surface(belief.candidates(), belief.height_mean(), belief.height_variance().cwiseMax(0.0).cwiseSqrt());

@@ -36,21 +36,23 @@ class Classifier final : public Footprint {
     posterior_.reset();
   }
 
-  void probability(const PointsView& places, VectorOut out) override { posterior().probability(places, out); }
-
-  std::vector<FootprintNumber> numbers() const override { return {{"log_evidence", posterior().log_evidence()}}; }
-
- private:
-  const Laplace& posterior() const {
+  void probability(const PointsView& places, VectorOut out) override {
     if (!posterior_) posterior_.emplace(*kernel_, settings_, points_, on_);
-    return *posterior_;
+    posterior_->probability(places, out);
   }
 
+  std::vector<FootprintNumber> numbers() const override {
+    const double evidence = posterior_ ? posterior_->log_evidence()
+                                       : Laplace(*kernel_, settings_, points_, on_).log_evidence();
+    return {{"log_evidence", evidence}};
+  }
+
+ private:
   std::shared_ptr<Kernel> kernel_;
   LaplaceSettings settings_;
   Points points_{0, 2};
   std::vector<bool> on_;
-  mutable std::optional<Laplace> posterior_;  ///< made when it is first asked for after a touch
+  std::optional<Laplace> posterior_;  ///< of all touches; none between one and the next question
 };
 
 PALPATE_PLUGIN(Footprint, Classifier, "classifier",
