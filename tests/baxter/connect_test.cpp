@@ -354,5 +354,21 @@ TEST(Connect, ABagThatCannotBeWrittenIsAnErrorAtOnce) {
                                    HasSubstr("356d9dd237ce73b2667da9235f541933")));
 }
 
+// roscpp's thread of connections ends the program when it meets a header or a closed connection of what is just being
+// given up (ros_comm, issues 1939 and 2032).
+TEST(AConnection, IsGivenUpAgainAndAgainWithoutEndingTheProgram) {
+  RobotLab lab;
+  lab.start_robot(robot_words());
+  const char* times = std::getenv("PALPATE_CONNECTIONS");
+  const int count = times != nullptr ? std::atoi(times) : 20;
+  const Elsewhere result = elsewhere(with(kNoRos, lab.environment()), [&] {
+    int made = 0;
+    for (; made < count; ++made) connect({});
+    return std::to_string(made);
+  });
+  EXPECT_EQ(result.status, 0) << result.printed;
+  EXPECT_EQ(result.printed, std::to_string(count));
+}
+
 }  // namespace
 }  // namespace palpate::test

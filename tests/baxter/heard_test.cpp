@@ -26,10 +26,10 @@ using baxter::Robot;
 using baxter::Setting;
 using baxter::Snapshot;
 
-/// Reads until `holds` of what was read, for ten seconds at most.
+/// Reads until `holds` of what was read, for five minutes at most, which only what hangs takes.
 template <class Condition>
 Snapshot read_until(Robot& robot, const Condition& holds) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   Snapshot out = robot.read();
   while (!holds(out) && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));  // between two looks, not for an outcome

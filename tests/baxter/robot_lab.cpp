@@ -19,7 +19,7 @@ namespace palpate::test {
 namespace {
 
 constexpr int kAttempts = 5;
-constexpr double kPatience = 20.0;  // s for a program to come up or to end, on a busy machine
+constexpr double kPatience = 300.0;  // s for a program to come up or to end: only what hangs takes them
 constexpr const char* kTrace = "trace.csv";
 
 /// Sends `text` to a port of this machine and returns all that comes back; "" if nobody listens.

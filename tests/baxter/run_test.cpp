@@ -235,7 +235,7 @@ TEST(RobotRun, InterruptedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
   ASSERT_TRUE(logged(lab.folder() / "runs", 3));
   ASSERT_TRUE(low(lab, 0.07));
   program->signal(SIGINT);
-  const Ended ended = program->wait(60.0);
+  const Ended ended = program->wait(300.0);
   EXPECT_EQ(ended.status, 130) << ended.err;
   const fs::path run = only_run(lab.folder() / "runs");
   EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted"));
@@ -297,7 +297,7 @@ TEST(RobotRun, RaisesTheArmWhenItsTerminalIsClosedWhichMaySayItTwice) {
   ASSERT_TRUE(low(lab, 0.07));
   program->signal(SIGHUP);
   program->signal(SIGHUP);
-  EXPECT_EQ(program->wait(60.0).status, 130);
+  EXPECT_EQ(program->wait(300.0).status, 130);
   EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact", "aborted"));
   EXPECT_NEAR(last_height(lab), 0.135, 0.011);
 }

@@ -50,7 +50,7 @@ std::string seen_late(const std::string& topic, const std::function<std::string(
   std::string seen;
   const boost::function<void(const Message&)> hear = [&](const Message& message) { seen = tell(message); };
   const ros::Subscriber subscriber = handle.subscribe<const Message&>(topic, 1, hear);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   while (seen.empty() && std::chrono::steady_clock::now() < end) queue.callAvailable(ros::WallDuration(0.1));
   return seen.empty() ? "nothing" : seen;
 }

@@ -48,7 +48,7 @@ Terminal::~Terminal() {
 }
 
 bool Terminal::shows(const std::string& text, int times) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(10);
   while (count_of(screen_, text) < times) {
     if (std::chrono::steady_clock::now() > end || !read_on(100)) return false;
   }

@@ -4,8 +4,11 @@
 #include <palpate/error.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -14,6 +17,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/poll_manager.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcUtil.h>
 
@@ -115,6 +119,7 @@ class Node {
 
   ~Node() {
     forget_silent_master();
+    ros::PollManager::instance()->shutdown();  // the thread of connections: see give_up()
     ros::shutdown();
     ros::waitForShutdown();
   }
@@ -192,6 +197,23 @@ void forget_silent_master() {
   } catch (const Unreached&) {
     point_roscpp_at("http://127.0.0.1:9");  // discard: nobody listens there
   }
+}
+
+void give_up(const std::function<void()>& connections) {
+  std::atomic<bool> begun = false;
+  std::promise<void> done;
+  const auto once = [&] {
+    if (begun.exchange(true)) return;
+    connections();
+    done.set_value();
+  };
+  const ros::PollManagerPtr& thread = ros::PollManager::instance();
+  const auto listener = thread->addPollThreadListener(once);
+  std::future<void> ended = done.get_future();
+  while (ended.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+    if (!ros::ok()) once();  // nothing is heard there any more
+  }
+  thread->removePollThreadListener(listener);
 }
 
 }  // namespace palpate::baxter

@@ -112,8 +112,10 @@ class RosRobot final : public Link {
     stop_ = true;
     queue_.disable();
     spinner_.join();
-    for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
-    command_publisher_.shutdown();
+    give_up([this] {
+      for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
+      command_publisher_.shutdown();
+    });
   }
 
   Snapshot read() override {

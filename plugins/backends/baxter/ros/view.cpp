@@ -42,7 +42,13 @@ class RosView final : public View {
     show_taps();
   }
 
-  ~RosView() override { forget_silent_master(); }
+  ~RosView() override {
+    forget_silent_master();
+    give_up([this] {
+      surface_publisher_.shutdown();
+      taps_publisher_.shutdown();
+    });
+  }
 
   void target(const Target& place) override {
     next_ = place;
