@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # The long form of the tests with kill -9 at random moments, minutes long; ./check runs short ones. The stress test of
 # sweeps: two launchers, and kills of them and of their jobs, half over simulated jobs, half over jobs on another program.
-# Runs, three in twenty of that number and each killed twice, of which every file must be that of the unbroken one.
+# Runs and sweeps, of each three in twenty of that number and each killed twice, of which every file must be that of the
+# unbroken one.
 # And a tenth as many kills of one run on a robot's program, and of one on the robot of ROS nodes where that is built: of
 # neither may a tap be asked for twice, and none lost.
 #   sh tests/stress.sh [KILLS]      (1000)
@@ -18,6 +19,6 @@ run() {
     "$root/build/release/stress.xml"
 }
 run system 'Of/Stress.*' $((kills / 2))
-run system 'AtRandomMoments/Kill.*' $((kills * 3 / 20))
+run system 'AtRandomMoments/Kill*' $((kills * 3 / 20))
 run system 'AKilledRun.*' $((kills / 10))
 [ ! -x "$root/build/release/tests/baxter_tests" ] || run baxter 'RobotRun.KilledAgainAndAgain*' $((kills / 10))

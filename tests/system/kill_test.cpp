@@ -2,6 +2,7 @@
 // A run that is killed at any moment loses no recorded tap, repeats none, and ends as the unbroken one does, in every
 // file. PALPATE_KILLS says how many runs (tests/stress.sh: 150), each killed twice.
 #include "record/json.hpp"
+#include "support/lasting.hpp"
 #include "support/support.hpp"
 
 #include <palpate/random.hpp>
@@ -13,8 +14,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <map>
-#include <sstream>
 
 #include <unistd.h>
 
@@ -22,6 +21,9 @@ namespace palpate {
 namespace {
 
 using test::Ended;
+using test::lasting_files;
+using test::run_and_kill;
+using test::run_in;
 using test::TemporaryFolder;
 using test::text_of;
 
@@ -49,26 +51,6 @@ const std::vector<Killed>& cases() {
   return all;
 }
 
-/// The only directory of a run, or nothing if the program was killed before it made one.
-fs::path run_in(const fs::path& runs) {
-  std::error_code none;
-  for (const auto& name : fs::directory_iterator(runs, none)) {
-    for (const auto& id : fs::directory_iterator(name.path(), none)) return id.path();
-  }
-  return {};
-}
-
-/// Starts the program and kills it after a while.
-void run_and_kill(const std::vector<std::string>& words, const fs::path& folder, int microseconds) {
-  std::vector<std::string> all{test::program_file().string()};
-  all.insert(all.end(), words.begin(), words.end());
-  test::Child child(all, folder);
-  // The very subject of the test is a kill at a moment that nothing announces.
-  ::usleep(static_cast<useconds_t>(microseconds));
-  child.signal(SIGKILL);
-  child.wait();
-}
-
 /// The recorded taps: whole lines only, half a line at the end may go.
 std::string complete_lines(const fs::path& runs) {
   const std::string text = text_of(run_in(runs) / "taps.jsonl");
@@ -80,39 +62,6 @@ std::vector<std::string> next_words(const std::vector<std::string>& run, const f
   const fs::path directory = run_in(folder / "runs");
   if (directory.empty() || !fs::exists(directory / "config.yaml")) return run;
   return {"resume", directory.string(), "--quiet"};
-}
-
-/// A file of a run as it must be whether or not the run was killed: clocks, memory and what tells of attempts left out.
-std::string lasting(const fs::path& file) {
-  const std::string text = text_of(file);
-  const std::string name = file.filename().string();
-  std::string out;
-  if (name == "timings.csv") {  // the number of each tap
-    std::istringstream in(text);
-    for (std::string line; std::getline(in, line);) out += line.substr(0, line.find(',')) + "\n";
-  } else if (name == "summary.json") {
-    const Row summary = parse_json_row(text).value();
-    for (const auto& [field, value] : summary.fields) {
-      const bool clock = field == "wall_seconds" || field == "peak_rss_bytes" || field.rfind("compute", 0) == 0;
-      if (!clock) out += to_json_text(Row{{{field, value}}});
-    }
-  } else if (name == "manifest.json") {
-    const std::size_t words = text.find("\"command_line\"");
-    const std::size_t origins = text.find("\"origins\"");
-    out = text.substr(0, words) + text.substr(origins, text.find("\"resumed\"") - origins);
-  } else {
-    return text;
-  }
-  return out;
-}
-
-/// All files of a run by their names.
-std::map<std::string, std::string> lasting_files(const fs::path& run) {
-  std::map<std::string, std::string> out;
-  for (const auto& entry : fs::recursive_directory_iterator(run)) {
-    if (entry.is_regular_file()) out[entry.path().lexically_relative(run).string()] = lasting(entry.path());
-  }
-  return out;
 }
 
 int wanted_runs() {

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "support/lasting.hpp"
+
+#include "record/json.hpp"
+#include "record/summary.hpp"
+#include "support/support.hpp"
+
+#include <csignal>
+#include <sstream>
+
+#include <unistd.h>
+
+namespace palpate::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Each line up to its first comma: the number of each tap.
+std::string first_column(const std::string& text) {
+  std::string out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out += line.substr(0, line.find(',')) + "\n";
+  return out;
+}
+
+std::string without_clocks(const Row& row) {
+  std::string out;
+  for (const auto& [field, value] : row.fields) {
+    if (!depends_on_machine(field)) out += to_json_text(Row{{{field, value}}});
+  }
+  return out;
+}
+
+std::string without_clocks(const std::vector<Cells>& rows) {
+  std::string out;
+  for (const Cells& row : rows) {
+    for (const auto& [name, cell] : row) {
+      if (!depends_on_machine(name)) out += name + "=" + cell + "\n";
+    }
+  }
+  return out;
+}
+
+/// A manifest without command line and what is said of attempts.
+std::string identity(const std::string& text) {
+  const std::size_t words = text.find("\"command_line\"");
+  const std::size_t origins = text.find("\"origins\"");
+  return text.substr(0, words) + text.substr(origins, text.find("\"resumed\"") - origins);
+}
+
+std::string lasting(const fs::path& file) {
+  const std::string text = text_of(file);
+  const std::string name = file.filename().string();
+  if (name == "timings.csv") return first_column(text);
+  if (name == "summary.json") return without_clocks(parse_json_row(text).value());
+  if (name == "results.csv") return without_clocks(csv_rows(text));
+  if (name == "manifest.json" && text.find("\"resumed\"") != std::string::npos) return identity(text);
+  return name == "attempts.jsonl" ? "there" : text;
+}
+
+}  // namespace
+
+void run_and_kill(const std::vector<std::string>& words, const fs::path& folder, int microseconds) {
+  std::vector<std::string> all{program_file().string()};
+  all.insert(all.end(), words.begin(), words.end());
+  Child child(all, folder);
+  // The very subject of the test is a kill at a moment that nothing announces.
+  ::usleep(static_cast<useconds_t>(microseconds));
+  child.signal(SIGKILL);
+  child.wait();
+}
+
+fs::path run_in(const fs::path& runs) {
+  std::error_code none;
+  for (const auto& name : fs::directory_iterator(runs, none)) {
+    if (name.path().filename().string().front() == '.') continue;  // what was begun and never published
+    for (const auto& id : fs::directory_iterator(name.path(), none)) return id.path();
+  }
+  return {};
+}
+
+std::map<std::string, std::string> lasting_files(const fs::path& directory) {
+  std::map<std::string, std::string> out;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    if (entry.is_regular_file()) out[entry.path().lexically_relative(directory).string()] = lasting(entry.path());
+  }
+  return out;
+}
+
+}  // namespace palpate::test
