@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs configs/sweep/fitting.yaml and prints README's table of it: fixed against fitted hyperparameters, means over the
+# Runs configs/sweep/fitting.yaml and prints the table of framework/docs/runs.md: fixed against fitted hyperparameters, means over the
 # seeds, and the mean of the paired differences with its 95 % interval (normal approximation).
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)

@@ -79,8 +79,8 @@ TEST(ExtremesTable, HoldsManyCasesOnBothSidesOfWhatDoublePrecisionCanHold) {
   EXPECT_GE(static_cast<int>(rows.size()) - beyond, 100);
 }
 
-TEST(ExtremesTable, TheReadmeCountsTheCasesThatThereAre) {
-  EXPECT_THAT(test::text_of(test::source_folder() / "README.md"),
+TEST(ExtremesTable, ItsPageCountsTheCasesThatThereAre) {
+  EXPECT_THAT(test::text_of(test::source_folder() / "framework/docs/exactness.md"),
               ::testing::HasSubstr(fmt::format("\n{} cases", cases().size())));
 }
 

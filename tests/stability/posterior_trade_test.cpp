@@ -12,8 +12,8 @@
 namespace palpate {
 namespace {
 
-TEST(PosteriorTrade, StandsInTheReadmeAsItWasRecorded) {
-  const std::string readme = test::text_of(test::source_folder() / "README.md");
+TEST(PosteriorTrade, StandsInItsPageAsItWasRecorded) {
+  const std::string page = test::text_of(test::source_folder() / "framework/docs/exactness.md");
   int shown = 0;
   for (const test::Cells& row :
        test::csv_rows(test::text_of(test::source_folder() / "runs/reference/posterior_trade.csv"))) {
@@ -23,7 +23,7 @@ TEST(PosteriorTrade, StandsInTheReadmeAsItWasRecorded) {
         fmt::format("| {} | {} | {} | {} | {} | {}, {} | {} | {} | {} |\n", row.at("engine"), row.at("precision"),
                     row.at("spacing_mm"), row.at("refit_every"), row.at("seconds"), row.at("mean_error_m"),
                     row.at("variance_error"), row.at("rmse_m"), row.at("rmse_change_m"), row.at("taps_as_dense"));
-    EXPECT_NE(readme.find(line), std::string::npos) << line;
+    EXPECT_NE(page.find(line), std::string::npos) << line;
   }
   EXPECT_EQ(shown, 16);
 }

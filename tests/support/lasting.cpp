@@ -42,20 +42,22 @@ std::string without_clocks(const std::vector<Cells>& rows) {
   return out;
 }
 
-/// A manifest without command line and what is said of attempts.
-std::string identity(const std::string& text) {
+/// A manifest without what tells of attempts. Where values were written is told by who begins: of a job whose sweep was
+/// killed before, that is `palpate resume`, which reads them in the job's own config.yaml.
+std::string identity(const std::string& text, bool of_job) {
   const std::size_t words = text.find("\"command_line\"");
-  const std::size_t origins = text.find("\"origins\"");
+  const std::size_t origins = text.find(of_job ? "\"models\"" : "\"origins\"");
   return text.substr(0, words) + text.substr(origins, text.find("\"resumed\"") - origins);
 }
 
 std::string lasting(const fs::path& file) {
   const std::string text = text_of(file);
   const std::string name = file.filename().string();
+  const bool of_job = file.parent_path().parent_path().filename() == "jobs";
   if (name == "timings.csv") return first_column(text);
   if (name == "summary.json") return without_clocks(parse_json_row(text).value());
   if (name == "results.csv") return without_clocks(csv_rows(text));
-  if (name == "manifest.json" && text.find("\"resumed\"") != std::string::npos) return identity(text);
+  if (name == "manifest.json" && text.find("\"resumed\"") != std::string::npos) return identity(text, of_job);
   return name == "attempts.jsonl" ? "there" : text;
 }
 

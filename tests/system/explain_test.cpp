@@ -264,10 +264,10 @@ TEST_F(Explain, TellsTheLastCandidateAndARunThatOnlyFailed) {
   expect_explained(run({"scene.effects.missed_contacts={probability: 1}", "surface=two_part", "taps=6"}));
 }
 
-TEST_F(Explain, PrintsWhatReadmeShows) {
+TEST_F(Explain, PrintsWhatItsPageShows) {
   const std::string text = palpate({"explain", run({"name=first"}).string(), "9"}).out;
   const std::string shown = "```\n" + text.substr(0, text.find("\nThe models"));
-  EXPECT_TRUE(text_of(test::source_folder() / "README.md").find(shown) != std::string::npos) << shown;
+  EXPECT_TRUE(text_of(test::source_folder() / "framework/docs/runs.md").find(shown) != std::string::npos) << shown;
 }
 
 TEST_F(Explain, SaysHowMuchTheRunnerUpIsBehind) {

@@ -222,11 +222,11 @@ TEST(Figures, OfASweepShowWhatResultsCsvHas) {
   }
 }
 
-TEST(Figures, OfReadmeAreSmallPicturesOfThePapers) {
-  const std::string readme = text_of(test::source_folder() / "README.md");
+TEST(Figures, OfTheResultsAreSmallPicturesOfThePapers) {
+  const std::string page = text_of(test::source_folder() / "framework/docs/results.md");
   for (const std::string figure : {"figure_2", "figure_3", "figure_4", "figure_5"}) {
     const std::string file = "runs/reference/" + figure + ".png";
-    EXPECT_NE(readme.find("](" + file + ")"), std::string::npos) << file;
+    EXPECT_NE(page.find("](../../" + file + ")"), std::string::npos) << file;
     const std::string picture = text_of(test::source_folder() / file);
     EXPECT_EQ(picture.compare(0, 8, "\x89PNG\r\n\x1a\n"), 0) << file;
     EXPECT_LE(picture.size(), 200000U) << file;

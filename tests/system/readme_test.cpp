@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// README tells the truth: its commands run, and what it quotes is what comes out.
+// README and the pages of framework/docs tell the truth: their commands run, and what they quote is what comes out.
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
@@ -20,12 +20,13 @@ using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-/// The lines of all code blocks marked `sh`.
+/// The lines of all code blocks marked `sh`, which may be indented.
 std::vector<std::string> shown_commands(const std::string& text) {
   std::vector<std::string> out;
   std::istringstream lines(text);
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
+    line.erase(0, std::min(line.find_first_not_of(' '), line.size()));
     if (line.rfind("```", 0) == 0) {
       inside = line == "```sh";
     } else if (inside && !line.empty()) {
@@ -42,9 +43,9 @@ void imitate_checkout(const fs::path& folder) {
     fs::create_symlink(test::source_folder() / name, folder / name);
 }
 
-/// Compares README's table with what `palpate sweep` printed: group, runs, dead starts, found, failed, three spreads.
-void expect_table(const std::string& readme, const std::string& printed) {
-  std::string plain = readme;
+/// Compares the page's table with what `palpate sweep` printed: group, runs, dead starts, found, failed, three spreads.
+void expect_table(const std::string& page, const std::string& printed) {
+  std::string plain = page;
   plain.erase(std::remove(plain.begin(), plain.end(), '*'), plain.end());
   std::istringstream lines(printed);
   int compared = 0;
@@ -63,30 +64,30 @@ void expect_table(const std::string& readme, const std::string& printed) {
   EXPECT_EQ(compared, 4);
 }
 
-/// The rows of the table that `printed` is stand in README, letter by letter.
-void expect_rows(const std::string& readme, const std::string& printed) {
+/// The rows of the table that `printed` is stand in the page, letter by letter.
+void expect_rows(const std::string& page, const std::string& printed) {
   std::istringstream lines(printed);
   int rows = 0;
-  for (std::string line; std::getline(lines, line); ++rows) EXPECT_THAT(readme, HasSubstr(line + "\n"));
+  for (std::string line; std::getline(lines, line); ++rows) EXPECT_THAT(page, HasSubstr(line + "\n"));
   EXPECT_GT(rows, 2 + 5);
 }
 
-/// The numbered lines of the front in README are those that `palpate pareto` printed, in its order.
-void expect_front(const std::string& readme, const std::string& printed) {
+/// The numbered lines of the front in the page are those that `palpate pareto` printed, in its order.
+void expect_front(const std::string& page, const std::string& printed) {
   std::istringstream lines(printed);
   std::string front;
   for (std::string line; std::getline(lines, line);) {
     if (front.empty() || std::isdigit(static_cast<unsigned char>(line[4])) != 0) front += line + "\n";
   }
-  EXPECT_THAT(readme, HasSubstr("```\n" + front + "```\n"));
+  EXPECT_THAT(page, HasSubstr("```\n" + front + "```\n"));
 }
 
-/// The tables that `palpate compare` printed stand in README, and so do the words on how to read them.
-void expect_comparison(const std::string& readme, const std::string& printed) {
+/// The tables that `palpate compare` printed stand in the page, and so do the words on how to read them.
+void expect_comparison(const std::string& page, const std::string& printed) {
   const auto legend = printed.find("\ninterval:");
   ASSERT_NE(legend, std::string::npos);
-  EXPECT_THAT(readme, HasSubstr("```\n" + printed.substr(0, legend)));
-  EXPECT_THAT(readme, HasSubstr(printed.substr(legend) + "```\n"));
+  EXPECT_THAT(page, HasSubstr("```\n" + printed.substr(0, legend)));
+  EXPECT_THAT(page, HasSubstr(printed.substr(legend) + "```\n"));
 }
 
 /// Whether a command is left out under the sanitizers, where it would take minutes: those whose work is the same in
@@ -106,32 +107,82 @@ bool left_out(const std::string& command, const fs::path& folder) {
 #endif
 }
 
-TEST(Readme, EveryCommandThatItShowsRunsAndTheTablesAreWhatTheyPrint) {
+/// A page, and how many of its tables come from commands that run here.
+struct Page {
+  const char* name;
+  int tables;
+};
+
+class Document : public ::testing::TestWithParam<Page> {};
+
+TEST_P(Document, ShowsCommandsThatRunAndTablesThatTheyPrint) {
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
-  const std::string readme = text_of(test::source_folder() / "README.md");
-  const std::vector<std::string> commands = shown_commands(readme);
-  EXPECT_GE(commands.size(), 10U);
+  const std::string page = text_of(test::source_folder() / GetParam().name);
+  const std::vector<std::string> commands = shown_commands(page);
+  EXPECT_GE(commands.size(), 2U);
   int tables = 0;
   for (const std::string& command : commands) {
     if (left_out(command, folder.path())) continue;
     const test::Ended ended = test::run_program({"sh", "-c", command}, folder.path());
     EXPECT_EQ(ended.status, 0) << command << "\n" << ended.err;
-    if (command == "./palpate sweep configs/paper/comparison.yaml") {
-      ++tables;
-      expect_table(readme, ended.out);
+    ++tables;
+    if (command == "./palpate sweep configs/paper/comparison.yaml" && page.find("| strategy | taps") != std::string::npos) {
+      expect_table(page, ended.out);
     } else if (command == "sh tests/benchmark/fitting.sh" || command == "tests/benchmark/motions.py") {
-      ++tables;
-      expect_rows(readme, ended.out);
+      expect_rows(page, ended.out);
     } else if (command == "./palpate pareto runs/trade_motion/* --cost robot_seconds --error rmse_m") {
-      ++tables;
-      expect_front(readme, ended.out);
-    } else if (command.rfind("./palpate compare ", 0) == 0 && command.find(" --table") == std::string::npos) {
-      ++tables;
-      expect_comparison(readme, ended.out);
+      expect_front(page, ended.out);
+    } else if (command.rfind("./palpate compare runs/comparison/", 0) == 0) {
+      expect_comparison(page, ended.out);
+    } else {
+      --tables;
     }
   }
-  EXPECT_EQ(tables, left_out("sh tests/benchmark/fitting.sh", folder.path()) ? 0 : 6);
+  EXPECT_EQ(tables, left_out("sh tests/benchmark/fitting.sh", folder.path()) ? 0 : GetParam().tables);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Document,
+                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 1},
+                                           Page{"framework/docs/results.md", 1}, Page{"framework/docs/sweeps.md", 0},
+                                           Page{"framework/docs/comparing.md", 3}, Page{"framework/docs/scenes.md", 1},
+                                           Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
+                                           Page{"framework/docs/exactness.md", 0}),
+                         [](const auto& one) { return fs::path(one.param.name).stem().string(); });
+
+TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  const std::string readme = text_of(test::source_folder() / "README.md");
+  EXPECT_LE(lines(readme), 200);
+  int pages = 0;
+  for (const auto& entry : fs::directory_iterator(test::source_folder() / "framework/docs")) {
+    ++pages;
+    const std::string name = "framework/docs/" + entry.path().filename().string();
+    EXPECT_LE(lines(text_of(entry.path())), 250) << name;
+    EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
+  }
+  EXPECT_EQ(pages, 8) << "a new page needs its test above";
+}
+
+TEST(Documents, LinkToFilesThatAreThere) {
+  const fs::path root = test::source_folder();
+  std::vector<fs::path> documents{root / "README.md", root / "runs/README.md", root / "plugins/README.md",
+                                  root / "framework/README.md", root / "CONTRIBUTING.md",
+                                  root / "plugins/backends/baxter/README.md", root / "plugins/backends/process/UR.md"};
+  for (const auto& entry : fs::directory_iterator(root / "framework/docs")) documents.push_back(entry.path());
+  int links = 0;
+  for (const fs::path& document : documents) {
+    const std::string text = text_of(document);
+    for (auto at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+      const std::string link = text.substr(at + 2, text.find_first_of("#)\n", at + 2) - at - 2);
+      if (link.empty() || link.find("://") != std::string::npos || link.find_first_of(" &{[") != std::string::npos) {
+        continue;  // code, or elsewhere
+      }
+      ++links;
+      EXPECT_TRUE(fs::exists(document.parent_path() / link)) << document << ": " << link;
+    }
+  }
+  EXPECT_GT(links, 40);
 }
 
 TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is said to the program and what its answers mean: one JSON object a line. README.md of the project has the
+// What is said to the program and what its answers mean: one JSON object a line. framework/docs/robots.md has the
 // fields as a table.
 #pragma once
 

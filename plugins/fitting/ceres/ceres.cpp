@@ -73,7 +73,7 @@ class Ceres final : public Fitting {
 std::vector<Expectation> Ceres::expectations(const Model& model) const {
   // A scene is part desk and part object, with a step between them that no stationary kernel follows. Its taps look
   // calmer and smoother than what is still to be found: from few taps the likelihood alone takes too long a length
-  // scale and too small a signal, and is sure where it should not be. README has the figures of both.
+  // scale and too small a signal, and is sure where it should not be. framework/docs/runs.md has the figures of both.
   const auto log_normal = [](double median, double spread, double factor) {
     return Expectation{std::log(median), spread, std::log(median / factor), std::log(median * factor)};
   };
