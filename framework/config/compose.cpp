@@ -45,8 +45,8 @@ fs::path root_of(const fs::path& file, const std::string& group) {
   return folder.filename() == group ? folder.parent_path() : folder;
 }
 
-/// The first file of a group in folders, empty if there is none. Throws Error where a folder may not be searched: what it
-/// would have given is not what a later one gives.
+/// The first file of a group in folders, empty if there is none. Throws Error where a folder may not be searched: what
+/// it would have given is not what a later one gives.
 fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, const std::string& name) {
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots) {

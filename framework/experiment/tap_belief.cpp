@@ -124,8 +124,8 @@ void TapBelief::observe(const Target& place, const Contact& contact, bool initia
 
 Quantities TapBelief::known(Quantities asked) const {
   const bool of_weight = asked.has(Quantity::weight) || (asked.has(Quantity::probability) && !footprint_);
-  const bool of_heights = asked.has(Quantity::uncertainty) || (asked.has(Quantity::height) && !two_part_) ||
-                          (of_weight && joined_);
+  const bool of_heights =
+      asked.has(Quantity::uncertainty) || (asked.has(Quantity::height) && !two_part_) || (of_weight && joined_);
   Quantities out = asked;
   if (of_weight) out = out | Quantity::weight;
   if (of_weight && !footprint_) out = out | Quantity::probability;

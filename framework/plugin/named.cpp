@@ -38,7 +38,8 @@ class Declared final : public Belief {
  private:
   const Belief& declared(Quantity one, const char* name) const {
     if (reads_.has(one)) return belief_;
-    throw Error("", std::string("reads ") + name + ", which its reads() does not name", "add it there", Error::Kind::run);
+    throw Error("", std::string("reads ") + name + ", which its reads() does not name", "add it there",
+                Error::Kind::run);
   }
 
   const Belief& belief_;

@@ -29,7 +29,8 @@ class Recorded final : public Backend {
   /// What the run's own backend read when it was shown the first tap, while the initial design chose.
   Quantities reads() const override {
     const auto& taps = recording_.taps;
-    return taps.size() > 1 && taps[1].source == Source::initial ? recorded_quantities(recording_.rows[1]) : Quantities();
+    return taps.size() > 1 && taps[1].source == Source::initial ? recorded_quantities(recording_.rows[1])
+                                                                : Quantities();
   }
 
  private:

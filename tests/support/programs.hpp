@@ -39,8 +39,8 @@ inline std::string yaml_quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Looks again and again until `holds`, for five minutes, which only what hangs takes; what it says then. It sleeps between the looks: what
-/// another process does or leaves behind, its end above all, is announced to nobody here.
+/// Looks again and again until `holds`, for five minutes, which only what hangs takes; what it says then. It sleeps
+/// between the looks: what another process does or leaves behind, its end above all, is announced to nobody here.
 template <class Condition>
 bool eventually(const Condition& holds) {
   for (int i = 0; i < 150000 && !holds(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -21,7 +21,8 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// Reads until the screen has shown `text` `times` times, for ten minutes at most, which only what hangs takes; whether it has.
+  /// Reads until the screen has shown `text` `times` times, for ten minutes at most, which only what hangs takes;
+  /// whether it has.
   bool shows(const std::string& text, int times = 1);
   void type(const std::string& keys) const;
   void signal(int number) const;

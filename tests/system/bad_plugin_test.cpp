@@ -280,7 +280,8 @@ TEST(ThrowingPlugin, WhatIsNoExceptionIsToldToo) {
 TEST(ThrowingPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
   for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
            {"throws_in_score", "acquisition/throws_in_score: no score today"},
-           {"reads_untold", "acquisition/reads_untold: reads the weight w, which its reads() does not name, add it there"},
+           {"reads_untold",
+            "acquisition/reads_untold: reads the weight w, which its reads() does not name, add it there"},
            {"throws_number_in_score", "acquisition/throws_number_in_score: threw something that is no exception"}}) {
     const TemporaryFolder here;
     here.write("exp.yaml", config_with("acquisition", name));

@@ -127,7 +127,8 @@ TEST_P(Document, ShowsCommandsThatRunAndTablesThatTheyPrint) {
     const test::Ended ended = test::run_program({"sh", "-c", command}, folder.path());
     EXPECT_EQ(ended.status, 0) << command << "\n" << ended.err;
     ++tables;
-    if (command == "./palpate sweep configs/paper/comparison.yaml" && page.find("| strategy | taps") != std::string::npos) {
+    if (command == "./palpate sweep configs/paper/comparison.yaml" &&
+        page.find("| strategy | taps") != std::string::npos) {
       expect_table(page, ended.out);
     } else if (command == "sh tests/benchmark/fitting.sh" || command == "tests/benchmark/motions.py") {
       expect_rows(page, ended.out);
@@ -166,9 +167,13 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
 
 TEST(Documents, LinkToFilesThatAreThere) {
   const fs::path root = test::source_folder();
-  std::vector<fs::path> documents{root / "README.md", root / "runs/README.md", root / "plugins/README.md",
-                                  root / "framework/README.md", root / "CONTRIBUTING.md",
-                                  root / "plugins/backends/baxter/README.md", root / "plugins/backends/process/UR.md"};
+  std::vector<fs::path> documents{root / "README.md",
+                                  root / "runs/README.md",
+                                  root / "plugins/README.md",
+                                  root / "framework/README.md",
+                                  root / "CONTRIBUTING.md",
+                                  root / "plugins/backends/baxter/README.md",
+                                  root / "plugins/backends/process/UR.md"};
   for (const auto& entry : fs::directory_iterator(root / "framework/docs")) documents.push_back(entry.path());
   int links = 0;
   for (const fs::path& document : documents) {

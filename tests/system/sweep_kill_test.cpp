@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A sweep that is killed at any moment, its jobs with it, and resumed, ends with every file of itself and of its jobs as
-// the unbroken one has it. PALPATE_KILLS says how many sweeps (tests/stress.sh: 150), each killed twice.
+// A sweep that is killed at any moment, its jobs with it, and resumed, ends with every file of itself and of its jobs
+// as the unbroken one has it. PALPATE_KILLS says how many sweeps (tests/stress.sh: 150), each killed twice.
 #include "support/lasting.hpp"
 #include "support/support.hpp"
 
@@ -25,14 +25,32 @@ std::vector<std::string> sweep_words(int number) {
   const auto config = [](const char* name) { return (test::source_folder() / "configs" / name).string(); };
   switch (number % 3) {
     case 0:
-      return {"sweep", config("paper/object_i.yaml"), "name=killed", "acquisition=[weighted,uncertainty]",
-              "seed=range(0,3)", "backend.pace=0.001", "--quiet"};
+      return {"sweep",           config("paper/object_i.yaml"), "name=killed", "acquisition=[weighted,uncertainty]",
+              "seed=range(0,3)", "backend.pace=0.001",          "--quiet"};
     case 1:
-      return {"sweep", config("default.yaml"), "name=killed", "scene=[object_i,object_ii]", "taps=6",
-              "backend.pace=0.001", "log.maps=true", "log.surface=true", "--quiet", "-j", "2"};
+      return {"sweep",
+              config("default.yaml"),
+              "name=killed",
+              "scene=[object_i,object_ii]",
+              "taps=6",
+              "backend.pace=0.001",
+              "log.maps=true",
+              "log.surface=true",
+              "--quiet",
+              "-j",
+              "2"};
     default:
-      return {"sweep", config("paper/object_i.yaml"), "name=killed", "taps=[5,9]", "fitting=ceres",
-              "height.signal=5cm", "fitting.every=4", "backend.pace=0.001", "--quiet", "-j", "1"};
+      return {"sweep",
+              config("paper/object_i.yaml"),
+              "name=killed",
+              "taps=[5,9]",
+              "fitting=ceres",
+              "height.signal=5cm",
+              "fitting.every=4",
+              "backend.pace=0.001",
+              "--quiet",
+              "-j",
+              "1"};
   }
 }
 

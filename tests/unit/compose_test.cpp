@@ -362,7 +362,8 @@ TEST_F(GroupFolders, ThatMayNotBeSearchedAreNotTakenForEmptyOnes) {
       said = error.what();
     }
   }
-  EXPECT_THAT(said, ::testing::EndsWith("a/kernel/mine.yaml: cannot be looked for, check the permissions of its folder"));
+  EXPECT_THAT(said,
+              ::testing::EndsWith("a/kernel/mine.yaml: cannot be looked for, check the permissions of its folder"));
   rights("a/kernel", 0755);
   EXPECT_EQ(from("a/x.yaml"), "a");
 }

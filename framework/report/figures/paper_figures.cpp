@@ -122,8 +122,8 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
     const double left = kLeft + kStep * static_cast<double>(i);
     sheet.text(iteration_words(progress.iterations[i], progress.snapshots[i]), left + 0.5 * first.width, kHead, 11,
                Sheet::Align::centre);
-    sheet.surface({left - 4, kHead + kWords, first.width + 26, kSurface}, raster, "surface_" + key, "seen_" + key, doubt,
-                  relief);
+    sheet.surface({left - 4, kHead + kWords, first.width + 26, kSurface}, raster, "surface_" + key, "seen_" + key,
+                  doubt, relief);
     sheet.map({left, first.top, first.width, first.height}, raster, "scores_" + key, key, scores);
   }
   const double right = kLeft + kStep * static_cast<double>(columns - 1) + first.width + 22;

@@ -37,9 +37,9 @@ std::string axis(char name, double length) {
 }
 
 std::string colour_range(const Colours& colours) {
-  return gnuplot_palette(colours.palette) +
-         fmt::format("set cbrange [{}:{}]\n{}", number(colours.low), number(colours.high),
-                     colours.logarithmic ? "set logscale cb\n" : "");
+  return gnuplot_palette(colours.palette) + fmt::format("set cbrange [{}:{}]\n{}", number(colours.low),
+                                                        number(colours.high),
+                                                        colours.logarithmic ? "set logscale cb\n" : "");
 }
 
 // How surfaces are seen: from so far above, turned so far.

@@ -29,8 +29,9 @@ struct Colours {
   bool logarithmic = false;
 };
 
-/// For standard deviations of the height from `least` to `most`, metres. What was never touched is known a hundred times
-/// worse than what was, and then equal ratios have equal steps in colour: else all that is known would look alike.
+/// For standard deviations of the height from `least` to `most`, metres. What was never touched is known a hundred
+/// times worse than what was, and then equal ratios have equal steps in colour: else all that is known would look
+/// alike.
 Colours deviation_colours(double least, double most);
 
 /// The snapshot without the marks that the surface hides when it is seen from the side.

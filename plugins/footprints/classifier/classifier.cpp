@@ -42,8 +42,8 @@ class Classifier final : public Footprint {
   }
 
   std::vector<FootprintNumber> numbers() const override {
-    const double evidence = posterior_ ? posterior_->log_evidence()
-                                       : Laplace(*kernel_, settings_, points_, on_).log_evidence();
+    const double evidence =
+        posterior_ ? posterior_->log_evidence() : Laplace(*kernel_, settings_, points_, on_).log_evidence();
     return {{"log_evidence", evidence}};
   }
 

@@ -37,8 +37,8 @@ std::string node_name();
 /// does not do so within half a second roscpp takes it for gone from now on.
 void forget_silent_master();
 
-/// Does this on roscpp's thread of connections, and waits for it: a header that arrives there, or a peer that goes, while
-/// another thread gives up what it belongs to, would end the program (ros_comm, issues 1939 and 2032).
+/// Does this on roscpp's thread of connections, and waits for it: a header that arrives there, or a peer that goes,
+/// while another thread gives up what it belongs to, would end the program (ros_comm, issues 1939 and 2032).
 void give_up(const std::function<void()>& connections);
 
 }  // namespace palpate::baxter
