@@ -60,7 +60,8 @@ void print_models(const Program& program, const ResolvedConfig& config) {
       std::string& who = models[one.model];
       who += (who.empty() ? "" : ", ") + one.who;
     }
-    for (const auto& [model, who] : models) fmt::print("# {}: {}\n", model, who);
+    if (!models.empty()) fmt::print("# models that taps are chosen from, and who reads them:\n");
+    for (const auto& [model, who] : models) fmt::print("#   {}: {}\n", model, who);
   } catch (const Error& trouble) {
     fmt::print("# this config cannot be run: {}\n", trouble.what());
   }

@@ -153,6 +153,34 @@ TEST(Run, ThePrintedConfigRunsAsTheSameRun) {
   EXPECT_EQ(two.status, 0) << two.err;
 }
 
+TEST(Run, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
+  const TemporaryFolder folder;
+  const auto models = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all{"run", paper(), "--print-config"};
+    all.insert(all.end(), words.begin(), words.end());
+    const std::string out = test::palpate(all, folder.path()).out;
+    return out.substr(std::min(out.find("# models"), out.size()));
+  };
+  EXPECT_EQ(models({}),
+            "# models that taps are chosen from, and who reads them:\n"
+            "#   height process: acquisition weighted, fallback uncertainty, from its first use on\n"
+            "#   weight process: acquisition weighted\n");
+  EXPECT_EQ(models({"acquisition=random", "fallback=none"}), "");
+  EXPECT_EQ(models({"acquisition=random", "fallback=none", "backend=adaptive"}),
+            "# models that taps are chosen from, and who reads them:\n#   height process: backend simulator\n");
+  EXPECT_THAT(
+      test::palpate({"run", paper(), "kernel.length_scale=1e-300m", "scene.objects.0.at=[30cm,5cm]", "--print-config"},
+                    folder.path())
+          .out,
+      HasSubstr("# this config cannot be run: "));
+
+  test::palpate({"run", paper(), "--quiet"}, folder.path());
+  const std::string manifest = text_of(only_run(folder.path() / "runs") / "manifest.json");
+  EXPECT_THAT(manifest, HasSubstr("\"models\": {\n    \"height process\": [\n      \"acquisition weighted\",\n"
+                                  "      \"fallback uncertainty, from its first use on\"\n    ],\n"
+                                  "    \"weight process\": [\n      \"acquisition weighted\"\n    ]\n  },"));
+}
+
 TEST(Run, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
   const TemporaryFolder folder;
   const Ended run = test::palpate({"run", config("paper/comparison.yaml"), "acquisition=grid",
