@@ -63,7 +63,8 @@ class Experiment {
   /// Has the belief hold these quantities from now on, and choose_next() describe them, as if the strategy read them.
   void ask(Quantities quantities);
 
-  /// The errors as of now, none where no truth is known. For people who watch: what is recorded stays the same.
+  /// The errors as of now, none where no truth is known. For people who watch: what is recorded, times included, is the
+  /// same without them, because models that nobody else reads are kept apart.
   Errors errors();
 
   const Candidates& candidates() const { return candidates_; }
@@ -96,8 +97,11 @@ class Experiment {
   /// Throws Error where the backend cannot go on, by its own word or because one tap after the other came to nothing.
   void check_backend(const Contact& last);
   void show_belief();
+  /// Throws Error where an acquisition's product() has what its reads() does not name.
+  void check_product() const;
   static constexpr Quantities kFallbackReads = Quantity::uncertainty;
-  /// What the strategy and the rules that end a run read, from the first tap on that they choose.
+  /// What the strategy and stop.max_standard_deviation read, from the first tap on that is not the initial design's.
+  /// What forecast() reads it asks for itself, from the first hit on.
   Quantities strategy_reads() const;
   void ask_for_strategy() { ask(strategy_reads()); }
   /// What the surface is made of.
@@ -114,6 +118,9 @@ class Experiment {
   PhaseClock clock_;
   TapBelief belief_;
   Quantities asked_;                      ///< by those whose models are recorded
+  std::vector<PastTap> made_;             ///< all taps, those of an earlier process included
+  PhaseClock unrecorded_;                 ///< of the models that only people who watch have asked for
+  std::unique_ptr<TapBelief> watched_;    ///< these
   std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
   std::shared_ptr<Acquisition> acquisition_;
   std::shared_ptr<Backend> backend_;

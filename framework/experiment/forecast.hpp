@@ -54,7 +54,7 @@ class Forecaster {
   /// `height` above the desk, metres.
   void hit(double height);
 
-  /// `belief` knows of the same contacts; builds the models that the reconstruction needs.
+  /// `belief` knows of the same contacts; what the surface is made of must have been asked for, once there is a hit.
   Forecast forecast(const TapBelief& belief) const;
   /// Contacts on an object so far; without one it forecasts nothing, and reads nothing of the belief.
   int hits() const { return hits_; }

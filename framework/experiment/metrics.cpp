@@ -41,27 +41,40 @@ double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
 }
 
-Eigen::VectorXd reconstruction(const TapBelief& belief) {
-  if (!belief.two_part()) return belief.height_mean();
-  const Eigen::VectorXd& on = belief.probability();
-  return (on.array() >= 0.5).select(belief.height_mean(), Eigen::VectorXd::Constant(on.size(), belief.desk()));
+namespace {
+
+Eigen::VectorXd gated(const SurfaceMaps& maps) {
+  if (!maps.two_part) return *maps.height;
+  const Eigen::VectorXd desk = Eigen::VectorXd::Constant(maps.height->size(), maps.desk);
+  return (maps.probability->array() >= 0.5).select(*maps.height, desk);
 }
 
-Errors errors_of(const TapBelief& belief, Quantities known, const Truth& truth) {
+}  // namespace
+
+SurfaceMaps maps_of(const TapBelief& belief, Quantities known) {
+  return {known.has(Quantity::height) ? &belief.height_mean() : nullptr,
+          known.has(Quantity::probability) ? &belief.probability() : nullptr, belief.two_part(), belief.desk()};
+}
+
+Eigen::VectorXd reconstruction(const TapBelief& belief) {
+  const Quantities reads = belief.two_part() ? Quantity::height | Quantity::probability : Quantity::height;
+  return gated(maps_of(belief, reads));
+}
+
+Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   Errors out;
-  const bool knows_outline = known.has(Quantity::probability);
-  if (known.has(Quantity::height)) {
-    out.rmse_height = rmse(belief.height_mean(), truth, true);
-    if (!belief.two_part()) {  // the reconstruction is the height mean
-      out.rmse = rmse(belief.height_mean(), truth, false);
+  if (maps.height != nullptr) {
+    out.rmse_height = rmse(*maps.height, truth, true);
+    if (!maps.two_part) {  // the reconstruction is the height mean
+      out.rmse = rmse(*maps.height, truth, false);
       out.rmse_on_surface = out.rmse_height;
-    } else if (knows_outline) {
-      const Eigen::VectorXd surface = reconstruction(belief);
+    } else if (maps.probability != nullptr) {
+      const Eigen::VectorXd surface = gated(maps);
       out.rmse = rmse(surface, truth, false);
       out.rmse_on_surface = rmse(surface, truth, true);
     }
   }
-  if (knows_outline) out.footprint_iou = footprint_iou(belief.probability(), truth);
+  if (maps.probability != nullptr) out.footprint_iou = footprint_iou(*maps.probability, truth);
   return out;
 }
 

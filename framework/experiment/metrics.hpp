@@ -19,7 +19,7 @@ struct Truth {
 
 Truth truth_at(const Candidates& candidates, const Scene& scene);
 
-/// Errors that need one of the two models; absent where there is no such cell or the model was not read.
+/// Errors that need one of the two models; absent where there is no such cell or nobody asked for the model.
 struct Errors {
   std::optional<double> rmse;             ///< metres, the reconstructed scene, desk included
   std::optional<double> rmse_on_surface;  ///< metres, the same over the cells on an object
@@ -33,9 +33,17 @@ std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool 
 /// Intersection over union of the cells where `probability` >= 1/2 with those on an object.
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth);
 
-/// The errors of what is `known` of the belief, which must be there: without the outline no surface of two parts has
-/// any, without the height none has.
-Errors errors_of(const TapBelief& belief, Quantities known, const Truth& truth);
+/// What there is of a reconstruction.
+struct SurfaceMaps {
+  const Eigen::VectorXd* height = nullptr;       ///< mean, metres; null where nobody asked for it
+  const Eigen::VectorXd* probability = nullptr;  ///< likewise
+  bool two_part = false;
+  double desk = 0.0;
+};
+SurfaceMaps maps_of(const TapBelief& belief, Quantities known);
+
+/// The errors of what is there: without the probability a surface of two parts has none, without the height none has.
+Errors errors_of(const SurfaceMaps& maps, const Truth& truth);
 
 /// Does the height model know what it does not know? Over the cells on an object that were not tapped, noise included.
 struct Calibration {
@@ -46,7 +54,7 @@ struct Calibration {
 Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped);
 
 /// The surface as the config's `surface` reconstructs it, metres: the height mean; for `two_part` only where the
-/// footprint's probability is at least 1/2, else the desk. Builds the models that it needs.
+/// footprint's probability is at least 1/2, else the desk. Both must have been asked for.
 Eigen::VectorXd reconstruction(const TapBelief& belief);
 
 }  // namespace palpate

@@ -54,6 +54,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       tapped_(allowed_.size(), false) {
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates_, scene_->area(), Random(context_.seed, "initial"));
+  check_product();
   belief_.form(acquisition_->product());
   if (options_.stop.expected_rmse) forecaster_.emplace();
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
@@ -71,6 +72,18 @@ void Experiment::resume(const std::vector<PastTap>& past) {
   ask(asked_);
 }
 
+void Experiment::check_product() const {
+  // Such scores come out of the models themselves; score() is not called, which would be held to reads().
+  const auto needs = [&](Quantity one, const char* name) {
+    if (acquisition_->reads().has(one)) return;
+    throw Error("acquisition/" + options_.acquisition.type,
+                fmt::format("says that its score is a product with {}, which its reads() does not name", name),
+                "add it there");
+  };
+  if (acquisition_->product() != Product::none) needs(Quantity::uncertainty, "the uncertainty u");
+  if (acquisition_->product() == Product::weighted) needs(Quantity::weight, "the weight w");
+}
+
 void Experiment::ask(Quantities quantities) {
   asked_ = asked_ | quantities;
   belief_.ask(quantities);
@@ -83,7 +96,6 @@ Quantities Experiment::surface_reads() const {
 Quantities Experiment::strategy_reads() const {
   Quantities out = acquisition_->reads();
   if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
-  if (options_.stop.expected_rmse) out = out | surface_reads();
   return out;
 }
 
@@ -111,14 +123,28 @@ std::optional<Forecast> Experiment::forecast() {
 }
 
 Errors Experiment::errors() {
-  const Truth* known = truth();
-  if (known == nullptr) return {};
-  belief_.ask(kErrorsRead);
-  return errors_of(belief_, kErrorsRead, *known);
+  const Truth* real = truth();
+  if (real == nullptr) return {};
+  SurfaceMaps maps = maps_of(belief_, recorded());
+  Quantities lacking;
+  if (maps.height == nullptr) lacking = lacking | Quantity::height;
+  if (maps.probability == nullptr) lacking = lacking | Quantity::probability;
+  if (lacking == Quantities()) return errors_of(maps, *real);
+  if (!watched_) {
+    watched_ = std::make_unique<TapBelief>(options_, candidates_, context_, unrecorded_);
+    for (const PastTap& tap : made_) watched_->observe(tap.target, tap.contact, tap.source == Source::initial);
+  }
+  watched_->ask(lacking);
+  const SurfaceMaps beside = maps_of(*watched_, lacking);
+  if (maps.height == nullptr) maps.height = beside.height;
+  if (maps.probability == nullptr) maps.probability = beside.probability;
+  return errors_of(maps, *real);
 }
 
 void Experiment::absorb(const Target& target, const Contact& contact, Source source) {
   belief_.observe(target, contact, source == Source::initial);
+  if (watched_) watched_->observe(target, contact, source == Source::initial);
+  made_.push_back({target, contact, source});
   count(contact, source);
   if (search_) search_->look(target);
   previous_ = target;
@@ -243,7 +269,7 @@ void Experiment::describe_state(TapRecord& tap) {
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* real = truth()) {
     tap.true_on_surface = real->on(tap.candidate);
-    tap.errors = errors_of(belief_, known, *real);
+    tap.errors = errors_of(maps_of(belief_, known), *real);
   }
 }
 
@@ -253,7 +279,8 @@ RunResult Experiment::result() {
   out.forecast = forecast();
   out.interrupted = out.stop_reason == kStoppedByUser;
   if (const Truth* known = truth()) {
-    out.errors = errors();
+    belief_.ask(kErrorsRead);
+    out.errors = errors_of(maps_of(belief_, kErrorsRead), *known);
     out.calibration = calibration(belief_, *known, tapped_);
   }
   const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {

@@ -137,7 +137,8 @@ Quantities TapBelief::known(Quantities asked) const {
 std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
   const bool of_weight = quantities.has(Quantity::weight) || (quantities.has(Quantity::probability) && !footprint_);
   std::vector<std::string> out;
-  if (quantities.has(Quantity::uncertainty) || (quantities.has(Quantity::height) && !two_part_)) {
+  if (quantities.has(Quantity::uncertainty) || (quantities.has(Quantity::height) && !two_part_) ||
+      (of_weight && joined_)) {  // two outputs of one process
     out.emplace_back("height process");
   }
   if (quantities.has(Quantity::height) && two_part_) out.emplace_back("surface process");

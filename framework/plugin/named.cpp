@@ -14,11 +14,18 @@
 namespace palpate {
 namespace {
 
+/// A plugin has read what it did not declare. By whatever parts of it the call went, it is the plugin's own fault.
+class Undeclared final : public Error {
+ public:
+  using Error::Error;
+};
+
 /// A belief of which a plugin may read what it said it reads.
 class Declared final : public Belief {
  public:
-  /// `belief` must outlive it.
-  Declared(const Belief& belief, Quantities reads) : belief_(belief), reads_(reads) {}
+  /// `belief` and the plugin's `name` must outlive it.
+  Declared(const Belief& belief, Quantities reads, const std::string& name)
+      : belief_(belief), reads_(reads), name_(name) {}
   const Points& candidates() const override { return belief_.candidates(); }
   Area area() const override { return belief_.area(); }
   int taps() const override { return belief_.taps(); }
@@ -38,12 +45,13 @@ class Declared final : public Belief {
  private:
   const Belief& declared(Quantity one, const char* name) const {
     if (reads_.has(one)) return belief_;
-    throw Error("", std::string("reads ") + name + ", which its reads() does not name", "add it there",
-                Error::Kind::run);
+    throw Undeclared(name_, std::string("reads ") + name + ", which its reads() does not name", "add it there",
+                     Error::Kind::run);
   }
 
   const Belief& belief_;
   Quantities reads_;
+  const std::string& name_;
 };
 
 template <class Interface>
@@ -52,10 +60,14 @@ class Named : public Interface {
   Named(std::string name, std::shared_ptr<Interface> inner) : name_(std::move(name)), inner_(std::move(inner)) {}
 
  protected:
+  const std::string& name() const { return name_; }
+
   template <class Call>
   auto in_plugin(const Call& call) const {
     try {
       return call(*inner_);
+    } catch (const Undeclared&) {
+      throw;
     } catch (const Error& trouble) {
       const std::string place = trouble.where().empty() ? std::string() : trouble.where() + ": ";
       throw Error(name_, place + trouble.reason(), trouble.hint(), trouble.kind());
@@ -107,7 +119,7 @@ class NamedAcquisition final : public Named<Acquisition> {
     return in_plugin([](const Acquisition& inner) { return inner.reads(); });
   }
   void score(const Belief& belief, VectorOut out) const override {
-    in_plugin([&](const Acquisition& inner) { inner.score(Declared(belief, inner.reads()), out); });
+    in_plugin([&](const Acquisition& inner) { inner.score(Declared(belief, inner.reads(), this->name()), out); });
   }
   Product product() const override {
     return in_plugin([](const Acquisition& inner) { return inner.product(); });
@@ -173,7 +185,7 @@ class NamedBackend final : public Named<Backend> {
     return in_plugin([](const Backend& inner) { return inner.reads(); });
   }
   void show(const Belief& belief) override {
-    in_plugin([&](Backend& inner) { inner.show(Declared(belief, inner.reads())); });
+    in_plugin([&](Backend& inner) { inner.show(Declared(belief, inner.reads(), this->name())); });
   }
   bool scene_is_truth() const override {
     return in_plugin([](const Backend& inner) { return inner.scene_is_truth(); });

@@ -45,6 +45,13 @@ void set(Row& row, const std::string& name, Scalar value) {
   }
 }
 
+/// What had been asked for in a run of that budget when it ended: after its last tap its backend was shown the belief,
+/// which the row of the next tap tells of, unless the strategy has read for that one.
+Quantities asked_after(const Recording& recording, std::size_t taps) {
+  const bool next = taps < recording.rows.size() && recording.taps[taps].source == Source::initial;
+  return recorded_quantities(recording.rows[next ? taps : taps - 1]);
+}
+
 /// The share of a time of the whole run.
 Scalar share_of(const std::optional<Row>& summary, const char* name, const std::optional<double>& share) {
   const Scalar* whole = summary ? summary->find(name) : nullptr;
@@ -65,6 +72,7 @@ std::vector<Row> summaries_after(const Workshop& workshop, const Recording& reco
   std::vector<Row> rows;
   for (const int count : taps) {
     playback.advance_to(count);
+    if (count > 0) playback.experiment().ask(asked_after(recording, static_cast<std::size_t>(count)));
     RunResult result = playback.experiment().result();
     result.stop_reason = "tap budget";
     // A kill may have lost lines of the times, which no run depends on.

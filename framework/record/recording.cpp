@@ -42,7 +42,8 @@ Quantities recorded_quantities(const Row& row) {
   if (has("height_process.signal")) out = out | Quantity::uncertainty;
   if (has("weight_process.signal")) out = out | Quantity::weight;
   if (has("surface_process.signal")) out = out | Quantity::height;
-  if (has("p")) out = out | Quantity::probability;
+  // A summary has no p.
+  if (has("p") || row.find("footprint.remark") != nullptr) out = out | Quantity::probability;
   return out;
 }
 

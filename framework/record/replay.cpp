@@ -26,11 +26,9 @@ class Recorded final : public Backend {
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return recording_.truth_known(); }
   bool wants_prediction() const override { return predicted_; }
-  /// What the run's own backend read when it was shown the first tap, while the initial design chose.
+  /// What the run's own backend read when it was shown the first tap is in the second row, with what others read there.
   Quantities reads() const override {
-    const auto& taps = recording_.taps;
-    return taps.size() > 1 && taps[1].source == Source::initial ? recorded_quantities(recording_.rows[1])
-                                                                : Quantities();
+    return recording_.rows.size() > 1 ? recorded_quantities(recording_.rows[1]) : Quantities();
   }
 
  private:

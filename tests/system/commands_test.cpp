@@ -460,13 +460,17 @@ TEST(CommandLine, WhatMayNotBeReadIsNotCalledMissing) {
   fs::permissions(folder.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
   fs::permissions(folder.path() / "closed", fs::perms::owner_read | fs::perms::owner_write);
   fs::permissions(folder.path() / "two.yaml", fs::perms::none);
-  const auto refusal = [&](const std::string& file) {
-    std::vector<std::string> words{test::program_file().string(), "validate", file};
+  const auto as_anybody = [&](std::vector<std::string> words) {
     // root may read everything
     if (::geteuid() == 0)
       words.insert(words.begin(), {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
-    return test::run_program(words, folder.path()).err;
+    return test::run_program(words, folder.path());
   };
+  const fs::path program = test::program_file();
+  if (as_anybody({"/usr/bin/test", "-r", (program.parent_path() / "lib/palpate").string()}).status != 0) {
+    GTEST_SKIP() << "only root may enter the folder of this build";
+  }
+  const auto refusal = [&](const std::string& file) { return as_anybody({program.string(), "validate", file}).err; };
   EXPECT_EQ(refusal("closed/one.yaml"), "closed/one.yaml: cannot be read, check the permissions of its folder\n");
   EXPECT_EQ(refusal("two.yaml"), "two.yaml: cannot be read, check its permissions\n");
   fs::permissions(folder.path() / "closed", fs::perms::owner_all);

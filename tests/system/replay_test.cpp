@@ -90,6 +90,70 @@ TEST(Replay, OfASearchThatFoundNothingAgrees) {
   EXPECT_EQ(ended.status, 0) << ended.out;
 }
 
+/// A run of these words, and what `palpate replay` says of it.
+std::string replayed(const TemporaryFolder& folder, const std::string& runs, std::vector<std::string> words,
+                     const std::vector<std::string>& environment = {}) {
+  words.insert(words.begin(), "run");
+  words.insert(words.end(), {"--quiet", "--runs", runs});
+  const Ended ended = test::palpate(words, folder.path(), environment);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  return test::palpate({"replay", only_run(folder.path() / runs).string()}, folder.path(), environment).out;
+}
+
+TEST(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
+  // This backend is shown the height after each tap, and knows no truth.
+  const std::vector<std::string> with{"PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("cannot_go_on").string()};
+  const TemporaryFolder folder;
+  for (const char* initial : {"initial.count=1", "initial.count=3"}) {
+    EXPECT_THAT(replayed(folder, initial,
+                         {paper(), "backend.type=cannot_go_on", "taps=4", "acquisition=random", initial}, with),
+                HasSubstr(" all equal"))
+        << initial;
+    const std::string taps = text_of(only_run(folder.path() / initial) / "taps.jsonl");
+    EXPECT_THAT(taps.substr(taps.find('\n')), HasSubstr("\"height_process\": {\"kernel\"")) << "it is recorded";
+  }
+}
+
+TEST(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(replayed(folder, "runs",
+                       {config("process.yaml"), "footprint=shape", "acquisition=outline", "fallback=none",
+                        "stop.max_standard_deviation=10m"}),
+              HasSubstr(" all equal"));
+  EXPECT_THAT(text_of(only_run(folder.path() / "runs") / "summary.json"), HasSubstr("\"max_standard_deviation\""));
+}
+
+TEST(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(replayed(folder, "runs", {paper(), "surface=two_part", "stop.expected_rmse=1mm"}),
+              HasSubstr(" all equal"));
+  const std::string taps = text_of(only_run(folder.path() / "runs") / "taps.jsonl");
+  const auto seventh = taps.find("{\"tap\": 7");
+  EXPECT_EQ(taps.substr(0, seventh).find("surface_process"), std::string::npos) << "the first hit is tap 8";
+  EXPECT_NE(taps.find("surface_process"), std::string::npos);
+}
+
+TEST(Earlier, SummariesHaveTheModelsThatABackendReadsWhereNoTruthIsKnown) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> words{config("process.yaml"), "backend.motion.adaptive_hover={}", "name=early"};
+  std::vector<std::string> sweep{"sweep"};
+  sweep.insert(sweep.end(), words.begin(), words.end());
+  sweep.insert(sweep.end(), {"acquisition=random,grid", "taps=8", "--quiet"});
+  ASSERT_EQ(test::palpate(sweep, folder.path()).status, 0);
+  const fs::path directory = only_run(folder.path() / "runs");
+  ASSERT_EQ(
+      test::palpate({"compare", directory.string(), "--by", "acquisition", "--at", "5", "--metric", "robot_seconds"},
+                    folder.path())
+          .status,
+      0);
+  int summaries = 0;
+  for (const auto& job : fs::directory_iterator(directory / "jobs")) {
+    ++summaries;
+    EXPECT_THAT(text_of(job.path() / "summary_at_5.json"), ::testing::ContainsRegex("\"signal\": [0-9]"));
+  }
+  EXPECT_EQ(summaries, 2);
+}
+
 TEST(Replay, FollowsEveryFit) {
   const TemporaryFolder folder;
   for (const char* extra : {"surface=two_part", "weight.hyperparameters=shared", "fitting.every=5"}) {
