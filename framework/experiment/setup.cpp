@@ -54,6 +54,8 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       tapped_(allowed_.size(), false) {
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates_, scene_->area(), Random(context_.seed, "initial"));
+  constexpr std::int64_t kRoom = 1024;  // within it no tap of the loop has to make any
+  made_.reserve(static_cast<std::size_t>(std::min(options_.taps, kRoom)));
   check_product();
   belief_.form(acquisition_->product());
   if (options_.stop.expected_rmse) forecaster_.emplace();
