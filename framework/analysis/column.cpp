@@ -31,8 +31,8 @@ Column find_column(const std::string& name, const std::vector<std::string>& colu
     throw Error(kCommandLine, fmt::format("{}: results.csv has no column '{}'", option, name),
                 suggestion(name, columns));
   }
-  const SummaryField* field = find_summary_field(name);
-  return {name, unit_of_column(name), field != nullptr ? field->better : SummaryField::Better::neither};
+  const RecordField* field = find_summary_field(name);
+  return {name, unit_of_column(name), field != nullptr ? field->better : RecordField::Better::neither};
 }
 
 std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option) {
@@ -47,9 +47,6 @@ std::optional<double> number_in(const Row& row, const std::string& column, const
               "name one that can be averaged");
 }
 
-bool is_done(const Row& row) {
-  const Scalar* status = row.find("status");
-  return status != nullptr && *status == Scalar{std::string("done")};
-}
+bool is_done(const Row& row) { return row.text("status") == "done"; }
 
 }  // namespace palpate

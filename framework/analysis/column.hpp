@@ -2,7 +2,7 @@
 // A column of results.csv about which something is to be said, and what stands in it.
 #pragma once
 
-#include "experiment/summary_fields.hpp"
+#include "record/fields.hpp"
 #include "record/row.hpp"
 
 #include <palpate/options.hpp>
@@ -16,7 +16,7 @@ namespace palpate {
 struct Column {
   std::string name;
   Unit unit = Unit::none;
-  SummaryField::Better better = SummaryField::Better::neither;  ///< `neither` of what is no field of the summary
+  RecordField::Better better = RecordField::Better::neither;  ///< `neither` of what is no field of the summary
 };
 
 /// The names of all columns that `results` have.

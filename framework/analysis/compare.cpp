@@ -2,6 +2,7 @@
 #include "analysis/compare.hpp"
 
 #include "analysis/bootstrap.hpp"
+#include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "config/quantity.hpp"
 
@@ -83,8 +84,7 @@ class Filter {
     return where_->holds(
         [&](const std::string& name) -> std::optional<std::string> {
           if (!contains(columns_, name)) return {};
-          const auto key = std::find(sweep_.keys.begin(), sweep_.keys.end(), name);
-          if (key != sweep_.keys.end()) return job.values[static_cast<std::size_t>(key - sweep_.keys.begin())];
+          if (contains(sweep_.keys, name)) return value_of(sweep_, job, name);
           const Scalar* value = row != nullptr ? row->find(name) : nullptr;
           return value != nullptr ? text_of(name, *value) : std::string();
         },
@@ -120,33 +120,23 @@ void insert(Outcomes& outcomes, Values pairing, const Outcome& outcome) {
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, Comparison& out) {
-  std::map<std::int64_t, const Row*> rows;
-  for (const Row& row : results) rows[std::get<std::int64_t>(*row.find("job"))] = &row;
   const Filter filter(sweep, columns, query.where);
+  const Values paired = others(sweep.keys, query.by);
   std::vector<Collected> groups;
-  std::map<Values, std::size_t> found;
-  for (const Job& job : sweep.jobs) {
-    Values group(query.by.size());
-    Values pairing;
-    for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
-      const auto by = std::find(query.by.begin(), query.by.end(), sweep.keys[i]);
-      if (by != query.by.end()) {
-        group[static_cast<std::size_t>(by - query.by.begin())] = job.values[i];
-      } else {
-        pairing.push_back(job.values[i]);
+  for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
+    groups.push_back({group.values, {}});
+    for (const auto& [job, row] : group.jobs) {
+      Outcome outcome = outcome_of(row, query.metric);
+      if (!filter.keeps(*job, row)) {
+        ++out.left_out;
+        out.left_out_failed += outcome.fate == Fate::failed ? 1 : 0;
+        out.left_out_unfinished += outcome.fate == Fate::unfinished ? 1 : 0;
+        outcome = {Fate::left_out};
       }
+      Values pairing;
+      for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
+      insert(groups.back().outcomes, std::move(pairing), outcome);
     }
-    const auto [at, is_new] = found.emplace(group, groups.size());
-    if (is_new) groups.push_back({group, {}});
-    const auto row = rows.find(job.index);
-    Outcome outcome = outcome_of(row != rows.end() ? row->second : nullptr, query.metric);
-    if (!filter.keeps(job, row != rows.end() ? row->second : nullptr)) {
-      ++out.left_out;
-      out.left_out_failed += outcome.fate == Fate::failed ? 1 : 0;
-      out.left_out_unfinished += outcome.fate == Fate::unfinished ? 1 : 0;
-      outcome = {Fate::left_out};
-    }
-    insert(groups[at->second].outcomes, std::move(pairing), outcome);
   }
   return groups;
 }
@@ -270,17 +260,6 @@ std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::s
   throw Error(kCommandLine, fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
 }
 
-/// Those of `keys` that have more than one value in the sweep.
-Values varying(const Sweep& sweep, const Values& keys) {
-  Values out;
-  for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
-    const bool varies = std::any_of(sweep.jobs.begin(), sweep.jobs.end(),
-                                    [&](const Job& job) { return job.values[i] != sweep.jobs.front().values[i]; });
-    if (varies && contains(keys, sweep.keys[i])) out.push_back(sweep.keys[i]);
-  }
-  return out;
-}
-
 /// Adds to `apart` the places in the pairing of which the two groups have no value in common.
 void find_apart(const Outcomes& a, const Outcomes& b, std::set<std::size_t>& apart) {
   const auto values_at = [](const Outcomes& outcomes, std::size_t place) {
@@ -313,7 +292,7 @@ void check_values(const Comparison& made, const Sweep& sweep) {
   if (all.without_value == 0) {
     throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");
   }
-  const SummaryField* field = find_summary_field(made.metric.name);
+  const RecordField* field = find_summary_field(made.metric.name);
   throw Error(kCommandLine, fmt::format("--metric: no job has a value of '{}'", made.metric.name),
               field != nullptr ? field->when_null : "");
 }
@@ -330,7 +309,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.metric = find_column(query.metric, columns, "--metric");
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());
-  out.pairing = varying(sweep, others(sweep.keys, query.by));
+  out.pairing = varying_keys(sweep, others(sweep.keys, query.by));
   const std::vector<Collected> groups = collect(sweep, results, columns, query, out);
   for (const Collected& group : groups) out.groups.push_back(summarise(group, query.only_groups));
   check_values(out, sweep);

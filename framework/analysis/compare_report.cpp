@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-using Better = SummaryField::Better;
+using Better = RecordField::Better;
 using Lines = std::vector<std::vector<std::string>>;
 
 Scale scale_of(const Comparison& comparison) {

@@ -3,7 +3,7 @@
 
 #include "analysis/statistics.hpp"
 #include "config/quantity.hpp"
-#include "experiment/summary_fields.hpp"
+#include "record/fields.hpp"
 
 #include <fmt/format.h>
 
@@ -39,18 +39,13 @@ bool wants_more(Comparison comparison) { return comparison == Comparison::at_lea
 
 /// Number or flag at `field` of the summary; none when it is null or absent.
 std::optional<double> number_at(const RunOutcome& run, const std::string& field) {
-  const Scalar* value = run.summary ? run.summary->find(field) : nullptr;
-  if (value == nullptr || !run.failure.empty()) return {};
-  if (const auto* whole = std::get_if<std::int64_t>(value)) return static_cast<double>(*whole);
-  if (const auto* real = std::get_if<double>(value)) return *real;
-  if (const auto* flag = std::get_if<bool>(value)) return *flag ? 1.0 : 0.0;
-  return {};
+  return run.summary && run.failure.empty() ? run.summary->number(field) : std::nullopt;
 }
 
 /// The value in the unit of the bound, with as many digits as it takes to tell the two apart.
 std::string shown(const Expectation& one, double value) {
-  const SummaryField* field = find_summary_field(one.field);
-  if (field != nullptr && field->type == SummaryField::Type::flag && one.statistic == Statistic::each)
+  const RecordField* field = find_summary_field(one.field);
+  if (field != nullptr && field->type == RecordField::Type::flag && one.statistic == Statistic::each)
     return value != 0.0 ? "true" : "false";
   const double scale =
       one.unit.empty() ? 1.0 : read_quantity(Tree::scalar("1 " + one.unit), one.key, unit_of_column(one.field));
@@ -63,7 +58,7 @@ std::string shown(const Expectation& one, double value) {
 /// Why a run has no value.
 std::string absence(const Expectation& one, const RunOutcome& run) {
   if (!run.failure.empty()) return "the run failed";
-  const SummaryField* field = find_summary_field(one.field);
+  const RecordField* field = find_summary_field(one.field);
   const std::string reason = field != nullptr ? field->when_null : std::string();
   return reason.empty() ? fmt::format("the summary has no {}", one.field) : reason;
 }
@@ -75,8 +70,8 @@ struct Judgement {
 
 /// One run by a field of its summary.
 Judgement judge_run(const Expectation& one, const RunOutcome& run) {
-  const SummaryField* field = find_summary_field(one.field);
-  if (field != nullptr && field->type == SummaryField::Type::text) {
+  const RecordField* field = find_summary_field(one.field);
+  if (field != nullptr && field->type == RecordField::Type::text) {
     const Scalar* value = run.summary ? run.summary->find(one.field) : nullptr;
     const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
     if (text == nullptr) return {false, "no value: " + absence(one, run)};
@@ -179,15 +174,10 @@ std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::o
     for (std::size_t i = 0; i < sweep.keys.size(); ++i)
       run.name += fmt::format("{}{}={}", i == 0 ? ": " : ", ", sweep.keys[i], job.values[i]);
     run.summary = summaries[static_cast<std::size_t>(job.index)];
-    const auto text_at = [&](const char* field) {
-      const Scalar* value = run.summary->find(field);
-      return value != nullptr && std::holds_alternative<std::string>(*value) ? std::get<std::string>(*value)
-                                                                             : std::string();
-    };
     if (!run.summary) {
       run.failure = "has not run to its end";
-    } else if (text_at("status") != "done") {
-      run.failure = text_at("stop_reason");
+    } else if (run.summary->text("status") != "done") {
+      run.failure = run.summary->text("stop_reason");
       if (run.failure.empty()) run.failure = "failed";
     }
     runs.push_back(std::move(run));

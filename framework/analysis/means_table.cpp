@@ -68,7 +68,7 @@ std::string head(const std::vector<Block>& blocks, const std::vector<Scale>& sca
 std::string remarks(const std::vector<Block>& blocks) {
   std::string out;
   for (const Comparison* one : blocks.front()) {
-    const SummaryField* field = find_summary_field(one->metric.name);
+    const RecordField* field = find_summary_field(one->metric.name);
     const bool lacks = std::any_of(blocks.begin(), blocks.end(), [&](const Block& block) {
       const auto same = std::find_if(block.begin(), block.end(),
                                      [&](const Comparison* other) { return other->metric.name == one->metric.name; });

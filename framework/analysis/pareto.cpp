@@ -2,7 +2,7 @@
 #include "analysis/pareto.hpp"
 
 #include "analysis/column.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/groups.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
 
@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 namespace palpate {
@@ -25,42 +24,36 @@ ParetoKey make_key(const std::string& name, const std::vector<std::string>& colu
     throw Error(kCommandLine, fmt::format("{}: coverage_95 is best at 0.95, neither small nor large", option),
                 "nlpd judges heights and intervals together");
   }
-  return {name, column.unit, column.better == SummaryField::Better::more};
+  return {name, column.unit, column.better == RecordField::Better::more};
 }
 
-/// Collects what belongs to one setting while the jobs are gone through.
-struct Collected {
-  Setting setting;
-  std::vector<double> cost;
-  std::vector<double> error;
-};
-
-void add_job(Collected& one, const Row* row, const ParetoKey& cost, const ParetoKey& error) {
-  ++one.setting.jobs;
-  if (row == nullptr) {
-    ++one.setting.unfinished;
-  } else if (!is_done(*row)) {
-    ++one.setting.failed;
-  } else {
-    const std::optional<double> paid = number_in(*row, cost.name, "--cost");
-    const std::optional<double> missed = number_in(*row, error.name, "--error");
-    if (!paid || !missed) {
-      ++one.setting.without_value;
-      return;
+/// The jobs of one setting, counted, and their means.
+Setting make_setting(const JobGroup& group, const ParetoKey& cost, const ParetoKey& error) {
+  Setting out;
+  out.values = group.values;
+  out.first_job = static_cast<std::size_t>(group.jobs.front().job->index);
+  std::vector<double> costs;
+  std::vector<double> errors;
+  for (const JobResult& one : group.jobs) {
+    ++out.jobs;
+    if (one.row == nullptr) {
+      ++out.unfinished;
+    } else if (!is_done(*one.row)) {
+      ++out.failed;
+    } else {
+      const std::optional<double> paid = number_in(*one.row, cost.name, "--cost");
+      const std::optional<double> missed = number_in(*one.row, error.name, "--error");
+      if (paid && missed) {
+        costs.push_back(*paid);
+        errors.push_back(*missed);
+      } else {
+        ++out.without_value;
+      }
     }
-    one.cost.push_back(*paid);
-    one.error.push_back(*missed);
   }
-}
-
-/// The keys that have more than one value, with their values; a name is one line.
-std::string name_of(const std::vector<std::string>& keys, const std::vector<bool>& differs,
-                    const std::vector<std::string>& values) {
-  std::string name;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (differs[i]) name += (name.empty() ? "" : ", ") + keys[i] + "=" + values[i];
-  }
-  return name.empty() ? "the only setting" : one_line(name);
+  out.cost = estimate_mean(costs);
+  out.error = estimate_mean(errors);
+  return out;
 }
 
 /// As a quantity of which less is better.
@@ -116,39 +109,17 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
     throw Error(kCommandLine, fmt::format("--cost: more of {} is better, so it is no cost", cost),
                 "give it to --error");
   }
-  std::vector<std::size_t> kept;  // positions of the keys that make a setting
-  for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
-    if (sweep.keys[i] == "seed") continue;
-    kept.push_back(i);
-    pareto.keys.push_back(sweep.keys[i]);
-  }
-  std::map<std::int64_t, const Row*> rows;
-  for (const Row& row : results) rows[std::get<std::int64_t>(*row.find("job"))] = &row;
-
-  std::vector<Collected> collected;
-  std::map<std::vector<std::string>, std::size_t> found;
-  std::vector<bool> differs(kept.size(), false);
-  for (std::size_t job = 0; job < sweep.jobs.size(); ++job) {
+  pareto.keys = setting_keys(sweep);
+  const std::vector<std::string> differing = varying_keys(sweep, pareto.keys);
+  for (const JobGroup& group : group_jobs(sweep, results, pareto.keys)) {
+    Setting setting = make_setting(group, pareto.cost, pareto.error);
     std::vector<std::string> values;
-    for (const std::size_t i : kept) values.push_back(sweep.jobs[job].values[i]);
-    const auto [at, is_new] = found.emplace(values, collected.size());
-    if (is_new) {
-      collected.emplace_back();
-      collected.back().setting.first_job = job;
-      collected.back().setting.values = values;
-      const std::vector<std::string>& first = collected.front().setting.values;
-      for (std::size_t i = 0; i < values.size(); ++i) differs[i] = differs[i] || values[i] != first[i];
-    }
-    const auto row = rows.find(sweep.jobs[job].index);
-    add_job(collected[at->second], row != rows.end() ? row->second : nullptr, pareto.cost, pareto.error);
-  }
-  for (Collected& one : collected) {
-    one.setting.cost = estimate_mean(one.cost);
-    one.setting.error = estimate_mean(one.error);
-    one.setting.name = name_of(pareto.keys, differs, one.setting.values);
-    pareto.jobs += one.setting.jobs;
-    pareto.unfinished += one.setting.unfinished;
-    pareto.settings.push_back(std::move(one.setting));
+    for (const std::string& key : differing) values.push_back(value_of(sweep, *group.jobs.front().job, key));
+    setting.name = key_words(differing, values, true);
+    if (setting.name.empty()) setting.name = "the only setting";
+    pareto.jobs += setting.jobs;
+    pareto.unfinished += setting.unfinished;
+    pareto.settings.push_back(std::move(setting));
   }
   std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {
     const bool has_a = a.cost.count > 0;

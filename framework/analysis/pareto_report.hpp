@@ -25,7 +25,7 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
 inline constexpr int kParetoWidth = 1300;
 inline constexpr int kParetoHeight = 760;
 
-/// Of one setting in words: "rmse_m 4.31 [4.02, 4.60] mm".
+/// Of one setting in words: "nlpd 4.31 [4.02, 4.60]".
 std::string error_words(const Pareto& pareto, const Setting& setting);
 std::string cost_words(const Pareto& pareto, const Setting& setting);
 

@@ -23,7 +23,7 @@ struct Scale {
   std::string difference(double value) const;
   /// "[3.02, 3.40]", "[-]" where there is none.
   std::string interval(const std::optional<MeanInterval>& ends) const;
-  /// "rmse_m [mm]"
+  /// "robot_seconds [s]"
   std::string title(const std::string& name) const;
 };
 

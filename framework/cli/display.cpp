@@ -2,6 +2,7 @@
 #include "cli/display.hpp"
 
 #include "analysis/sweep_table.hpp"
+#include "record/fields.hpp"
 #include "record/tap_row.hpp"
 
 #include <fmt/format.h>
@@ -19,17 +20,6 @@ std::string scaled(const std::optional<double>& value, double scale, const char*
 }
 
 constexpr const char* kClearLine = "\r\x1b[K";
-
-std::string text_at(const Row& row, const char* name) {
-  const Scalar* value = row.find(name);
-  return value != nullptr ? csv_cell(*value) : std::string();
-}
-
-/// A number of a summary times `scale`, "-" where it is null.
-std::string number_at(const Row& row, const char* name, double scale, const char* format) {
-  const std::string text = text_at(row, name);
-  return text.empty() ? "-" : fmt::format(fmt::runtime(format), std::stod(text) * scale);
-}
 
 }  // namespace
 
@@ -122,8 +112,8 @@ namespace {
 std::string numerics_line(const Row& row) {
   std::string line;
   const auto add = [&](const char* kind, const char* words) {
-    const std::string count = number_at(row, (std::string("interventions.") + kind).c_str(), 1, "{:.0f}");
-    if (count != "0" && count != "-") line += fmt::format(fmt::runtime(words), line.empty() ? "" : ", ", count);
+    const std::string count = row.cell(std::string("interventions.") + kind);
+    if (count != "0" && !count.empty()) line += fmt::format(fmt::runtime(words), line.empty() ? "" : ", ", count);
   };
   add("jitter", "{}jitter was raised {} times");
   add("pivoted", "{}the covariance was pivoted {} times");
@@ -142,16 +132,16 @@ void print_summary(const RunReport& report) {
     text += fmt::format("already done, nothing was repeated: {}\n", report.directory.string());
   }
   text += fmt::format("{}: {} after {} taps and {} s of robot time\n",
-                      report.interrupted ? "interrupted" : text_at(row, "status"), text_at(row, "stop_reason"),
-                      text_at(row, "taps"), number_at(row, "robot_seconds", 1, "{:.1f}"));
-  const std::string hit = text_at(row, "first_hit_tap");
-  text += fmt::format("taps: {} on the object, {} on the desk, {} failed; {}\n", text_at(row, "on_surface_taps"),
-                      text_at(row, "off_surface_taps"), text_at(row, "failed_taps"),
+                      report.interrupted ? "interrupted" : row.cell("status"), row.cell("stop_reason"),
+                      row.cell("taps"), scaled(row.number("robot_seconds"), 1, "{:.1f}"));
+  const std::string hit = row.cell("first_hit_tap");
+  text += fmt::format("taps: {} on the object, {} on the desk, {} failed; {}\n", row.cell("on_surface_taps"),
+                      row.cell("off_surface_taps"), row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
-  if (!text_at(row, "rmse_m").empty()) {
+  if (const Errors errors = errors_in(row); errors.rmse) {
     text += fmt::format("error: {} cm over the scene, {} cm on the object; outline IoU {}\n",
-                        number_at(row, "rmse_m", 100, "{:.2f}"), number_at(row, "rmse_on_surface_m", 100, "{:.2f}"),
-                        number_at(row, "footprint_iou", 1, "{:.2f}"));
+                        scaled(errors.rmse, 100, "{:.2f}"), scaled(errors.rmse_on_surface, 100, "{:.2f}"),
+                        scaled(errors.footprint_iou, 1, "{:.2f}"));
   }
   text += numerics_line(row);
   text +=

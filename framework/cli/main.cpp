@@ -128,7 +128,7 @@ void add_rest(CLI::App& app, Arguments& a, Action& action) {
   sub = app.add_subcommand("pareto", "What accuracy costs: the settings of a sweep that none beats in both");
   sub->add_option("DIR", a.pareto.directory, "the sweep's directory")->required();
   sub->add_option("--cost", a.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")->required();
-  sub->add_option("--error", a.pareto.error, "another: rmse_m, rmse_on_surface_m, footprint_iou")->required();
+  sub->add_option("--error", a.pareto.error, "another, an error: footprint_iou")->required();
   sub->add_option("--within", a.pareto.within,
                   "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm");
   sub->callback([&] { action = [&](Program& program) { return pareto(program, a.pareto); }; });
@@ -144,7 +144,7 @@ void add_compare(CLI::App& app, Arguments& a, Action& action) {
     sub->add_option(name, values, help)->required()->delimiter(',')->allow_extra_args(false);
   };
   list("--by", a.compare.by, "the swept keys that make the groups: acquisition or acquisition,kernel");
-  list("--metric", a.compare.metrics, "the columns of results.csv to compare: on_surface_taps,rmse_m");
+  list("--metric", a.compare.metrics, "the columns of results.csv to compare: on_surface_taps,footprint_iou");
   sub->add_option("--where", a.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
   CLI::Option* baseline =
       sub->add_option("--baseline", a.compare.baseline, "compare all groups with this one only: uncertainty");

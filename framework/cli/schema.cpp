@@ -3,7 +3,7 @@
 #include "config/describe.hpp"
 #include "experiment/expectation.hpp"
 #include "experiment/experiment_options.hpp"
-#include "experiment/summary_fields.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ Tree kind_schema(const PluginHost& host, const std::string& kind) {
 /// `expect:`: fields of the summary and their statistics, with a comparison or several.
 Tree expect_schema() {
   std::string fields = kFailedRuns;
-  for (const SummaryField& field : summary_fields()) fields += "|" + field.name;
+  for (const RecordField& field : summary_fields()) fields += "|" + field.name;
   std::string statistics;
   for (const std::string& name : statistic_names()) statistics += (statistics.empty() ? "" : "|") + name;
   // A dot is any character to a pattern, which is near enough for an editor.
@@ -55,8 +55,8 @@ Tree expect_schema() {
   Tree group = Tree::map();
   group.at("type") = quoted("string");
   Tree expect = Tree::map();
-  expect.at("description") =
-      quoted("what the summary must say, for example rmse_m: '<= 2 cm'; of a sweep, median(rmse_m): '<= 2 cm'");
+  expect.at("description") = quoted(fmt::format(
+      "what the summary must say, for example {0}: '<= 2 cm'; of a sweep, median({0}): '<= 2 cm'", main_error()));
   expect.at("type") = quoted("object");
   expect.at("patternProperties").at(keys).at("anyOf") = std::move(either);
   expect.at("additionalProperties") = Tree::scalar("false");

@@ -234,7 +234,7 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
 
 namespace {
 
-/// The shortest of the known names that `name` is a part of, as rmse is of rmse_m; "" if there is none.
+/// The shortest of the known names that `name` is a part of, as hit is of first_hit_tap; "" if there is none.
 std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t kLeast = 3;
   std::string best;

@@ -2,7 +2,7 @@
 #include "experiment/expectation.hpp"
 
 #include "config/quantity.hpp"
-#include "experiment/summary_fields.hpp"
+#include "record/fields.hpp"
 
 #include <palpate/error.hpp>
 
@@ -78,7 +78,7 @@ std::vector<Line> lines_of(const Tree& expect) {
   std::vector<Line> lines;
   if (!expect.is_map() && expect.kind != Tree::Kind::null) {
     throw Error(expect.place.text(), "expect: is not a map of expectations",
-                "write expect: {on_surface_taps: \">= 9\", rmse_m: \"<= 2 cm\"}");
+                fmt::format("write expect: {{on_surface_taps: \">= 9\", {}: \"<= 2 cm\"}}", main_error()));
   }
   collect(expect, "", lines);
   return lines;
@@ -86,15 +86,14 @@ std::vector<Line> lines_of(const Tree& expect) {
 
 std::vector<std::string> field_names() {
   std::vector<std::string> names;
-  for (const SummaryField& field : summary_fields()) names.push_back(field.name);
+  for (const RecordField& field : summary_fields()) names.push_back(field.name);
   names.emplace_back(kFailedRuns);
   return names;
 }
 
 /// Splits the key into statistic and field, and refuses unknown ones.
-const SummaryField& read_key(const Line& line, Expectation& out) {
-  static const SummaryField failed_runs{kFailedRuns, SummaryField::Type::number, Unit::none, SummaryField::Better::less,
-                                        ""};
+const RecordField& read_key(const Line& line, Expectation& out) {
+  static const RecordField failed_runs = RecordField(kFailedRuns, "runs that failed").less();
   out.key = out.field = line.key;
   const auto open = line.key.find('(');
   if (open != std::string::npos) {
@@ -114,21 +113,21 @@ const SummaryField& read_key(const Line& line, Expectation& out) {
     out.share = found->share;
   }
   const bool counts = out.field == kFailedRuns;
-  const SummaryField* field = counts ? &failed_runs : find_summary_field(out.field);
+  const RecordField* field = counts ? &failed_runs : find_summary_field(out.field);
   if (field == nullptr) {
     throw Error(line.place.text(), fmt::format("expect: the summary has no field '{}'", out.field),
                 suggestion(out.field, field_names()));
   }
-  if (out.statistic != Statistic::each && (counts || field->type == SummaryField::Type::text)) {
+  if (out.statistic != Statistic::each && (counts || field->type == RecordField::Type::text)) {
     throw Error(line.place.text(), fmt::format("expect: '{}' has no statistics", out.field),
                 fmt::format("write {} alone", out.field));
   }
   return *field;
 }
 
-std::string example(const SummaryField& field, Statistic statistic) {
-  if (field.type == SummaryField::Type::text) return "write the text that it has to be";
-  if (field.type == SummaryField::Type::flag && statistic == Statistic::each) return "write true or false";
+std::string example(const RecordField& field, Statistic statistic) {
+  if (field.type == RecordField::Type::text) return "write the text that it has to be";
+  if (field.type == RecordField::Type::flag && statistic == Statistic::each) return "write true or false";
   switch (field.unit) {
     case Unit::metre:
       return "write a comparison like '<= 2 cm'";
@@ -146,7 +145,7 @@ std::string unit_in(const std::string& text) {
   return begin == std::string::npos ? std::string() : text.substr(begin);
 }
 
-Expectation read_comparison(const SummaryField& field, Expectation out, const Tree& value) {
+Expectation read_comparison(const RecordField& field, Expectation out, const Tree& value) {
   const std::string name = "expect." + out.key;
   const auto refuse = [&](const std::string& reason) {
     throw Error(value.place.text(), name + ": " + reason, example(field, out.statistic));
@@ -165,8 +164,8 @@ Expectation read_comparison(const SummaryField& field, Expectation out, const Tr
     out.comparison = sign->comparison;
   }
   out.wanted = (sign != kComparisons.end() ? sign->name : "==") + (" " + rest.text);
-  const bool is_flag = field.type == SummaryField::Type::flag && out.statistic == Statistic::each;
-  if (is_flag || field.type == SummaryField::Type::text) {
+  const bool is_flag = field.type == RecordField::Type::flag && out.statistic == Statistic::each;
+  if (is_flag || field.type == RecordField::Type::text) {
     if (out.comparison != Comparison::equal) refuse(fmt::format("'{}' does not compare with {}", written, sign->name));
     if (is_flag && rest.text != "true" && rest.text != "false")
       refuse(fmt::format("'{}' is not a truth value", rest.text));
@@ -194,7 +193,7 @@ std::vector<Expectation> read_expectations(const Tree* expect) {
   if (expect == nullptr) return out;
   for (const Line& line : lines_of(*expect)) {
     Expectation one;
-    const SummaryField& field = read_key(line, one);
+    const RecordField& field = read_key(line, one);
     one.place = line.place.text();
     const bool several = line.value->kind == Tree::Kind::list;
     if (several && line.value->items.empty()) {

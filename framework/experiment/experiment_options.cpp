@@ -166,6 +166,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(scene, Field("scene", "what the world holds; a robot backend reads only area and desk"));
   fields.plugin(backend, Field("backend", "what is tapped"));
   fields.section(log, Field("log", "what is written"));
+  fields.integer(format, Field("format", "of this file and of the record beside it: see runs/README.md").at_least(1));
   fields.require(
       initial.searches() || initial.count <= taps, "taps",
       fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
@@ -186,6 +187,6 @@ void ExperimentOptions::list(Fields& fields) {
 
 Field seed_field() { return Field("seed", "fixes everything that is drawn").at_least(0); }
 
-bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads" && key != "expect"; }
+bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "format"; }
 
 }  // namespace palpate

@@ -73,6 +73,10 @@ struct LogOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// The version of configs and of the records beside them. What only adds keys, fields or files leaves it as it is;
+/// whatever gives another meaning to what was there raises it. All versions from 1 on are read, later ones refused.
+inline constexpr std::int64_t kFormat = 1;
+
 struct ExperimentOptions : Options {
   enum class Surface { single, two_part };
   enum class Posterior { automatic, dense, grid, lowrank };
@@ -104,6 +108,7 @@ struct ExperimentOptions : Options {
   SceneOptions scene;
   PluginChoice backend{"backend", {}, nullptr};
   LogOptions log;
+  std::int64_t format = kFormat;
 
   void list(Fields& fields) override;
 };

@@ -4,8 +4,11 @@
 #include "config/hash.hpp"
 #include "config/yaml.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 namespace palpate {
 namespace {
@@ -29,7 +32,19 @@ struct SeedOptions : Options {
 
 }  // namespace
 
+void check_format(const Tree& config) {
+  const Tree* format = config.find("format");
+  if (format == nullptr || !format->is_scalar()) return;
+  std::int64_t number = 0;
+  const char* const end = format->text.data() + format->text.size();
+  const auto read = std::from_chars(format->text.data(), end, number);
+  if (read.ec != std::errc() || read.ptr != end || number <= kFormat) return;  // resolving says what else is wrong
+  throw Error(format->place.text(), fmt::format("format: {} is newer than {}, the latest known here", number, kFormat),
+              "take a palpate as new as the one that wrote it");
+}
+
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
+  check_format(composed);
   Tree input = composed;
   input.erase("sweep");
   input.erase("expect");

@@ -21,6 +21,9 @@ struct ResolvedConfig {
   std::string id;                         ///< 12 hex digits: a hash of all that decides what a run computes
 };
 
+/// Throws Error for a config of a later format than this program's (kFormat).
+void check_format(const Tree& config);
+
 /// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
 

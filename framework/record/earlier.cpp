@@ -1,37 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "record/earlier.hpp"
 
-#include "record/files.hpp"
-#include "record/summary.hpp"
+#include "record/fields.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <numeric>
 #include <optional>
-#include <sstream>
-#include <string>
 
 namespace palpate {
 namespace {
 
 using Seconds = std::array<double, kPhases>;
 
-/// Of timings.csv: the seconds by phase up to each tap, before the first one included.
+/// The seconds by phase up to each tap, before the first one included.
 std::vector<Seconds> seconds_until(const std::filesystem::path& directory) {
   std::vector<Seconds> out(1);
-  std::istringstream lines(read_file(directory / "timings.csv"));
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
+  for (const TapTimes& tap : read_timings(directory).taps) {
     Seconds sum = out.back();
-    const char* at = line.data() + std::min(line.find(','), line.size());
-    const char* const end = line.data() + line.size();
-    for (std::size_t i = 0; i < kPhases && at < end; ++i) {
-      double seconds = 0.0;
-      at = std::from_chars(at + 1, end, seconds).ptr;
-      sum[i] += seconds;
-    }
+    for (std::size_t i = 0; i < kPhases; ++i) sum[i] += tap.seconds[i];
     out.push_back(sum);
   }
   return out;
@@ -39,25 +26,11 @@ std::vector<Seconds> seconds_until(const std::filesystem::path& directory) {
 
 double total(const Seconds& seconds) { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
 
-void set(Row& row, const std::string& name, Scalar value) {
-  for (auto& [field, old] : row.fields) {
-    if (field == name) old = std::move(value);
-  }
-}
-
 /// What had been asked for in a run of that budget when it ended: after its last tap its backend was shown the belief,
 /// which the row of the next tap tells of, unless the strategy has read for that one.
 Quantities asked_after(const Recording& recording, std::size_t taps) {
   const bool next = taps < recording.rows.size() && recording.taps[taps].source == Source::initial;
   return recorded_quantities(recording.rows[next ? taps : taps - 1]);
-}
-
-/// The share of a time of the whole run.
-Scalar share_of(const std::optional<Row>& summary, const char* name, const std::optional<double>& share) {
-  const Scalar* whole = summary ? summary->find(name) : nullptr;
-  if (whole == nullptr || !share) return std::monostate{};
-  if (const auto* seconds = std::get_if<double>(whole)) return *seconds * *share;
-  return std::monostate{};
 }
 
 }  // namespace
@@ -80,14 +53,17 @@ std::vector<Row> summaries_after(const Workshop& workshop, const Recording& reco
     const Seconds until = timed ? seconds[static_cast<std::size_t>(count)] : Seconds{};
     const double all = total(seconds.back());
     const std::optional<double> share = timed && all > 0.0 ? std::optional(total(until) / all) : std::nullopt;
-    Row row = summary_row(recording.config, result, "", Stopwatch{}, until);
-    for (const char* whole : {"wall_seconds", "compute_seconds"})
-      set(row, whole, share_of(recording.summary, whole, share));
-    if (!timed) {
-      for (const char* phase : kPhaseNames) set(row, std::string("compute.") + phase, std::monostate{});
-    }
-    set(row, "peak_rss_bytes", std::monostate{});
-    rows.push_back(std::move(row));
+    const auto part = [&](const char* whole) {
+      const auto of_run = recording.summary ? recording.summary->number(whole) : std::nullopt;
+      return of_run && share ? std::optional(*of_run * *share) : std::nullopt;
+    };
+    rows.push_back(summary_list().row({recording.config,
+                                       result,
+                                       "",
+                                       part("wall_seconds"),
+                                       part("compute_seconds"),
+                                       timed ? std::optional(until) : std::nullopt,
+                                       {}}));
   }
   return rows;
 }

@@ -34,10 +34,7 @@ class Absent final : public Backend {
 std::shared_ptr<Backend> no_backend(bool truth_known) { return std::make_shared<Absent>(truth_known); }
 
 Quantities recorded_quantities(const Row& row) {
-  const auto has = [&](const char* field) {
-    const Scalar* value = row.find(field);
-    return value != nullptr && !std::holds_alternative<std::monostate>(*value);
-  };
+  const auto has = [&](const char* field) { return row.number(field).has_value(); };
   Quantities out;
   if (has("height_process.signal")) out = out | Quantity::uncertainty;
   if (has("weight_process.signal")) out = out | Quantity::weight;
@@ -47,15 +44,9 @@ Quantities recorded_quantities(const Row& row) {
   return out;
 }
 
-bool Recording::truth_known() const {
-  const Scalar* value = rows.front().find("true_on_surface");
-  return value != nullptr && !std::holds_alternative<std::monostate>(*value);
-}
+bool Recording::truth_known() const { return rows.front().flag("true_on_surface").has_value(); }
 
-bool Recording::failed() const {
-  const Scalar* status = summary ? summary->find("status") : nullptr;
-  return status != nullptr && *status == Scalar(std::string("failed"));
-}
+bool Recording::failed() const { return summary && summary->text("status") == "failed"; }
 
 Recording read_recording(const Workshop& workshop, const fs::path& directory) {
   const fs::path file = directory / "taps.jsonl";

@@ -3,6 +3,7 @@
 #include "experiment/experiment.hpp"
 #include "record/recording.hpp"
 #include "record/summary.hpp"
+#include "record/fields.hpp"
 #include "record/tap_row.hpp"
 
 namespace palpate {
@@ -94,10 +95,10 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   RunResult result = failed ? experiment.counts() : experiment.result();
   // A record that failed, or ended before its budget, did so for a reason that the taps alone do not show.
   if (failed || cut) {
-    if (const Scalar* reason = summary.find("stop_reason")) result.stop_reason = shown(reason);
+    result.stop_reason = summary.text("stop_reason");
   }
   const std::string failure = failed ? result.stop_reason : std::string();
-  compare(summary, summary_row(recording.config, result, failure, Stopwatch{}, {}), 0, report);
+  compare(summary, summary_list().row({recording.config, result, failure, {}, {}, {}, {}}), 0, report);
   return report;
 }
 

@@ -62,6 +62,32 @@ const Scalar* Row::find(std::string_view name) const {
   return nullptr;
 }
 
+std::optional<double> Row::number(std::string_view name) const {
+  const Scalar* value = find(name);
+  if (value == nullptr) return std::nullopt;
+  if (const auto* whole = std::get_if<std::int64_t>(value)) return static_cast<double>(*whole);
+  if (const auto* truth = std::get_if<bool>(value)) return *truth ? 1.0 : 0.0;
+  const auto* real = std::get_if<double>(value);
+  return real != nullptr ? std::optional(*real) : std::nullopt;
+}
+
+std::optional<bool> Row::flag(std::string_view name) const {
+  const Scalar* value = find(name);
+  const auto* truth = value != nullptr ? std::get_if<bool>(value) : nullptr;
+  return truth != nullptr ? std::optional(*truth) : std::nullopt;
+}
+
+std::string Row::text(std::string_view name) const {
+  const Scalar* value = find(name);
+  const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+  return text != nullptr ? *text : std::string();
+}
+
+std::string Row::cell(std::string_view name) const {
+  const Scalar* value = find(name);
+  return value != nullptr ? csv_cell(*value) : std::string();
+}
+
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string out = "\"";

@@ -35,6 +35,14 @@ struct Row {
 
   /// The value at `name`, or null if there is none.
   const Scalar* find(std::string_view name) const;
+  /// The number at `name`, of a truth value 1 or 0; none where there is none, or null, or a text.
+  std::optional<double> number(std::string_view name) const;
+  /// The truth value at `name`; none where there is something else.
+  std::optional<bool> flag(std::string_view name) const;
+  /// The text at `name`; "" where there is something else.
+  std::string text(std::string_view name) const;
+  /// Whatever stands at `name`, as csv_cell() has it; "" where there is none.
+  std::string cell(std::string_view name) const;
 };
 
 /// Text of one scalar as it stands in a CSV cell: shortest digits that read back as the same bits, empty for null and

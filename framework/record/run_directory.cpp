@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_directory.hpp"
 
+#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
-
-#include <charconv>
-#include <sstream>
 
 namespace palpate {
 
@@ -21,12 +19,6 @@ constexpr const char* kTaps = "taps.jsonl";
 constexpr const char* kTimings = "timings.csv";
 constexpr const char* kSummary = "summary.json";
 constexpr const char* kLock = "lock";
-
-std::string text_at(const Row& row, const char* name) {
-  const Scalar* value = row.find(name);
-  const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-  return text != nullptr ? *text : std::string();
-}
 
 fs::path made(fs::path directory) {
   std::error_code trouble;
@@ -62,9 +54,8 @@ std::optional<Row> read_outcome(const fs::path& directory) {
 }
 
 void check_complete(const Row& summary, int recorded, const fs::path& directory) {
-  const Scalar* taps = summary.find("taps");
-  const auto* made = taps != nullptr ? std::get_if<std::int64_t>(taps) : nullptr;
-  if (text_at(summary, "status") != "done" || made == nullptr || *made <= recorded) return;
+  const std::optional<double> made = summary.number("taps");
+  if (summary.text("status") != "done" || !made || *made <= recorded) return;
   throw Error((directory / kTaps).string(), fmt::format("holds {} of the {} taps that were made", recorded, *made),
               "the file was cut: put it back, or remove summary.json, and 'palpate resume' makes the others again");
 }
@@ -73,8 +64,8 @@ RunStatus read_ending(const fs::path& directory) {
   RunStatus out;
   std::error_code none;
   if (const std::optional<Row> summary = read_outcome(directory)) {
-    out.state = text_at(*summary, "status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
-    out.stop_reason = text_at(*summary, "stop_reason");
+    out.state = summary->text("status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
+    out.stop_reason = summary->text("stop_reason");
   } else if (fs::exists(directory / kTaps, none)) {
     out.state = RunStatus::State::unfinished;
   }
@@ -143,17 +134,8 @@ void RunDirectory::recover_timings() {
   if (!fs::exists(path_ / kTimings, none)) return;
   const std::string text = read_file(path_ / kTimings);
   cut_file(path_ / kTimings, text.rfind('\n') + 1);
-  std::istringstream lines(text.substr(0, text.rfind('\n') + 1));
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    const char* at = line.data() + std::min(line.find(','), line.size());
-    const char* end = line.data() + line.size();
-    for (std::size_t i = 0; i < kPhases && at < end; ++i) {
-      double seconds = 0.0;
-      at = std::from_chars(at + 1, end, seconds).ptr;
-      total_[i] += seconds;
-    }
+  for (const TapTimes& tap : read_timings(path_).taps) {
+    for (std::size_t i = 0; i < kPhases; ++i) total_[i] += tap.seconds[i];
   }
 }
 

@@ -5,6 +5,7 @@
 #include "experiment/experiment.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
+#include "record/fields.hpp"
 #include "record/summary.hpp"
 
 #include <palpate/error.hpp>
@@ -190,7 +191,8 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   if (!failure.empty()) result = experiment.counts();
   note_learnt(directory, experiment.backend().learnt());
   report.interrupted = result.interrupted;
-  report.summary = summary_row(config, result, failure, watch, directory.total_seconds());
+  report.summary = summary_list().row({config, result, failure, watch.wall_seconds(), watch.cpu_seconds(),
+                                       directory.total_seconds(), peak_rss_bytes()});
   directory.write("taps.csv", to_csv(directory.rows()));
   if (result.interrupted) return report;
   if (log.surface && failure.empty()) directory.write("surface.csv", surface_csv(experiment));
@@ -252,7 +254,9 @@ Tree read_run_config(const fs::path& directory) {
   const fs::path file = directory / "config.yaml";
   std::error_code none;
   if (!fs::exists(file, none)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
-  return read_yaml(file);
+  Tree config = read_yaml(file);
+  check_format(config);
+  return config;
 }
 
 ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {

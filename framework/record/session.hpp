@@ -97,7 +97,7 @@ struct ReplayReport {
 /// Writes nothing, moves nothing: the backend is not even created.
 ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
 
-/// The config.yaml of a run directory as it stands. Throws Error if there is none.
+/// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);
 
 /// The config of a run directory, as resolved then. Throws Error if it does not resolve to the id that it had.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
-#include "record/tap_row.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <ctime>
@@ -19,12 +17,6 @@ double thread_cpu_seconds() {
   timespec now{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-std::int64_t peak_rss_bytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
@@ -79,48 +71,10 @@ double Stopwatch::wall_seconds() const {
 }
 double Stopwatch::cpu_seconds() const { return thread_cpu_seconds() - cpu_; }
 
-Row summary_row(const ResolvedConfig& config, const RunResult& result, const std::string& failure,
-                const Stopwatch& watch, const std::array<double, kPhases>& phases) {
-  Row row;
-  row.add("name", config.options.name);
-  row.add("id", config.id);
-  row.add("seed", config.options.seed);
-  row.add("status", failure.empty() ? "done" : "failed");
-  row.add("stop_reason", failure.empty() ? result.stop_reason : failure);
-  row.add("taps", result.taps);
-  row.add("on_surface_taps", result.on_surface_taps);
-  row.add("off_surface_taps", result.off_surface_taps);
-  row.add("failed_taps", result.failed_taps);
-  row.add("first_hit_tap", result.first_hit_tap);
-  row.add("found", result.on_surface_taps > 0);
-  row.add("rmse_m", result.errors.rmse);
-  row.add("rmse_on_surface_m", result.errors.rmse_on_surface);
-  row.add("rmse_height_m", result.errors.rmse_height);
-  row.add("footprint_iou", result.errors.footprint_iou);
-  row.add("nlpd", result.calibration.nlpd);
-  row.add("coverage_95", result.calibration.coverage_95);
-  row.add("robot_seconds", result.robot_seconds);
-  row.add("wall_seconds", watch.wall_seconds());
-  row.add("compute_seconds", watch.cpu_seconds());
-  for (std::size_t i = 0; i < kPhases; ++i) row.add(std::string("compute.") + kPhaseNames[i], phases[i]);
-  row.add("jitter_max", result.jitter_max);
-  for (const auto& [kind, count] : result.interventions) row.add("interventions." + kind, count);
-  const auto add = [&row](const char* name, const std::optional<ProcessState>& state) {
-    add_process(row, name, state);
-    row.add(std::string(name) + ".engine_reason", state ? std::optional(state->engine_reason) : std::nullopt);
-  };
-  add("height_process", result.height_process);
-  add("weight_process", result.weight_process);
-  if (result.surface_process) add("surface_process", result.surface_process);
-  add_footprint(row, result.footprint);
-  add_forecast(row, result.forecast);
-  row.add("peak_rss_bytes", peak_rss_bytes());
-  return row;
-}
-
-bool depends_on_machine(const std::string& field) {
-  return field == "wall_seconds" || field == "compute_seconds" || field == "peak_rss_bytes" ||
-         field.compare(0, 8, "compute.") == 0;
+std::int64_t peak_rss_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
 std::string surface_csv(Experiment& experiment) {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What is written when a run has ended: its summary and its surface.
+// What is measured for the summary of a run, and its surface; the fields of the summary are in fields.cpp.
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "experiment/resolved.hpp"
-#include "record/row.hpp"
 
-#include <array>
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 namespace palpate {
@@ -24,12 +22,8 @@ class Stopwatch {
   double cpu_;
 };
 
-/// The fields of summary.json in their order. `failure` is "" unless the run failed; `phases` are seconds by phase.
-Row summary_row(const ResolvedConfig& config, const RunResult& result, const std::string& failure,
-                const Stopwatch& watch, const std::array<double, kPhases>& phases);
-
-/// Whether a field of the summary depends on clock, memory or machine rather than on the config.
-bool depends_on_machine(const std::string& field);
+/// The most memory that this process has had.
+std::int64_t peak_rss_bytes();
 
 /// The candidate grid: x, y, height mean and standard deviation, on-surface probability, reconstruction, truth.
 std::string surface_csv(Experiment& experiment);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Taps and results as rows: the fields of taps.jsonl and taps.csv, in their order.
+// Taps as rows of taps.jsonl and taps.csv, before and after they are made, and back; their fields are in fields.cpp.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -24,15 +24,6 @@ Row unknown_result_of(const Row& intent);
 
 /// What a resumed run must know of a recorded tap. Throws Error, naming `where`, for a row that is not a tap.
 PastTap past_tap(const Row& row, const std::string& where);
-
-/// Adds the fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
-void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state);
-
-/// Adds the fields of a footprint, "footprint.<number>" and "footprint.remark"; none where there is none.
-void add_footprint(Row& row, const std::optional<FootprintState>& state);
-
-/// Adds "expected_rmse_m"; nothing where there is no forecast.
-void add_forecast(Row& row, const std::optional<Forecast>& forecast);
 
 const char* outcome_name(Outcome outcome);
 const char* source_name(Source source);

@@ -22,16 +22,7 @@ namespace fs = std::filesystem;
 /// Of a kept summary: the hash of the whole run's.
 constexpr const char* kOf = "of_summary";
 
-std::int64_t taps_of(const Row& summary) {
-  const Scalar* taps = summary.find("taps");
-  const auto* count = taps != nullptr ? std::get_if<std::int64_t>(taps) : nullptr;
-  return count != nullptr ? *count : 0;
-}
-
-bool ended_well(const Row& summary) {
-  const Scalar* status = summary.find("status");
-  return status != nullptr && *status == Scalar(std::string("done"));
-}
+std::int64_t taps_of(const Row& summary) { return static_cast<std::int64_t>(summary.number("taps").value_or(0.0)); }
 
 fs::path file_of(const fs::path& job, int taps) { return job / fmt::format("summary_at_{}.json", taps); }
 
@@ -56,7 +47,7 @@ EarlierResults::EarlierResults(const Sweep& sweep, std::vector<int> taps)
 
 bool EarlierResults::is_longer(std::size_t job, int taps) const {
   const std::optional<Row>& summary = summaries_[job];
-  return summary && ended_well(*summary) && taps_of(*summary) > taps;
+  return summary && summary->text("status") == "done" && taps_of(*summary) > taps;
 }
 
 std::optional<Row> EarlierResults::kept(std::size_t job, int taps) const {

@@ -35,12 +35,6 @@ Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
   return row;
 }
 
-std::string text_at(const Row& row, const std::string& name) {
-  const Scalar* value = row.find(name);
-  const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-  return text != nullptr ? *text : std::string();
-}
-
 /// The texts at `name` 0, 1, ... for as long as there are any.
 std::vector<std::string> texts_at(const Row& row, const std::string& name) {
   std::vector<std::string> out;
@@ -103,9 +97,9 @@ Sweep read_sweep(const fs::path& directory) {
     throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
   if (lines.rows.empty()) throw Error(file.string(), "lists no job", "the file is damaged");
   sweep.keys = texts_at(lines.rows.front(), "key");
-  const std::string id = text_at(lines.rows.front(), kSweep);
+  const std::string id = lines.rows.front().text(kSweep);
   for (const Row& row : lines.rows) {
-    const Job job{static_cast<int>(sweep.jobs.size()), text_at(row, "id"), texts_at(row, "value")};
+    const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
     // What is read must be all that the line says, and an id is the name of a folder: nothing of it is believed before.
     const bool whole = is_id(job.id) && job.values.size() == sweep.keys.size();
     Row said = whole ? manifest_row(sweep.keys, job) : Row();

@@ -2,7 +2,7 @@
 #include "support/lasting.hpp"
 
 #include "record/json.hpp"
-#include "record/summary.hpp"
+#include "record/fields.hpp"
 #include "support/support.hpp"
 
 #include <csignal>

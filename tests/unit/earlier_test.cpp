@@ -2,7 +2,7 @@
 // What a run had come to after fewer taps is what a run with that budget comes to.
 #include "record/earlier.hpp"
 #include "record/session.hpp"
-#include "record/summary.hpp"
+#include "record/fields.hpp"
 #include "support/support.hpp"
 
 #include <gtest/gtest.h>

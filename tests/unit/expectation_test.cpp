@@ -3,7 +3,7 @@
 #include "experiment/expectation.hpp"
 
 #include "config/yaml.hpp"
-#include "experiment/summary_fields.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "support/runs.hpp"
 
@@ -147,34 +147,6 @@ TEST(Expectation, StaysOutOfTheIdAndInTheResolvedConfig) {
   EXPECT_EQ(to_yaml(again.tree), to_yaml(with.tree));
   ASSERT_EQ(again.expectations.size(), 2U);
   EXPECT_EQ(again.expectations[1].bound, 1.0);
-}
-
-TEST(SummaryFields, AreThoseThatARunWrites) {
-  const test::TemporaryFolder folder;
-  ASSERT_EQ(
-      test::palpate({"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"}, folder.path())
-          .status,
-      0);
-  const auto summary = parse_json_row(test::text_of(test::only_run(folder.path() / "runs") / "summary.json"));
-  ASSERT_TRUE(summary);
-  for (const SummaryField& field : summary_fields()) {
-    const Scalar* value = summary->find(field.name);
-    ASSERT_NE(value, nullptr) << field.name;
-    EXPECT_EQ(std::holds_alternative<std::string>(*value), field.type == SummaryField::Type::text) << field.name;
-    EXPECT_EQ(std::holds_alternative<bool>(*value), field.type == SummaryField::Type::flag) << field.name;
-  }
-  for (const auto& [name, value] : summary->fields) {
-    if (name.find("_process.") != std::string::npos) continue;
-    EXPECT_NE(find_summary_field(name), nullptr) << name << " is not listed";
-  }
-}
-
-TEST(SummaryFields, HaveTheUnitThatTheirNamesEndIn) {
-  EXPECT_EQ(unit_of_column("rmse_m"), Unit::metre);
-  EXPECT_EQ(unit_of_column("compute.infer"), Unit::second);
-  EXPECT_EQ(unit_of_column("drift_m"), Unit::metre) << "not listed";
-  EXPECT_EQ(unit_of_column("idle_seconds"), Unit::second) << "not listed";
-  EXPECT_EQ(unit_of_column("footprint_iou"), Unit::none);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What an experiment hands to a fitting, and what it makes of the answer.
 #include "experiment/experiment.hpp"
-#include "record/summary.hpp"
+#include "record/fields.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
 
@@ -166,7 +166,7 @@ TEST(Fit, ThatFailsIsCountedAndChangesNothing) {
   }
   const RunResult result = experiment.result();
   EXPECT_EQ(result.interventions.at("fit_failed"), 6) << "heights and labels, at 5, 10 and 15 contacts";
-  const Row summary = summary_row(config, result, "", Stopwatch{}, {});
+  const Row summary = summary_list().row({config, result, "", {}, {}, {}, {}});
   ASSERT_NE(summary.find("interventions.fit_failed"), nullptr);
   EXPECT_EQ(*summary.find("interventions.fit_failed"), Scalar{std::int64_t{6}});
   for (const char* kind : {"pivoted", "set_aside"}) {

@@ -2,7 +2,7 @@
 // A run lived through again says at every tap what the run said then, and at its end what its summary says.
 #include "report/history.hpp"
 #include "record/session.hpp"
-#include "record/summary.hpp"
+#include "record/fields.hpp"
 #include "record/tap_row.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"
@@ -91,7 +91,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   EXPECT_EQ(compared_footprint > 10, options.footprint.type != "regression");
   RunResult last = history.moments.back().result;
   last.stop_reason = cell(*recording.summary, "stop_reason");
-  for (const auto& [name, value] : summary_row(recording.config, last, "", Stopwatch(), {}).fields) {
+  for (const auto& [name, value] : summary_list().row({recording.config, last, "", {}, {}, {}, {}}).fields) {
     if (!depends_on_machine(name)) {
       EXPECT_EQ(csv_cell(value), cell(*recording.summary, name.c_str())) << name;
     }

@@ -20,7 +20,7 @@ ComparedGroup group(const std::string& name, std::size_t count, double mean) {
 
 Comparison comparison(const char* metric, Unit unit, std::optional<int> taps, std::vector<ComparedGroup> groups) {
   Comparison out;
-  out.metric = {metric, unit, SummaryField::Better::less};
+  out.metric = {metric, unit, RecordField::Better::less};
   out.by = {"strategy"};
   out.groups = std::move(groups);
   out.after_taps = taps;

@@ -93,8 +93,7 @@ std::string taps_ply(const Recording& recording, const std::string& run) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const PastTap& tap = recording.taps[i];
     if (tap.contact.outcome != Outcome::contact) continue;
-    const Scalar* on = recording.rows[i].find("on_surface");
-    const bool hit = on != nullptr && *on == Scalar(true);
+    const bool hit = recording.rows[i].flag("on_surface").value_or(false);
     put(points, "{} {} {} {} {}\n", tap.target.x, tap.target.y, tap.contact.height, i + 1, hit ? 1 : 0);
     ++contacts;
   }

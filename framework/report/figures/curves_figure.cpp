@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
-#include "record/files.hpp"
+#include "record/fields.hpp"
 #include "report/figures/gallery.hpp"
 
 #include <palpate/error.hpp>
@@ -10,9 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <sstream>
 
 namespace palpate {
 namespace {
@@ -132,31 +130,15 @@ Panel hyperparameters_panel(const History& history, const NamedState& which) {
 Panel phases_panel(const Recording& recording) {
   Panel panel{"time of a tap, by phase [ms]", {}};
   panel.logarithmic = true;
-  const auto file = recording.directory / "timings.csv";
-  std::error_code none;
-  if (!std::filesystem::exists(file, none)) return panel;
-  std::istringstream lines(read_file(file));
-  std::string line;
-  std::getline(lines, line);
-  std::vector<Curve> curves;
-  std::istringstream names(line);
-  for (std::string name; std::getline(names, name, ',');) curves.push_back({name, {}});
-  while (std::getline(lines, line) && !lines.eof()) {  // a line without its end was cut off by a kill
-    std::istringstream cells(line);
-    std::string cell;
-    double tap = 0.0;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      if (!std::getline(cells, cell, ','))
-        throw Error(file.string(), "has a line that is too short", "the file is damaged");
-      char* end = nullptr;
-      const double value = std::strtod(cell.c_str(), &end);
-      if (cell.empty() || *end != '\0')
-        throw Error(file.string(), "has '" + cell + "' for a number", "the file is damaged");
-      if (i == 0) tap = value;
-      if (i > 0 && value > 0.0) curves[i].points.emplace_back(tap, 1e3 * value);
+  const Timings timings = read_timings(recording.directory);
+  if (timings.trouble) throw Error(*timings.trouble);
+  for (std::size_t i = 0; i < kPhases; ++i) {
+    Curve curve{kPhaseNames[i], {}};
+    for (const TapTimes& tap : timings.taps) {
+      if (tap.seconds[i] > 0.0) curve.points.emplace_back(tap.tap, 1e3 * tap.seconds[i]);
     }
+    add(panel, std::move(curve));
   }
-  for (std::size_t i = 1; i < curves.size(); ++i) add(panel, std::move(curves[i]));
   return panel;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/column.hpp"
 #include "analysis/gnuplot.hpp"
+#include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
 #include "report/figures/gallery.hpp"
@@ -17,52 +18,22 @@ constexpr std::size_t kMostGroups = 24;
 constexpr std::size_t kMostValues = 24;  ///< of a key, in a heat map
 constexpr std::size_t kMostDots = 200;   ///< of a group
 
-/// A swept key and its values, in the order of the sweep.
-struct Axis {
-  std::string key;
-  std::vector<std::string> values;
-};
-
-/// The keys that have several values, but the seed.
-std::vector<Axis> axes_of(const Sweep& sweep) {
-  std::vector<Axis> axes;
-  for (std::size_t k = 0; k < sweep.keys.size(); ++k) {
-    if (sweep.keys[k] == "seed") continue;
-    Axis axis{sweep.keys[k], {}};
-    for (const Job& job : sweep.jobs) {
-      if (std::find(axis.values.begin(), axis.values.end(), job.values[k]) == axis.values.end())
-        axis.values.push_back(job.values[k]);
-    }
-    if (axis.values.size() > 1) axes.push_back(std::move(axis));
-  }
-  return axes;
-}
-
-std::string text_at(const Row& row, const std::string& key) {
-  const Scalar* value = row.find(key);
-  return value != nullptr ? csv_cell(*value) : std::string();
-}
-
+/// Jobs that ended well, under one name.
 struct Group {
   std::string name;
   std::vector<const Row*> rows;
 };
 
 std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results) {
-  const std::vector<Axis> axes = axes_of(sweep);
+  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   std::vector<Group> groups;
-  for (const Row& row : results) {
-    if (!is_done(row)) continue;
-    std::string name;
-    for (const Axis& axis : axes) {
-      const std::string value = text_at(row, axis.key);
-      if (value.empty()) continue;  // an option that the plugins of this job have not
-      name += (name.empty() ? "" : ", ") + (axes.size() > 1 ? axis.key + "=" : std::string()) + value;
+  for (const JobGroup& one : group_jobs(sweep, results, keys)) {
+    Group group{key_words(keys, one.values, keys.size() > 1), {}};
+    if (group.name.empty()) group.name = "all jobs";
+    for (const JobResult& job : one.jobs) {
+      if (job.row != nullptr && is_done(*job.row)) group.rows.push_back(job.row);
     }
-    if (name.empty()) name = "all jobs";
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.name == name; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {name, {}});
-    group->rows.push_back(&row);
+    if (!group.rows.empty()) groups.push_back(std::move(group));
   }
   return groups;
 }
@@ -141,9 +112,9 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
   const Column column = find_column(metric, {metric}, "--figures");
   settings +=
       fmt::format("set xlabel {} font ',11' offset 0,0.3\n",
-                  gnuplot_text(scale.title(metric) + (column.better == SummaryField::Better::more   ? ", more is better"
-                                                      : column.better == SummaryField::Better::less ? ", less is better"
-                                                                                                    : "")));
+                  gnuplot_text(scale.title(metric) + (column.better == RecordField::Better::more   ? ", more is better"
+                                                      : column.better == RecordField::Better::less ? ", less is better"
+                                                                                                   : "")));
   const std::string block = "$boxes_" + metric;
   std::string clauses =
       fmt::format("plot {0} using 2:1:($6-$2):(0) with vectors nohead lw 1.5 lc rgb '#0072b2'", block);
@@ -165,7 +136,8 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   std::size_t longest = 0;
   for (const Group& group : groups) longest = std::max(longest, std::min<std::size_t>(group.name.size(), 44));
   std::vector<std::string> metrics;
-  for (const char* metric : {"on_surface_taps", "rmse_m", "footprint_iou", "robot_seconds"}) {
+  for (const std::string& metric :
+       {std::string("on_surface_taps"), main_error(), std::string("footprint_iou"), std::string("robot_seconds")}) {
     const bool present =
         std::any_of(groups.begin(), groups.end(), [&](const Group& one) { return !values_of(one, metric).empty(); });
     if (present) metrics.emplace_back(metric);
@@ -204,6 +176,25 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
 
 namespace {
 
+/// A swept key and its values, in the order of the sweep, as many as are shown.
+struct Axis {
+  std::string key;
+  std::vector<std::string> values;
+  bool cut = false;
+
+  std::size_t place(const std::string& value) const {
+    return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
+  }
+};
+
+Axis axis_of(const Sweep& sweep, const std::string& key) {
+  Axis axis{key, {}};
+  for (const JobGroup& group : group_jobs(sweep, {}, {key})) axis.values.push_back(group.values.front());
+  axis.cut = axis.values.size() > kMostValues;
+  axis.values.resize(std::min(axis.values.size(), kMostValues));
+  return axis;
+}
+
 /// gnuplot's list of tics: a value at each whole number.
 std::string tics(const std::vector<std::string>& values) {
   std::string out;
@@ -215,22 +206,21 @@ std::string tics(const std::vector<std::string>& values) {
 }  // namespace
 
 std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& results) {
-  std::vector<Axis> axes = axes_of(sweep);
-  if (axes.size() < 2) return {};
-  Axis& x = axes[1];
-  Axis& y = axes[0];
-  const bool left_out = std::max(x.values.size(), y.values.size()) > kMostValues;
-  for (Axis* axis : {&x, &y}) axis->values.resize(std::min(axis->values.size(), kMostValues));
+  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
+  if (keys.size() < 2) return {};
+  const Axis y = axis_of(sweep, keys[0]);
+  const Axis x = axis_of(sweep, keys[1]);
+  const bool left_out = x.cut || y.cut;
   std::vector<std::vector<std::vector<double>>> cells(y.values.size(),
                                                       std::vector<std::vector<double>>(x.values.size()));
-  for (const Row& row : results) {
-    if (!is_done(row)) continue;
-    const auto at = [&row](const Axis& axis) {
-      return static_cast<std::size_t>(std::find(axis.values.begin(), axis.values.end(), text_at(row, axis.key)) -
-                                      axis.values.begin());
-    };
-    const auto value = number_in(row, "rmse_m", "--figures");
-    if (value && at(x) < x.values.size() && at(y) < y.values.size()) cells[at(y)][at(x)].push_back(*value);
+  for (const JobGroup& group : group_jobs(sweep, results, {y.key, x.key})) {
+    const std::size_t row = y.place(group.values[0]);
+    const std::size_t column = x.place(group.values[1]);
+    if (row == y.values.size() || column == x.values.size()) continue;
+    for (const JobResult& job : group.jobs) {
+      if (job.row == nullptr || !is_done(*job.row)) continue;
+      if (const auto value = number_in(*job.row, main_error(), "--figures")) cells[row][column].push_back(*value);
+    }
   }
   std::vector<double> means;
   for (const auto& line : cells) {
@@ -268,13 +258,14 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
                 std::max(120.0, 44 * static_cast<double>(y.values.size()))};
   Sheet sheet(static_cast<int>(std::max(560.0, box.left + box.width + 150)),
               static_cast<int>(box.top + box.height + below + 16));
-  sheet.data("mean_rmse_m", matrix);
+  sheet.data("mean_" + main_error(), matrix);
   sheet.data("numbers", numbers);
-  const Colours colours{Palette::viridis, least, most, scale.title("mean rmse_m")};
+  const Colours colours{Palette::viridis, least, most, scale.title("mean " + main_error())};
   std::vector<std::string> over;
   if (std::find(sweep.keys.begin(), sweep.keys.end(), "seed") != sweep.keys.end()) over.emplace_back("seed");
-  for (std::size_t i = 2; i < axes.size(); ++i) over.push_back(axes[i].key);
-  std::string words = over.empty() ? "rmse_m" : fmt::format("rmse_m, mean over {}", fmt::join(over, ", "));
+  over.insert(over.end(), keys.begin() + 2, keys.end());
+  std::string words =
+      over.empty() ? main_error() : fmt::format("{}, mean over {}", main_error(), fmt::join(over, ", "));
   if (left_out) words += fmt::format("; the first {} values of a key", kMostValues);
   sheet.text(sweep_name(sweep), 24, 14, 15);
   sheet.text(words, 24, 42, 11);
@@ -289,8 +280,9 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
                           (box.left + 0.5 * box.width) / sheet.width(), 14.0 / sheet.height());
   sheet.text(y.key, 24, box.top - 24, 11);
   sheet.plot(box, settings,
-             "plot $mean_rmse_m matrix using 1:2:3 with image pixels, \\\n"
-             "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
+             "plot $mean_" + main_error() +
+                 " matrix using 1:2:3 with image pixels, \\\n"
+                 "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
   sheet.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);
   std::vector<Figure> out;
   out.push_back({"heat_map", std::move(sheet)});

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/run_page.hpp"
 
+#include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
-#include "record/files.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/tap_row.hpp"
@@ -54,10 +55,7 @@ std::string json_of_moment(const Moment& moment) {
   row.add("off_surface_taps", result.off_surface_taps);
   row.add("failed_taps", result.failed_taps);
   row.add("robot_seconds", result.robot_seconds);
-  row.add("rmse_m", result.errors.rmse);
-  row.add("rmse_on_surface_m", result.errors.rmse_on_surface);
-  row.add("rmse_height_m", result.errors.rmse_height);
-  row.add("footprint_iou", result.errors.footprint_iou);
+  add_errors(row, result.errors);
   row.add("largest_deviation", moment.largest_deviation);
   row.add("least_weight", moment.least_weight);
   row.add("most_weight", moment.most_weight);
@@ -74,6 +72,18 @@ std::string json_of_moment(const Moment& moment) {
     row.add("next.ties", moment.next->ties);
   }
   return to_json_line(row);
+}
+
+/// The tap and its seconds by phase.
+std::string json_of_times(const TapTimes& times) {
+  std::string out = std::to_string(times.tap);
+  for (const double seconds : times.seconds) out += "," + json_value(seconds);
+  return "[" + out + "]";
+}
+
+/// How a page calls the errors, and in what unit it has them.
+std::string json_of_error(const RecordField& field) {
+  return json_texts({field.name, field.label, unit_symbol(field.unit)});
 }
 
 std::string text_of(const Tree& tree) {
@@ -139,7 +149,9 @@ std::string run_page(const Recording& recording, const History& history, const O
       {"summary", recording.summary ? to_json_line(*recording.summary) : "null"},
       {"taps", json_list_of(recording.rows, to_json_line)},
       {"moments", json_list_of(history.moments, json_of_moment)},
-      {"timings", json_quoted(is_there(directory / "timings.csv") ? read_file(directory / "timings.csv") : "")},
+      {"errors", json_list_of(error_fields(), json_of_error)},
+      {"phases", json_texts({kPhaseNames.begin(), kPhaseNames.end()})},
+      {"timings", json_list_of(read_timings(directory).taps, json_of_times)},
       {"x", json_numbers(history.x)},
       {"y", json_numbers(history.y)},
       {"config", json_of_config(recording, manifest)},

@@ -2,6 +2,7 @@
 #include "report/page/sweep_page.hpp"
 
 #include "analysis/column.hpp"
+#include "analysis/groups.hpp"
 #include "analysis/statistics.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
@@ -72,13 +73,13 @@ std::optional<std::string> json_number(const Scalar& value) {
   return json_value(number);
 }
 
-const char* better_name(SummaryField::Better better) {
+const char* better_name(RecordField::Better better) {
   switch (better) {
-    case SummaryField::Better::less:
+    case RecordField::Better::less:
       return "less";
-    case SummaryField::Better::more:
+    case RecordField::Better::more:
       return "more";
-    case SummaryField::Better::neither:
+    case RecordField::Better::neither:
       break;
   }
   return "neither";
@@ -96,8 +97,8 @@ std::optional<std::string> json_of_column(const std::string& name, const std::ve
     numbers.push_back(*number);
   }
   if (!any) return {};
-  const SummaryField* field = find_summary_field(name);
-  const auto better = field != nullptr ? field->better : SummaryField::Better::neither;
+  const RecordField* field = find_summary_field(name);
+  const auto better = field != nullptr ? field->better : RecordField::Better::neither;
   return json_object(
       {{"name", json_quoted(name)}, {"better", json_quoted(better_name(better))}, {"numbers", json_list(numbers)}});
 }
@@ -116,9 +117,7 @@ RunStatus standing_of(const Row* row, const fs::path& directory) {
   RunStatus out;
   if (row != nullptr) {
     out.state = is_done(*row) ? RunStatus::State::done : RunStatus::State::failed;
-    const Scalar* reason = row->find("stop_reason");
-    const auto* text = reason != nullptr ? std::get_if<std::string>(reason) : nullptr;
-    if (text != nullptr) out.stop_reason = *text;
+    out.stop_reason = row->text("stop_reason");
     return out;
   }
   out = read_ending(directory);
@@ -151,6 +150,15 @@ std::string json_of_factors(std::size_t jobs) {
   return json_list(factors);
 }
 
+/// The fields that are worth a first look: the main error, and the others in the order of the summary.
+std::vector<std::string> first_looks() {
+  std::vector<std::string> names{main_error()};
+  for (const RecordField& field : summary_fields()) {
+    if (field.first_look && field.name != main_error()) names.push_back(field.name);
+  }
+  return names;
+}
+
 std::string id_of(const Sweep& sweep) {
   return fs::absolute(sweep.directory / "").lexically_normal().parent_path().filename().string();
 }
@@ -159,8 +167,8 @@ std::string id_of(const Sweep& sweep) {
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   const std::vector<Row> results = sweep_results(sweep);
-  std::vector<const Row*> rows(sweep.jobs.size(), nullptr);  // of each job
-  for (const Row& row : results) rows[static_cast<std::size_t>(std::get<std::int64_t>(*row.find("job")))] = &row;
+  std::vector<const Row*> rows;  // of each job
+  for (const JobResult& job : group_jobs(sweep, results, {}).front().jobs) rows.push_back(job.row);
   const Tree config = read_run_config(sweep.directory);
   std::vector<std::string> keys;
   for (std::size_t key = 0; key < sweep.keys.size(); ++key) keys.push_back(json_of_key(sweep, key));
@@ -170,6 +178,7 @@ std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
                                                               {"keys", json_list(keys)},
                                                               {"jobs", json_of_jobs(sweep, rows, progress)},
                                                               {"columns", json_of_columns(results, rows)},
+                                                              {"first_looks", json_texts(first_looks())},
                                                               {"factors", json_of_factors(sweep.jobs.size())},
                                                               {"config", json_quoted(to_yaml(config))}};
   return make_page(sweep_script(), json_object(data), "");

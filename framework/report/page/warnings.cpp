@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/warnings.hpp"
 
+#include "record/tap_row.hpp"
 #include "report/words/words.hpp"
 
 #include <fmt/format.h>
@@ -28,20 +29,14 @@ int first_drift(const Recording& recording, const History& history) {
 /// Taps that the acquisition chose without a reason.
 int stalls(const Recording& recording) {
   return static_cast<int>(std::count_if(recording.rows.begin(), recording.rows.end(), [](const Row& row) {
-    const Scalar* source = row.find("source");
-    const Scalar* score = row.find("score");
-    const auto* value = score != nullptr ? std::get_if<double>(score) : nullptr;
-    const auto* whole = score != nullptr ? std::get_if<std::int64_t>(score) : nullptr;
-    const bool none = (value != nullptr && *value <= 0.0) || (whole != nullptr && *whole <= 0);
-    return none && source != nullptr && *source == Scalar(std::string("acquisition"));
+    return row.text("source") == source_name(Source::acquisition) && row.number("score").value_or(1.0) <= 0.0;
   }));
 }
 
 void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
   if (recording.failed()) {
-    const Scalar* value = recording.summary->find("stop_reason");
-    const auto* reason = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-    out.push_back(reason != nullptr ? "The run failed: " + *reason : "The run failed and does not say why.");
+    const std::string reason = recording.summary->text("stop_reason");
+    out.push_back(reason.empty() ? "The run failed and does not say why." : "The run failed: " + reason);
   } else if (!recording.summary) {
     out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
   }

@@ -2,6 +2,7 @@
 #include "report/words/explain.hpp"
 
 #include "experiment/metrics.hpp"
+#include "record/fields.hpp"
 #include "record/tap_row.hpp"
 #include "report/words/evidence.hpp"
 #include "report/words/explain_models.hpp"
@@ -17,17 +18,6 @@
 
 namespace palpate {
 namespace {
-
-/// The errors of the models of `experiment` as fields of a tap, null where no truth is known.
-Row errors_row(Experiment& experiment) {
-  const Errors errors = experiment.errors();
-  Row row;
-  row.add("rmse_m", errors.rmse);
-  row.add("rmse_on_surface_m", errors.rmse_on_surface);
-  row.add("rmse_height_m", errors.rmse_height);
-  row.add("footprint_iou", errors.footprint_iou);
-  return row;
-}
 
 class Explanation {
  public:
@@ -310,9 +300,8 @@ class Explanation {
       text += fmt::format(", {}{} {} than expected", length_words(std::abs(more)), star_of_expected_,
                           more > 0.0 ? "higher" : "lower");
     text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
-    const Scalar* truth = row_.find("true_on_surface");
-    const auto* truly = truth != nullptr ? std::get_if<bool>(truth) : nullptr;
-    if (truly != nullptr && *truly != on)
+    const std::optional<bool> truly = row_.flag("true_on_surface");
+    if (truly && *truly != on)
       text += *truly ? " In truth an object is there: the label is wrong."
                      : " In truth the desk is there: the label is wrong.";
     page_.say(text);
@@ -321,9 +310,8 @@ class Explanation {
 
   void explain_end() {
     if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
-    const Scalar* reason = recording_.summary->find("stop_reason");
-    const auto* text = reason != nullptr ? std::get_if<std::string>(reason) : nullptr;
-    page_.say(fmt::format("The run failed at this tap{}.", text != nullptr ? ": " + *text : ""));
+    const std::string reason = recording_.summary->text("stop_reason");
+    page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
   }
 
   /// The errors after the tap: recorded with the next one, or at the end of the run.
@@ -334,14 +322,16 @@ class Explanation {
     const Row& next = !last                ? recording_.rows[static_cast<std::size_t>(number_)]
                       : recording_.summary ? *recording_.summary
                                            : nothing;
-    return {next, errors_row(playback_.experiment())};
+    Row now;
+    add_errors(now, playback_.experiment().errors());
+    return {next, now};
   }
 
   void explain_errors(const Evidence& before) {
     if (playback_.experiment().truth() == nullptr)
       return page_.say("The truth is not known, so nobody can say by how much the surface is off.");
     const Evidence then = after();
-    const auto change = [&](const char* field, auto words) -> std::string {
+    const auto change = [&](const std::string& field, auto words) -> std::string {
       const auto from = before.number(field);
       const auto to = then.number(field);
       if (!from || !to) return {};
@@ -350,17 +340,15 @@ class Explanation {
       if (words(*to) == old) return "still " + now;
       return fmt::format("from {}{} to {}", old, before.star(field), now);
     };
-    std::vector<std::string> parts;
-    const auto add = [&](const char* what, const std::string& text) {
-      if (!text.empty()) parts.push_back(fmt::format("{} {}", what, text));
-    };
-    add("over the scene", change("rmse_m", length_words));
-    add("on the object", change("rmse_on_surface_m", length_words));
-    if (options_.surface == ExperimentOptions::Surface::two_part)
-      add("of the height alone, on the object,", change("rmse_height_m", length_words));
-    if (!parts.empty()) page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(parts, ", ")));
-    if (const std::string iou = change("footprint_iou", plain_words); !iou.empty())
-      page_.say(fmt::format("Overlap of the outline with the true one (IoU, 1 is perfect): {}.", iou));
+    std::vector<std::string> lengths;
+    std::vector<std::string> others;
+    for (const RecordField& error : error_fields()) {
+      const bool length = error.unit == Unit::metre;
+      const std::string words = length ? change(error.name, length_words) : change(error.name, plain_words);
+      if (!words.empty()) (length ? lengths : others).push_back(fmt::format("{} {}", error.label, words));
+    }
+    if (!lengths.empty()) page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(lengths, ", ")));
+    for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
     starred_ = then.starred();
   }
 

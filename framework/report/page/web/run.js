@@ -10,9 +10,7 @@ function facts(data) {
     ["off", last.off_surface_taps],
     ["no contact", last.failed_taps || null],
     ["first hit at tap", data.summary?.first_hit_tap],
-    ["rmse, scene", cm(last.rmse_m)],
-    ["rmse on the object", cm(last.rmse_on_surface_m)],
-    ["outline IoU", last.footprint_iou === null ? null : shown(last.footprint_iou, 3)],
+    ...data.errors.map(([name, label, unit]) => (unit === "m" ? [`rmse ${label}`, cm(last[name])] : [label, last[name] === null ? null : shown(last[name], 3)])),
     ["95 % coverage", data.summary?.coverage_95 === undefined ? null : shown(data.summary.coverage_95, 3)],
     ["robot time", `${shown(last.robot_seconds, 3)} s`],
   ].filter(([, value]) => value !== null && value !== undefined && value !== "–");

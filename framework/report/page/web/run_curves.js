@@ -24,17 +24,15 @@ function curves(data) {
   const over = (get) => moments.map((moment) => get(moment) ?? null);
   const line = (name, get) => ({ name, values: over(get) });
   const process = (kind) => (moment) => moment[kind];
+  const lengths = data.errors.filter(([, , unit]) => unit === "m");
+  const shares = data.errors.filter(([, , unit]) => unit === "");
   const out = [
     {
       title: "Error of the reconstruction (root mean square)",
       unit: "cm",
-      lines: [
-        line("scene", (m) => m.rmse_m && m.rmse_m * kCentimetres),
-        line("on the object", (m) => m.rmse_on_surface_m && m.rmse_on_surface_m * kCentimetres),
-        line("height mean on the object", (m) => m.rmse_height_m && m.rmse_height_m * kCentimetres),
-      ],
+      lines: lengths.map(([name, label]) => line(label, (m) => m[name] && m[name] * kCentimetres)),
     },
-    { title: "Outline: intersection over union", axis: "IoU", range: [-0.02, 1.02], lines: [line("IoU", (m) => m.footprint_iou)] },
+    ...shares.map(([name, label]) => ({ title: label, axis: label, range: [-0.02, 1.02], lines: [line(label, (m) => m[name])] })),
     { title: "Largest standard deviation of a height", unit: "cm", fromZero: true, lines: [line("largest", (m) => m.largest_deviation * kCentimetres)] },
     {
       title: "Share of taps on the object",
@@ -66,19 +64,12 @@ function curves(data) {
     .filter((one) => one.lines.length > 0);
 }
 
-/// Milliseconds of each tap by phase, of timings.csv.
+/// Milliseconds of each tap by phase. Not every tap has a line: one during which the program was killed has none.
 function timeCurves(data) {
-  const [header, ...rows] = data.timings.trim().split("\n").map((row) => row.split(","));
-  const phases = (header ?? []).slice(1);
-  const at = (name) => (header ?? []).indexOf(name);
-  // Not every tap has a line: one during which the program was killed has none.
-  const byTap = new Map(rows.map((row) => [Number(row[0]), row]));
-  const lines = phases.map((name) => ({
+  const byTap = new Map(data.timings.map(([tap, ...seconds]) => [tap, seconds]));
+  const lines = data.phases.map((name, i) => ({
     name,
-    values: data.moments.map((moment) => {
-      const row = byTap.get(moment.taps);
-      return row ? 1000 * Number(row[at(name)]) : null;
-    }),
+    values: data.moments.map((moment) => (byTap.has(moment.taps) ? 1000 * byTap.get(moment.taps)[i] : null)),
   }));
   return { title: "Time of a tap, by phase", unit: "ms", logarithmic: true, lines };
 }

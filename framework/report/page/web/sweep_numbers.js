@@ -180,20 +180,8 @@ function settingsOf(sweep, cost, error) {
 }
 
 /// Columns that are worth a first look, the best first, as far as they are there.
-const kMainColumns = [
-  "rmse_m",
-  "rmse_on_surface_m",
-  "on_surface_taps",
-  "footprint_iou",
-  "nlpd",
-  "coverage_95",
-  "robot_seconds",
-  "compute_seconds",
-  "taps",
-];
-
 function mainColumns(sweep) {
-  return kMainColumns.filter((name) => sweep.columns.has(name));
+  return sweep.data.first_looks.filter((name) => sweep.columns.has(name));
 }
 
 /// Whether done jobs differ in a column.
@@ -219,18 +207,18 @@ function bestPair(sweep) {
 /// What the controls say at first.
 function firstChoices(sweep) {
   const names = [...sweep.columns.keys()];
-  const first = (wanted, otherwise) => wanted.find((name) => sweep.columns.has(name)) ?? otherwise;
+  const error = [sweep.data.first_looks[0], "on_surface_taps"].find((name) => sweep.columns.has(name)) ?? names[0];
   const [across, up] = bestPair(sweep);
   const fewest = sweep.varying.reduce((a, b) => (b.order.length < a.order.length ? b : a), sweep.varying[0]);
   const costs = ["robot_seconds", "compute_seconds", "taps"].filter((name) => sweep.columns.has(name));
   return {
-    metric: first(["rmse_m", "on_surface_taps"], names[0]),
+    metric: error,
     across,
     up,
     group: sweep.varying.length > 1 && sweep.groups(sweep.settings).length <= 16 ? kEachSetting : fewest?.name ?? across,
     then: "",
     cost: costs.find((name) => differs(sweep, name)) ?? costs[0] ?? names[0],
-    error: first(["rmse_m", "on_surface_taps"], names[0]),
+    error,
   };
 }
 

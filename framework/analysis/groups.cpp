@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/groups.hpp"
+
+#include "analysis/readable.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace palpate {
+
+const std::string& value_of(const Sweep& sweep, const Job& job, const std::string& key) {
+  const auto at = std::find(sweep.keys.begin(), sweep.keys.end(), key);
+  return job.values.at(static_cast<std::size_t>(at - sweep.keys.begin()));
+}
+
+std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
+                                 const std::vector<std::string>& keys) {
+  std::vector<const Row*> rows(sweep.jobs.size(), nullptr);
+  for (const Row& row : results) rows.at(static_cast<std::size_t>(row.number("job").value())) = &row;
+  std::vector<JobGroup> groups;
+  std::map<std::vector<std::string>, std::size_t> found;
+  for (const Job& job : sweep.jobs) {
+    std::vector<std::string> values;
+    for (const std::string& key : keys) values.push_back(value_of(sweep, job, key));
+    const auto [at, is_new] = found.emplace(values, groups.size());
+    if (is_new) groups.push_back({std::move(values), {}});
+    groups[at->second].jobs.push_back({&job, rows[static_cast<std::size_t>(job.index)]});
+  }
+  return groups;
+}
+
+std::vector<std::string> setting_keys(const Sweep& sweep) {
+  std::vector<std::string> out = sweep.keys;
+  out.erase(std::remove(out.begin(), out.end(), "seed"), out.end());
+  return out;
+}
+
+std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys) {
+  std::vector<std::string> out;
+  std::copy_if(keys.begin(), keys.end(), std::back_inserter(out), [&](const std::string& key) {
+    return std::any_of(sweep.jobs.begin(), sweep.jobs.end(), [&](const Job& job) {
+      return value_of(sweep, job, key) != value_of(sweep, sweep.jobs.front(), key);
+    });
+  });
+  return out;
+}
+
+std::string key_words(const std::vector<std::string>& keys, const std::vector<std::string>& values, bool with_keys) {
+  std::string out;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (values[i].empty()) continue;
+    out += (out.empty() ? "" : ", ") + (with_keys ? keys[i] + "=" : std::string()) + values[i];
+  }
+  return one_line(out);
+}
+
+}  // namespace palpate

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The jobs of a sweep by what their keys say: the one place that groups them. Tables, pictures, `palpate pareto` and
+// `palpate compare` begin here; the page of a sweep, whose reader chooses the keys, groups in sweep_numbers.js, and its
+// tests hold it to the numbers of these.
+#pragma once
+
+#include "record/row.hpp"
+#include "sweep/sweep.hpp"
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A job and its row of results.csv, null until it has ended.
+struct JobResult {
+  const Job* job = nullptr;
+  const Row* row = nullptr;
+};
+
+/// Jobs that agree in some keys, in the order of the sweep.
+struct JobGroup {
+  std::vector<std::string>
+      values;  ///< one for each of the keys; "" where the plugins of these jobs have no such option
+  std::vector<JobResult> jobs;
+};
+
+/// All jobs by the values of `keys`, which are swept ones. Groups stand in the order of their first jobs; with no keys
+/// there is one. `sweep` and `results` must outlive what is returned.
+std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
+                                 const std::vector<std::string>& keys);
+
+/// The swept keys that make a setting: all but the seed.
+std::vector<std::string> setting_keys(const Sweep& sweep);
+
+/// Those of `keys` that have more than one value in the sweep.
+std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
+
+/// The value of a swept key in a job.
+const std::string& value_of(const Sweep& sweep, const Job& job, const std::string& key);
+
+/// "acquisition=weighted, taps=17", or "weighted, 17" where the keys go without saying, on one line. A key without a
+/// value is left out.
+std::string key_words(const std::vector<std::string>& keys, const std::vector<std::string>& values, bool with_keys);
+
+}  // namespace palpate

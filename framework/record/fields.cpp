@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: MIT
+#include "record/fields.hpp"
+
+#include "record/files.hpp"
+#include "record/tap_row.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+namespace palpate {
+namespace {
+
+const char* const kNoTruth = "no truth is known";
+
+struct ErrorField {
+  RecordField field;
+  std::optional<double> Errors::*value;
+};
+
+/// The first is the one by which surfaces are judged where one number has to do.
+const std::vector<ErrorField>& error_list() {
+  static const std::vector<ErrorField> list{
+      {RecordField("rmse_m",
+                   "reconstruction against truth over all candidate cells, desk included (root mean square); with "
+                   "`surface: two_part` the height of the object where the footprint's probability is >= 1/2, and the "
+                   "desk elsewhere")
+           .in(Unit::metre)
+           .less()
+           .absent(kNoTruth)
+           .called("over the scene")
+           .headline(),
+       &Errors::rmse},
+      {RecordField("rmse_on_surface_m", "the same over the cells that truly lie on an object")
+           .in(Unit::metre)
+           .less()
+           .absent(kNoTruth)
+           .called("on the object")
+           .headline(),
+       &Errors::rmse_on_surface},
+      {RecordField("rmse_height_m", "the height mean itself over those cells, whatever the footprint")
+           .in(Unit::metre)
+           .less()
+           .absent(kNoTruth)
+           .called("height mean on the object"),
+       &Errors::rmse_height},
+      {RecordField("footprint_iou",
+                   "cells with a probability >= 1/2, by the config's footprint, against cells truly on an object: "
+                   "intersection over union")
+           .more()
+           .absent(kNoTruth)
+           .called("outline IoU")
+           .headline(),
+       &Errors::footprint_iou},
+  };
+  return list;
+}
+
+/// Where the loop lays the state of its models down, in a tap and in a result alike.
+template <class Record, class Holder>
+void list_models(FieldList<Record>& list, const Holder& (*holder)(const Record&), bool reasons) {
+  const auto process = [&](const char* name, const char* meaning, std::optional<ProcessState> Holder::*state) {
+    list.add_family(std::string(name) + ".*", meaning, [=](Row& row, const Record& record) {
+      const std::optional<ProcessState>& of = holder(record).*state;
+      if (!of && state == &Holder::surface_process) return;
+      add_process(row, name, of);
+      if (reasons) row.add(std::string(name) + ".engine_reason", of ? std::optional(of->engine_reason) : std::nullopt);
+    });
+  };
+  process(
+      "height_process",
+      "of the process over heights: hyperparameters by the names of the options (`kernel.kernels.0.length_scale`), "
+      "`log_marginal_likelihood`, `jitter` (a variance), `condition` (an incremental estimate: a lower bound, most "
+      "often within a factor of 3), `engine` of the posterior and its `error_bound`: of what it adds to the rounding "
+      "of `dense`, to means in signals or to variances in signals squared, whichever is more. `fit.*` of the fit "
+      "after the latest tap, if one was due: `changed` (false: the old hyperparameters stay), `objective` (the fit's "
+      "own measure, larger is better), `evaluations`, `reason` (why it ended)",
+      &Holder::height_process);
+  process("weight_process", "the same of the process over labels", &Holder::weight_process);
+  process(
+      "surface_process",
+      "the same for the heights of the taps on an object; only with `surface: two_part`, and only where a strategy, "
+      "a rule that ends the run or the backend reads the height itself",
+      &Holder::surface_process);
+  list.add_family("footprint.*",
+                  "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
+                  "how it came to them; only where `footprint` is not `regression`",
+                  [=](Row& row, const Record& record) { add_footprint(row, holder(record).footprint); });
+}
+
+template <class Record, class Holder>
+void list_forecast(FieldList<Record>& list, const Holder& (*holder)(const Record&)) {
+  list.add_family(
+          "expected_rmse_m",
+          "the error over the scene that is to be expected of what is believed; only with `stop.expected_rmse`, "
+          "null before the first hit",
+          [=](Row& row, const Record& record) {
+            if (holder(record).forecast) row.add("expected_rmse_m", holder(record).forecast->rmse);
+          })
+      .in(Unit::metre);
+}
+
+const TapRecord& itself(const TapRecord& tap) { return tap; }
+const RunResult& result_of(const Summary& summary) { return summary.result; }
+
+template <class T, class Member>
+auto part(const std::optional<T>& whole, Member T::*member) {
+  return whole ? std::optional<Member>((*whole).*member) : std::nullopt;
+}
+
+std::optional<std::string> if_any(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
+
+/// A number of a contact, which only a touch has.
+std::optional<double> if_touched(const TapRecord& tap, double value) {
+  return tap.contact.outcome == Outcome::contact ? std::optional(value) : std::nullopt;
+}
+
+FieldList<TapRecord> make_tap_list() {
+  using Tap = TapRecord;
+  FieldList<Tap> list;
+  list.add("tap", "number, from 1", [](const Tap& t) { return t.number; });
+  list.add("source", "`initial`, `acquisition` or `fallback`", [](const Tap& t) { return source_name(t.source); });
+  list.add("why", "of a fallback, why", [](const Tap& t) { return if_any(t.why); });
+  list.add("x", "where", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
+  list.add("y", "where", [](const Tap& t) { return t.target.y; }).in(Unit::metre);
+  list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
+           [](const Tap& t) { return outcome_name(t.contact.outcome); });
+  list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
+  list.add("on_surface", "whether a contact was one with an object", [](const Tap& t) { return t.on_surface; });
+  list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
+  list.add("force", "of a contact, the largest that was felt (in a scene without effects, the threshold)",
+           [](const Tap& t) { return if_touched(t, t.contact.force); })
+      .in(Unit::newton);
+  list.add("robot_seconds", "robot time of this tap: travel, rest, descent, contact, retreat",
+           [](const Tap& t) { return t.contact.seconds; })
+      .in(Unit::second);
+
+  list.add("score", "of the acquisition at the chosen place", [](const Tap& t) { return t.score; });
+  list.add("u", "uncertainty at the chosen place, before the tap", [](const Tap& t) { return t.uncertainty; });
+  list.add("w", "the weight there, never clipped", [](const Tap& t) { return t.weight; });
+  list.add("e", "their product", [](const Tap& t) { return t.exploration; });
+  list.add_where([](const Tap& t) { return t.footprint.has_value(); }, "p",
+                 "the footprint's probability of an object there; only where `footprint` is not `regression`, whose "
+                 "probability is the weight, clipped",
+                 [](const Tap& t) { return t.probability; });
+  list.add("ties", "how many candidates were tied with the best", [](const Tap& t) { return t.ties; });
+  list.add("runner_up.x", "the best of the others", [](const Tap& t) { return part(t.runner_up, &Target::x); })
+      .in(Unit::metre);
+  list.add("runner_up.y", "the same", [](const Tap& t) { return part(t.runner_up, &Target::y); }).in(Unit::metre);
+  list.add("runner_up.score", "its score", [](const Tap& t) { return t.runner_up_score; });
+  list.add("max_standard_deviation", "of the height over the candidates, before the tap; of the height process",
+           [](const Tap& t) { return t.max_standard_deviation; })
+      .in(Unit::metre);
+  list.add("mean_standard_deviation", "the same", [](const Tap& t) { return t.mean_standard_deviation; })
+      .in(Unit::metre);
+  list.add("min_weight", "over the candidates, before the tap, never clipped",
+           [](const Tap& t) { return t.min_weight; });
+  list.add("max_weight", "the same", [](const Tap& t) { return t.max_weight; });
+  const auto is_predicted = [](const Tap& t) { return t.predicted.has_value(); };
+  list.add_where(is_predicted, "predicted.height",
+                 "what the models expected of the height there, in the frame of the scene; only where the backend asks "
+                 "for it (`adaptive_hover`)",
+                 [](const Tap& t) { return t.predicted->height; })
+      .in(Unit::metre);
+  list.add_where(is_predicted, "predicted.standard_deviation", "its standard deviation",
+                 [](const Tap& t) { return t.predicted->standard_deviation; })
+      .in(Unit::metre);
+  list_models(list, itself, false);
+  list_forecast(list, itself);
+  list.add("true_on_surface", "whether an object truly is there", [](const Tap& t) { return t.true_on_surface; })
+      .absent(kNoTruth);
+  list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });
+  return list;
+}
+
+struct Counted {
+  const char* name;
+  const char* meaning;
+};
+
+/// The phases of a tap, in their order.
+constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fitting hyperparameters",
+                                                          "updating the models", "scoring and choosing",
+                                                          "writing the record of the tap before"};
+
+FieldList<Summary> make_summary_list() {
+  FieldList<Summary> list;
+  const char* const no_cell = "no truth is known, or no cell of the object was left untapped";
+  list.add("name", "of the config", [](const Summary& s) { return s.config.options.name; });
+  list.add("id", "a hash of all that decides what a run computes", [](const Summary& s) { return s.config.id; });
+  list.add("seed", "of all that is drawn at random", [](const Summary& s) { return s.config.options.seed; });
+  list.add("status", "`done` or `failed`", [](const Summary& s) { return s.failure.empty() ? "done" : "failed"; });
+  list.add(
+      "stop_reason",
+      "`tap budget`, `robot_time`, `max_standard_deviation`, `expected_rmse`, `no candidate is left`, or the error "
+      "(`backend/baxter: ...` where the backend could go on no more)",
+      [](const Summary& s) { return s.failure.empty() ? s.result.stop_reason : s.failure; });
+  list.add("taps", "all of them; the next three add up to it", [](const Summary& s) { return s.result.taps; })
+      .less()
+      .headline();
+  list.add("on_surface_taps", "contacts with an object", [](const Summary& s) { return s.result.on_surface_taps; })
+      .more()
+      .headline();
+  list.add("off_surface_taps", "contacts with the desk", [](const Summary& s) { return s.result.off_surface_taps; })
+      .less();
+  list.add("failed_taps", "taps without a contact", [](const Summary& s) { return s.result.failed_taps; }).less();
+  list.add("first_hit_tap", "number of the first contact with an object",
+           [](const Summary& s) { return s.result.first_hit_tap; })
+      .less()
+      .absent("the object was not found");
+  list.add("found", "whether there was one", [](const Summary& s) { return s.result.on_surface_taps > 0; }).more();
+  list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.result.errors); });
+  list.add("nlpd",
+           "mean negative log predictive density of the true height (natural logarithm) over the cells on an object "
+           "that "
+           "were not tapped, noise included",
+           [](const Summary& s) { return s.result.calibration.nlpd; })
+      .less()
+      .absent(no_cell)
+      .headline();
+  list.add("coverage_95", "share of those cells whose true height lies in the central 95 % interval: best at 0.95",
+           [](const Summary& s) { return s.result.calibration.coverage_95; })
+      .absent(no_cell)
+      .called("95 % coverage")
+      .headline();
+  list.add("robot_seconds", "robot time", [](const Summary& s) { return s.result.robot_seconds; })
+      .in(Unit::second)
+      .less()
+      .headline();
+  list.add("wall_seconds", "of the process that ended the run", [](const Summary& s) { return s.wall_seconds; })
+      .in(Unit::second)
+      .less()
+      .measured();
+  list.add("compute_seconds", "CPU time of that process", [](const Summary& s) { return s.compute_seconds; })
+      .in(Unit::second)
+      .less()
+      .measured()
+      .headline();
+  for (std::size_t i = 0; i < kPhases; ++i) {
+    list.add(std::string("compute.") + kPhaseNames[i], std::string("wall time, all taps: ") + kPhaseMeanings[i],
+             [i](const Summary& s) { return s.phases ? std::optional((*s.phases)[i]) : std::nullopt; })
+        .in(Unit::second)
+        .less()
+        .measured();
+  }
+  list.add("jitter_max", "largest jitter of the final models, a variance",
+           [](const Summary& s) { return s.result.jitter_max; })
+      .less();
+  for (const Counted& one : {
+           Counted{"fallback", "taps that the fallback chose"},
+           Counted{"fit_failed",
+                   "fits that came to no finite values and kept the old ones; heights and labels fitted "
+                   "together count once"},
+           Counted{"height_refused", "taps of which the backend reported no finite number"},
+           Counted{"jitter", "how often it was raised"},
+           Counted{"pivoted", "how often no jitter helped and the covariance was factorised with pivoting"},
+           Counted{"set_aside", "taps that stay out of the final models because the others tell all about them"},
+           Counted{"variance_clamped",
+                   "candidates of the final models whose variance rounding took out of [0, prior]; "
+                   "they read as its ends"},
+       }) {
+    list.add(std::string("interventions.") + one.name, one.meaning,
+             [kind = std::string(one.name)](const Summary& s) {
+               const auto found = s.result.interventions.find(kind);
+               return found != s.result.interventions.end() ? found->second : 0;
+             })
+        .less();
+  }
+  list_models(list, result_of, true);
+  list_forecast(list, result_of);
+  list.add("peak_rss_bytes", "peak memory of the process", [](const Summary& s) { return s.peak_rss_bytes; })
+      .less()
+      .measured();
+  return list;
+}
+
+FieldList<TapTimes> make_timing_list() {
+  FieldList<TapTimes> list;
+  list.add("tap", "number, from 1", [](const TapTimes& t) { return t.tap; });
+  for (std::size_t i = 0; i < kPhases; ++i) {
+    list.add(kPhaseNames[i], std::string("wall time ") + kPhaseMeanings[i],
+             [i](const TapTimes& t) { return t.seconds[i]; })
+        .in(Unit::second);
+  }
+  return list;
+}
+
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+/// One line of timings.csv; none if it is damaged.
+std::optional<TapTimes> read_times(std::string_view line) {
+  TapTimes out;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  auto read = std::from_chars(at, end, out.tap);
+  for (double& seconds : out.seconds) {
+    if (read.ec != std::errc() || read.ptr == end || *read.ptr != ',') return {};
+    read = std::from_chars(read.ptr + 1, end, seconds);
+  }
+  return read.ec == std::errc() && read.ptr == end ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace
+
+const FieldList<TapRecord>& tap_list() {
+  static const FieldList<TapRecord> list = make_tap_list();
+  return list;
+}
+
+const FieldList<Summary>& summary_list() {
+  static const FieldList<Summary> list = make_summary_list();
+  return list;
+}
+
+const FieldList<TapTimes>& timing_list() {
+  static const FieldList<TapTimes> list = make_timing_list();
+  return list;
+}
+
+const std::vector<RecordField>& summary_fields() {
+  static const std::vector<RecordField> fields = summary_list().fields();
+  return fields;
+}
+
+const RecordField* find_summary_field(const std::string& name) {
+  const auto& fields = summary_fields();
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const RecordField& one) { return one.name == name; });
+  return found != fields.end() ? &*found : nullptr;
+}
+
+Unit unit_of_column(const std::string& name) {
+  if (const RecordField* field = find_summary_field(name)) return field->unit;
+  return ends_with(name, "_m") ? Unit::metre : ends_with(name, "_seconds") ? Unit::second : Unit::none;
+}
+
+bool depends_on_machine(const std::string& name) {
+  const RecordField* field = find_summary_field(name);
+  return field != nullptr && field->of_machine;
+}
+
+const std::vector<RecordField>& error_fields() {
+  static const std::vector<RecordField> fields = [] {
+    std::vector<RecordField> out;
+    for (const ErrorField& one : error_list()) out.push_back(one.field);
+    return out;
+  }();
+  return fields;
+}
+
+void add_errors(Row& row, const Errors& errors) {
+  for (const ErrorField& one : error_list()) row.add(one.field.name, errors.*one.value);
+}
+
+Errors errors_in(const Row& row) {
+  Errors out;
+  for (const ErrorField& one : error_list()) out.*one.value = row.number(one.field.name);
+  return out;
+}
+
+void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state) {
+  if (state) {
+    for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
+  }
+  const auto add = [&](const char* field, auto get) {
+    row.add(name + "." + field, state ? std::optional(get(*state)) : std::nullopt);
+  };
+  add("signal", [](const ProcessState& s) { return s.settings.signal; });
+  add("noise", [](const ProcessState& s) { return s.settings.noise; });
+  add("mean", [](const ProcessState& s) { return s.settings.mean; });
+  add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
+  add("jitter", [](const ProcessState& s) { return s.jitter; });
+  add("condition", [](const ProcessState& s) { return s.condition; });
+  add("engine", [](const ProcessState& s) { return s.engine; });
+  add("error_bound", [](const ProcessState& s) { return s.error_bound; });
+  if (state && state->fit) {
+    row.add(name + ".fit.changed", state->fit->changed);
+    row.add(name + ".fit.objective", state->fit->objective);
+    row.add(name + ".fit.evaluations", state->fit->evaluations);
+    row.add(name + ".fit.reason", state->fit->reason);
+  }
+}
+
+void add_footprint(Row& row, const std::optional<FootprintState>& state) {
+  if (!state) return;
+  for (const FootprintNumber& one : state->numbers) row.add("footprint." + one.name, one.value);
+  row.add("footprint.remark", if_any(state->remark));
+}
+
+Timings read_timings(const std::filesystem::path& directory) {
+  Timings out;
+  const auto file = directory / "timings.csv";
+  std::error_code none;
+  if (!std::filesystem::exists(file, none)) return out;
+  const std::string text = read_file(file);
+  for (std::size_t begin = text.find('\n') + 1, end; begin != 0 && (end = text.find('\n', begin)) != std::string::npos;
+       begin = end + 1) {
+    const std::string_view line(text.data() + begin, end - begin);
+    const std::optional<TapTimes> times = read_times(line);
+    if (!times) {
+      out.trouble = Error(file.string(), "has the line '" + std::string(line) + "'", "the file is damaged");
+      return out;
+    }
+    out.taps.push_back(*times);
+  }
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "config/quantity.hpp"
+#include "record/fields.hpp"
+#include "record/json.hpp"
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SummaryFields, AreThoseThatARunWrites) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(
+      test::palpate({"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"}, folder.path())
+          .status,
+      0);
+  const auto summary = parse_json_row(test::text_of(test::only_run(folder.path() / "runs") / "summary.json"));
+  ASSERT_TRUE(summary);
+  for (const RecordField& field : summary_fields()) {
+    const Scalar* value = summary->find(field.name);
+    ASSERT_NE(value, nullptr) << field.name;
+    EXPECT_EQ(std::holds_alternative<std::string>(*value), field.type == RecordField::Type::text) << field.name;
+    EXPECT_EQ(std::holds_alternative<bool>(*value), field.type == RecordField::Type::flag) << field.name;
+  }
+  for (const auto& [name, value] : summary->fields) {
+    if (name.find("_process.") != std::string::npos) continue;
+    EXPECT_NE(find_summary_field(name), nullptr) << name << " is not listed";
+  }
+}
+
+TEST(SummaryFields, HaveTheUnitThatTheirNamesEndIn) {
+  EXPECT_EQ(unit_of_column("rmse_m"), Unit::metre);
+  EXPECT_EQ(unit_of_column("compute.infer"), Unit::second);
+  EXPECT_EQ(unit_of_column("drift_m"), Unit::metre) << "not listed";
+  EXPECT_EQ(unit_of_column("idle_seconds"), Unit::second) << "not listed";
+  EXPECT_EQ(unit_of_column("footprint_iou"), Unit::none);
+}
+
+/// The fields as a table of runs/README.md.
+template <class Record>
+std::string table(const FieldList<Record>& list) {
+  std::string out = "| field | unit | meaning |\n|---|---|---|\n";
+  for (const RecordField& field : list.fields(true)) {
+    const char* const better = field.better == RecordField::Better::less   ? "; less is better"
+                               : field.better == RecordField::Better::more ? "; more is better"
+                                                                           : "";
+    out += fmt::format("| `{}` | {} | {}{}{} |\n", field.name, unit_symbol(field.unit), field.meaning, better,
+                       field.when_null.empty() ? "" : "; null where " + field.when_null);
+  }
+  return out;
+}
+
+TEST(Fields, AreWhatTheTablesOfTheFormatSay) {
+  const std::string format = test::text_of(test::source_folder() / "runs/README.md");
+  EXPECT_THAT(format, HasSubstr(table(tap_list())));
+  EXPECT_THAT(format, HasSubstr(table(timing_list())));
+  EXPECT_THAT(format, HasSubstr(table(summary_list())));
+}
+
+TEST(Fields, OfInterventionsAreAllThatARunCounts) {
+  RunResult result;
+  result.interventions = {{"jitter", 3}};
+  const Row row = summary_list().row({ResolvedConfig{}, result, "", {}, {}, {}, {}});
+  EXPECT_EQ(row.number("interventions.jitter"), 3.0);
+  EXPECT_EQ(row.number("interventions.fallback"), 0.0);
+}
+
+TEST(Fields, OfAnErrorAreFoundAgainInTheirRow) {
+  Row row;
+  add_errors(row, {1.0, 2.0, {}, 0.5});
+  EXPECT_EQ(row.fields.size(), error_fields().size());
+  EXPECT_EQ(row.number(main_error()), 1.0);
+  const Errors back = errors_in(row);
+  EXPECT_EQ(back.rmse, 1.0);
+  EXPECT_EQ(back.rmse_on_surface, 2.0);
+  EXPECT_FALSE(back.rmse_height);
+  EXPECT_EQ(back.footprint_iou, 0.5);
+}
+
+TEST(Timings, AreReadUpToTheirEndOrTheirDamage) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(read_timings(folder.path()).taps.empty()) << "no file";
+  folder.write("timings.csv", "tap,robot,fit,infer,acquire,log\n1,0.5,0,0.25,0,0\n2,1,0,0,0,0.125\n3,1,0,0");
+  const Timings cut = read_timings(folder.path());
+  ASSERT_EQ(cut.taps.size(), 2U) << "what has no line end was cut off by a kill";
+  EXPECT_FALSE(cut.trouble);
+  EXPECT_EQ(cut.taps[1].tap, 2);
+  EXPECT_EQ(cut.taps[1].seconds, (std::array<double, kPhases>{1.0, 0.0, 0.0, 0.0, 0.125}));
+  folder.write("timings.csv", "tap,robot,fit,infer,acquire,log\n1,0.5,0,0.25,0,0\n2,1,x,0,0,0\n3,1,0,0,0,0\n");
+  const Timings damaged = read_timings(folder.path());
+  EXPECT_EQ(damaged.taps.size(), 1U);
+  ASSERT_TRUE(damaged.trouble);
+  EXPECT_THAT(damaged.trouble->what(), HasSubstr("has the line '2,1,x,0,0,0', the file is damaged"));
+}
+
+}  // namespace
+}  // namespace palpate
