@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What is said of a sample: mean with its interval, quantiles.
+// What a sample says of the mean that it comes from.
 #pragma once
+
+#include "record/sample.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -31,10 +33,5 @@ double student_factor(std::size_t degrees);
 
 /// The place that a standard normal variable stays below with this probability, which is between 0 and 1.
 double normal_quantile(double share);
-
-/// Linear interpolation between order statistics; `share` 0 is the least value, 0.5 the median, 1 the largest. `sorted`
-/// holds at least one value; infinite ones are allowed, and what lies between a finite value and one of them is
-/// infinite.
-double quantile(const std::vector<double>& sorted, double share);
 
 }  // namespace palpate

@@ -110,7 +110,7 @@ void add_resume(CLI::App& app, Arguments& a, Action& action) {
 void add_rest(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("status", "Where a run or a sweep stands");
   sub->add_option("DIR", a.directory, "its directory")->required();
-  sub->callback([&] { action = [&](Program&) { return status(a.directory); }; });
+  sub->callback([&] { action = [&](Program& program) { return status(program, a.directory); }; });
 
   sub = app.add_subcommand("replay", "Send recorded taps through the same models and compare every number");
   sub->add_option("DIR", a.directory, "the run's directory")->required();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
-#include "sweep/plan.hpp"
 
 #include <palpate/error.hpp>
 
@@ -15,8 +14,7 @@ int validate(Program& program, const std::vector<std::string>& configs) {
     try {
       const Tree tree = program.composer.compose(file, {});
       if (tree.find("sweep") != nullptr) {
-        const SweepPlan plan = plan_sweep(program.composer, program.host, file, {}, "runs");
-        fmt::print("{}: valid, a sweep of {} jobs\n", file, plan.sweep.jobs.size());
+        fmt::print("{}: valid, a sweep of {} jobs\n", file, jobs_of_sweep(program, file));
       } else {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
         // Only building finds a broken mesh, or objects for which there is no room.

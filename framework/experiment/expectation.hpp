@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `expect:` of a config, read strictly: what the summary of a run, or the summaries of a sweep, must say for the
 // program to end with 0. What is expected does not change what a run computes, so it stays out of the id.
-// analysis/gate.hpp judges runs by it.
+// record/gate.hpp judges runs by it.
 #pragma once
 
 #include "config/resolve.hpp"

@@ -42,6 +42,11 @@ const char* state_name(RunStatus::State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+bool is_sweep(const fs::path& directory) {
+  std::error_code none;
+  return fs::exists(directory / "manifest.jsonl", none);
+}
+
 std::optional<Row> read_summary(const fs::path& directory) {
   std::error_code none;
   if (!fs::exists(directory / kSummary, none)) return std::nullopt;

@@ -14,6 +14,9 @@
 
 namespace palpate {
 
+/// Whether `directory` is that of a sweep, and so of many runs.
+bool is_sweep(const std::filesystem::path& directory);
+
 /// How far a run came, read from its directory alone.
 struct RunStatus {
   enum class State {

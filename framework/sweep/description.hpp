@@ -5,7 +5,7 @@
 
 #include "config/compose.hpp"
 #include "sweep/condition.hpp"
-#include "sweep/expand.hpp"
+#include "config/expand.hpp"
 
 #include <cstddef>
 #include <string>

@@ -3,7 +3,7 @@
 // values, or random ones, would.
 #pragma once
 
-#include "sweep/expand.hpp"
+#include "config/expand.hpp"
 
 #include <vector>
 

@@ -78,11 +78,6 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
 
 fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
 
-bool is_sweep(const fs::path& directory) {
-  std::error_code none;
-  return fs::exists(directory / "manifest.jsonl", none);
-}
-
 std::string sweep_name(const Sweep& sweep) {
   const auto key = std::find(sweep.keys.begin(), sweep.keys.end(), "name");
   const auto at = static_cast<std::size_t>(key - sweep.keys.begin());
@@ -160,6 +155,31 @@ std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::option
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries) {
+  std::vector<RunOutcome> runs;
+  for (const Job& job : sweep.jobs) {
+    RunOutcome run;
+    run.label = fmt::format("job {}", job.index);
+    run.name = run.label;
+    for (std::size_t i = 0; i < sweep.keys.size(); ++i)
+      run.name += fmt::format("{}{}={}", i == 0 ? ": " : ", ", sweep.keys[i], job.values[i]);
+    run.summary = summaries[static_cast<std::size_t>(job.index)];
+    const auto text_at = [&](const char* field) {
+      const Scalar* value = run.summary->find(field);
+      return value != nullptr && std::holds_alternative<std::string>(*value) ? std::get<std::string>(*value)
+                                                                             : std::string();
+    };
+    if (!run.summary) {
+      run.failure = "has not run to its end";
+    } else if (text_at("status") != "done") {
+      run.failure = text_at("stop_reason");
+      if (run.failure.empty()) run.failure = "failed";
+    }
+    runs.push_back(std::move(run));
+  }
+  return runs;
 }
 
 }  // namespace palpate

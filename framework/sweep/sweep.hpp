@@ -2,6 +2,7 @@
 // The directory of a sweep: its jobs as listed when it began, what became of each, and the table made from that.
 #pragma once
 
+#include "record/gate.hpp"
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
 
@@ -33,9 +34,6 @@ std::string sweep_id(const Tree& config, const Sweep& sweep);
 /// called.
 std::string manifest_text(const Sweep& sweep, const std::string& id);
 
-/// Whether `directory` holds a sweep.
-bool is_sweep(const std::filesystem::path& directory);
-
 /// Reads the manifest of a sweep. Throws Error when it is damaged, or when config or manifest are not those that it
 /// began with.
 Sweep read_sweep(const std::filesystem::path& directory);
@@ -56,5 +54,8 @@ std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::option
 /// Makes results.csv anew from the jobs, as they are once nobody else does the same. Returns their summaries. Throws
 /// Error.
 std::vector<std::optional<Row>> write_results(const Sweep& sweep);
+
+/// Every job of a sweep; one without a summary counts as failed.
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
 
 }  // namespace palpate

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Judges runs by what their config expects: one run by its summary, a sweep by the summaries of all its jobs.
+// Judges runs by what their config expects: one by its summary, many, as the jobs of a sweep, by all of theirs.
 #pragma once
 
 #include "experiment/expectation.hpp"
 #include "record/junit.hpp"
 #include "record/row.hpp"
-#include "sweep/sweep.hpp"
 
 #include <optional>
 #include <string>
@@ -37,9 +36,6 @@ std::string verdict_line(const Verdict& verdict);
 
 /// The run that ended with `summary`, or failed for the reason `failure`.
 RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure);
-
-/// Every job of a sweep; one without a summary counts as failed.
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
 
 /// A test case a run and one an expectation. `suite` is the name of the experiment.
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/gate.hpp"
+#include "record/gate.hpp"
 
-#include "analysis/statistics.hpp"
 #include "config/quantity.hpp"
 #include "experiment/summary_fields.hpp"
+#include "record/sample.hpp"
 
 #include <fmt/format.h>
 
@@ -103,10 +103,10 @@ Judgement judge_each(const Expectation& one, const std::vector<RunOutcome>& runs
 
 double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
   if (one.statistic == Statistic::quantile) return quantile(sorted, one.share);
-  // The mean of infinite values is infinite; the estimate is of finite ones.
+  // The mean of infinite values is infinite; mean_of() takes finite ones.
   if (!std::isfinite(sorted.front())) return sorted.front();
   if (!std::isfinite(sorted.back())) return sorted.back();
-  return estimate_mean(sorted).mean;
+  return mean_of(sorted);
 }
 
 /// A statistic over all runs, those without a value at the worst end. An equality has to hold at either.
@@ -168,31 +168,6 @@ std::string verdict_line(const Verdict& verdict) {
 
 RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure) {
   return {"run " + id, "", failure, summary};
-}
-
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries) {
-  std::vector<RunOutcome> runs;
-  for (const Job& job : sweep.jobs) {
-    RunOutcome run;
-    run.label = fmt::format("job {}", job.index);
-    run.name = run.label;
-    for (std::size_t i = 0; i < sweep.keys.size(); ++i)
-      run.name += fmt::format("{}{}={}", i == 0 ? ": " : ", ", sweep.keys[i], job.values[i]);
-    run.summary = summaries[static_cast<std::size_t>(job.index)];
-    const auto text_at = [&](const char* field) {
-      const Scalar* value = run.summary->find(field);
-      return value != nullptr && std::holds_alternative<std::string>(*value) ? std::get<std::string>(*value)
-                                                                             : std::string();
-    };
-    if (!run.summary) {
-      run.failure = "has not run to its end";
-    } else if (text_at("status") != "done") {
-      run.failure = text_at("stop_reason");
-      if (run.failure.empty()) run.failure = "failed";
-    }
-    runs.push_back(std::move(run));
-  }
-  return runs;
 }
 
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
