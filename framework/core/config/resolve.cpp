@@ -38,7 +38,7 @@ class Resolver final : public Fields {
 
   /// Refuses keys that no field has claimed. `elsewhere`: see resolve().
   Tree finish(const std::vector<std::string>& elsewhere = {}) {
-    if (input_ != nullptr) {
+    if (input_ != nullptr && !silent_) {
       for (const Tree::Entry& entry : input_->entries) {
         if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
         if (entry.value.highest_layer() < type_layer_) {
@@ -372,8 +372,10 @@ class Resolver final : public Fields {
   }
 
   /// Lists the plugin's options to `fields`; trouble with its library is told at `place`.
-  void list_plugin(const PluginChoice& choice, const std::string& place, Fields& fields) {
+  void list_plugin(const PluginChoice& choice, const std::string& place, Resolver& fields) {
     notes_.plugins.emplace(choice.kind, choice.type);
+    fields.silent_ = plugins_.is_silent(choice.kind, choice.type);
+    if (fields.silent_) return;
     try {
       plugins_.describe(choice.kind, choice.type, fields);
     } catch (const Error& trouble) {
@@ -406,7 +408,8 @@ class Resolver final : public Fields {
 
   const Tree* input_;
   std::string path_;
-  std::string plugin_;  ///< whose options these are; "" for none
+  std::string plugin_;   ///< whose options these are; "" for none
+  bool silent_ = false;  ///< a plugin among these is: any key may be its
   const PluginSource& plugins_;
   ResolveNotes& notes_;
   Tree output_;

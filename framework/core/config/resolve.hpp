@@ -20,6 +20,8 @@ class PluginSource {
   /// Lists the options of a plugin to `fields`. Throws Error, without place, when there is no such plugin or when it
   /// cannot be loaded.
   virtual void describe(const std::string& kind, const std::string& name, Fields& fields) const = 0;
+  /// Whether a plugin cannot tell its options, because it is not built yet: then any may stand in the config.
+  virtual bool is_silent(const std::string&, const std::string&) const { return false; }
 };
 
 /// What resolving found out beside the values.

@@ -160,6 +160,7 @@ std::string trouble_of_folder(const fs::path& folder) {
   std::error_code none;
   if (!fs::exists(folder, none)) return "does not exist";
   if (!fs::is_directory(folder, none)) return "is a file";
+  if (!plugins_of_build(folder).empty()) return "";
   const std::vector<std::string> all = PluginHost::kinds();
   const bool any = std::any_of(all.begin(), all.end(), [&](const std::string& kind) {
     const fs::directory_iterator entries(folder / kind, none);
@@ -170,6 +171,16 @@ std::string trouble_of_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::set<std::pair<std::string, std::string>> plugins_of_build(const fs::path& folder) {
+  std::set<std::pair<std::string, std::string>> out;
+  std::ifstream in(folder / "plugins.txt");
+  for (std::string line; std::getline(in, line);) {
+    const auto slash = line.find('/');
+    if (slash != std::string::npos) out.emplace(line.substr(0, slash), line.substr(slash + 1));
+  }
+  return out;
+}
 
 /// One loaded library. Closed when the last object made by it is gone.
 class PluginHost::Library {
@@ -230,6 +241,12 @@ bool PluginHost::one_at_a_time(const std::set<std::pair<std::string, std::string
                      [this](const auto& one) { return library(one.first, one.second)->manifest().one_at_a_time; });
 }
 
+bool PluginHost::has(const std::string& kind, const std::string& name) const {
+  std::error_code none;
+  return std::any_of(folders_.begin(), folders_.end(),
+                     [&](const fs::path& folder) { return fs::exists(folder / kind / (name + ".so"), none); });
+}
+
 std::vector<std::string> PluginHost::kinds() {
   return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Footprint::kKind, Backend::kKind, Shape::kKind};
 }
@@ -264,16 +281,24 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
     if (fs::exists(fs::symlink_status(file, none))) found.push_back(std::move(file));
   }
   if (found.empty()) {
+    std::set<std::string> names;
     for (const fs::path& folder : folders_) {
+      for (const auto& [of, one] : plugins_of_build(folder)) {
+        if (of == kind) names.insert(one);
+      }
+      if (names.count(name) != 0) {
+        throw Error("", fmt::format("plugin {}/{} is not built", kind, name),
+                    fmt::format("./palpate builds it, or 'cmake --build {} --target palpate_{}_{}'",
+                                (folder / ".." / "..").lexically_normal().string(), kind, name));
+      }
       const std::string trouble = trouble_of_folder(folder);
       if (!trouble.empty()) {
         throw Error("", fmt::format("no plugin {}/{}", kind, name),
                     fmt::format("the folder {} {}, see PALPATE_PLUGIN_PATH", folder.string(), trouble));
       }
     }
-    std::vector<std::string> names;
-    for (const auto& [other, file] : files(kind)) names.push_back(other);
-    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, names));
+    for (const auto& [other, file] : files(kind)) names.insert(other);
+    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, {names.begin(), names.end()}));
   }
   if (found.size() > 1) {
     throw Error("",

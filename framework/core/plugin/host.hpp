@@ -35,6 +35,10 @@ struct LoadedPlugin {
   std::string hash;  ///< of the file
 };
 
+/// Kind and name of the plugins of a build, whether they are built or not: what its plugin folder lists. Empty for any
+/// other folder, an installed one too.
+std::set<std::pair<std::string, std::string>> plugins_of_build(const std::filesystem::path& folder);
+
 /// Keeps every library that it loaded until it dies; so does every object that it made. Safe to use from several
 /// threads.
 class PluginHost final : public PluginSource, public PluginFactory {
@@ -62,6 +66,9 @@ class PluginHost final : public PluginSource, public PluginFactory {
 
   /// Whether one of the given plugins moves something that exists only once; loads them if need be. Throws Error.
   bool one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const;
+
+  /// Whether a folder has a library of that name, whatever is in it.
+  bool has(const std::string& kind, const std::string& name) const;
 
   /// The kinds that exist.
   static std::vector<std::string> kinds();

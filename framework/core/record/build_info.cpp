@@ -12,7 +12,6 @@
 
 #include <array>
 
-#include <link.h>
 #include <unistd.h>
 
 namespace palpate {
@@ -48,23 +47,6 @@ Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {
   return out;
 }
 
-/// Finds the note of the linker with its hash over the program; called with the program before any library.
-int find_build_id(dl_phdr_info* program, std::size_t, void* found) {
-  constexpr auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
-  for (int i = 0; i < program->dlpi_phnum; ++i) {
-    const ElfW(Phdr)& segment = program->dlpi_phdr[i];
-    if (segment.p_type != PT_NOTE) continue;
-    const auto* at = reinterpret_cast<const char*>(program->dlpi_addr + segment.p_vaddr);
-    for (const char* end = at + segment.p_memsz; at < end;) {
-      const auto& note = *reinterpret_cast<const ElfW(Nhdr)*>(at);
-      const char* content = at + sizeof note + padded(note.n_namesz);
-      if (note.n_type == NT_GNU_BUILD_ID) *static_cast<std::string*>(found) = {content, note.n_descsz};
-      at = content + padded(note.n_descsz);
-    }
-  }
-  return 1;
-}
-
 }  // namespace
 
 std::string host_name() {
@@ -73,19 +55,16 @@ std::string host_name() {
 }
 
 Installation find_installation() {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  const fs::path folder = program.parent_path();
+  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path program = folder / "palpate";
   // Installed: bin/palpate, lib/palpate/plugins, share/palpate/configs. Built: build/<preset>/palpate beside lib.
   if (fs::exists(folder / "lib" / "palpate"))
-    return {program, folder / "lib" / "palpate", folder / ".." / ".." / "configs"};
-  return {program, folder / ".." / "lib" / "palpate", folder / ".." / "share" / "palpate" / "configs"};
+    return {program, folder / "palpate-whole", folder / "lib" / "palpate", folder / ".." / ".." / "configs"};
+  return {program, program, folder / ".." / "lib" / "palpate", folder / ".." / "share" / "palpate" / "configs"};
 }
 
 std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
-  // The program's build id lies in memory: hashing the file, at every run, would cost more than some taps.
-  std::string all;
-  ::dl_iterate_phdr(find_build_id, &all);
-  if (all.empty()) throw Error("", "this program was linked without a build id");
+  std::string all = kCoreHash;
   for (const LoadedPlugin& one : host.loaded(plugins)) all += one.kind + "/" + one.name + "=" + one.hash;
   return hash_of(all);
 }

@@ -12,14 +12,15 @@
 
 namespace palpate {
 
-/// Folders that belong to the program, in a build tree or installed.
+/// What belongs together, in a build tree or installed.
 struct Installation {
-  std::filesystem::path program;
+  std::filesystem::path program;  ///< what users call
+  std::filesystem::path whole;    ///< the program that has every command; installed, it is the one that users call
   std::filesystem::path plugins;
   std::filesystem::path configs;
 };
 
-/// Where this very program lies.
+/// That of this very program.
 Installation find_installation();
 
 /// Of this machine, "" if it has none.
@@ -30,8 +31,12 @@ extern const char* const kVersion;
 /// The plugins of one run, by kind and name.
 using PluginNames = std::set<std::pair<std::string, std::string>>;
 
-/// One hash over the program (its build id) and the plugins of a run. Equal for equal code: neither a commit alone nor
-/// another plugin changes it.
+/// A hash over all of core as it was compiled, and over what is linked into it: cmake/CoreHash.cmake makes it, for
+/// every program that core is linked to.
+extern const char* const kCoreHash;
+
+/// One hash over core and the plugins of a run. Equal for equal code: neither a commit alone, nor another plugin, nor a
+/// command or a page that says something else changes it.
 std::string build_hash(const PluginHost& host, const PluginNames& plugins);
 
 /// Version, commit (of the last build; dirty or not), compiler, instruction path, library versions, plugins, host.

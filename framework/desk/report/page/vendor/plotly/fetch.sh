@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Makes plotly.min.js.gz and LICENSE anew from the npm package plotly.js-dist-min, which is MIT like this project, and
 # refuses any other bytes than these. For a new version: change the three values, run it, look at a report.
-#   sh framework/report/page/vendor/plotly/fetch.sh
+#   sh framework/desk/report/page/vendor/plotly/fetch.sh
 set -eu
 version=4.1.2
 package_sha512=552992f4a54dba7d7a4bca85618a7d2e52ff5c16f2e2e79e1aa07e2bd02a44256cba9f1d4a91942daa785324757f69b3e29577aa35a9d6c479721c0b80828fa1
