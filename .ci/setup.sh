@@ -136,9 +136,9 @@ build() {
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
-    # Minutes of one core that everything takes, and what ./palpate asks for.
+    # Minutes of one core that everything takes, and what the first ./palpate run asks for.
     whole=50
-    [ $# -eq 0 ] || whole=20
+    [ $# -eq 0 ] || whole=5
     say "building preset $preset, about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time"
   fi
   if ! NINJA_STATUS='[%f/%t] ' told "building preset $preset" "$log" ninja -C "$root/build/$preset" "$@"; then

@@ -4,6 +4,7 @@
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/sweep_display.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>

@@ -13,9 +13,6 @@
 
 namespace palpate::cli {
 
-/// A launcher that is not this machine.
-constexpr const char* kSlurm = "slurm";
-
 struct Campaign {
   const Sweep& sweep;
   LocalLauncher::Configs config_of;  ///< of a job
@@ -30,9 +27,6 @@ int workers_of(const Campaign& campaign);
 
 /// Throws Error if a job of the sweep was begun by another build: by its first tap, for none of them.
 void check_builds(const Program& program, const Campaign& campaign);
-
-/// Throws Error for options that do not go together.
-void check_launch(const LaunchArguments& launch);
 
 /// conduct(), with a line of progress.
 void conduct_shown(const Program& program, const Campaign& campaign, Launcher& launcher, const Missing& missing);

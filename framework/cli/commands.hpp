@@ -52,6 +52,9 @@ struct RunOutput {
 /// Runs `action`, shows its report and judges it by the config. Returns the exit status.
 int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action);
 
+/// A launcher that is not this machine.
+constexpr const char* kSlurm = "slurm";
+
 /// Who runs the jobs of a sweep, and how.
 struct LaunchArguments {
   std::string launcher = "local";
@@ -65,6 +68,8 @@ struct LaunchArguments {
   std::optional<int> jobs_per_task;
   bool wait = false;
 };
+/// Throws Error for options that do not go together.
+void check_launch(const LaunchArguments& launch);
 
 struct SweepArguments {
   std::string config;
@@ -85,11 +90,17 @@ struct ResumeArguments {
 };
 int resume(Program& program, const ResumeArguments& arguments);
 
-int status(const std::string& directory);
+int status(Program& program, const std::string& directory);
 int replay(Program& program, const std::string& directory);
 int validate(Program& program, const std::vector<std::string>& configs);
 int plugins(Program& program, const std::string& what, bool json);
 int schema(Program& program);
+
+// What of these is about many runs.
+int resume_sweep(Program& program, const ResumeArguments& arguments);
+int status_of_sweep(Program& program, const std::string& directory);
+/// How many `config` describes. Throws Error where it is not valid.
+std::size_t jobs_of_sweep(Program& program, const std::string& config);
 
 struct ParetoArguments {
   std::string directory;

@@ -4,7 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/earlier.hpp"
 #include "config/hash.hpp"
-#include "experiment/resolved.hpp"
+#include "record/resolved.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/earlier.hpp"
 
-#include "cli/display.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/sweep_display.hpp"
 #include "launch/children.hpp"
 #include "sweep/earlier_results.hpp"
 

@@ -3,7 +3,9 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/needs.hpp"
 #include "config/tree.hpp"
+#include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
 
@@ -12,6 +14,8 @@
 
 #include <csignal>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 namespace palpate::cli {
 namespace {
@@ -32,7 +36,15 @@ struct Arguments {
 };
 
 /// What to do once the command line is understood.
-using Action = std::function<int(Program&)>;
+struct Action {
+  std::function<int(Program&)> perform;
+  std::function<void(Program&, Needs&)> need;  ///< what that takes; see needs.hpp
+};
+
+void does(CLI::App* sub, Action& action, std::function<int(Program&)> perform,
+          std::function<void(Program&, Needs&)> need) {
+  sub->callback([&action, its = Action{std::move(perform), std::move(need)}] { action = its; });
+}
 
 constexpr const char* kStepHelp =
     "of a robot: show place, way and force limits of every tap before it is made; Enter taps, q ends, "
@@ -53,7 +65,9 @@ void add_run(CLI::App& app, Arguments& a, Action& action) {
   CLI::Option* print = sub->add_flag("--print-config", a.run.print_config, "print the resolved config and stop");
   sub->add_flag("--origins", a.run.origins, "with it, where each value came from")->needs(print);
   sub->add_option("--junit", a.run.junit, "write what held and what failed as JUnit XML to this file");
-  sub->callback([&] { action = [&](Program& program) { return run(program, a.run); }; });
+  does(
+      sub, action, [&](Program& program) { return run(program, a.run); },
+      [&](Program& program, Needs& needs) { need_run(program, a.run.config, a.run.overrides, needs); });
 }
 
 /// What `sweep` and `resume` say alike.
@@ -92,7 +106,8 @@ void add_sweep(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("--runs", a.sweep.runs, "where run directories are made")->capture_default_str();
   sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
   add_launch(sub, a.sweep.launch);
-  sub->callback([&] { action = [&](Program& program) { return sweep(program, a.sweep); }; });
+  does(
+      sub, action, [&](Program& program) { return sweep(program, a.sweep); }, need_everything);
 }
 
 void add_resume(CLI::App& app, Arguments& a, Action& action) {
@@ -104,26 +119,36 @@ void add_resume(CLI::App& app, Arguments& a, Action& action) {
                   "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
   add_launch(sub, a.resume.launch);
   sub->add_flag("--step", a.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
-  sub->callback([&] { action = [&](Program& program) { return resume(program, a.resume); }; });
+  does(
+      sub, action, [&](Program& program) { return resume(program, a.resume); },
+      [&](Program& program, Needs& needs) { need_record(program, a.resume.directory, needs); });
 }
 
 void add_rest(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("status", "Where a run or a sweep stands");
   sub->add_option("DIR", a.directory, "its directory")->required();
-  sub->callback([&] { action = [&](Program&) { return status(a.directory); }; });
+  does(
+      sub, action, [&](Program& program) { return status(program, a.directory); },
+      [&](Program&, Needs& needs) { needs.whole = is_sweep(a.directory); });
 
   sub = app.add_subcommand("replay", "Send recorded taps through the same models and compare every number");
   sub->add_option("DIR", a.directory, "the run's directory")->required();
-  sub->callback([&] { action = [&](Program& program) { return replay(program, a.directory); }; });
+  does(
+      sub, action, [&](Program& program) { return replay(program, a.directory); },
+      [&](Program& program, Needs& needs) { need_record(program, a.directory, needs); });
 
   sub = app.add_subcommand("validate", "Check configs, run nothing");
   sub->add_option("CONFIG", a.configs, "YAML files")->required();
-  sub->callback([&] { action = [&](Program& program) { return validate(program, a.configs); }; });
+  does(
+      sub, action, [&](Program& program) { return validate(program, a.configs); },
+      [&](Program& program, Needs& needs) { need_configs(program, a.configs, needs); });
 
   sub = app.add_subcommand("plugins", "List plugins, or the options of one");
   sub->add_option("PLUGIN", a.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
   sub->add_flag("--json", a.json, "as JSON");
-  sub->callback([&] { action = [&](Program& program) { return plugins(program, a.plugin, a.json); }; });
+  does(
+      sub, action, [&](Program& program) { return plugins(program, a.plugin, a.json); },
+      [&](Program& program, Needs& needs) { need_listing(program, a.plugin, needs); });
 
   sub = app.add_subcommand("pareto", "What accuracy costs: the settings of a sweep that none beats in both");
   sub->add_option("DIR", a.pareto.directory, "the sweep's directory")->required();
@@ -131,10 +156,14 @@ void add_rest(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("--error", a.pareto.error, "another, an error: footprint_iou")->required();
   sub->add_option("--within", a.pareto.within,
                   "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm");
-  sub->callback([&] { action = [&](Program& program) { return pareto(program, a.pareto); }; });
+  does(
+      sub, action, [&](Program& program) { return pareto(program, a.pareto); },
+      [](Program&, Needs& needs) { needs.whole = true; });
 
   sub = app.add_subcommand("schema", "Print the JSON Schema of config files, for editors");
-  sub->callback([&] { action = [&](Program& program) { return schema(program); }; });
+  does(
+      sub, action, [&](Program& program) { return schema(program); },
+      [](Program&, Needs& needs) { needs.every_plugin = true; });
 }
 
 void add_compare(CLI::App& app, Arguments& a, Action& action) {
@@ -162,7 +191,9 @@ void add_compare(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("-j", a.compare.workers, "with --at, jobs at a time; if not given, the number of cores")
       ->check(CLI::Range(1, 1024))
       ->needs(at);
-  sub->callback([&] { action = [&](Program& program) { return compare(program, a.compare); }; });
+  does(
+      sub, action, [&](Program& program) { return compare(program, a.compare); },
+      [&](Program&, Needs& needs) { needs.whole = true, needs.every_plugin = !a.compare.at.empty(); });
 }
 
 void add_report(CLI::App& app, Arguments& a, Action& action) {
@@ -170,14 +201,18 @@ void add_report(CLI::App& app, Arguments& a, Action& action) {
   sub->add_option("DIR", a.report.directory, "its directory")->required();
   sub->add_flag("--figures", a.report.figures, "PNG of the same panels, too, by gnuplot");
   sub->add_flag("--paper", a.report.paper, "laid out as the figures of the paper");
-  sub->callback([&] { action = [&](Program& program) { return report(program, a.report); }; });
+  does(
+      sub, action, [&](Program& program) { return report(program, a.report); },
+      [&](Program& program, Needs& needs) { need_whole(program, a.report.directory, needs); });
 }
 
 void add_one_run(CLI::App& app, Arguments& a, Action& action) {
   CLI::App* sub = app.add_subcommand("explain", "Why a run made a tap where it made it, in words");
   sub->add_option("RUN", a.directory, "the run's directory")->required();
   sub->add_option("TAP", a.tap, "the number of the tap, from 1")->required();
-  sub->callback([&] { action = [&](Program& program) { return explain(program, a.directory, a.tap); }; });
+  does(
+      sub, action, [&](Program& program) { return explain(program, a.directory, a.tap); },
+      [&](Program& program, Needs& needs) { need_whole(program, a.directory, needs); });
 
   sub = app.add_subcommand("export", "Write the surface and the taps of a run for other programs");
   sub->add_option("RUN", a.exported.directory, "the run's directory")->required();
@@ -185,7 +220,9 @@ void add_one_run(CLI::App& app, Arguments& a, Action& action) {
       ->required()
       ->check(CLI::IsMember({"ply", "csv"}));
   sub->add_option("--to", a.exported.to, "the folder to write into; if not given, export/ of the run");
-  sub->callback([&] { action = [&](Program& program) { return export_run(program, a.exported); }; });
+  does(
+      sub, action, [&](Program& program) { return export_run(program, a.exported); },
+      [&](Program& program, Needs& needs) { need_whole(program, a.exported.directory, needs); });
 }
 
 /// CLI11's own words, on one line, but of a command that there is not.
@@ -198,12 +235,16 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
   throw Error("", trouble.what(), "see palpate --help");
 }
 
-int perform(const Action& action, int argc, char** argv) {
+int perform(const Action& action, bool asked, int argc, char** argv) {
   const Installation installation = find_installation();
   const PluginHost host(PluginHost::search_path(installation.plugins));
   Composer composer(installation.configs);
   Program program{installation, host, composer, {host, installation, {argv, argv + argc}, &interrupted}};
-  return action(program);
+  if (!asked) return action.perform(program);
+  Needs needs;
+  action.need(program, needs);
+  print_needs(program, needs);
+  return kDone;
 }
 
 int run_main(int argc, char** argv) {
@@ -213,6 +254,9 @@ int run_main(int argc, char** argv) {
       "palpate"};
   app.require_subcommand(1);
   app.set_version_flag("--version", kVersion);
+  // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
+  const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
+  if (asked) argv[1] = argv[0], ++argv, --argc;
   Arguments arguments;
   Action action;
   add_run(app, arguments, action);
@@ -225,12 +269,12 @@ int run_main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {
-    return app.exit(wish);
+    return asked ? kDone : app.exit(wish);
   } catch (const CLI::Error& trouble) {
     return usage_error(app, trouble, argc > 1 ? argv[1] : "");
   }
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
-  return perform(action, argc, argv);
+  return perform(action, asked, argc, argv);
 }
 
 int exit_status(Error::Kind kind) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/one_run.hpp"
 
-#include "sweep/sweep.hpp"
+#include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
 

@@ -4,9 +4,9 @@
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/step.hpp"
+#include "config/expand.hpp"
 #include "config/yaml.hpp"
 #include "record/run_directory.hpp"
-#include "sweep/expand.hpp"
 
 #include <palpate/error.hpp>
 

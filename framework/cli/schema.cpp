@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "config/describe.hpp"
-#include "experiment/expectation.hpp"
+#include "record/expectation.hpp"
 #include "experiment/experiment_options.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"

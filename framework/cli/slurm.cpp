@@ -27,26 +27,6 @@ void print_array(const SlurmArray& array) {
 
 }  // namespace
 
-void check_launch(const LaunchArguments& launch) {
-  const bool on_slurm = launch.launcher == kSlurm;
-  const std::pair<const char*, bool> given[]{{"--partition", !launch.partition.empty()},
-                                             {"--time", !launch.time.empty()},
-                                             {"--account", !launch.account.empty()},
-                                             {"--sbatch", !launch.sbatch.empty()},
-                                             {"--jobs-per-task", launch.jobs_per_task.has_value()},
-                                             {"--wait", launch.wait}};
-  for (const auto& [name, is_given] : given) {
-    if (!is_given || on_slurm) continue;
-    throw Error("command line", fmt::format("{} is for a cluster, and the launcher is '{}'", name, launch.launcher),
-                "add --launcher slurm, or leave it out");
-  }
-  if (on_slurm && !launch.junit.empty() && !launch.wait) {
-    throw Error("command line", "--junit: there is no result before the jobs have ended",
-                "add --wait, or give it to 'palpate resume' afterwards");
-  }
-  check_sbatch_words(launch.sbatch);
-}
-
 bool run_on_slurm(const Program& program, const Campaign& campaign, const Missing& missing) {
   const LaunchArguments& launch = campaign.launch;
   SlurmOptions options;

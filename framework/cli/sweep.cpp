@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "launch/slurm_launcher.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
@@ -31,8 +32,13 @@ std::string size_words(const Sweep& sweep) {
 
 }  // namespace
 
+std::size_t jobs_of_sweep(Program& program, const std::string& config) {
+  return plan_sweep(program.composer, program.host, config, {}, "runs").sweep.jobs.size();
+}
+
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
+  check_sbatch_words(arguments.launch.sbatch);
   check_junit(arguments.launch.junit);
   bool one_at_a_time = false;
   std::optional<SweepDraft> draft;

@@ -1,33 +1,37 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
-#include "sweep/plan.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <utility>
+
 namespace palpate::cli {
 
 int validate(Program& program, const std::vector<std::string>& configs) {
   int bad = 0;
+  // Said at the end: over a sweep, this process may become another program, which begins anew.
+  std::vector<std::pair<std::FILE*, std::string>> said;
   for (const std::string& file : configs) {
     // All files are looked at, so that one run of the command shows every file that needs a hand.
     try {
       const Tree tree = program.composer.compose(file, {});
       if (tree.find("sweep") != nullptr) {
-        const SweepPlan plan = plan_sweep(program.composer, program.host, file, {}, "runs");
-        fmt::print("{}: valid, a sweep of {} jobs\n", file, plan.sweep.jobs.size());
+        said.emplace_back(stdout, fmt::format("{}: valid, a sweep of {} jobs\n", file, jobs_of_sweep(program, file)));
       } else {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
         // Only building finds a broken mesh, or objects for which there is no room.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
-        fmt::print("{}: valid, id {}\n", file, config.id);
+        said.emplace_back(stdout, fmt::format("{}: valid, id {}\n", file, config.id));
       }
     } catch (const Error& trouble) {
-      fmt::print(stderr, "{}\n", trouble.what());
+      said.emplace_back(stderr, std::string(trouble.what()) + "\n");
       ++bad;
     }
   }
+  for (const auto& [where, line] : said) fmt::print(where, "{}", line);
   return bad == 0 ? kDone : kUsage;
 }
 

@@ -2,7 +2,7 @@
 #include "baxter/campaign.hpp"
 
 #include "config/compose.hpp"
-#include "experiment/resolved.hpp"
+#include "record/resolved.hpp"
 #include "scene/scene_options.hpp"
 #include "support/filled.hpp"
 

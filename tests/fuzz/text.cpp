@@ -5,7 +5,7 @@
 
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
-#include "experiment/resolved.hpp"
+#include "record/resolved.hpp"
 #include "process/protocol.hpp"
 #include "sweep/condition.hpp"
 #include "sweep/description.hpp"

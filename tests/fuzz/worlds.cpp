@@ -4,7 +4,7 @@
 #include "fuzz/harness.hpp"
 
 #include "experiment/experiment.hpp"
-#include "experiment/resolved.hpp"
+#include "record/resolved.hpp"
 
 #include <palpate/error.hpp>
 

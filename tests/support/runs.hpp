@@ -4,7 +4,7 @@
 
 #include "config/compose.hpp"
 #include "experiment/experiment.hpp"
-#include "experiment/resolved.hpp"
+#include "record/resolved.hpp"
 #include "support/support.hpp"
 
 #include <functional>

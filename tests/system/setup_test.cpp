@@ -45,7 +45,8 @@ class SetUp : public ::testing::Test {
     }
     program("dpkg-query", "for p in $(cat '" + here().string() + "/installed'); do echo \"ii $p\"; done");
     program("cmake", R"(mkdir -p "$4/build/$2"; : >"$4/build/$2/build.ninja"; echo configured >>"$4/told")");
-    program("ninja", R"(printf '#!/bin/sh\necho "handed over to $*"\n' >"$2/palpate"; chmod +x "$2/palpate")");
+    program("ninja", R"(printf '#!/bin/sh\n[ "$1" = --needs ] || echo "handed over to $*"\n' >"$2/palpate"
+                        chmod +x "$2/palpate")");
     installed("one");
   }
 
@@ -106,6 +107,20 @@ TEST_F(SetUp, ConfiguresAgainWhenThatFailedTheLastTime) {
   program("cmake", sound);
   call();
   EXPECT_EQ(configured(), 2);
+}
+
+TEST_F(SetUp, BuildsWhatTheCommandTakesAndThenWhatThatNames) {
+  program("ninja", "echo \"$3 $4 $5\" >>'" + here().string() + "/built'");
+  const std::string asked = "[ \"$*\" = '--needs run a.yaml' ] || exit 0; grep -q sum '" + here().string() +
+                            "/built' && echo palpate_kernel_rbf; echo palpate_kernel_sum";
+  write("build/release/palpate", "#!/bin/sh\n" + asked + "\n");
+  fs::permissions(here() / "build/release/palpate", fs::perms::owner_all);
+  const Ended ended =
+      test::run_program({"/bin/sh", (here() / "palpate").string(), "run", "a.yaml"}, here(), environment());
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(text_of(here() / "built"),
+            "palpate palpate_build_stamp \npalpate_kernel_sum  \npalpate_kernel_rbf "
+            "palpate_kernel_sum \n");
 }
 
 TEST_F(SetUp, SaysWhatIsMissing) {

@@ -3,7 +3,7 @@
 #include "config/compose.hpp"
 #include "config/describe.hpp"
 #include "experiment/experiment.hpp"
-#include "experiment/resolved.hpp"
+#include "record/resolved.hpp"
 #include "support/plugins.hpp"
 #include "support/runs.hpp"
 #include "support/support.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/expand.hpp"
+#include "config/expand.hpp"
 
 #include "config/yaml.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `expect:` read strictly: what it takes, and the words of every refusal.
-#include "experiment/expectation.hpp"
+#include "record/expectation.hpp"
 
 #include "config/yaml.hpp"
 #include "record/fields.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What becomes of expectations: one run, many runs, runs that failed, runs without a value.
-#include "analysis/gate.hpp"
+#include "record/gate.hpp"
 
 #include "config/yaml.hpp"
 

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "cli/sweep_display.hpp"
+
+#include "analysis/sweep_table.hpp"
+#include "cli/display.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include <unistd.h>
+
+namespace palpate::cli {
+namespace {
+
+std::string rate_words(double per_second) {
+  if (per_second >= 1.0) return fmt::format("{:.3g} a second", per_second);
+  return per_second >= 1.0 / 60.0 ? fmt::format("{:.3g} a minute", 60.0 * per_second)
+                                  : fmt::format("{:.3g} an hour", 3600.0 * per_second);
+}
+
+/// "12 s", "8 min", "3 h 05 min".
+std::string duration_words(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.2g} s", seconds);
+  const auto minutes = static_cast<std::int64_t>(std::lround(seconds / 60.0));
+  return minutes < 60 ? fmt::format("{} min", minutes) : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+}  // namespace
+
+SweepLine::SweepLine(bool quiet)
+    : quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) != 0),
+      begun_(std::chrono::steady_clock::now()),
+      shown_(begun_) {}
+
+void SweepLine::show(const SweepProgress& progress) {
+  if (quiet_ || progress.jobs == 0) return;
+  const auto now = std::chrono::steady_clock::now();
+  const int ended = progress.done + progress.failed;
+  const int tenth = 10 * ended / progress.jobs;
+  if (terminal_) {
+    if (!progress.last && now - shown_ < std::chrono::milliseconds(100)) return;
+  } else if (tenth == tenth_) {
+    return;
+  }
+  tenth_ = tenth;
+  shown_ = now;
+  std::string line = fmt::format("{} of {} jobs done, {} running, {} failed", progress.done, progress.jobs,
+                                 progress.running, progress.failed);
+  const double seconds = std::chrono::duration<double>(now - begun_).count();
+  const int here = ended - progress.before;
+  if (here > 0 && seconds > 0.0) {
+    const double rate = here / seconds;
+    line += fmt::format(", {}", rate_words(rate));
+    if (ended < progress.jobs) line += fmt::format(", {} left", duration_words((progress.jobs - ended) / rate));
+  }
+  mention((terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
+}
+
+void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures) {
+  constexpr std::size_t kMostLines = 20;
+  for (std::size_t i = 0; i < failures.size() && i < kMostLines; ++i) {
+    const SweepFailure& one = failures[i];
+    const Job& job = sweep.jobs[one.job];
+    std::string values;
+    for (std::size_t key = 0; key < sweep.keys.size(); ++key) {
+      if (!job.values[key].empty()) values += fmt::format(" {}={}", sweep.keys[key], job.values[key]);
+    }
+    fmt::print("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values, one.attempts, one.reason);
+  }
+  if (failures.size() > kMostLines) {
+    fmt::print("and {} more failed, results.csv has all reasons\n", failures.size() - kMostLines);
+  }
+}
+
+void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
+                 const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+  fmt::print("{}", sweep_table(sweep, results, initial_taps));
+  print_failures(sweep, report.failures);
+  if (!report.failures.empty())
+    fmt::print("try them again: palpate resume --retry-failed {}\n", sweep.directory.string());
+  const bool open = report.interrupted || report.unfinished > 0;
+  fmt::print("{} {}\n", open ? "carry on: palpate resume" : "record:", sweep.directory.string());
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "config/expand.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMaxValues = 1'000'000;
+constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
+
+/// Splits at commas that stand in no bracket and no quotes.
+std::vector<std::string> split_top(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  char quote = 0;
+  for (const char c : text) {
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '(' || c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ')' || c == ']' || c == '}') {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      parts.emplace_back();
+      continue;
+    }
+    parts.back() += c;
+  }
+  return parts;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+Bound parse_bound(const std::string& text, const Tree& tree, const std::string& key, const std::string& how_to) {
+  Bound out{0.0, {}};
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), out.value);
+  if (result.ec != std::errc() || !std::isfinite(out.value)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text), how_to);
+  }
+  out.unit = trimmed(std::string(result.ptr, text.data() + text.size()));
+  return out;
+}
+
+constexpr double kRounding = 1e-9;
+
+/// 3 * 0.1 is 0.30000000000000004, but whoever steps by 0.1 means 0.3: 15 digits are as many as any decimal keeps.
+double as_decimal(double value) {
+  const std::string text = fmt::format("{:.15g}", value);
+  double out = value;
+  if (std::abs(value) < 1e15) std::from_chars(text.data(), text.data() + text.size(), out);
+  return out;
+}
+
+std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key) {
+  const double step = from.size() == 3 ? from[2].value : 1.0;
+  // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
+  const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
+  if (!(count >= 1.0)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has no value", key, tree.text),
+                "the end must lie beyond the start");
+  }
+  if (count > static_cast<double>(kMaxValues)) {
+    throw Error(tree.place.text(), fmt::format("{}: '{}' has more than a million values", key, tree.text),
+                "take a wider step");
+  }
+  std::vector<Tree> out;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    out.push_back(number(as_decimal(from[0].value + i * step), from[0].unit, tree));
+  }
+  return out;
+}
+
+std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, const std::string& key) {
+  const double first = from[0].value;
+  const double last = from[1].value;
+  const double count = from[2].value;
+  if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0) {
+    throw Error(tree.place.text(),
+                fmt::format("{}: '{}' needs two positive ends and a count of 2 to 10000", key, tree.text), kHowTo);
+  }
+  std::vector<Tree> out;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const double share = i / (count - 1.0);
+    // The ends are as written; between them, rounding does not matter.
+    const double value = i == 0 ? first : share == 1.0 ? last : first * std::pow(last / first, share);
+    out.push_back(number(value, from[0].unit, tree));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
+                               const std::string& how_to) {
+  const auto open = value.text.find('(');
+  if (!value.is_scalar() || open == std::string::npos) return std::nullopt;
+  Call call{value.text.substr(0, open), {}};
+  if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
+  if (value.text.back() != ')') {
+    throw Error(value.place.text(), fmt::format("{}: '{}' lacks its ')'", key, value.text),
+                fmt::format("within braces, where commas part entries, put it into quotes: \"{}(...)\"", call.name));
+  }
+  for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
+    call.bounds.push_back(parse_bound(trimmed(part), value, key, how_to));
+  }
+  return call;
+}
+
+Tree number(double value, const std::string& unit, const Tree& like) {
+  Tree out = like;
+  out.quoted = false;
+  out.text = fmt::format("{}", value) + (unit.empty() ? "" : " " + unit);
+  return out;
+}
+
+std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
+  if (value.kind == Tree::Kind::list) {
+    if (value.items.empty())
+      throw Error(value.place.text(), fmt::format("{}: the list of values is empty", key), "write [value, value]");
+    return value.items;
+  }
+  if (value.kind == Tree::Kind::null)
+    throw Error(value.place.text(), fmt::format("{}: has no value", key), "write [value, value]");
+  const std::optional<Call> call = parse_call(value, key, {"range", "log"}, kHowTo);
+  if (!call) return {value};
+  const std::vector<Bound>& parts = call->bounds;
+  const bool is_range = call->name == "range";
+  const bool right_count = is_range ? parts.size() == 2 || parts.size() == 3 : parts.size() == 3;
+  const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
+                         (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
+  if (!same_unit) {
+    throw Error(value.place.text(), fmt::format("{}: '{}' is not understood", key, value.text), kHowTo);
+  }
+  return is_range ? expand_range(parts, value, key) : expand_log(parts, value, key);
+}
+
+Axis parse_axis(const std::string& text) {
+  Override whole = parse_override(text);
+  const std::string value = text.substr(text.find('=') + 1);
+  const std::vector<std::string> parts = split_top(value);
+  if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path), whole.value};
+  Axis axis{whole.path, {}, Tree::list()};
+  for (const std::string& part : parts) {
+    const Override one = parse_override(whole.path + "=" + trimmed(part));
+    // Beside other values a list is one value: at=[1cm,1cm],[2cm,2cm].
+    if (one.value.kind == Tree::Kind::list) {
+      axis.values.push_back(one.value);
+      continue;
+    }
+    for (Tree& tree : expand_values(one.value, whole.path)) axis.values.push_back(std::move(tree));
+  }
+  axis.written.items = axis.values;
+  axis.written.place = axis.values.front().place;
+  return axis;
+}
+
+std::string value_text(const Tree& value) {
+  if (value.is_scalar()) return value.text;
+  if (value.kind == Tree::Kind::null) return "~";
+  std::string out;
+  for (const Tree& item : value.items) out += (out.empty() ? "" : ", ") + value_text(item);
+  for (const Tree::Entry& entry : value.entries) {
+    out += (out.empty() ? "" : ", ") + entry.key + ": " + value_text(entry.value);
+  }
+  return value.is_map() ? "{" + out + "}" : "[" + out + "]";
+}
+
+}  // namespace palpate

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// From a composed tree to checked options and to the resolved config: every field with its final value, nothing else.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <palpate/options.hpp>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+/// Where plugins' option lists come from. Implemented by the plugin host; a library is opened when it is asked for.
+class PluginSource {
+ public:
+  virtual ~PluginSource() = default;
+  /// Lists the options of a plugin to `fields`. Throws Error, without place, when there is no such plugin or when it
+  /// cannot be loaded.
+  virtual void describe(const std::string& kind, const std::string& name, Fields& fields) const = 0;
+  /// Whether a plugin cannot tell its options, because it is not built yet: then any may stand in the config.
+  virtual bool is_silent(const std::string&, const std::string&) const { return false; }
+};
+
+/// What resolving found out beside the values.
+struct ResolveNotes {
+  struct Origin {
+    std::string path;   ///< dotted, for example "kernel.length_scale"
+    std::string place;  ///< "file:line:column", "command line", or "default"
+  };
+  std::vector<Origin> origins;                            ///< of every value, in the order of the resolved config
+  std::vector<Origin> dropped;                            ///< options left behind by a type that was chosen after them
+  std::set<std::pair<std::string, std::string>> plugins;  ///< kind and name of every plugin that the config names
+};
+
+/// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first
+/// unknown key, wrong type, missing unit or value out of range.
+Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes);
+/// The same; `elsewhere` are keys beside those of `options` that others read: the hint of an unknown one names them.
+Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
+             const std::vector<std::string>& elsewhere);
+
+/// Lists the fields that `describe` knows into the values of a tree that was resolved before: how plugins are made.
+void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
+          const std::function<void(Fields&)>& describe);
+
+}  // namespace palpate

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/host.hpp"
+
+#include "config/describe.hpp"
+#include "config/hash.hpp"
+#include "config/tree.hpp"
+#include "plugin/apart.hpp"
+#include "plugin/named.hpp"
+
+#include <palpate/acquisition.hpp>
+#include <palpate/backend.hpp>
+#include <palpate/fitting.hpp>
+#include <palpate/footprint.hpp>
+#include <palpate/kernel.hpp>
+#include <palpate/shape.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include <boost/dll/shared_library.hpp>
+
+#include <link.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What is said of a library by who looked at it begins with one of these.
+constexpr char kSound = 'S';
+constexpr char kBroken = 'B';
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& step, const std::string& reason,
+                         const std::string& hint = {}) {
+  throw Error("", fmt::format("{}: {}: {}", file.string(), step, reason), hint);
+}
+
+/// Boost words its failures as "<function> failed (dlerror system message: <text>): <unrelated errno text>".
+std::string dlerror_part(const std::string& what) {
+  const std::string mark = "dlerror system message: ";
+  const auto begin = what.find(mark);
+  if (begin == std::string::npos) return what;
+  const auto end = what.rfind("):");
+  const auto from = begin + mark.size();
+  return what.substr(from, end == std::string::npos || end < from ? std::string::npos : end - from);
+}
+
+/// "what is 32 here and 16 in the program" for the first part of the stamps that differs.
+std::string stamp_difference(std::string_view theirs, std::string_view ours) {
+  const auto part = [](std::string_view& stamp) {
+    const auto end = std::min(stamp.find(';'), stamp.size());
+    const std::string_view head = stamp.substr(0, end);
+    stamp.remove_prefix(std::min(end + 1, stamp.size()));
+    return head;
+  };
+  while (!ours.empty() || !theirs.empty()) {
+    const std::string_view mine = part(ours);
+    const std::string_view other = part(theirs);
+    if (mine != other) return fmt::format("built with {}, the program with {}", other, mine);
+  }
+  return {};
+}
+
+/// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
+/// promise is compared with the length first. What else may be wrong with a header, dlopen finds and tells.
+void check_complete(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) refuse(file, "opening", std::strerror(errno));
+  const auto size = static_cast<std::uint64_t>(in.tellg());
+  const auto holds = [size](std::uint64_t offset, std::uint64_t bytes) {
+    return offset <= size && bytes <= size - offset;
+  };
+  const auto read = [&](std::uint64_t offset, void* to, std::size_t bytes) {
+    in.seekg(static_cast<std::streamoff>(offset));
+    return holds(offset, bytes) &&
+           static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
+  };
+  const auto incomplete = [&] {
+    refuse(file, "reading the header", "not a complete shared library", "build or copy it again");
+  };
+
+  std::array<char, EI_NIDENT> identity{};
+  const auto known = std::min<std::uint64_t>(size, identity.size());
+  read(0, identity.data(), known);
+  if (std::memcmp(identity.data(), ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
+    refuse(file, "reading the header", "not a shared library", "build it with palpate_add_plugin()");
+  }
+  if (known < identity.size()) incomplete();
+  constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
+  if (identity[EI_CLASS] != kNativeClass) return;
+
+  ElfW(Ehdr) header{};
+  // Linkers write the section headers last: a file that holds them was not cut short.
+  if (!read(0, &header, sizeof header)) incomplete();
+  if (!holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize)) incomplete();
+  std::vector<ElfW(Phdr)> segments(header.e_phnum);
+  if (!read(header.e_phoff, segments.data(), segments.size() * sizeof(ElfW(Phdr)))) incomplete();
+  for (const ElfW(Phdr) & segment : segments) {
+    if (!holds(segment.p_offset, segment.p_filesz)) incomplete();
+  }
+}
+
+const PluginManifest& check_manifest(const boost::dll::shared_library& library, const fs::path& file,
+                                     const std::string& kind, const std::string& name) {
+  if (!library.has("palpate_plugin")) {
+    refuse(file, "finding the symbol", "no symbol 'palpate_plugin'", "end the source with PALPATE_PLUGIN(...)");
+  }
+  const auto& manifest = library.get<const PluginManifest>("palpate_plugin");
+  if (std::memcmp(manifest.magic, "palpate", sizeof manifest.magic) != 0) {
+    refuse(file, "reading the manifest", "the symbol 'palpate_plugin' is not a plugin manifest");
+  }
+  if (manifest.abi != kPluginAbi || manifest.size != sizeof(PluginManifest)) {
+    refuse(file, "comparing the ABI", fmt::format("built for ABI {}, the program has {}", manifest.abi, kPluginAbi),
+           "build it again with the headers of this program");
+  }
+  if (std::string_view(manifest.stamp) != PALPATE_BUILD_STAMP) {
+    refuse(file, "comparing the build", stamp_difference(manifest.stamp, PALPATE_BUILD_STAMP),
+           "build it with the same compiler flags (-march, -mavx and their like) as the program");
+  }
+  if (kind != manifest.kind || name != manifest.name) {
+    refuse(file, "comparing the name", fmt::format("the library says it is {}/{}", manifest.kind, manifest.name),
+           "folder and file must be named like the plugin");
+  }
+  return manifest;
+}
+
+/// Calls into a plugin. An exception thrown there has its code in the plugin: only copies of its text may leave.
+/// `options` may be null; a refusal that names one of them is told at the place where that was written.
+template <class Call>
+void guarded(const Tree* options, const std::string& plugin, const char* failure, Call call) {
+  const std::string place = options != nullptr ? options->place.text() : std::string();
+  try {
+    call();
+  } catch (const Error& refusal) {
+    const bool names_option = options != nullptr && !refusal.where().empty();
+    if (const Tree* option = names_option ? options->find_path(refusal.where()) : nullptr) {
+      throw Error(option->place.file ? option->place.text() : place,
+                  fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
+    }
+    // What the plugin says of the place, a file of its own perhaps, is nearer to the cause than the config is.
+    if (!refusal.where().empty()) throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
+    throw Error(place, fmt::format("{}: {}", plugin, refusal.reason()), refusal.hint(), refusal.kind());
+  } catch (const std::exception& trouble) {
+    throw Error(place, fmt::format("{} {}: {}", plugin, failure, trouble.what()));
+  } catch (...) {
+    throw Error(place, fmt::format("{} {}: it threw something that is no exception", plugin, failure));
+  }
+}
+
+/// What keeps all plugins of a folder from being found; "" if it has some.
+std::string trouble_of_folder(const fs::path& folder) {
+  std::error_code none;
+  if (!fs::exists(folder, none)) return "does not exist";
+  if (!fs::is_directory(folder, none)) return "is a file";
+  if (!plugins_of_build(folder).empty()) return "";
+  const std::vector<std::string> all = PluginHost::kinds();
+  const bool any = std::any_of(all.begin(), all.end(), [&](const std::string& kind) {
+    const fs::directory_iterator entries(folder / kind, none);
+    return std::any_of(begin(entries), end(entries),
+                       [](const auto& entry) { return entry.path().extension() == ".so"; });
+  });
+  return any ? "" : "holds no plugin, which is KIND/NAME.so in it";
+}
+
+}  // namespace
+
+std::set<std::pair<std::string, std::string>> plugins_of_build(const fs::path& folder) {
+  std::set<std::pair<std::string, std::string>> out;
+  std::ifstream in(folder / "plugins.txt");
+  for (std::string line; std::getline(in, line);) {
+    const auto slash = line.find('/');
+    if (slash != std::string::npos) out.emplace(line.substr(0, slash), line.substr(slash + 1));
+  }
+  return out;
+}
+
+/// One loaded library. Closed when the last object made by it is gone.
+class PluginHost::Library {
+ public:
+  Library(const fs::path& file, const std::string& kind, const std::string& name) : file_(file) {
+    std::error_code trouble;
+    if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a file that is not there");
+    if (!fs::is_regular_file(file, trouble)) refuse(file, "opening", "not a regular file");
+    check_complete(file);
+    try {
+      library_.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+    } catch (const std::exception& failure) {
+      refuse(file, "loading", dlerror_part(failure.what()), "a plugin links all that it uses");
+    }
+    manifest_ = &check_manifest(library_, file, kind, name);
+    hash_ = hash_of_file(file);
+  }
+
+  const PluginManifest& manifest() const { return *manifest_; }
+  const fs::path& file() const { return file_; }
+  const std::string& hash() const { return hash_; }
+
+ private:
+  fs::path file_;
+  std::string hash_;
+  boost::dll::shared_library library_;
+  const PluginManifest* manifest_ = nullptr;
+};
+
+PluginHost::PluginHost(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    // One folder named twice does not make its plugins ambiguous.
+    const bool known = std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& other) {
+      std::error_code none;
+      return fs::equivalent(folder, other, none);
+    });
+    if (!known) folders_.push_back(folder);
+  }
+}
+PluginHost::~PluginHost() = default;
+
+std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
+  std::vector<fs::path> out;
+  if (const char* variable = std::getenv("PALPATE_PLUGIN_PATH")) {
+    const std::string text = variable;
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const auto end = std::min(text.find(':', begin), text.size());
+      if (end > begin) out.emplace_back(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  out.push_back(shipped);
+  return out;
+}
+
+bool PluginHost::one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const {
+  return std::any_of(plugins.begin(), plugins.end(),
+                     [this](const auto& one) { return library(one.first, one.second)->manifest().one_at_a_time; });
+}
+
+bool PluginHost::has(const std::string& kind, const std::string& name) const {
+  std::error_code none;
+  return std::any_of(folders_.begin(), folders_.end(),
+                     [&](const fs::path& folder) { return fs::exists(folder / kind / (name + ".so"), none); });
+}
+
+std::vector<std::string> PluginHost::kinds() {
+  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Footprint::kKind, Backend::kKind, Shape::kKind};
+}
+
+std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::string& kind) const {
+  std::vector<std::pair<std::string, fs::path>> out;
+  for (const fs::path& folder : folders_) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder / kind, none)) {
+      if (entry.path().extension() == ".so") out.emplace_back(entry.path().stem().string(), entry.path());
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string& kind, const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  auto& slot = libraries_[{kind, name}];
+  if (slot) return slot;
+  const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+  if (!plain) {
+    throw Error("", fmt::format("'{}' is not the name of a plugin", name),
+                "a name has letters, digits, '_' and '-', and no path");
+  }
+  std::vector<fs::path> found;
+  for (const fs::path& folder : folders_) {
+    std::error_code none;
+    fs::path file = folder / kind / (name + ".so");
+    if (fs::exists(fs::symlink_status(file, none))) found.push_back(std::move(file));
+  }
+  if (found.empty()) {
+    std::set<std::string> names;
+    for (const fs::path& folder : folders_) {
+      for (const auto& [of, one] : plugins_of_build(folder)) {
+        if (of == kind) names.insert(one);
+      }
+      if (names.count(name) != 0) {
+        throw Error("", fmt::format("plugin {}/{} is not built", kind, name),
+                    fmt::format("./palpate builds it, or 'cmake --build {} --target palpate_{}_{}'",
+                                (folder / ".." / "..").lexically_normal().string(), kind, name));
+      }
+      const std::string trouble = trouble_of_folder(folder);
+      if (!trouble.empty()) {
+        throw Error("", fmt::format("no plugin {}/{}", kind, name),
+                    fmt::format("the folder {} {}, see PALPATE_PLUGIN_PATH", folder.string(), trouble));
+      }
+    }
+    for (const auto& [other, file] : files(kind)) names.insert(other);
+    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, {names.begin(), names.end()}));
+  }
+  if (found.size() > 1) {
+    throw Error("",
+                fmt::format("plugin {}/{} is there twice: {} and {}", kind, name, found[0].string(), found[1].string()),
+                "remove one, or build it under another name");
+  }
+  slot = std::make_shared<const Library>(found.front(), kind, name);
+  return slot;
+}
+
+void PluginHost::describe(const std::string& kind, const std::string& name, Fields& fields) const {
+  const std::shared_ptr<const Library> holder = library(kind, name);
+  guarded(nullptr, kind + "/" + name, "cannot list its options", [&] { holder->manifest().describe(fields); });
+}
+
+std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Context& context) const {
+  const std::shared_ptr<const Library> holder = library(choice.kind, choice.type);
+  const PluginManifest& manifest = holder->manifest();
+  void* object = nullptr;
+  guarded(choice.options.get(), choice.kind + "/" + choice.type, "cannot be created", [&] {
+    fill(*choice.options, *this, choice.kind, [&](Fields& fields) { object = manifest.create(fields, context); });
+  });
+  // The deleter owns the library, which therefore outlives the object.
+  return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest().destroy(gone); }});
+}
+
+std::string PluginHost::look(const std::string& kind, const std::string& name) const {
+  try {
+    std::string answer = kSound + std::string(library(kind, name)->manifest().summary);
+    describe_fields([&](Fields& fields) { describe(kind, name, fields); });
+    libraries_.clear();  // a library may break down over its end, too
+    return answer;
+  } catch (const Error& trouble) {
+    return kBroken + std::string(trouble.what());
+  }
+}
+
+std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::string& name) const {
+  std::vector<PluginListing> out;
+  for (const std::string& one : kinds()) {
+    if (!kind.empty() && one != kind) continue;
+    for (const auto& found : files(one)) {
+      const std::string& stem = found.first;
+      if (!name.empty() && stem != name) continue;
+      // The files are sorted: a name in a second folder comes right after the first, whose row names both.
+      if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
+      PluginListing row{one, stem, found.second, {}, {}};
+      try {
+        const std::string answer = look_apart([&] { return look(one, stem); });
+        (answer.front() == kSound ? row.summary : row.trouble) = answer.substr(1);
+      } catch (const Error& trouble) {
+        row.trouble = fmt::format("{}: loading: {}, build or copy it again", found.second.string(), trouble.what());
+      }
+      out.push_back(std::move(row));
+    }
+  }
+  return out;
+}
+
+std::vector<LoadedPlugin> PluginHost::loaded(const std::set<std::pair<std::string, std::string>>& plugins) const {
+  std::vector<LoadedPlugin> out;
+  for (const auto& [kind, name] : plugins) {
+    const std::shared_ptr<const Library> holder = library(kind, name);
+    out.push_back({kind, name, holder->file(), holder->hash()});
+  }
+  return out;
+}
+
+}  // namespace palpate

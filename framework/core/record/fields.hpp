@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The records of a run and their fields: a tap, the times of a tap, the summary. To add a field is to add a line to
+// fields.cpp: files, `expect:`, `--where`, `--metric`, `palpate pareto`, pages and the tables of runs/README.md have it
+// from there.
+#pragma once
+
+#include "record/resolved.hpp"
+#include "experiment/tap_record.hpp"
+#include "record/field.hpp"
+
+#include <palpate/error.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What summary.json is made of. Times and memory are absent where nobody measured them.
+struct Summary {
+  const ResolvedConfig& config;
+  const RunResult& result;
+  std::string failure;  ///< "" unless the run failed
+  std::optional<double> wall_seconds, compute_seconds;
+  std::optional<std::array<double, kPhases>> phases;  ///< seconds, all taps
+  std::optional<std::int64_t> peak_rss_bytes;
+};
+
+/// Wall seconds of one tap by phase, as timings.csv has them.
+struct TapTimes {
+  int tap = 0;
+  std::array<double, kPhases> seconds{};
+};
+
+const FieldList<TapRecord>& tap_list();
+const FieldList<Summary>& summary_list();
+const FieldList<TapTimes>& timing_list();
+
+/// The fields that every summary has, in their order; those of the models depend on the config.
+const std::vector<RecordField>& summary_fields();
+
+/// The field of the summary with that name, or null.
+const RecordField* find_summary_field(const std::string& name);
+
+/// The dimension of a column of results.csv: of a field as listed, of any other by the end of its name, `_m` or
+/// `_seconds`.
+Unit unit_of_column(const std::string& name);
+
+/// Whether a field of the summary depends on clock, memory or machine rather than on the config.
+bool depends_on_machine(const std::string& name);
+
+/// How far a surface is from the truth, best known first: the fields that a tap and a summary share.
+const std::vector<RecordField>& error_fields();
+
+/// The one that says in one number how good a surface is.
+inline const std::string& main_error() { return error_fields().front().name; }
+
+/// Adds the errors to a row, null where no truth is known; and finds them in one.
+void add_errors(Row& row, const Errors& errors);
+Errors errors_in(const Row& row);
+
+/// Adds the fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
+void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state);
+
+/// Adds the fields of a footprint, "footprint.<number>" and "footprint.remark"; none where there is none.
+void add_footprint(Row& row, const std::optional<FootprintState>& state);
+
+/// What timings.csv tells: no run depends on it, and a kill may have cut its last line off, which is left out.
+struct Timings {
+  std::vector<TapTimes> taps;
+  std::optional<Error> trouble;  ///< of a damaged file; `taps` are then those before the damage
+};
+Timings read_timings(const std::filesystem::path& directory);
+
+}  // namespace palpate

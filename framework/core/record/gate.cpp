@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "record/gate.hpp"
+
+#include "config/quantity.hpp"
+#include "record/fields.hpp"
+#include "record/sample.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+using Statistic = Expectation::Statistic;
+using Comparison = Expectation::Comparison;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool holds(Comparison comparison, double value, double bound) {
+  switch (comparison) {
+    case Comparison::at_least:
+      return value >= bound;
+    case Comparison::above:
+      return value > bound;
+    case Comparison::at_most:
+      return value <= bound;
+    case Comparison::below:
+      return value < bound;
+    case Comparison::equal:
+      return value == bound;
+  }
+  return false;
+}
+
+bool wants_more(Comparison comparison) { return comparison == Comparison::at_least || comparison == Comparison::above; }
+
+/// Number or flag at `field` of the summary; none when it is null or absent.
+std::optional<double> number_at(const RunOutcome& run, const std::string& field) {
+  return run.summary && run.failure.empty() ? run.summary->number(field) : std::nullopt;
+}
+
+/// The value in the unit of the bound, with as many digits as it takes to tell the two apart.
+std::string shown(const Expectation& one, double value) {
+  const RecordField* field = find_summary_field(one.field);
+  if (field != nullptr && field->type == RecordField::Type::flag && one.statistic == Statistic::each)
+    return value != 0.0 ? "true" : "false";
+  const double scale =
+      one.unit.empty() ? 1.0 : read_quantity(Tree::scalar("1 " + one.unit), one.key, unit_of_column(one.field));
+  const std::string unit = one.unit.empty() ? "" : " " + one.unit;
+  const std::string brief = fmt::format("{:.4g}", value / scale);
+  const bool same_as_bound = brief == fmt::format("{:.4g}", one.bound / scale) && value != one.bound;
+  return (same_as_bound ? fmt::format("{}", value / scale) : brief) + unit;
+}
+
+/// Why a run has no value.
+std::string absence(const Expectation& one, const RunOutcome& run) {
+  if (!run.failure.empty()) return "the run failed";
+  const RecordField* field = find_summary_field(one.field);
+  const std::string reason = field != nullptr ? field->when_null : std::string();
+  return reason.empty() ? fmt::format("the summary has no {}", one.field) : reason;
+}
+
+struct Judgement {
+  bool holds = false;
+  std::string got;
+};
+
+/// One run by a field of its summary.
+Judgement judge_run(const Expectation& one, const RunOutcome& run) {
+  const RecordField* field = find_summary_field(one.field);
+  if (field != nullptr && field->type == RecordField::Type::text) {
+    const Scalar* value = run.summary ? run.summary->find(one.field) : nullptr;
+    const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+    if (text == nullptr) return {false, "no value: " + absence(one, run)};
+    return {*text == one.text, *text};
+  }
+  const std::optional<double> value = number_at(run, one.field);
+  if (!value) return {false, "no value: " + absence(one, run)};
+  return {holds(one.comparison, *value, one.bound), shown(one, *value)};
+}
+
+/// Every run on its own: names the first that misses, and how many do.
+Judgement judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
+  int missed = 0;
+  std::string got;
+  for (const RunOutcome& run : runs) {
+    Judgement judgement = judge_run(one, run);
+    if (runs.size() == 1) return judgement;
+    if (judgement.holds) continue;
+    if (missed++ == 0) got = fmt::format("{} in {}", judgement.got, run.label);
+  }
+  if (missed > 1) got += fmt::format(", and {} of {} runs miss it", missed, runs.size());
+  return {missed == 0, got};
+}
+
+double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
+  if (one.statistic == Statistic::quantile) return quantile(sorted, one.share);
+  // The mean of infinite values is infinite; mean_of() takes finite ones.
+  if (!std::isfinite(sorted.front())) return sorted.front();
+  if (!std::isfinite(sorted.back())) return sorted.back();
+  return mean_of(sorted);
+}
+
+/// A statistic over all runs, those without a value at the worst end. An equality has to hold at either.
+Judgement judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
+  std::vector<double> values;
+  std::vector<const RunOutcome*> without;
+  for (const RunOutcome& run : runs) {
+    const std::optional<double> value = number_at(run, one.field);
+    if (value) {
+      values.push_back(*value);
+    } else {
+      without.push_back(&run);
+    }
+  }
+  if (without.size() == 1 && runs.size() == 1) return {false, "no value: " + absence(one, *without.front())};
+  std::vector<double> worst{wants_more(one.comparison) ? -kInfinity : kInfinity};
+  if (one.comparison == Comparison::equal) worst.push_back(-kInfinity);
+  Judgement out{true, {}};
+  for (const double end : worst) {
+    std::vector<double> sorted = values;
+    sorted.insert(sorted.end(), without.size(), end);
+    std::sort(sorted.begin(), sorted.end());
+    const double value = statistic_of(one, sorted);
+    out.holds = out.holds && holds(one.comparison, value, one.bound);
+    out.got = std::isfinite(value) ? shown(one, value) : "no value";
+  }
+  if (!without.empty() && !out.holds) {
+    const RunOutcome& first = *without.front();
+    out.got += fmt::format(": {} of {} runs have none and count as the worst ({}: {})", without.size(), runs.size(),
+                           first.label, absence(one, first));
+  }
+  return out;
+}
+
+Judgement judge_count(const Expectation& one, const std::vector<RunOutcome>& runs) {
+  const auto failed =
+      std::count_if(runs.begin(), runs.end(), [](const RunOutcome& run) { return !run.failure.empty(); });
+  return {holds(one.comparison, static_cast<double>(failed), one.bound),
+          fmt::format("{}{}", failed, runs.size() == 1 ? std::string() : fmt::format(" of {}", runs.size()))};
+}
+
+}  // namespace
+
+std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs) {
+  std::vector<Verdict> verdicts;
+  for (const Expectation& one : expectations) {
+    const Judgement judgement = one.field == kFailedRuns           ? judge_count(one, runs)
+                                : one.statistic == Statistic::each ? judge_each(one, runs)
+                                                                   : judge_statistic(one, runs);
+    verdicts.push_back({one, judgement.holds, judgement.got});
+  }
+  return verdicts;
+}
+
+std::string verdict_line(const Verdict& verdict) {
+  const Expectation& one = verdict.expectation;
+  return fmt::format("{}: expected {} {}, got {}", one.place, one.key, one.wanted, verdict.got);
+}
+
+RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure) {
+  return {"run " + id, "", failure, summary};
+}
+
+std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
+                                 const std::vector<Verdict>& verdicts) {
+  std::vector<TestCase> cases;
+  // Where failures are counted and few enough, none of them fails the whole.
+  const bool tolerated = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& one) {
+    return one.expectation.field == kFailedRuns && one.holds;
+  });
+  for (const RunOutcome& run : runs) {
+    const Scalar* seconds = run.summary ? run.summary->find("wall_seconds") : nullptr;
+    const auto* known = seconds != nullptr ? std::get_if<double>(seconds) : nullptr;
+    cases.push_back({suite, run.name, known != nullptr ? *known : 0.0, run.failure, tolerated});
+  }
+  for (const Verdict& verdict : verdicts) {
+    const Expectation& one = verdict.expectation;
+    cases.push_back({suite + ".expect", one.key + " " + one.wanted, 0.0,
+                     verdict.holds ? std::string() : verdict_line(verdict), false});
+  }
+  return cases;
+}
+
+}  // namespace palpate

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Judges runs by what their config expects: one by its summary, many, as the jobs of a sweep, by all of theirs.
+#pragma once
+
+#include "record/expectation.hpp"
+#include "record/junit.hpp"
+#include "record/row.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// How one run ended, as far as a gate cares.
+struct RunOutcome {
+  std::string name;     ///< "run 910071e8f4bb", "job 3: acquisition=weighted, seed=3"
+  std::string label;    ///< "job 3"; "" where there is but one run
+  std::string failure;  ///< why it failed or never ran; "" when it is done
+  std::optional<Row> summary;
+};
+
+/// One expectation, and whether it is fulfilled.
+struct Verdict {
+  Expectation expectation;
+  bool holds = false;
+  std::string got;  ///< "11", "3.2 cm in job 4", "no value: ..."
+};
+
+/// Judges `runs` (at least one). A field alone has to hold in every run. In a statistic a run that failed or has no
+/// value takes the worst value that there is. `failed_runs` counts the runs that failed.
+std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
+
+/// "file:line:column: expected median(on_surface_taps) >= 12, got 11"
+std::string verdict_line(const Verdict& verdict);
+
+/// The run that ended with `summary`, or failed for the reason `failure`.
+RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure);
+
+/// A test case a run and one an expectation. `suite` is the name of the experiment.
+std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
+                                 const std::vector<Verdict>& verdicts);
+
+}  // namespace palpate

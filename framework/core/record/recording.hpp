@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// A run as its directory tells it, and its models brought back to any of its taps: for replay, reports and
+// explanations.
+#pragma once
+
+#include "experiment/experiment.hpp"
+#include "record/resolved.hpp"
+#include "record/row.hpp"
+#include "record/session.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+/// What a run directory holds. The run may be under way, or have failed.
+struct Recording {
+  std::filesystem::path directory;
+  ResolvedConfig config;
+  std::vector<Row> rows;       ///< of taps.jsonl, a tap each; announcements of taps are left out
+  std::vector<PastTap> taps;   ///< the same as the models see them
+  std::optional<Row> summary;  ///< of a run that ended
+
+  /// Whether the scene of the config is what was tapped.
+  bool truth_known() const;
+  /// Whether the run ended because it could not go on.
+  bool failed() const;
+};
+
+/// Throws Error for a directory without a recorded tap, a damaged one, and one whose config is not that of its id.
+Recording read_recording(const Workshop& workshop, const std::filesystem::path& directory);
+
+/// Stands in for a backend where nothing is tapped: tap() throws.
+std::shared_ptr<Backend> no_backend(bool truth_known);
+
+/// What was read of the belief when the tap of `row` was chosen, by the models that the row tells of.
+Quantities recorded_quantities(const Row& row);
+
+/// Brings the models of a recorded run to the state that they had after any of its taps, from the taps alone: what is
+/// read of them there is what the run would have read. Writes nothing, moves nothing: there is no backend.
+class Playback {
+ public:
+  /// Before the first tap. `workshop` and `recording` must outlive it. Throws Error for what only building finds out.
+  Playback(const Workshop& workshop, const Recording& recording);
+
+  /// Takes in the recorded taps up to the `taps`-th, from 0 to all; never back.
+  void advance_to(int taps);
+  int taps() const { return taps_; }
+
+  /// The experiment as of now: beliefs, errors, and the tap that it would choose next. Not to be run.
+  Experiment& experiment() { return *experiment_; }
+
+ private:
+  const Recording& recording_;
+  std::unique_ptr<Experiment> experiment_;
+  int taps_ = 0;
+};
+
+}  // namespace palpate

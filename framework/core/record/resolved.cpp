@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "record/resolved.hpp"
+
+#include "config/hash.hpp"
+#include "config/yaml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+namespace palpate {
+namespace {
+
+/// A hash of all in a resolved tree that decides what a run computes.
+std::string id_of(const Tree& resolved) {
+  std::string identity = "{";
+  for (const Tree::Entry& entry : resolved.entries) {
+    if (!enters_id(entry.key)) continue;
+    identity += entry.key + "=";
+    entry.value.append_canonical(identity);
+    identity += ',';
+  }
+  return hash_of(identity + "}").substr(0, kIdLength);
+}
+
+struct SeedOptions : Options {
+  std::int64_t seed = 0;
+  void list(Fields& fields) override { fields.integer(seed, seed_field()); }
+};
+
+}  // namespace
+
+void check_format(const Tree& config) {
+  const Tree* format = config.find("format");
+  if (format == nullptr || !format->is_scalar()) return;
+  std::int64_t number = 0;
+  const char* const end = format->text.data() + format->text.size();
+  const auto read = std::from_chars(format->text.data(), end, number);
+  if (read.ec != std::errc() || read.ptr != end || number <= kFormat) return;  // resolving says what else is wrong
+  throw Error(format->place.text(), fmt::format("format: {} is newer than {}, the latest known here", number, kFormat),
+              "take a palpate as new as the one that wrote it");
+}
+
+ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
+  check_format(composed);
+  Tree input = composed;
+  input.erase("sweep");
+  input.erase("expect");
+  ResolvedConfig out;
+  out.tree = resolve(out.options, input, plugins, out.notes, {"defaults", "strategy", "sweep", "expect"});
+  if (const Tree* expect = composed.find("expect")) {
+    out.expectations = read_expectations(expect);
+    if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
+  }
+  check_readable(out.tree, composed.place.text());
+  out.id = id_of(out.tree);
+  return out;
+}
+
+ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
+                               const std::vector<Override>& overrides) {
+  return resolve_experiment(composer.compose(file, overrides), plugins);
+}
+
+void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins) {
+  Tree input = Tree::map();
+  input.at("seed") = seed;
+  SeedOptions options;
+  ResolveNotes notes;
+  const Tree resolved = resolve(options, input, plugins, notes);
+  config.options.seed = options.seed;
+  config.tree.at("seed") = *resolved.find("seed");
+  for (ResolveNotes::Origin& origin : config.notes.origins) {
+    if (origin.path == "seed") origin = notes.origins.front();
+  }
+  config.id = id_of(config.tree);
+}
+
+bool begins_with_id(const std::string& folder) {
+  return folder.size() >= kIdLength && folder.find_first_not_of("0123456789abcdef") >= kIdLength;
+}
+
+std::string slug(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-';
+    if (plain) {
+      out += c;
+    } else if (!out.empty() && out.back() != '-') {
+      out += '-';
+    }
+  }
+  out = out.substr(0, 64);
+  out.erase(0, std::min(out.find_first_not_of(".-"), out.size()));
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out.empty() ? "experiment" : out;
+}
+
+}  // namespace palpate

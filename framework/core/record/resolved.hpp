@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// A config ready to run: options, the resolved tree, and the id that it has because of its content.
+#pragma once
+
+#include "config/compose.hpp"
+#include "config/resolve.hpp"
+#include "record/expectation.hpp"
+#include "experiment/experiment_options.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+struct ResolvedConfig {
+  ExperimentOptions options;
+  Tree tree;                              ///< every field with its final value; reads back as the same config
+  ResolveNotes notes;                     ///< where the values came from
+  std::vector<Expectation> expectations;  ///< of `expect:`
+  std::string id;                         ///< 12 hex digits: a hash of all that decides what a run computes
+};
+
+/// Throws Error for a config of a later format than this program's (kFormat).
+void check_format(const Tree& config);
+
+/// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.
+ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
+
+/// Composes and resolves. Throws Error with a place in `file`, in a group, or on the command line.
+ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
+                               const std::vector<Override>& overrides);
+
+/// Gives `config` another seed, with all that follows from it: what load_experiment() would give, but at a tenth of the
+/// cost, because no other option depends on the seed. Throws the same Error for what is no seed.
+void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins);
+
+/// Hex digits of an id.
+inline constexpr std::size_t kIdLength = 12;
+
+/// Whether a folder is named by an id; something may follow it, as in 910071e8f4bb.old-1.
+bool begins_with_id(const std::string& folder);
+
+/// The name of a run's folder: letters, digits, '.', '_' and '-' of `name`, at most 64, never empty or hidden.
+std::string slug(const std::string& name);
+
+}  // namespace palpate

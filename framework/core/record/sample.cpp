@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "record/sample.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+namespace palpate {
+
+double mean_of(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  // Rounding in a sum would lead away from it.
+  if (*least == *most) return *least;
+  // Shares of the mean are added: a sum could overflow where the mean does not.
+  const auto n = static_cast<double>(values.size());
+  return std::accumulate(values.begin(), values.end(), 0.0, [n](double sum, double one) { return sum + one / n; });
+}
+
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double part = at - static_cast<double>(below);
+  // An infinite neighbour without a part in it would give infinity times zero.
+  if (part == 0.0 || sorted[below] == sorted[below + 1]) return sorted[below];
+  return (1.0 - part) * sorted[below] + part * sorted[below + 1];
+}
+
+}  // namespace palpate

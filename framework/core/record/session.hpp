@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// One run from its config to its summary, with the directory in between: started, carried on, or played again.
+#pragma once
+
+#include "config/compose.hpp"
+#include "record/resolved.hpp"
+#include "experiment/tap_record.hpp"
+#include "plugin/host.hpp"
+#include "record/build_info.hpp"
+#include "record/row.hpp"
+#include "record/run_directory.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What every run of this process shares.
+struct Workshop {
+  const PluginHost& host;
+  const Installation& installation;
+  std::vector<std::string> command_line;
+  const std::atomic<bool>* interrupted;  ///< set by the user's wish to stop; may be null
+};
+
+/// How a run ended.
+struct RunReport {
+  std::filesystem::path directory;
+  bool already_done = false;  ///< nothing was run: the directory held the finished run
+  bool interrupted = false;   ///< it can be resumed; there is no summary
+  Row summary;                ///< the fields of summary.json
+};
+
+/// Somebody who is asked before every tap of a backend that moves what only a person can put right.
+class Supervisor {
+ public:
+  virtual ~Supervisor() = default;
+  /// Whether the tap may be made. If not, the run ends, interrupted, as if the tap had never been chosen.
+  virtual bool permits(const TapRecord& tap, const Preview& preview) = 0;
+};
+
+/// Who reads which model of this config. To a robot nobody connects for this: what it would read is left out. Throws
+/// Error for what only building finds out.
+std::vector<ModelReader> readers_of(const Workshop& workshop, const ResolvedConfig& config);
+
+/// <runs>/<slug>/<id>.
+std::filesystem::path directory_of(const ResolvedConfig& config, const std::filesystem::path& runs);
+
+/// Runs `config` in `directory` and writes its files. `observer` (may be null) hears of every tap, after the log.
+///
+/// A finished run of the same build is left alone and reported. A finished run of another build, a failed or a broken
+/// one throws Error with the remedy; with `force` the old directory is moved to <id>.old-N first. When the run itself
+/// fails, its summary says so and the Error, of kind `run`, is thrown on.
+///
+/// `supervisor` (may be null) is asked before every tap; a repeatable backend is then refused by an Error.
+RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory,
+                    bool force, Journal* observer, Supervisor* supervisor = nullptr);
+
+struct ResumeOptions {
+  bool retry_failed = false;  ///< carry on a failed run too
+  bool force = false;         ///< carry on what another build began
+};
+
+/// Carries on the run in `directory` from its config and its recorded taps; repeats none. A finished run is reported
+/// as done. `supervisor` as of start_run().
+RunReport resume_run(const Workshop& workshop, const std::filesystem::path& directory, const ResumeOptions& options,
+                     Journal* observer, Supervisor* supervisor = nullptr);
+
+/// The same with `config`, that of the run, in a directory that this process holds.
+RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                      const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
+
+/// Whether the run in `directory` has taps of another build than this one. Throws Error for a damaged one.
+bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config,
+                         const std::filesystem::path& directory);
+
+/// Throws Error if it has.
+void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);
+
+/// A number that came out differently in a replay.
+struct Difference {
+  int tap = 0;  ///< 0: of the summary
+  std::string field;
+  std::string recorded;
+  std::string replayed;
+};
+
+struct ReplayReport {
+  int taps = 0;
+  int numbers = 0;  ///< compared
+  std::vector<Difference> differences;
+};
+
+/// Sends the recorded taps of a run through the same models and compares every number but clocks, memory and host.
+/// Writes nothing, moves nothing: the backend is not even created.
+ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
+
+/// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
+Tree read_run_config(const std::filesystem::path& directory);
+
+/// The config of a run directory, as resolved then. Throws Error if it does not resolve to the id that it had.
+ResolvedConfig load_run(const PluginHost& host, const std::filesystem::path& directory);
+
+}  // namespace palpate

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The directory of a sweep: its jobs as listed when it began, what became of each, and the table made from that.
+#pragma once
+
+#include "record/gate.hpp"
+#include "record/row.hpp"
+#include "record/run_directory.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// One job of a sweep.
+struct Job {
+  int index = 0;
+  std::string id;
+  std::vector<std::string> values;  ///< one for each swept key; "" where the job's plugins have no such option
+};
+
+/// A sweep's directory: config.yaml, manifest.jsonl, jobs/<id>/, results.csv.
+struct Sweep {
+  std::filesystem::path directory;
+  std::vector<std::string> keys;
+  std::vector<Job> jobs;
+};
+
+/// The name of a sweep's directory: a hash of its resolved config, as written, and of its keys and jobs.
+std::string sweep_id(const Tree& config, const Sweep& sweep);
+
+/// manifest.jsonl: a job a line. Each carries the sweep's id, so that a change is noticed whatever the folder is
+/// called.
+std::string manifest_text(const Sweep& sweep, const std::string& id);
+
+/// Reads the manifest of a sweep. Throws Error when it is damaged, or when config or manifest are not those that it
+/// began with.
+Sweep read_sweep(const std::filesystem::path& directory);
+
+/// What it is called: as all its jobs are if that was said on the command line, else as its config says.
+std::string sweep_name(const Sweep& sweep);
+
+/// jobs/<id>
+std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
+
+/// The summary of each job, none for those that have not ended; see read_outcome().
+std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
+
+/// The rows of results.csv: job, id, the swept keys, then the fields of the summary, for jobs that ended.
+std::vector<Row> sweep_results(const Sweep& sweep);
+std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
+
+/// Makes results.csv anew from the jobs, as they are once nobody else does the same. Returns their summaries. Throws
+/// Error.
+std::vector<std::optional<Row>> write_results(const Sweep& sweep);
+
+/// Every job of a sweep; one without a summary counts as failed.
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
+
+}  // namespace palpate

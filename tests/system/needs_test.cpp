@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// What ./palpate asks the program to build for a command, with `--needs`, and what the program says where that was not
+// built: it never compiles anything itself.
+#include "support/support.hpp"
+#include "system/shipped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Targets = std::set<std::string>;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsSubsetOf;
+using testing::Not;
+
+/// What every build of a run of the paper takes; a scene may take shapes beside.
+const Targets kPaper{"palpate_kernel_rbf", "palpate_acquisition_weighted", "palpate_fitting_fixed",
+                     "palpate_footprint_regression", "palpate_backend_simulator"};
+
+/// A build folder with nothing in it but the program and the list of plugins, as the first ./palpate finds it.
+class FirstCommand : public testing::Test {
+ protected:
+  FirstCommand() {
+    fs::create_directories(build() / "lib" / "palpate");
+    fs::copy_file(program_file(), build() / "palpate");
+    fs::copy_file(plugin_folder() / "plugins.txt", build() / "lib" / "palpate" / "plugins.txt");
+    fs::create_directory_symlink(source_folder() / "configs", folder_.path() / "configs");
+  }
+
+  fs::path build() const { return folder_.path() / "build" / "release"; }
+  Ended call(std::vector<std::string> words) const {
+    words.insert(words.begin(), (build() / "palpate").string());
+    return run_program(words, folder_.path());
+  }
+  Targets needs(std::vector<std::string> words) const {
+    words.insert(words.begin(), "--needs");
+    std::istringstream out(call(words).out);
+    return {std::istream_iterator<std::string>(out), {}};
+  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  /// Puts plugins of this build where they belong.
+  void built(const std::string& kind, const std::string& name) const {
+    fs::create_directories(build() / "lib" / "palpate" / kind);
+    fs::copy_file(plugin_folder() / kind / (name + ".so"), build() / "lib" / "palpate" / kind / (name + ".so"));
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(FirstCommand, ARunTakesThePluginsThatItsConfigNamesAndNothingElse) {
+  const Targets found = needs({"run", paper()});
+  EXPECT_THAT(kPaper, IsSubsetOf(found));
+  for (const std::string& target : found) {
+    EXPECT_TRUE(kPaper.count(target) != 0 || target.rfind("palpate_shape_", 0) == 0) << target;
+  }
+  EXPECT_THAT(found, Not(Contains("palpate_shape_mesh")));
+}
+
+TEST_F(FirstCommand, OverridesAndDefaultsCountAsTheConfigDoes) {
+  const Targets found = needs({"run", paper(), "kernel=matern52", "footprint=classifier"});
+  EXPECT_THAT(found, Contains("palpate_kernel_matern52"));
+  EXPECT_THAT(found, Contains("palpate_footprint_classifier"));
+  EXPECT_THAT(found, Not(Contains("palpate_kernel_rbf")));
+}
+
+TEST_F(FirstCommand, WhatAPluginNamesIsKnownOnceThatIsBuilt) {
+  write("sum.yaml",
+        "defaults: [acquisition: weighted, fitting: fixed, backend: simulator]\n"
+        "kernel: {type: sum, kernels: [{type: rbf}, {type: matern32, length_scale: 2 cm}]}\n");
+  const Targets first = needs({"run", "sum.yaml"});
+  EXPECT_THAT(first, Contains("palpate_kernel_sum"));
+  EXPECT_THAT(first, Contains("palpate_backend_simulator")) << "the sum's options, which nobody knows, are in no way";
+  EXPECT_THAT(first, Not(Contains("palpate_kernel_matern32")));
+  built("kernel", "sum");
+  EXPECT_THAT(needs({"run", "sum.yaml"}), Contains("palpate_kernel_matern32"));
+}
+
+TEST_F(FirstCommand, WhatIsWrongWithAConfigIsSaidByTheCommandAlone) {
+  write("bad.yaml", "kernel: {type: rbf}\nspeling: 3\n");
+  const Ended asked = call({"--needs", "run", "bad.yaml"});
+  EXPECT_EQ(asked.status, 0);
+  EXPECT_EQ(asked.err, "");
+  EXPECT_THAT(asked.out, HasSubstr("palpate_kernel_rbf"));
+  EXPECT_EQ(call({"--needs", "--help"}).out, "");
+  EXPECT_EQ(call({"--needs", "run", "missing.yaml"}).out, "");
+}
+
+TEST_F(FirstCommand, SweepsTakeEverythingAndTheirTablesNoPlugin) {
+  const Targets everything{"palpate_whole", "palpate_plugins"};
+  EXPECT_EQ(needs({"sweep", paper(), "seed=1,2"}), everything);
+  EXPECT_THAT(needs({"validate", config("sweep/fitting.yaml")}), testing::IsSupersetOf(everything));
+  write("sweep/manifest.jsonl", "");
+  EXPECT_EQ(needs({"resume", "sweep"}), everything);
+  EXPECT_EQ(needs({"status", "sweep"}), Targets{"palpate_whole"});
+  EXPECT_EQ(needs({"pareto", "sweep", "--cost", "taps", "--error", "rmse_m"}), Targets{"palpate_whole"});
+  EXPECT_EQ(needs({"compare", "sweep", "--by", "seed", "--metric", "rmse_m", "--at", "3"}), everything);
+}
+
+TEST_F(FirstCommand, LookingAtARunTakesItsPluginsAndListingThemThoseThatAreListed) {
+  write("run/config.yaml", text_of(paper()));
+  EXPECT_EQ(needs({"status", "run"}), Targets{});
+  write("one/config.yaml", palpate({"run", paper(), "--print-config"}, build()).out);
+  EXPECT_THAT(kPaper, IsSubsetOf(needs({"replay", "one"})));
+  EXPECT_THAT(needs({"replay", "one"}), Not(Contains("palpate_whole")));
+  EXPECT_THAT(needs({"explain", "one", "3"}), Contains("palpate_whole"));
+  EXPECT_EQ(needs({"plugins", "kernel/rbf"}), Targets{"palpate_kernel_rbf"});
+  EXPECT_THAT(needs({"plugins", "kernel"}), Contains("palpate_kernel_matern52"));
+  EXPECT_THAT(needs({"plugins", "kernel"}), Not(Contains("palpate_backend_simulator")));
+  EXPECT_EQ(needs({"schema"}), Targets{"palpate_plugins"});
+}
+
+TEST_F(FirstCommand, CalledByItselfTheProgramSaysWhatIsNotBuilt) {
+  const Ended run = call({"run", paper()});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.err, HasSubstr("plugin kernel/rbf is not built, ./palpate builds it, or 'cmake --build "));
+  EXPECT_EQ(lines(run.err), 1);
+  const Ended sweep = call({"sweep", paper(), "seed=1,2"});
+  EXPECT_EQ(sweep.status, 2);
+  EXPECT_THAT(sweep.err, HasSubstr("palpate-whole: has this command, and is not built, ./palpate builds it, or"));
+  EXPECT_EQ(lines(sweep.err), 1);
+}
+
+TEST_F(FirstCommand, AMisspeltPluginIsLookedForAmongThoseThatAreNotBuilt) {
+  built("kernel", "rbf");
+  const Ended run = call({"run", paper(), "kernel.type=matern25"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.err, HasSubstr("no plugin kernel/matern25, did you mean 'matern52'?"));
+}
+
+TEST(Builds, AJobOfASweepIsOfTheBuildOfARun) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(palpate({"run", paper(), "taps=3", "--quiet", "--runs", "one"}, folder.path()).status, 0);
+  ASSERT_EQ(palpate({"sweep", paper(), "taps=3", "--quiet", "--runs", "many"}, folder.path()).status, 0);
+  const auto build = [](const fs::path& run) {
+    const std::string manifest = text_of(run / "manifest.json");
+    return manifest.substr(manifest.find("\"build\": \""), 30);
+  };
+  const fs::path job = fs::directory_iterator(only_run(folder.path() / "many") / "jobs")->path();
+  EXPECT_EQ(build(only_run(folder.path() / "one")), build(job));
+}
+
+TEST(Builds, CoreIsNamedByWhatWasCompiledAndByNothingElse) {
+  const TemporaryFolder folder;
+  const auto hash = [&] {
+    const std::string script = (source_folder() / "framework/cmake/CoreHash.cmake").string();
+    const std::string out = (folder.path() / "hash.cpp").string();
+    const std::string files = "-DFILES=" + (folder.path() / "a.o").string() + ";" + (folder.path() / "b.o").string();
+    const Ended ended = run_program({"cmake", files, "-DFLAGS=-O2", "-DOUTPUT=" + out, "-P", script}, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return text_of(out);
+  };
+  folder.write("a.o", "one");
+  folder.write("b.o", "two");
+  const std::string first = hash();
+  EXPECT_THAT(first, testing::ContainsRegex("kCoreHash = \"[0-9a-f]{64}\""));
+  const auto made = fs::last_write_time(folder.path() / "hash.cpp");
+  folder.write("a.o", "one");
+  EXPECT_EQ(hash(), first);
+  EXPECT_EQ(fs::last_write_time(folder.path() / "hash.cpp"), made) << "or every program would be linked again";
+  folder.write("b.o", "twi");
+  EXPECT_NE(hash(), first);
+}
+
+}  // namespace
+}  // namespace palpate::test
