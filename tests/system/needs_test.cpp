@@ -77,7 +77,7 @@ TEST_F(FirstCommand, OverridesAndDefaultsCountAsTheConfigDoes) {
 
 TEST_F(FirstCommand, WhatAPluginNamesIsKnownOnceThatIsBuilt) {
   write("sum.yaml",
-        "defaults: [acquisition: weighted, fitting: fixed, backend: simulator]\n"
+        "defaults:\n  - acquisition: weighted\n  - fitting: fixed\n  - backend: simulator\n  - scene: object_i\n"
         "kernel: {type: sum, kernels: [{type: rbf}, {type: matern32, length_scale: 2 cm}]}\n");
   const Targets first = needs({"run", "sum.yaml"});
   EXPECT_THAT(first, Contains("palpate_kernel_sum"));
@@ -142,7 +142,7 @@ TEST_F(FirstCommand, AMisspeltPluginIsLookedForAmongThoseThatAreNotBuilt) {
 TEST(Builds, AJobOfASweepIsOfTheBuildOfARun) {
   const TemporaryFolder folder;
   ASSERT_EQ(palpate({"run", paper(), "taps=3", "--quiet", "--runs", "one"}, folder.path()).status, 0);
-  ASSERT_EQ(palpate({"sweep", paper(), "taps=3", "--quiet", "--runs", "many"}, folder.path()).status, 0);
+  ASSERT_EQ(palpate({"sweep", paper(), "taps=3", "seed=1,2", "--quiet", "--runs", "many"}, folder.path()).status, 0);
   const auto build = [](const fs::path& run) {
     const std::string manifest = text_of(run / "manifest.json");
     return manifest.substr(manifest.find("\"build\": \""), 30);
