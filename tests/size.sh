@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Counts lines of code, per folder, and the sums that are to shrink: of the files that git knows as they lie here, or of
-# those of a commit.
+# Counts lines of code, per folder, and the sums that are to shrink: of the files as they lie here, but those that git
+# ignores, or of those of a commit.
 # A line of code has something on it that is neither blank nor comment. A comment is what follows //, or stands between
 # /* and */ (in scripts: what follows #), with nothing but blanks before it; within a string of several lines, too.
 # Code is C++ (.cpp .hpp .inc) and JavaScript (.js): of framework and plugins together, and of tests. Scripts (shell,
@@ -21,7 +21,7 @@ if [ $# -gt 0 ]; then
   cd "$there"
   list() { find . -type f | sed 's|^\./||'; }
 else
-  list() { git ls-files; }
+  list() { git ls-files --cached --others --exclude-standard; }
 fi
 list | LC_ALL=C sort | awk '
   function language(path) {
@@ -55,7 +55,7 @@ list | LC_ALL=C sort | awk '
     if (kind == "styles") kind = "scripts"
     inside = lines = 0
     while ((got = (getline line < path)) > 0) lines += is_code(line, marks)
-    if (got < 0) next  # known to git, removed here
+    if (got < 0) next  # git has it, this folder does not
     close(path)
     if (!(folder in seen)) { seen[folder] = 1; order[++folders] = folder }
     count[kind, folder] += lines
