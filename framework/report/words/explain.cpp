@@ -18,17 +18,6 @@
 namespace palpate {
 namespace {
 
-/// The errors of the models of `experiment` as fields of a tap, null where no truth is known.
-Row errors_row(Experiment& experiment) {
-  const Errors errors = experiment.errors();
-  Row row;
-  row.add("rmse_m", errors.rmse);
-  row.add("rmse_on_surface_m", errors.rmse_on_surface);
-  row.add("rmse_height_m", errors.rmse_height);
-  row.add("footprint_iou", errors.footprint_iou);
-  return row;
-}
-
 class Explanation {
  public:
   Explanation(const Workshop& workshop, const Recording& recording, int tap)
@@ -98,16 +87,20 @@ class Explanation {
   }
 
   int contacts_before() const {
-    return static_cast<int>(std::count_if(recording_.taps.begin(), recording_.taps.begin() + number_ - 1,
-                                          [](const PastTap& tap) { return tap.contact.outcome == Outcome::contact; }));
+    return count_before([](const Contact&) { return true; });
   }
 
   int hits_before() {
     const Scene& scene = playback_.experiment().scene();
-    return static_cast<int>(
-        std::count_if(recording_.taps.begin(), recording_.taps.begin() + number_ - 1, [&](const PastTap& tap) {
-          return tap.contact.outcome == Outcome::contact && scene.on_surface(tap.contact.height);
-        }));
+    return count_before([&](const Contact& contact) { return scene.on_surface(contact.height); });
+  }
+
+  /// Contacts before this tap of which `is_counted` holds.
+  template <class Counted>
+  int count_before(const Counted& is_counted) const {
+    return static_cast<int>(std::count_if(
+        recording_.taps.begin(), recording_.taps.begin() + number_ - 1,
+        [&](const PastTap& tap) { return tap.contact.outcome == Outcome::contact && is_counted(tap.contact); }));
   }
 
   // The choice.
@@ -246,9 +239,9 @@ class Explanation {
     if (!x || !y || !second) return page_.say("There is no runner-up.");
     std::string by = "the same";
     if (const double less = score - *second; less != 0.0) {
-      const char* sense = less > 0.0 ? "less" : "more, which is a tie";
-      by = score == 0.0 ? fmt::format("{:.3g} {}", std::abs(less), sense)
-                        : fmt::format("{:.3g} % {}", 100.0 * std::abs(less / score), sense);
+      by = score == 0.0 ? fmt::format("{:.3g}", std::abs(less))
+                        : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
+      by += less > 0.0 ? " less" : " more, which is a tie";
     }
     page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second), by));
   }
@@ -334,7 +327,9 @@ class Explanation {
     const Row& next = !last                ? recording_.rows[static_cast<std::size_t>(number_)]
                       : recording_.summary ? *recording_.summary
                                            : nothing;
-    return {next, errors_row(playback_.experiment())};
+    TapRecord now;
+    now.errors = playback_.experiment().errors();
+    return {next, tap_row(now)};
   }
 
   void explain_errors(const Evidence& before) {
