@@ -134,8 +134,7 @@ int explain(Program& program, const std::string& directory, int tap);
 
 struct ExportArguments {
   std::string directory;
-  std::string format;  ///< ply or csv
-  std::string to;      ///< a folder; "" for export/ of the run
+  std::string to;  ///< a folder; "" for export/ of the run
 };
 int export_run(Program& program, const ExportArguments& arguments);
 

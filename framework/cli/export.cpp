@@ -15,19 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder to write into. A record has a surface.csv and a taps.csv of its own, which are no one's to overwrite.
+/// The folder to write into.
 fs::path prepare_folder(const ExportArguments& arguments) {
-  fs::path folder = arguments.to.empty() ? fs::path(arguments.directory) / "export" : fs::path(arguments.to);
-  std::error_code trouble;
-  for (const char* file : {"taps.jsonl", "manifest.jsonl", "config.yaml"}) {
-    if (fs::exists(folder / file, trouble))
-      throw Error(folder.string(), "is the directory of a run or a sweep, whose files would be overwritten",
-                  "give another folder with --to, or none");
-  }
   if (arguments.to.empty()) {
+    fs::path folder = fs::path(arguments.directory) / "export";
     make_inner_folder(folder);
     return folder;
   }
+  fs::path folder = arguments.to;
+  std::error_code trouble;
   fs::create_directories(folder, trouble);
   if (trouble) throw Error(folder.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
   return folder;
@@ -51,16 +47,14 @@ int export_run(Program& program, const ExportArguments& arguments) {
   playback.advance_to(static_cast<int>(recording.taps.size()));
   const ReconstructedSurface surface = reconstruct(playback.experiment());
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
-  const bool ply = arguments.format == "ply";
   const fs::path folder = prepare_folder(arguments);
   mention_state(recording);
   const auto write = [&](const char* name, const std::string& text) {
-    const fs::path file = folder / (std::string(name) + "." + arguments.format);
-    write_file(file, text);
-    fmt::print("{}\n", file.string());
+    write_file(folder / name, text);
+    fmt::print("{}\n", (folder / name).string());
   };
-  write("surface", ply ? surface_ply(surface, run) : surface_table(surface));
-  write("taps", ply ? taps_ply(recording, run) : taps_table(recording));
+  write("surface.ply", surface_ply(surface, run));
+  write("taps.ply", taps_ply(recording, run));
   return kDone;
 }
 

@@ -216,9 +216,14 @@ void add_one_run(CLI::App& app, Arguments& a, Action& action) {
 
   sub = app.add_subcommand("export", "Write the surface and the taps of a run for other programs");
   sub->add_option("RUN", a.exported.directory, "the run's directory")->required();
-  sub->add_option("--format", a.exported.format, "ply for programs that show meshes, csv for tables")
-      ->required()
-      ->check(CLI::IsMember({"ply", "csv"}));
+  sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
+      ->check(CLI::Validator(
+          [](const std::string& format) -> std::string {
+            if (format == "ply") return {};
+            return format == "csv" ? "the tables are surface.csv (log.surface=true) and taps.csv of the run itself"
+                                   : fmt::format("{} is not known, write ply", format);
+          },
+          "ply"));
   sub->add_option("--to", a.exported.to, "the folder to write into; if not given, export/ of the run");
   does(
       sub, action, [&](Program& program) { return export_run(program, a.exported); },

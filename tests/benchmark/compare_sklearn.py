@@ -37,7 +37,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # W2 is faster in pieces and W3 would need 7 GB.
 WORKLOADS = {"w1": (47, 200, 9, 47 * 47), "w2": (231, 5, 1, 1000), "w3": (461, 3, 1, 1000)}
 ENGINES = {name: ["--engine", name] for name in ("auto", "dense", "grid", "lowrank")}
-ENGINES["lowrank-single"] = ["--engine", "lowrank", "--single"]
 
 
 def taps_file(workload):

@@ -26,7 +26,6 @@ struct Arguments {
   PosteriorSettings::Kind engine = PosteriorSettings::Kind::automatic;
   int repeat = 1;
   int threads = 1;
-  bool single = false;
   bool baseline = false;
   double tolerance = PosteriorSettings{}.tolerance;
   std::string maps;
@@ -57,7 +56,6 @@ void run(const Arguments& arguments) {
   const Candidates candidates = palpate::benchmark::square(arguments.grid);
   PosteriorSettings settings;
   settings.engine = arguments.engine;
-  settings.single = arguments.single;
   settings.tolerance = arguments.tolerance;
   settings.taps = static_cast<int>(taps.places.rows());
   if (arguments.baseline) settings.machine.loops = &simd::baseline();
@@ -110,7 +108,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000));
   app.add_option("--threads", arguments.threads, "")->check(CLI::Range(1, 64));
   app.add_option("--tolerance", arguments.tolerance, "of lowrank");
-  app.add_flag("--single", arguments.single, "lowrank with maps in single precision");
   app.add_flag("--baseline", arguments.baseline, "loops that every x86-64 can run");
   app.add_option("--maps", arguments.maps, "writes the final maps there, as CSV");
   CLI11_PARSE(app, argc, argv);

@@ -26,7 +26,6 @@ constexpr Workload kWorkloads[] = {
 struct Variant {
   const char* name;
   PosteriorSettings::Kind engine;
-  bool single = false;
   int threads = 1;
   bool baseline = false;
 };
@@ -36,13 +35,11 @@ std::vector<Variant> variants() {
   return {{"auto", Kind::automatic},
           {"dense", Kind::dense},
           {"grid", Kind::grid},
-          {"grid/threads:2", Kind::grid, false, 2},
-          {"grid/baseline", Kind::grid, false, 1, true},
+          {"grid/threads:2", Kind::grid, 2},
+          {"grid/baseline", Kind::grid, 1, true},
           {"lowrank", Kind::lowrank},
-          {"lowrank/threads:2", Kind::lowrank, false, 2},
-          {"lowrank/baseline", Kind::lowrank, false, 1, true},
-          {"lowrank/single", Kind::lowrank, true},
-          {"lowrank/single/threads:2", Kind::lowrank, true, 2}};
+          {"lowrank/threads:2", Kind::lowrank, 2},
+          {"lowrank/baseline", Kind::lowrank, 1, true}};
 }
 
 void replay_workload(::benchmark::State& state, const Workload& workload, const Variant& variant) {
@@ -52,7 +49,6 @@ void replay_workload(::benchmark::State& state, const Workload& workload, const 
   const std::shared_ptr<Kernel> kernel = palpate::benchmark::make_kernel();
   PosteriorSettings settings;
   settings.engine = variant.engine;
-  settings.single = variant.single;
   settings.taps = static_cast<int>(taps.places.rows());
   if (variant.baseline) settings.machine.loops = &simd::baseline();
   settings.machine.workers = std::make_shared<Workers>(variant.threads);

@@ -18,8 +18,7 @@ namespace {
 using namespace palpate;
 
 constexpr std::array<int, 3> kSpacings{1, 2, 5};  // mm
-constexpr std::array<std::array<const char*, 2>, 4> kEngines{
-    {{"dense", "double"}, {"grid", "double"}, {"lowrank", "double"}, {"lowrank", "single"}}};
+constexpr std::array<const char*, 3> kEngines{"dense", "grid", "lowrank"};
 
 /// Keeps every record and adds up the seconds.
 class Timer final : public test::Collector {
@@ -43,10 +42,8 @@ struct Outcome {
 };
 
 /// With `past`, those taps instead of own choices.
-Outcome run(std::vector<std::string> overrides, const std::array<const char*, 2>& engine,
-            const std::vector<PastTap>& past = {}) {
-  overrides.insert(overrides.end(),
-                   {std::string("posterior=") + engine[0], std::string("lowrank.precision=") + engine[1]});
+Outcome run(std::vector<std::string> overrides, const std::string& engine, const std::vector<PastTap>& past = {}) {
+  overrides.push_back("posterior=" + engine);
   const ResolvedConfig config = test::shipped_config("paper/object_i_right.yaml", overrides);
   Experiment experiment(config.options, test::shared_host(), nullptr);
   experiment.resume(past);
@@ -101,7 +98,7 @@ void measure(std::ostream& csv, const std::vector<int>& periods, int seeds, int 
     std::fflush(stdout);
     csv << fmt::format("{}\n", fmt::join(cells, ","));
   };
-  line({"engine", "precision", "spacing_mm", "refit_every", "seconds", "infer_s", "acquire_s", "fit_s", "mean_error_m",
+  line({"engine", "spacing_mm", "refit_every", "seconds", "infer_s", "acquire_s", "fit_s", "mean_error_m",
         "variance_error", "error_bound", "rmse_m", "rmse_change_m", "most_change_m", "taps_as_dense"});
   for (const int every : periods) {
     std::vector<double> finest;  // rmse of dense at the least spacing, a seed each
@@ -125,13 +122,12 @@ void measure(std::ostream& csv, const std::vector<int>& periods, int seeds, int 
         Row& row = rows[i];
         const double infer = row.median(Phase::infer), acquire = row.median(Phase::acquire),
                      fit = row.median(Phase::fit);
-        line({kEngines[i][0], kEngines[i][1], fmt::format("{}", spacing),
-              every > 0 ? fmt::format("{}", every) : "never", fmt::format("{:.4f}", infer + acquire + fit),
-              fmt::format("{:.4f}", infer), fmt::format("{:.4f}", acquire), fmt::format("{:.4f}", fit),
-              fmt::format("{:.1e}", row.mean_error), fmt::format("{:.1e}", row.variance_error),
-              fmt::format("{:.1e}", row.error_bound), fmt::format("{:.6f}", row.rmse / seeds),
-              fmt::format("{:+.1e}", row.change / seeds), fmt::format("{:.1e}", row.most_change),
-              fmt::format("{} of {}", row.same, seeds)});
+        line({kEngines[i], fmt::format("{}", spacing), every > 0 ? fmt::format("{}", every) : "never",
+              fmt::format("{:.4f}", infer + acquire + fit), fmt::format("{:.4f}", infer),
+              fmt::format("{:.4f}", acquire), fmt::format("{:.4f}", fit), fmt::format("{:.1e}", row.mean_error),
+              fmt::format("{:.1e}", row.variance_error), fmt::format("{:.1e}", row.error_bound),
+              fmt::format("{:.6f}", row.rmse / seeds), fmt::format("{:+.1e}", row.change / seeds),
+              fmt::format("{:.1e}", row.most_change), fmt::format("{} of {}", row.same, seeds)});
       }
     }
   }
@@ -140,7 +136,7 @@ void measure(std::ostream& csv, const std::vector<int>& periods, int seeds, int 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Engine x precision x spacing of candidates x refits: seconds, error against dense, change in rmse_m");
+  CLI::App app("Engine x spacing of candidates x refits: seconds, error against dense, change in rmse_m");
   bool also_long = false;
   int seeds = 3;
   int taps = 200;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY and CSV as other programs read them.
+// PLY as other programs read it.
 #include "report/exchange/exchange.hpp"
 #include "support/support.hpp"
 
@@ -63,26 +63,6 @@ TEST(SurfacePly, LeavesOutTruthThatIsNotKnownAndFacesThatAreNotThere) {
   const std::string ply = surface_ply({surface_mesh(one, value), value, value, std::nullopt}, "run");
   EXPECT_THAT(ply, Not(HasSubstr("element face")));
   EXPECT_THAT(ply, HasSubstr("end_header\n0.1 0.2 0.5 0 0 1 0.5 0.5\n"));
-}
-
-TEST(SurfaceTable, ReadsBackBitForBit) {
-  const ReconstructedSurface surface = two_by_two(true);
-  const std::vector<test::Cells> rows = test::csv_rows(surface_table(surface));
-  ASSERT_EQ(rows.size(), 4U);
-  for (int i = 0; i < 4; ++i) {
-    const test::Cells& row = rows[static_cast<std::size_t>(i)];
-    EXPECT_EQ(row.size(), 9U);
-    EXPECT_EQ(std::stod(row.at("x")), surface.mesh.points(i, 0));
-    EXPECT_EQ(std::stod(row.at("y")), surface.mesh.points(i, 1));
-    EXPECT_EQ(std::stod(row.at("z")), surface.mesh.points(i, 2));
-    EXPECT_EQ(std::stod(row.at("normal_x")), surface.mesh.normals(i, 0));
-    EXPECT_EQ(std::stod(row.at("normal_y")), surface.mesh.normals(i, 1));
-    EXPECT_EQ(std::stod(row.at("normal_z")), surface.mesh.normals(i, 2));
-    EXPECT_EQ(std::stod(row.at("standard_deviation")), surface.standard_deviation(i));
-    EXPECT_EQ(std::stod(row.at("on_surface_probability")), surface.on_surface_probability(i));
-    EXPECT_EQ(std::stod(row.at("true_height")), (*surface.true_height)(i));
-  }
-  EXPECT_EQ(test::csv_rows(surface_table(two_by_two(false)))[0].count("true_height"), 0U);
 }
 
 TEST(HeaderText, IsOneLineThatEndsNoHeader) {

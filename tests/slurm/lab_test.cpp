@@ -19,14 +19,6 @@ namespace palpate {
 namespace {
 
 using test::eventually;
-using test::job_at;
-using test::on_slurm;
-using test::paper;
-using test::Slurm;
-using test::SlurmLab;
-using test::sweep_in;
-
-namespace fs = std::filesystem;
 
 // 85 s of robot time take half an hour: nobody waits for the end.
 constexpr const char* kForEver = "backend.pace=20";

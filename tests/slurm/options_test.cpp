@@ -8,13 +8,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
 /// The one line with which palpate refuses `words`, having made and begun nothing.
 std::string refusal(std::vector<std::string> words, const std::vector<std::string>& more) {
   const test::TemporaryFolder folder;

@@ -20,23 +20,7 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
 using test::eventually;
-using test::job_at;
-using test::lines;
-using test::on_slurm;
-using test::only_run;
-using test::paper;
-using test::Slurm;
-using test::SlurmLab;
-using test::sweep_in;
-using test::text_of;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
 
 // 85 s of robot time, and with them a job, take about two seconds.
 constexpr const char* kPace = "backend.pace=0.02";

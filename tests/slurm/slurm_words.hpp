@@ -36,3 +36,13 @@ inline std::vector<std::string> on_slurm(std::vector<std::string> words, const s
 }
 
 }  // namespace palpate::test
+
+namespace palpate {
+
+using test::job_at;
+using test::on_slurm;
+using test::Slurm;
+using test::SlurmLab;
+using test::sweep_in;
+
+}  // namespace palpate

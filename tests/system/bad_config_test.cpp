@@ -277,6 +277,8 @@ std::vector<Case> cases() {
       line("NoThreads", "threads: 0", "bad.yaml:10:10: threads: 0 is out of range, it must be at least 1"),
       line("UnknownInstructionSet", "instruction_set: avx",
            "bad.yaml:10:18: instruction_set: unknown value 'avx', known: auto, baseline"),
+      line("LowrankInSinglePrecisionAsOnce", "lowrank: {precision: single}",
+           "bad.yaml:10:22: lowrank.precision: unknown value 'single', known: double"),
       line("LowrankThatKeepsNothing", "lowrank: {tolerance: 0}",
            "bad.yaml:10:22: lowrank.tolerance: 0 is out of range, it must be above 0"),
 

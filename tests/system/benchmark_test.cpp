@@ -10,23 +10,12 @@
 namespace palpate {
 namespace {
 
-using test::Cells;
-using test::compare;
-using test::csv_rows;
-using test::Ended;
-using test::only_run;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 /// The sweep with fewer taps and some of its keys narrowed.
 fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& narrowed, int taps = 20) {
-  std::vector<std::string> words{"sweep", test::config("benchmark/strategies.yaml"), "taps=" + std::to_string(taps),
-                                 "--quiet", "seed=1000,1001"};
-  words.insert(words.end(), narrowed.begin(), narrowed.end());
-  const Ended ended = test::palpate(words, folder.path());
+  const Ended ended = test::palpate(test::plus({"sweep", test::config("benchmark/strategies.yaml"),
+                                                "taps=" + std::to_string(taps), "--quiet", "seed=1000,1001"},
+                                               narrowed),
+                                    folder.path());
   EXPECT_EQ(ended.status, 0) << ended.err;
   return only_run(folder.path() / "runs");
 }
@@ -206,9 +195,7 @@ TEST(Benchmark, RefusesWhatCannotBeShown) {
   const TemporaryFolder folder;
   const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"}, 8);
   const auto refusal = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"--by", "strategy", "--metric", "rmse_m"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Ended ended = compare(folder, directory, words);
+    const Ended ended = compare(folder, directory, test::plus({"--by", "strategy", "--metric", "rmse_m"}, more));
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(ended.out, "");
     return ended.err;

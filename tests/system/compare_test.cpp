@@ -8,21 +8,6 @@
 namespace palpate {
 namespace {
 
-using test::Cells;
-using test::compare;
-using test::csv_rows;
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
-
 /// A sweep of two strategies, two budgets and six seeds.
 fs::path swept(const TemporaryFolder& folder) {
   const Ended ended = test::palpate({"sweep", paper(), "acquisition=uncertainty,weighted", "taps=8,12",

@@ -18,17 +18,6 @@ namespace palpate {
 namespace {
 
 using nlohmann::json;
-using test::config;
-using test::Ended;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-namespace fs = std::filesystem;
 
 std::string printed(const char* format, double value) {
   char text[64];
@@ -53,9 +42,7 @@ class Explain : public ::testing::Test {
  protected:
   fs::path run(const std::vector<std::string>& words, const std::string& file = paper()) {
     const std::string runs = std::to_string(++made_);
-    std::vector<std::string> all{"run", file, "--quiet", "--runs", runs};
-    all.insert(all.end(), words.begin(), words.end());
-    const Ended ended = palpate(all);
+    const Ended ended = palpate(test::plus({"run", file, "--quiet", "--runs", runs}, words));
     EXPECT_EQ(ended.err, "");
     return only_run(folder_.path() / runs);
   }

@@ -12,8 +12,6 @@
 
 namespace palpate::test {
 
-namespace fs = std::filesystem;
-
 using Lines = std::vector<std::vector<double>>;
 
 /// The data blocks of a script by their names; blank lines are left out.
@@ -75,3 +73,16 @@ inline double value_at(const Lines& matrix, double x, double y) {
 }
 
 }  // namespace palpate::test
+
+namespace palpate {
+
+using test::block_or_none;
+using test::blocks_of;
+using test::expect_equal;
+using test::Lines;
+using test::Recorded;
+using test::value_at;
+using testing::_;
+using testing::SizeIs;
+
+}  // namespace palpate

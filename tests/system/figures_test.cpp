@@ -7,33 +7,13 @@
 namespace palpate {
 namespace {
 
-using test::block_or_none;
-using test::blocks_of;
-using test::Cells;
-using test::config;
-using test::csv_rows;
-using test::Ended;
-using test::expect_equal;
-using test::Lines;
-using test::Recorded;
-using test::TemporaryFolder;
-using test::text_of;
-using test::value_at;
-using ::testing::_;
 using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::SizeIs;
-
-namespace fs = std::filesystem;
 
 TEST(Figures, OfASweepWithoutTheJobsSaysInALineEachWhatIsMissing) {
   const TemporaryFolder folder;
   const auto report = [&](const std::string& name, const std::vector<std::string>& axes) {
-    std::vector<std::string> words{"sweep", config("paper/object_i.yaml"), "--quiet", "--runs", name};
-    words.insert(words.end(), axes.begin(), axes.end());
+    const std::vector<std::string> words =
+        test::plus({"sweep", config("paper/object_i.yaml"), "--quiet", "--runs", name}, axes);
     EXPECT_EQ(test::palpate(words, folder.path()).status, 0);
     return test::palpate({"report", test::only_run(folder.path() / name).string(), "--paper"}, folder.path());
   };
@@ -60,9 +40,7 @@ TEST(Figures, OfASweepWithoutTheJobsSaysInALineEachWhatIsMissing) {
 
 /// A run of `words` beside the shipped config, reported with --figures.
 fs::path drawn_run(const TemporaryFolder& folder, const std::vector<std::string>& words) {
-  std::vector<std::string> all{"run", config("paper/object_i.yaml"), "--quiet"};
-  all.insert(all.end(), words.begin(), words.end());
-  const Ended run = test::palpate(all, folder.path());
+  const Ended run = test::palpate(test::plus({"run", config("paper/object_i.yaml"), "--quiet"}, words), folder.path());
   EXPECT_EQ(run.status, 0) << run.err;
   const fs::path directory = test::only_run(folder.path() / "runs");
   const Ended drawn = test::palpate({"report", directory.string(), "--figures"}, folder.path());

@@ -11,18 +11,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-namespace fs = std::filesystem;
-
 /// A short experiment whose expectations begin at line 10.
 std::string gate(const std::string& expect, const std::string& more = "") {
   return "name: gate\ndefaults:\n  - kernel: rbf\n  - acquisition: weighted\n  - fitting: fixed\n  - backend: "

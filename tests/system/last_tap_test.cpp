@@ -13,16 +13,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::only_run;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
-using ::testing::Not;
-
-namespace fs = std::filesystem;
-
 constexpr const char* kReason = "backend/cannot_go_on: the e-stop is pressed";
 
 class ARunWhoseRobotCannotGoOn : public ::testing::Test {

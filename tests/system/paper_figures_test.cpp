@@ -8,26 +8,6 @@
 namespace palpate {
 namespace {
 
-using test::block_or_none;
-using test::blocks_of;
-using test::Cells;
-using test::config;
-using test::csv_rows;
-using test::Ended;
-using test::expect_equal;
-using test::Lines;
-using test::Recorded;
-using test::TemporaryFolder;
-using test::text_of;
-using test::value_at;
-using ::testing::_;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::SizeIs;
-
-namespace fs = std::filesystem;
-
 /// The runs behind the paper's figures, made and drawn once.
 class PaperFigures : public ::testing::Test {
  protected:

@@ -13,26 +13,12 @@
 namespace palpate {
 namespace {
 
-using test::Cells;
-using test::csv_rows;
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
-
 /// A sweep of two strategies, two budgets and some seeds, made once for each test that asks for it.
 fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> words{
-      "sweep",           paper(),  "acquisition=weighted,uncertainty", "taps=8,17", "candidates.count=16",
-      "seed=range(0,4)", "--quiet"};
-  words.insert(words.end(), more.begin(), more.end());
-  const Ended ended = test::palpate(words, folder.path());
+  const Ended ended = test::palpate(test::plus({"sweep", paper(), "acquisition=weighted,uncertainty", "taps=8,17",
+                                                "candidates.count=16", "seed=range(0,4)", "--quiet"},
+                                               more),
+                                    folder.path());
   EXPECT_EQ(ended.status, 0) << ended.err;
   return only_run(folder.path() / "runs");
 }
@@ -40,9 +26,8 @@ fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& mo
 Ended pareto(const TemporaryFolder& folder, const fs::path& directory, const std::string& cost,
              const std::string& error, const std::vector<std::string>& more = {},
              const std::vector<std::string>& environment = {}) {
-  std::vector<std::string> words{"pareto", directory.string(), "--cost", cost, "--error", error};
-  words.insert(words.end(), more.begin(), more.end());
-  return test::palpate(words, folder.path(), environment);
+  return test::palpate(test::plus({"pareto", directory.string(), "--cost", cost, "--error", error}, more),
+                       folder.path(), environment);
 }
 
 std::uint32_t big_endian(const std::string& bytes, std::size_t at) {

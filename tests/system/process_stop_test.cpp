@@ -20,13 +20,7 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
 using test::eventually;
-using test::text_of;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
 
 /// A program that notes its start and end and each tap that it is asked for, before anything else, in notes.txt.
 constexpr const char* kNotes = R"(
@@ -44,10 +38,9 @@ class ARobotsRun : public testing::Test {
   /// The words of a run on a program of this body, behind kNotes, whose taps cannot be repeated.
   std::vector<std::string> run(const std::string& body, const std::vector<std::string>& more = {}) const {
     const std::string program = folder_.write("program.py", test::python(kNotes + body)).string();
-    std::vector<std::string> out{"run", test::config("process.yaml"), "backend.command=python3 -SE '" + program + "'",
-                                 "backend.repeatable=false", "--quiet"};
-    out.insert(out.end(), more.begin(), more.end());
-    return out;
+    return test::plus({"run", test::config("process.yaml"), "backend.command=python3 -SE '" + program + "'",
+                       "backend.repeatable=false", "--quiet"},
+                      more);
   }
 
   Ended palpate(const std::vector<std::string>& words) const { return test::palpate(words, folder_.path()); }

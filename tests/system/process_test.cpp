@@ -16,17 +16,7 @@
 namespace palpate {
 namespace {
 
-using test::Cells;
-using test::config;
-using test::csv_rows;
-using test::Ended;
 using test::eventually;
-using test::only_run;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
 
 class ProcessRun : public testing::Test {
  protected:
@@ -36,9 +26,7 @@ class ProcessRun : public testing::Test {
   }
 
   std::vector<std::string> run(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"run", config("process.yaml"), "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return test::plus({"run", config("process.yaml"), "--quiet"}, more);
   }
 
   fs::path directory() const { return only_run(folder_.path() / "runs"); }

@@ -12,16 +12,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 /// A config of so many objects at one place.
 std::string many_objects(int count) {
   std::string text =

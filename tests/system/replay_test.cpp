@@ -12,16 +12,6 @@
 namespace palpate {
 namespace {
 
-using test::config;
-using test::Ended;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 TEST(Replay, FindsEveryNumberEqual) {
   const TemporaryFolder folder;
   for (const char* acquisition : {"weighted", "uncertainty", "random"}) {
@@ -136,8 +126,7 @@ TEST(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {
 TEST(Earlier, SummariesHaveTheModelsThatABackendReadsWhereNoTruthIsKnown) {
   const TemporaryFolder folder;
   const std::vector<std::string> words{config("process.yaml"), "backend.motion.adaptive_hover={}", "name=early"};
-  std::vector<std::string> sweep{"sweep"};
-  sweep.insert(sweep.end(), words.begin(), words.end());
+  const std::vector<std::string> sweep = test::plus({"sweep"}, words);
   sweep.insert(sweep.end(), {"acquisition=random,grid", "taps=8", "--quiet"});
   ASSERT_EQ(test::palpate(sweep, folder.path()).status, 0);
   const fs::path directory = only_run(folder.path() / "runs");

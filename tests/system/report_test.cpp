@@ -11,14 +11,6 @@ namespace palpate {
 namespace {
 
 using nlohmann::json;
-using test::Ended;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
 
 /// The data of a page, unpacked by other hands.
 json data_of(const fs::path& page, const TemporaryFolder& folder) {

@@ -12,16 +12,6 @@
 namespace palpate {
 namespace {
 
-using test::config;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 TEST(Run, GivesTheSameBytesUnderTheSameIdOnAnyNumberOfThreads) {
   for (const char* posterior : {"posterior=dense", "posterior=grid", "posterior=lowrank"}) {
     const TemporaryFolder folder;

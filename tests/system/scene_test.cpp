@@ -8,11 +8,6 @@
 namespace palpate {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
-
-namespace fs = std::filesystem;
-
 TEST(Scenes, ThatAreShippedRunWithinThePapersBudget) {
   const test::TemporaryFolder folder;
   for (const auto& entry : fs::directory_iterator(test::source_folder() / "configs/scene")) {

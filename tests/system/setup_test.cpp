@@ -16,14 +16,8 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-using test::Ended;
-using test::text_of;
-using ::testing::HasSubstr;
-
 using test::Child;
 using test::Terminal;
-using ::testing::Not;
 
 /// A source tree of nothing but the scripts, and a PATH of nothing but what they use.
 class SetUp : public ::testing::Test {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What the tests of the commands share: shipped configs by name, lines counted, sweeps compared.
+// What the tests of the commands share: shipped configs by name, lines counted, sweeps compared, and the short names of
+// what nearly every one of them says.
 #pragma once
 
 #include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -17,12 +21,41 @@ inline std::string paper() { return config("paper/object_i.yaml"); }
 
 inline int lines(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
+/// `words` and `more` behind them.
+inline std::vector<std::string> plus(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 /// `palpate compare` of a sweep, with these words behind it.
 inline Ended compare(const TemporaryFolder& folder, const std::filesystem::path& directory,
                      const std::vector<std::string>& more) {
-  std::vector<std::string> words{"compare", directory.string()};
-  words.insert(words.end(), more.begin(), more.end());
-  return palpate(words, folder.path());
+  return palpate(plus({"compare", directory.string()}, more), folder.path());
 }
 
 }  // namespace palpate::test
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+using test::Cells;
+using test::compare;
+using test::config;
+using test::csv_rows;
+using test::Ended;
+using test::lines;
+using test::only_run;
+using test::paper;
+using test::TemporaryFolder;
+using test::text_of;
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::StartsWith;
+
+}  // namespace palpate

@@ -14,17 +14,7 @@
 namespace palpate {
 namespace {
 
-using test::Cells;
-using test::config;
-using test::csv_rows;
-using test::Ended;
-using test::only_run;
 using test::Terminal;
-using test::text_of;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
 
 constexpr const char* kQuestion = "Enter taps, q ends: ";
 
@@ -38,11 +28,9 @@ class StepRun : public testing::Test {
 
   /// Four taps of a program that is taken for a robot, two of them of the initial design.
   std::vector<std::string> run(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{
-        "run",    config("process.yaml"), "backend.command=python3 -SE program.py", "backend.repeatable=false",
-        "taps=4", "initial.count=2"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return test::plus({"run", config("process.yaml"), "backend.command=python3 -SE program.py",
+                       "backend.repeatable=false", "taps=4", "initial.count=2"},
+                      more);
   }
   std::vector<std::string> resume() const { return {"resume", directory().string()}; }
 

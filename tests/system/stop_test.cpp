@@ -13,17 +13,6 @@
 namespace palpate {
 namespace {
 
-using test::config;
-using test::Ended;
-using test::only_run;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
-using ::testing::Not;
-
-namespace fs = std::filesystem;
-
 TEST(Stop, AtTheExpectedErrorIsInTheRecordAndReplayed) {
   const TemporaryFolder folder;
   const Ended run = test::palpate(

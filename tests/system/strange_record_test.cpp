@@ -16,23 +16,12 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 class AStrangeRecord : public ::testing::Test {
  protected:
   Ended palpate(const std::vector<std::string>& words) const { return test::palpate(words, folder_.path()); }
 
   fs::path ran(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"run", paper(), "taps=6", "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
+    const std::vector<std::string> words = test::plus({"run", paper(), "taps=6", "--quiet"}, more);
     EXPECT_EQ(palpate(words).err, "");
     return only_run(folder_.path() / "runs");
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files of a sweep that were changed or damaged: of the whole it is refused, of one job it costs that job alone.
-#include "record/json.hpp"
-#include "system/shipped.hpp"
+#include "system/one_sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,36 +10,9 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::AllOf;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
-
-class DamagedSweep : public testing::Test {
+class DamagedSweep : public test::OneSweep {
  protected:
-  void SetUp() override {
-    ASSERT_EQ(palpate({"sweep", paper(), "taps=4", "seed=range(0,4)", "--quiet"}).status, 0);
-    directory_ = only_run(folder_.path() / "runs");
-  }
-  Ended palpate(const std::vector<std::string>& words) const { return test::palpate(words, folder_.path()); }
-  Ended resume(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"resume", directory_.string(), "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    return palpate(words);
-  }
-  fs::path job(int index) const {
-    const std::vector<Row> rows = read_json_lines(directory_ / "manifest.jsonl").rows;
-    return directory_ / "jobs" / std::get<std::string>(*rows.at(static_cast<std::size_t>(index)).find("id"));
-  }
+  void SetUp() override { ASSERT_EQ(palpate({"sweep", paper(), "taps=4", "seed=range(0,4)", "--quiet"}).status, 0); }
   void write(const fs::path& file, const std::string& text) const {
     folder_.write(fs::relative(file, folder_.path()).string(), text);
   }
@@ -51,23 +23,19 @@ class DamagedSweep : public testing::Test {
     ASSERT_NE(at, std::string::npos) << part;
     write(file, all.replace(at, part.size(), text));
   }
-  std::string status() const { return palpate({"status", directory_.string()}).out; }
-
-  TemporaryFolder folder_;
-  fs::path directory_;
 };
 
 TEST_F(DamagedSweep, IsRefusedByEveryCommandWhereItsManifestWasChanged) {
-  const std::string whole = text_of(directory_ / "manifest.jsonl");
-  const std::string results = text_of(directory_ / "results.csv");
+  const std::string whole = text_of(directory() / "manifest.jsonl");
+  const std::string results = text_of(directory() / "results.csv");
   const std::string id = job(0).filename().string();
   const std::vector<std::pair<std::string, std::string>> changes{{"\"value_0\"", "\"walue_0\""},
                                                                  {"\"value_1\": \"0\"", "\"value_1\": \"9\""},
                                                                  {"\"key_1\": \"seed\"", "\"key_1\": \"sped\""},
                                                                  {id, "../../victim"}};
   for (const auto& [part, text] : changes) {
-    replace(directory_ / "manifest.jsonl", part, text);
-    const std::string at = directory_.string();
+    replace(directory() / "manifest.jsonl", part, text);
+    const std::string at = directory().string();
     for (const std::vector<std::string>& words :
          std::vector<std::vector<std::string>>{{"status", at},
                                                {"resume", at},
@@ -77,12 +45,12 @@ TEST_F(DamagedSweep, IsRefusedByEveryCommandWhereItsManifestWasChanged) {
       const Ended ended = palpate(words);
       EXPECT_EQ(ended.status, 2) << words.front() << ": " << text;
       EXPECT_EQ(lines(ended.err), 1) << ended.err;
-      EXPECT_THAT(ended.err, HasSubstr(directory_.string()));
+      EXPECT_THAT(ended.err, HasSubstr(directory().string()));
     }
-    write(directory_ / "manifest.jsonl", whole);
+    write(directory() / "manifest.jsonl", whole);
   }
-  EXPECT_EQ(text_of(directory_ / "results.csv"), results);
-  EXPECT_FALSE(fs::exists(directory_.parent_path() / "victim"));
+  EXPECT_EQ(text_of(directory() / "results.csv"), results);
+  EXPECT_FALSE(fs::exists(directory().parent_path() / "victim"));
 }
 
 /// A file of one job, and what stands there instead.
@@ -111,10 +79,10 @@ TEST_P(DamagedJob, FailsAloneIsNamedAndIsCarriedOnOnceItWasPutRight) {
                                Not(HasSubstr("failed: job 2")), Not(HasSubstr("failed: job 3"))));
   EXPECT_EQ(ended.err, "");
   EXPECT_THAT(status(), AllOf(StartsWith("4 jobs, 3 done, 0 running, 1 failed"), HasSubstr(GetParam().file)));
-  EXPECT_EQ(lines(text_of(directory_ / "results.csv")), 5);
+  EXPECT_EQ(lines(text_of(directory() / "results.csv")), 5);
   EXPECT_EQ(text_of(job(2) / "taps.csv"), taps[2]);
   EXPECT_EQ(text_of(job(0) / GetParam().file), GetParam().text) << "nothing of it is overwritten";
-  for (const char* command : {"report", "status"}) EXPECT_EQ(palpate({command, directory_.string()}).status, 0);
+  for (const char* command : {"report", "status"}) EXPECT_EQ(palpate({command, directory().string()}).status, 0);
 
   const std::string file = GetParam().file;
   if (file == "summary.json") {
@@ -147,7 +115,7 @@ TEST_F(DamagedSweep, CountsAsFailedWhatCouldNotEvenRecordItsFailure) {
     for (const char* name : {"summary.json", "taps.jsonl", "attempts.jsonl"}) fs::remove(job(i) / name);
   }
   // No file may grow, as on a full disk; what is said goes into a pipe.
-  const std::string words = test::program_file().string() + " resume " + directory_.string();
+  const std::string words = test::program_file().string() + " resume " + directory().string();
   const Ended ended = test::run_program(
       {"/bin/sh", "-c", "( trap '' XFSZ; ulimit -f 0; " + words + " || echo refused ) 2>&1 | cat"}, folder_.path());
   EXPECT_THAT(ended.out, AllOf(HasSubstr("job 3: "), HasSubstr("cannot be written: File too large"),

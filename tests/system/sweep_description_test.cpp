@@ -10,17 +10,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 using Words = std::vector<std::string>;
 
 /// What `--list` prints without job numbers and ids.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a sweep survives: jobs that crash, are killed or fail, launchers that are killed, several at once, changed
 // files.
-#include "record/json.hpp"
 #include "support/programs.hpp"
-#include "system/shipped.hpp"
+#include "system/one_sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,36 +13,14 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
 using test::eventually;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
-namespace fs = std::filesystem;
-
-class Recovery : public testing::Test {
+class Recovery : public test::OneSweep {
  protected:
-  fs::path directory() const { return only_run(folder_.path() / "runs"); }
-  fs::path job(int index) const {
-    const std::vector<Row> rows = read_json_lines(directory() / "manifest.jsonl").rows;
-    return directory() / "jobs" / std::get<std::string>(*rows.at(static_cast<std::size_t>(index)).find("id"));
+  Recovery() { has_plugins_of("dies"); }
+  void has_plugins_of(const char* name) {
+    environment_ = {"PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder(name).string()};
   }
-  Ended palpate(const std::vector<std::string>& words) const {
-    return test::palpate(words, folder_.path(), {plugins_});
-  }
-  Ended resume(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"resume", directory().string(), "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    return palpate(words);
-  }
-  std::string status() const { return palpate({"status", directory().string()}).out; }
 
   /// How often a job was begun.
   int attempts(int index) const {
@@ -104,9 +81,6 @@ class Recovery : public testing::Test {
       EXPECT_TRUE(text_of(job(i) / "taps.csv") == text_of(other / "taps.csv")) << "job " << i;
     }
   }
-
-  TemporaryFolder folder_;
-  std::string plugins_ = "PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("dies").string();
 };
 
 TEST_F(Recovery, ASweepWhoseDirectoryIsMovedOrRemovedStopsAndSaysWhatToDo) {
@@ -283,7 +257,7 @@ TEST_F(Recovery, HalfALineInTheListOfAttemptsDoesNoHarm) {
 }
 
 TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
-  plugins_ = "PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("cannot_go_on").string();
+  has_plugins_of("cannot_go_on");
   const Ended ended = palpate({"sweep", paper(), "backend=cannot_go_on", "taps=4", "seed=range(0,3)", "-j", "2"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, AllOf(HasSubstr("one job at a time"), Not(HasSubstr("2 running"))));

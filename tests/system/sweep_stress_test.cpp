@@ -22,12 +22,6 @@
 namespace palpate {
 namespace {
 
-using test::lines;
-using test::TemporaryFolder;
-using test::text_of;
-
-namespace fs = std::filesystem;
-
 constexpr int kTaps = 8;
 
 /// The processes that `pid` has begun and that are still there.

@@ -14,18 +14,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::lines;
-using test::only_run;
-using test::paper;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
-
 TEST(Sweep, WritesOneRowAJobAndListsItsJobsBeforehand) {
   const TemporaryFolder folder;
   const std::vector<std::string> words{"sweep", paper(), "acquisition=weighted,random",

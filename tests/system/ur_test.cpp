@@ -13,16 +13,7 @@
 namespace palpate {
 namespace {
 
-using test::Cells;
-using test::csv_rows;
-using test::Ended;
 using test::eventually;
-using test::text_of;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-namespace fs = std::filesystem;
 
 class UrArm : public testing::Test {
  protected:

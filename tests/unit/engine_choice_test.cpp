@@ -80,20 +80,6 @@ TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
   EXPECT_LT(process.error_bound(), 1e-9);
 }
 
-TEST(Lowrank, InSinglePrecisionIsExactToFiveDigits) {
-  const Data data = draw(60);
-  const Candidates candidates = grid(60, 40);
-  const Process exact = processed(data, candidates, settings_of(Kind::dense));
-  PosteriorSettings settings = settings_of(Kind::lowrank);
-  settings.single = true;
-  const Process process = processed(data, candidates, settings);
-  EXPECT_LT(apart(process.mean(0), exact.mean(0)), 1e-4);
-  EXPECT_LT(apart(process.relative_variance(), exact.relative_variance()), 1e-5);
-  EXPECT_GT(apart(process.relative_variance(), exact.relative_variance()), 1e-9) << "single precision it is";
-  EXPECT_GE(process.error_bound(), apart(process.relative_variance(), exact.relative_variance()));
-  EXPECT_GE(process.error_bound(), apart(process.mean(0), exact.mean(0)) / 2.0);
-}
-
 TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
   const Candidates square = grid(30, 30);
   const Candidates any = scattered(Points::Random(20, 2));

@@ -31,33 +31,20 @@ class Loops : public testing::TestWithParam<const Table*> {
  protected:
   const Table& table() const { return *GetParam(); }
   double draw() { return random_.uniform() - 0.5; }
-  template <class Real>
-  Lines<Real> drawn(std::size_t size) {
-    Lines<Real> out(size);
-    for (std::size_t i = 0; i < size; ++i) out.data()[i] = static_cast<Real>(draw());
+  Lines drawn(std::size_t size) {
+    Lines out(size);
+    for (std::size_t i = 0; i < size; ++i) out.data()[i] = draw();
     return out;
   }
 
   Random random_{3, "simd_test"};
 };
 
-template <class Real>
-const Functions<Real>& functions(const Table& table);
-template <>
-const Functions<double>& functions<double>(const Table& table) {
-  return table.f64;
-}
-template <>
-const Functions<float>& functions<float>(const Table& table) {
-  return table.f32;
-}
-
 /// A product of a shape, and what it is, cell by cell in the order of table.hpp.
-template <class Real>
 struct Trial {
   Trial(int rows, int columns, int depth, Random& random)
-      : a(static_cast<std::size_t>(rows * depth * kStripRows)), b(columns, kPanelLines * kLine<Real>, kLine<Real>) {
-    for (std::size_t i = 0; i < a.size(); ++i) a.data()[i] = static_cast<Real>(random.uniform() - 0.5);
+      : a(static_cast<std::size_t>(rows * depth * kStripRows)), b(columns, kPanelLines * kLine, kLine) {
+    for (std::size_t i = 0; i < a.size(); ++i) a.data()[i] = random.uniform() - 0.5;
     std::vector<double> row(static_cast<std::size_t>(columns));
     b.reserve(depth);
     for (int k = 0; k < depth; ++k) {
@@ -65,16 +52,16 @@ struct Trial {
       b.append(row.data());
     }
     const auto a_stride = static_cast<std::size_t>(depth) * kStripRows;
-    product = {a.data(), a_stride, rows, b.panel(0), b.stride(), depth, b.padded() / kLine<Real>};
+    product = {a.data(), a_stride, rows, b.panel(0), b.stride(), depth, b.padded() / kLine};
     for (int strip = 0; strip < rows; ++strip) {
       for (int panel = 0; panel < b.panels(); ++panel) {
         for (int i = 0; i < kStripRows; ++i) {
           for (int j = 0; j < b.width(panel); ++j) {
             double sum = 0.0;
             for (int k = 0; k < depth; ++k) {
-              const Real left =
+              const double left =
                   a.data()[static_cast<std::size_t>(strip) * a_stride + static_cast<std::size_t>(k * kStripRows + i)];
-              sum += static_cast<double>(left) * static_cast<double>(b.row(panel, k)[j]);
+              sum += left * b.row(panel, k)[j];
             }
             expected.push_back(sum);
           }
@@ -84,25 +71,23 @@ struct Trial {
   }
   int tiles() const { return product.strips * b.panels(); }
 
-  Lines<Real> a;
-  Panels<Real> b;
-  Product<Real> product;
+  Lines a;
+  Panels b;
+  Product product;
   std::vector<double> expected;
 };
 
-template <class Real>
-constexpr double kUlp = static_cast<double>(std::numeric_limits<Real>::epsilon());
+constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
-template <class Real>
 void expect_product(const Table& table, Random& random) {
   for (const int columns : {1, 8, 17, 47, 64, 100}) {
     for (const int depth : {0, 1, 5, 40}) {
       for (const int strips : {1, 3}) {
-        const Trial<Real> trial(strips, columns, depth, random);
-        Lines<Real> c(trial.expected.size());
-        functions<Real>(table).multiply(trial.product, c.data());
+        const Trial trial(strips, columns, depth, random);
+        Lines c(trial.expected.size());
+        table.multiply(trial.product, c.data());
         for (std::size_t i = 0; i < trial.expected.size(); ++i) {
-          ASSERT_NEAR(static_cast<double>(c.data()[i]), trial.expected[i], (depth + 1) * 0.25 * depth * kUlp<Real>)
+          ASSERT_NEAR(c.data()[i], trial.expected[i], (depth + 1) * 0.25 * depth * kUlp)
               << columns << " columns, depth " << depth << ", cell " << i;
         }
       }
@@ -110,49 +95,45 @@ void expect_product(const Table& table, Random& random) {
   }
 }
 
-TEST_P(Loops, MultiplyAsWrittenDown) {
-  expect_product<double>(table(), random_);
-  expect_product<float>(table(), random_);
-}
+TEST_P(Loops, MultiplyAsWrittenDown) { expect_product(table(), random_); }
 
-template <class Real>
 void expect_update(const Table& table, Random& random, Score score) {
-  const Trial<Real> trial(2, 77, 9, random);
+  const Trial trial(2, 77, 9, random);
   const std::size_t cells = trial.expected.size();
   const auto map = [&] {
-    Lines<Real> out(cells);
-    for (std::size_t i = 0; i < cells; ++i) out.data()[i] = static_cast<Real>(random.uniform());
+    Lines out(cells);
+    for (std::size_t i = 0; i < cells; ++i) out.data()[i] = random.uniform();
     return out;
   };
-  std::array<Lines<Real>, 2> means{map(), map()};
-  Lines<Real> variance = map();
+  std::array<Lines, 2> means{map(), map()};
+  Lines variance = map();
   std::vector<double> mean_0(means[0].data(), means[0].data() + cells);
   std::vector<double> mean_1(means[1].data(), means[1].data() + cells);
   std::vector<double> left(variance.data(), variance.data() + cells);
-  std::vector<Real> best(static_cast<std::size_t>(trial.tiles()), Real{-7});
-  Update<Real> update{};
+  std::vector<double> best(static_cast<std::size_t>(trial.tiles()), -7);
+  Update update{};
   update.means = 2;
-  update.coefficient[0] = Real{0.75};
-  update.coefficient[1] = Real{-1.25};
+  update.coefficient[0] = 0.75;
+  update.coefficient[1] = -1.25;
   update.mean[0] = means[0].data();
   update.mean[1] = means[1].data();
   update.variance = variance.data();
   update.score = score;
-  update.scale = Real{3.0};
-  update.shift = Real{-0.5};
+  update.scale = 3.0;
+  update.shift = -0.5;
   update.best = best.data();
-  functions<Real>(table).absorb_product(trial.product, update);
+  table.absorb_product(trial.product, update);
 
-  const double bound = 40 * kUlp<Real>;
+  const double bound = 40 * kUlp;
   std::vector<double> scores(cells);
   for (std::size_t i = 0; i < cells; ++i) {
     const double v = trial.expected[i];
-    ASSERT_NEAR(static_cast<double>(means[0].data()[i]), mean_0[i] + 0.75 * v, bound);
-    ASSERT_NEAR(static_cast<double>(means[1].data()[i]), mean_1[i] - 1.25 * v, bound);
-    ASSERT_NEAR(static_cast<double>(variance.data()[i]), left[i] - v * v, bound);
-    double weight = score == Score::variance ? 1.0 : 3.0 * static_cast<double>(means[1].data()[i]) - 0.5;
+    ASSERT_NEAR(means[0].data()[i], mean_0[i] + 0.75 * v, bound);
+    ASSERT_NEAR(means[1].data()[i], mean_1[i] - 1.25 * v, bound);
+    ASSERT_NEAR(variance.data()[i], left[i] - v * v, bound);
+    double weight = score == Score::variance ? 1.0 : 3.0 * means[1].data()[i] - 0.5;
     if (score == Score::weighted_clipped) weight = std::min(std::max(weight, 0.0), 1.0);
-    scores[i] = std::max(0.0, static_cast<double>(variance.data()[i])) * weight;
+    scores[i] = std::max(0.0, variance.data()[i]) * weight;
   }
   std::size_t first = 0;
   for (int tile = 0; tile < trial.tiles(); ++tile) {
@@ -160,32 +141,31 @@ void expect_update(const Table& table, Random& random, Score score) {
     const auto from = scores.begin() + static_cast<std::ptrdiff_t>(first);
     const double expected =
         score == Score::none ? -7.0 : *std::max_element(from, from + static_cast<std::ptrdiff_t>(size));
-    ASSERT_NEAR(static_cast<double>(best[static_cast<std::size_t>(tile)]), expected, bound) << "tile " << tile;
+    ASSERT_NEAR(best[static_cast<std::size_t>(tile)], expected, bound) << "tile " << tile;
     first += size;
   }
 }
 
 TEST_P(Loops, UpdateTheMapsAndTellTheBestScoreOfEveryTile) {
   for (const Score score : {Score::none, Score::variance, Score::weighted, Score::weighted_clipped}) {
-    expect_update<double>(table(), random_, score);
-    expect_update<float>(table(), random_, score);
+    expect_update(table(), random_, score);
   }
 }
 
 TEST_P(Loops, UpdateADensePieceByAllItsRows) {
   for (const int depth : {0, 1, 7, 8, 9, 30}) {
-    Lines<double> rows = drawn<double>(static_cast<std::size_t>(kPiece * (depth + 1)));
-    const Lines<double> factor = drawn<double>(static_cast<std::size_t>(depth + 1));
+    Lines rows = drawn(static_cast<std::size_t>(kPiece * (depth + 1)));
+    const Lines factor = drawn(static_cast<std::size_t>(depth + 1));
     using Rows = Eigen::Matrix<double, kPiece, Eigen::Dynamic>;
     const Rows all = Eigen::Map<const Rows>(rows.data(), kPiece, depth + 1);
     const Eigen::Map<const Eigen::VectorXd> l(factor.data(), depth);
     const Eigen::VectorXd v = (all.col(depth) - all.leftCols(depth) * l) / 1.75;
-    Lines<double> mean = drawn<double>(kPiece);
-    Lines<double> variance = drawn<double>(kPiece);
+    Lines mean = drawn(kPiece);
+    Lines variance = drawn(kPiece);
     const Eigen::VectorXd mean_before = Eigen::Map<Eigen::VectorXd>(mean.data(), kPiece);
     const Eigen::VectorXd variance_before = Eigen::Map<Eigen::VectorXd>(variance.data(), kPiece);
     double best = 0.0;
-    Update<double> update{};
+    Update update{};
     update.means = 1;
     update.coefficient[0] = 0.5;
     update.mean[0] = mean.data();
@@ -206,7 +186,7 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
 TEST_P(Loops, SolveATriangleOfAnySize) {
   for (const int n : {0, 1, 2, 7, 8, 9, 16, 40, 61}) {
     Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(n, n);
-    Lines<double> packed(packed_row(round_up(n, kLine<double>)) + 1);
+    Lines packed(packed_row(round_up(n, kLine)) + 1);
     for (int i = 0; i < n; ++i) {
       for (int k = 0; k <= i; ++k) {
         lower(i, k) = i == k ? 2.0 + draw() : draw();
@@ -215,7 +195,7 @@ TEST_P(Loops, SolveATriangleOfAnySize) {
     }
     Eigen::VectorXd right(n);
     for (double& one : right) one = draw();
-    Lines<double> x(static_cast<std::size_t>(round_up(n + 1, kLine<double>)));
+    Lines x(static_cast<std::size_t>(round_up(n + 1, kLine)));
     const auto residual = [&](const Eigen::MatrixXd& matrix) {
       return n == 0 ? 0.0 : (matrix * Eigen::Map<Eigen::VectorXd>(x.data(), n) - right).cwiseAbs().maxCoeff();
     };
@@ -241,7 +221,7 @@ TEST(InstructionSet, TheBaselineAlwaysRunsAndTheFastestIsOneThatDoes) {
 }
 
 TEST(Panels, KeepTheirRowsWhenTheyGrow) {
-  Panels<double> panels(53, 24, 8);
+  Panels panels(53, 24, 8);
   std::vector<double> row(53);
   for (int i = 0; i < 100; ++i) {
     for (int j = 0; j < 53; ++j) row[static_cast<std::size_t>(j)] = 1000.0 * i + j;

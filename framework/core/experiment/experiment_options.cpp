@@ -80,10 +80,9 @@ void LowrankOptions::list(Fields& fields) {
                   .above(0)
                   .at_most(1)
                   .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
-  fields.choice(
-      precision, Field("precision", "of the maps over the candidates"),
-      {{"double", "as everywhere", {}},
-       {"single", "half the memory, errors near 1e-6; other taps, too, unless tie_tolerance is 1e-5 or more", {}}});
+  // There was another one: all records have this key, and it enters their ids.
+  std::size_t precision = 0;
+  fields.choice(precision, Field("precision", "of the maps over the candidates"), {{"double", "the only one", {}}});
 }
 
 void StopOptions::list(Fields& fields) {

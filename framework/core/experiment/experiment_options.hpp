@@ -51,9 +51,7 @@ struct WeightOptions : Options {
 
 /// Of the posterior engine `lowrank`.
 struct LowrankOptions : Options {
-  enum class Precision { full, single };
   double tolerance = 1e-15;
-  Precision precision = Precision::full;
   void list(Fields& fields) override;
 };
 

@@ -27,7 +27,6 @@ PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   out.engine = static_cast<PosteriorSettings::Kind>(options.posterior);
   out.accuracy = std::min(options.accuracy, 0.1 * options.tie_tolerance);
   out.tolerance = options.lowrank.tolerance;
-  out.single = options.lowrank.precision == LowrankOptions::Precision::single;
   out.taps = static_cast<int>(options.taps);
   out.machine.loops = &loops_of(options);
   out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.threads));

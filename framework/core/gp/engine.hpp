@@ -60,9 +60,6 @@ class Engine {
   /// leaves away, beyond what the kernel itself may be off by rounding.
   virtual double covariance_error() const { return 0.0; }
 
-  /// The unit roundoff of the maps where that is not of double precision, else 0.
-  virtual double rounding() const { return 0.0; }
-
   virtual const Maps& maps() const = 0;
 };
 
@@ -70,9 +67,8 @@ class Engine {
 /// latter two need a separable kernel and a product grid.
 std::unique_ptr<Engine> make_dense(const Machine&, const Kernel& kernel, const Candidates& candidates);
 std::unique_ptr<Engine> make_grid(const Machine&, const Kernel& kernel, const Candidates& candidates);
-/// Directions whose share of a covariance is below `tolerance` are left out; `single` keeps the maps in single
-/// precision.
+/// Directions whose share of a covariance is below `tolerance` are left out.
 std::unique_ptr<Engine> make_lowrank(const Machine&, const Kernel& kernel, const Candidates& candidates,
-                                     double tolerance, bool single);
+                                     double tolerance);
 
 }  // namespace palpate

@@ -47,8 +47,8 @@ class Dense final : public Engine {
   Machine machine_;
   const Kernel& kernel_;
   const Candidates& candidates_;
-  TiledMaps<double> maps_;
-  simd::Panels<double> rows_;  ///< V, a piece of the candidates a panel
+  Maps maps_;
+  simd::Panels rows_;  ///< V, a piece of the candidates a panel
 };
 
 }  // namespace

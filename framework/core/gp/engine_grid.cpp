@@ -4,6 +4,8 @@
 namespace palpate {
 namespace {
 
+using simd::kLine;
+
 /// Strips that share what they read of the columns' covariances, and the work of one piece for the workers.
 constexpr int kGroup = 4;
 
@@ -13,7 +15,7 @@ class Grid final : public Engine {
       : machine_(machine),
         kernel_(kernel),
         candidates_(candidates),
-        maps_(Tiling::grid(candidates, kLine)),
+        maps_(Tiling::grid(candidates)),
         along_x_(candidates.columns, simd::kPanelLines * kLine, kLine),
         along_y_(candidates.rows, simd::kStripRows, simd::kStripRows),
         column_(std::max(candidates.columns, candidates.rows)),
@@ -23,7 +25,7 @@ class Grid final : public Engine {
   void reserve(int rows) override {
     along_x_.reserve(rows);
     along_y_.reserve(rows);
-    for (simd::Lines<double>& one : scaled_) one = simd::Lines<double>(scaled_size(rows));
+    for (simd::Lines& one : scaled_) one = simd::Lines(scaled_size(rows));
   }
   bool needs_inverse() const override { return true; }
 
@@ -38,7 +40,7 @@ class Grid final : public Engine {
     append(1, candidates_.ys, row, along_y_);
     const int depth = along_x_.rows();
     if (scaled_.front().size() < scaled_size(depth)) {
-      for (simd::Lines<double>& one : scaled_) one = simd::Lines<double>(scaled_size(2 * depth));
+      for (simd::Lines& one : scaled_) one = simd::Lines(scaled_size(2 * depth));
     }
     const int strips = maps_.tiling().strips();
     machine_.workers->for_each((strips + kGroup - 1) / kGroup, [&](int group, int worker) {
@@ -49,7 +51,7 @@ class Grid final : public Engine {
       for (int i = 0; i < count; ++i) {
         scale(along_y_.panel(first + i), row.inverse, a + static_cast<std::size_t>(i) * a_stride);
       }
-      machine_.loops->f64.absorb_product(
+      machine_.loops->absorb_product(
           {a, a_stride, count, along_x_.panel(0), along_x_.stride(), depth, along_x_.padded() / kLine},
           maps_.update(first, row.coefficients, rule));
     });
@@ -58,11 +60,9 @@ class Grid final : public Engine {
   const Maps& maps() const override { return maps_; }
 
  private:
-  static constexpr int kLine = simd::kLine<double>;
-
   static std::size_t scaled_size(int rows) { return static_cast<std::size_t>(rows) * simd::kStripRows * kGroup; }
 
-  void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, simd::Panels<double>& to) {
+  void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, simd::Panels& to) {
     auto column = column_.head(places.size());
     kernel_.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), column);
     to.append(column.data());
@@ -78,11 +78,11 @@ class Grid final : public Engine {
   Machine machine_;
   const Kernel& kernel_;
   const Candidates& candidates_;
-  TiledMaps<double> maps_;
-  simd::Panels<double> along_x_;  ///< f_x(x_i, X), a tap a row
-  simd::Panels<double> along_y_;  ///< f_y(y_i, Y), a strip a panel
+  Maps maps_;
+  simd::Panels along_x_;  ///< f_x(x_i, X), a tap a row
+  simd::Panels along_y_;  ///< f_y(y_i, Y), a strip a panel
   Eigen::VectorXd column_;
-  std::vector<simd::Lines<double>> scaled_;  ///< one a worker
+  std::vector<simd::Lines> scaled_;  ///< one a worker
 };
 
 }  // namespace

@@ -3,12 +3,11 @@
 #include "gp/engine.hpp"
 
 #include <limits>
-#include <type_traits>
 
 namespace palpate {
 namespace {
 
-constexpr int kLine = simd::kLine<double>;
+using simd::kLine;
 constexpr int kRows = simd::kStripRows;
 constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * simd::kPanelLines * kLine;  ///< numbers in a whole tile
 
@@ -36,9 +35,7 @@ struct Axis {
   }
 };
 
-/// v = U_y S U_x^T with S = P_y^T diag(c) P_x: S and S^T U_y^T are formed in double precision, and the product with
-/// U_x^T, which is most of the work, in that of the maps.
-template <class Real>
+/// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T is most of the work.
 class Lowrank final : public Engine {
  public:
   Lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates, double tolerance)
@@ -49,11 +46,10 @@ class Lowrank final : public Engine {
         in_x_(x_.basis.rank(), simd::kPanelLines * kLine, kLine),
         in_y_(y_.basis.rank(), kRows, kRows),
         // Of a mirrored basis, the left half.
-        basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns,
-                 simd::kPanelLines * simd::kLine<Real>, simd::kLine<Real>),
+        basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns, simd::kPanelLines * kLine,
+                 kLine),
         basis_y_(candidates.rows, simd::kPanelLines * kLine, kLine),
-        maps_(x_.basis.mirrored ? Tiling::mirrored_grid(candidates, simd::kLine<Real>)
-                                : Tiling::grid(candidates, simd::kLine<Real>)),
+        maps_(x_.basis.mirrored ? Tiling::mirrored_grid(candidates) : Tiling::grid(candidates)),
         shares_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded())),
         shares_by_x_(shares_.size()),
         rows_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded())) {
@@ -88,17 +84,17 @@ class Lowrank final : public Engine {
     in_y_.append(y_.coordinates.data());
     form_shares(row.inverse);
     form_rows();
-    const int lines = basis_x_.padded() / simd::kLine<Real>;
+    const int lines = basis_x_.padded() / kLine;
     const std::ptrdiff_t mirror = maps_.tiling().mirror();
     machine_.workers->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
-      Real* const a = a_[static_cast<std::size_t>(worker)].data();
+      double* const a = a_[static_cast<std::size_t>(worker)].data();
       gather(strip, a);
-      const simd::Product<Real> product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
-      const simd::Update<Real> update = maps_.update(strip, row.coefficients, rule);
+      const simd::Product product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
+      const simd::Update update = maps_.update(strip, row.coefficients, rule);
       if (mirror > 0) {
-        functions().absorb_mirrored({product, x_.basis.even, mirror}, update);
+        machine_.loops->absorb_mirrored({product, x_.basis.even, mirror}, update);
       } else {
-        functions().absorb_product(product, update);
+        machine_.loops->absorb_product(product, update);
       }
     });
   }
@@ -109,28 +105,23 @@ class Lowrank final : public Engine {
     const double left = x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
     return std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
   }
-  double rounding() const override {
-    return std::is_same_v<Real, double> ? 0.0 : 0.5 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-  }
 
   const Maps& maps() const override { return maps_; }
 
  private:
-  const simd::Functions<Real>& functions() const;
-
   /// S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
   void form_shares(const VectorView& inverse) {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
     if (scaled_.size() < needed)
-      scaled_ = simd::Lines<double>(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
+      scaled_ = simd::Lines(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
     using Rows = Eigen::Array<double, kRows, Eigen::Dynamic>;
     const int lines = in_x_.padded() / kLine;
     double* c = shares_.data();
     for (int strip = 0; strip < in_y_.panels(); ++strip) {
       const Eigen::Map<const Rows> from(in_y_.panel(strip), kRows, depth);
       Eigen::Map<Rows>(scaled_.data(), kRows, depth) = from.rowwise() * inverse.transpose().array();
-      machine_.loops->f64.multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
+      machine_.loops->multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
       // Turn the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
       for (int line = 0; line < lines; ++line) {
         const int panel = line / simd::kPanelLines;
@@ -145,14 +136,14 @@ class Lowrank final : public Engine {
 
   /// S^T U_y^T: what every row of the grid has of every direction along x.
   void form_rows() {
-    machine_.loops->f64.multiply(
+    machine_.loops->multiply(
         {shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
          basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
         rows_.data());
   }
 
   /// The shares of a strip's rows, direction by direction.
-  void gather(int strip, Real* out) const {
+  void gather(int strip, double* out) const {
     const int row = strip * kRows;
     const int panel = row / (simd::kPanelLines * kLine);
     const std::ptrdiff_t width = basis_y_.width(panel);
@@ -161,7 +152,7 @@ class Lowrank final : public Engine {
     const std::ptrdiff_t strip_size = static_cast<std::ptrdiff_t>(basis_y_.padded()) * kRows;
     for (std::ptrdiff_t k = 0; k < basis_x_.rows(); ++k) {
       const double* from = tile + k / kRows * strip_size + k % kRows * width;
-      for (std::ptrdiff_t i = 0; i < kRows; ++i) out[k * kRows + i] = static_cast<Real>(from[i]);
+      for (std::ptrdiff_t i = 0; i < kRows; ++i) out[k * kRows + i] = from[i];
     }
   }
 
@@ -170,33 +161,23 @@ class Lowrank final : public Engine {
   Axis x_;
   Axis y_;
   int reserved_ = 0;
-  simd::Panels<double> in_x_;     ///< P_x, a tap a row
-  simd::Panels<double> in_y_;     ///< P_y
-  simd::Panels<Real> basis_x_;    ///< U_x^T
-  simd::Panels<double> basis_y_;  ///< U_y^T
-  TiledMaps<Real> maps_;
-  simd::Lines<double> scaled_;        ///< scratch: eight columns of P_y times c
-  simd::Lines<double> shares_;        ///< S
-  simd::Lines<double> shares_by_x_;   ///< S^T
-  simd::Lines<double> rows_;          ///< S^T U_y^T
-  std::vector<simd::Lines<Real>> a_;  ///< scratch of a worker
+  simd::Panels in_x_;     ///< P_x, a tap a row
+  simd::Panels in_y_;     ///< P_y
+  simd::Panels basis_x_;  ///< U_x^T
+  simd::Panels basis_y_;  ///< U_y^T
+  Maps maps_;
+  simd::Lines scaled_;          ///< scratch: eight columns of P_y times c
+  simd::Lines shares_;          ///< S
+  simd::Lines shares_by_x_;     ///< S^T
+  simd::Lines rows_;            ///< S^T U_y^T
+  std::vector<simd::Lines> a_;  ///< scratch of a worker
 };
-
-template <>
-const simd::Functions<double>& Lowrank<double>::functions() const {
-  return machine_.loops->f64;
-}
-template <>
-const simd::Functions<float>& Lowrank<float>::functions() const {
-  return machine_.loops->f32;
-}
 
 }  // namespace
 
 std::unique_ptr<Engine> make_lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates,
-                                     double tolerance, bool single) {
-  if (single) return std::make_unique<Lowrank<float>>(machine, kernel, candidates, tolerance);
-  return std::make_unique<Lowrank<double>>(machine, kernel, candidates, tolerance);
+                                     double tolerance) {
+  return std::make_unique<Lowrank>(machine, kernel, candidates, tolerance);
 }
 
 }  // namespace palpate

@@ -11,11 +11,11 @@ namespace palpate {
 
 void Factor::reserve(int rows) {
   if (rows <= capacity_) return;
-  const int padded = simd::round_up(rows, simd::kLine<double>);
-  const simd::Lines<double> old = std::move(rows_);
-  rows_ = simd::Lines<double>(simd::packed_row(padded));
+  const int padded = simd::round_up(rows, simd::kLine);
+  const simd::Lines old = std::move(rows_);
+  rows_ = simd::Lines(simd::packed_row(padded));
   std::copy_n(old.data(), simd::packed_row(size_), rows_.data());
-  scratch_ = simd::Lines<double>(static_cast<std::size_t>(padded));
+  scratch_ = simd::Lines(static_cast<std::size_t>(padded));
   largest_.vector.conservativeResize(rows);
   smallest_.vector.conservativeResize(rows);
   capacity_ = rows;
@@ -44,7 +44,7 @@ void Factor::inverse_row(int i, VectorOut out) {
   const double last = 1.0 / pivot(i);
   double* const c = scratch_.data();
   Eigen::Map<Eigen::VectorXd>(c, i) = -last * row(i);
-  std::fill(c + i, c + simd::round_up(i, simd::kLine<double>), 0.0);
+  std::fill(c + i, c + simd::round_up(i, simd::kLine), 0.0);
   loops_->solve_lower_transposed(rows_.data(), i, c);
   out.head(i) = Eigen::Map<const Eigen::VectorXd>(c, i);
   out(i) = last;

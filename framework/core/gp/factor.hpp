@@ -58,8 +58,8 @@ class Factor {
   const simd::Table* loops_;
   int size_ = 0;
   int capacity_ = 0;
-  simd::Lines<double> rows_;     ///< packed: see table.hpp
-  simd::Lines<double> scratch_;  ///< a vector, aligned
+  simd::Lines rows_;     ///< packed: see table.hpp
+  simd::Lines scratch_;  ///< a vector, aligned
   double log_determinant_ = 0.0;
   Extreme largest_;
   Extreme smallest_;

@@ -14,109 +14,92 @@ Tiling Tiling::pieces(int candidates) {
   return out;
 }
 
-Tiling Tiling::grid(const Candidates& candidates, int line) {
+Tiling Tiling::grid(const Candidates& candidates) {
   Tiling out;
   out.candidates_ = candidates.size();
   out.columns_ = candidates.columns;
   out.rows_ = candidates.rows;
   out.rows_per_strip_ = simd::kStripRows;
   out.strips_ = (out.rows_ + simd::kStripRows - 1) / simd::kStripRows;
-  out.tile(out.columns_, line);
+  out.tile(out.columns_);
   return out;
 }
 
-Tiling Tiling::mirrored_grid(const Candidates& candidates, int line) {
-  Tiling out = grid(candidates, line);
-  out.tile((out.columns_ + 1) / 2, line);
+Tiling Tiling::mirrored_grid(const Candidates& candidates) {
+  Tiling out = grid(candidates);
+  out.tile((out.columns_ + 1) / 2);
   out.mirror_ = static_cast<std::ptrdiff_t>(out.strip_size_);
   out.strip_size_ *= 2;
   return out;
 }
 
-void Tiling::tile(int columns, int line) {
+void Tiling::tile(int columns) {
   tiled_columns_ = columns;
-  padded_ = simd::round_up(columns, line);
-  width_ = simd::kPanelLines * line;
+  padded_ = simd::round_up(columns, simd::kLine);
+  width_ = simd::kPanelLines * simd::kLine;
   tiles_per_strip_ = (padded_ + width_ - 1) / width_;
   strip_size_ = static_cast<std::size_t>(padded_) * simd::kStripRows;
 }
 
-template <class Real>
-TiledMaps<Real>::TiledMaps(const Tiling& tiling)
+Maps::Maps(const Tiling& tiling)
     : tiling_(tiling), variance_(tiling.size()), best_(static_cast<std::size_t>(tiling.tiles())) {}
 
-template <class Real>
-void TiledMaps<Real>::restart(int means, const VectorView& prior) {
+void Maps::restart(int means, const VectorView& prior) {
   means_ = means;
   for (int k = 0; k < means; ++k) {
-    simd::Lines<Real>& map = mean_[static_cast<std::size_t>(k)];
-    if (map.size() == 0) map = simd::Lines<Real>(tiling_.size());
-    std::fill_n(map.data(), map.size(), Real{0});
+    simd::Lines& map = mean_[static_cast<std::size_t>(k)];
+    if (map.size() == 0) map = simd::Lines(tiling_.size());
+    std::fill_n(map.data(), map.size(), 0.0);
   }
   const bool same = prior.size() == 1;
   // Padding has no variance and thus a score of 0.
-  std::fill_n(variance_.data(), variance_.size(), Real{0});
+  std::fill_n(variance_.data(), variance_.size(), 0.0);
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
       for (int i = 0; i < count; ++i)
-        variance_.data()[cell + static_cast<std::size_t>(i)] =
-            static_cast<Real>(prior(same ? 0 : candidate + step * i));
+        variance_.data()[cell + static_cast<std::size_t>(i)] = prior(same ? 0 : candidate + step * i);
     });
   }
-  std::fill(best_.begin(), best_.end(), std::numeric_limits<Real>::infinity());
+  std::fill(best_.begin(), best_.end(), std::numeric_limits<double>::infinity());
 }
 
-template <class Real>
-simd::Update<Real> TiledMaps<Real>::update(int strip, const double* coefficients, const ScoreRule& rule) {
+simd::Update Maps::update(int strip, const double* coefficients, const ScoreRule& rule) {
   const std::size_t first = static_cast<std::size_t>(strip) * tiling_.strip_size();
-  simd::Update<Real> out{};
+  simd::Update out{};
   out.means = means_;
   for (int k = 0; k < means_; ++k) {
-    out.coefficient[k] = static_cast<Real>(coefficients[k]);
+    out.coefficient[k] = coefficients[k];
     out.mean[k] = mean_[static_cast<std::size_t>(k)].data() + first;
   }
   out.variance = variance_.data() + first;
   out.score = rule.score;
-  out.scale = static_cast<Real>(rule.scale);
-  out.shift = static_cast<Real>(rule.shift);
+  out.scale = rule.scale;
+  out.shift = rule.shift;
   out.best = best_.data() + strip * tiling_.tiles_per_strip();
   return out;
 }
 
-template <class Real>
-void TiledMaps<Real>::read(const simd::Lines<Real>& map, VectorOut out) const {
+void Maps::read(const simd::Lines& map, VectorOut out) const {
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
-      for (int i = 0; i < count; ++i)
-        out(candidate + step * i) = static_cast<double>(map.data()[cell + static_cast<std::size_t>(i)]);
+      for (int i = 0; i < count; ++i) out(candidate + step * i) = map.data()[cell + static_cast<std::size_t>(i)];
     });
   }
 }
 
-template <class Real>
-void TiledMaps<Real>::read_mean(int k, VectorOut out) const {
-  read(mean_[static_cast<std::size_t>(k)], out);
-}
+void Maps::read_mean(int k, VectorOut out) const { read(mean_[static_cast<std::size_t>(k)], out); }
 
-template <class Real>
-void TiledMaps<Real>::read_variance(VectorOut out) const {
-  read(variance_, out);
-}
+void Maps::read_variance(VectorOut out) const { read(variance_, out); }
 
-template <class Real>
-int TiledMaps<Real>::read_tile(int tile, int k, TileCell* out) const {
-  const Real* const mean = mean_[static_cast<std::size_t>(k)].data();
+int Maps::read_tile(int tile, int k, TileCell* out) const {
+  const double* const mean = mean_[static_cast<std::size_t>(k)].data();
   int cells = 0;
   tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
     for (int i = 0; i < count; ++i, ++cell) {
-      out[cells++] = {candidate + step * i, static_cast<double>(variance_.data()[cell]),
-                      static_cast<double>(mean[cell])};
+      out[cells++] = {candidate + step * i, variance_.data()[cell], mean[cell]};
     }
   });
   return cells;
 }
-
-template class TiledMaps<double>;
-template class TiledMaps<float>;
 
 }  // namespace palpate

@@ -21,12 +21,11 @@ class Tiling {
  public:
   /// Any places: strips of one tile of simd::kPiece candidates one after the other.
   static Tiling pieces(int candidates);
-  /// A product grid: strips of simd::kStripRows rows, cut into tiles as simd::Product has them. `line` is the number of
-  /// cells in a cache line.
-  static Tiling grid(const Candidates& candidates, int line);
+  /// A product grid: strips of simd::kStripRows rows, cut into tiles as simd::Product has them.
+  static Tiling grid(const Candidates& candidates);
   /// The same as simd::MirroredProduct has them: a tile holds some columns of the left half of the grid and their
   /// mirror images in the right half.
-  static Tiling mirrored_grid(const Candidates& candidates, int line);
+  static Tiling mirrored_grid(const Candidates& candidates);
 
   int strips() const { return strips_; }
   int tiles_per_strip() const { return tiles_per_strip_; }
@@ -61,7 +60,7 @@ class Tiling {
 
  private:
   /// Cuts that many columns into tiles.
-  void tile(int columns, int line);
+  void tile(int columns);
 
   int candidates_ = 0;
   int columns_ = 0;        ///< of the grid; of any places, those of a piece
@@ -88,51 +87,37 @@ struct TileCell {
   double variance;
   double mean;
 };
-constexpr int kMostCells = 2 * simd::kStripRows * simd::kPanelLines * simd::kLine<float>;
+constexpr int kMostCells = 2 * simd::kStripRows * simd::kPanelLines * simd::kLine;
 
 /// Maps of means and of the variance as they stand, all in units of the prior.
 class Maps {
  public:
-  virtual ~Maps() = default;
-  /// The mean number k, and the variance, at all candidates.
-  virtual void read_mean(int k, VectorOut out) const = 0;
-  virtual void read_variance(VectorOut out) const = 0;
-
-  /// The largest score of a tile, or more, as of the latest update: padding is not told from candidates.
-  virtual double bound(int tile) const = 0;
-  /// The candidates of a tile, at most kMostCells of them, with variance and mean number k; returns how many.
-  virtual int read_tile(int tile, int k, TileCell* out) const = 0;
-  virtual const Tiling& tiling() const = 0;
-};
-
-template <class Real>
-class TiledMaps final : public Maps {
- public:
-  explicit TiledMaps(const Tiling& tiling);
+  explicit Maps(const Tiling& tiling);
 
   /// Back to the prior: `means` maps of 0, and the variance, one number if it is the same at all candidates.
   void restart(int means, const VectorView& prior);
 
   /// What the loops need to take a row with such coefficients into the cells of a strip.
-  simd::Update<Real> update(int strip, const double* coefficients, const ScoreRule& rule);
+  simd::Update update(int strip, const double* coefficients, const ScoreRule& rule);
 
-  void read_mean(int k, VectorOut out) const override;
-  void read_variance(VectorOut out) const override;
-  double bound(int tile) const override { return static_cast<double>(best_[static_cast<std::size_t>(tile)]); }
-  int read_tile(int tile, int k, TileCell* out) const override;
-  const Tiling& tiling() const override { return tiling_; }
+  /// The mean number k, and the variance, at all candidates.
+  void read_mean(int k, VectorOut out) const;
+  void read_variance(VectorOut out) const;
+
+  /// The largest score of a tile, or more, as of the latest update: padding is not told from candidates.
+  double bound(int tile) const { return best_[static_cast<std::size_t>(tile)]; }
+  /// The candidates of a tile, at most kMostCells of them, with variance and mean number k; returns how many.
+  int read_tile(int tile, int k, TileCell* out) const;
+  const Tiling& tiling() const { return tiling_; }
 
  private:
-  void read(const simd::Lines<Real>& map, VectorOut out) const;
+  void read(const simd::Lines& map, VectorOut out) const;
 
   Tiling tiling_;
   int means_ = 0;
-  std::array<simd::Lines<Real>, simd::kMeans> mean_;
-  simd::Lines<Real> variance_;
-  std::vector<Real> best_;
+  std::array<simd::Lines, simd::kMeans> mean_;
+  simd::Lines variance_;
+  std::vector<double> best_;
 };
-
-extern template class TiledMaps<double>;
-extern template class TiledMaps<float>;
 
 }  // namespace palpate

@@ -33,7 +33,7 @@ EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& k
   const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
   const std::string found = fmt::format("separable kernel of rank {} x {} on a grid and {} taps", x, y, settings.taps);
   if (of_lowrank >= of_grid) return grid(found);
-  return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance, false), found};
+  return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance), found};
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ EngineChoice choose_engine(const PosteriorSettings& settings, const Kernel& kern
     case PosteriorSettings::Kind::grid:
       return {make_grid(settings.machine, kernel, candidates), kAsked};
     case PosteriorSettings::Kind::lowrank:
-      return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance, settings.single), kAsked};
+      return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance), kAsked};
     case PosteriorSettings::Kind::automatic:
       break;
   }

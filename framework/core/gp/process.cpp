@@ -144,9 +144,8 @@ void Process::keep_accuracy() {
 
 double Process::error_bound() const {
   const double error = choice_.engine->covariance_error();
-  const double rounding = choice_.engine->rounding();
   const int n = factor_.size();
-  if (!(error > 0.0 || rounding > 0.0)) return 0.0;
+  if (!(error > 0.0)) return 0.0;
   const double prior = prior_.maxCoeff();
   const double deviation = std::sqrt(prior);
   const double row = error * std::sqrt(inverse_norms_) / deviation;
@@ -158,13 +157,6 @@ double Process::error_bound() const {
     const double explained = size_of(targets_.cols());
     mean += std::abs(constant_mean()) * error * explained / deviation;
     variance += 2.0 * (1.0 + explained * prior) * error * explained / (constant_precision() * prior);
-  }
-  // Rounding of v, a sum of some tens of terms, whose squares add up to the prior at most; and of the maps, n times.
-  const double of_row = 32.0 * rounding;
-  variance += of_row * 2.0 * std::sqrt(n) + rounding * n;
-  for (Eigen::Index k = 0; k < targets_.cols() && rounding > 0.0; ++k) {
-    const auto reduced = reduced_.col(k).head(n);
-    mean += of_row * reduced.lpNorm<1>() + rounding * n * reduced.norm();
   }
   return std::max(mean, variance);
 }
@@ -243,8 +235,8 @@ double Process::constant_mean() const {
 double Process::bound(int piece) const {
   if (!same_prior_) return std::numeric_limits<double>::infinity();
   const double best = maps().bound(piece) / prior_(0);
-  // read() forms the same products, but rounds them otherwise than the loops do, which may have single precision.
-  const double rounding = 8.0 * std::max(0.5 * kEpsilon, choice_.engine->rounding());
+  // read() forms the same products, but rounds them otherwise than the loops do.
+  const double rounding = 4.0 * kEpsilon;
   const double shift = scores_weight() ? std::abs(outputs_at(1).mean) : 0.0;
   return best + rounding * (std::abs(best) + shift);
 }

@@ -105,8 +105,7 @@ class Process final : public Scores {
   /// The engine in use, why, and a bound of what it adds to the rounding of `dense`, of means in prior standard
   /// deviations and of variances in prior variances: with p the largest kernel variance of a candidate, e the error of
   /// a covariance, c_i the rows of L^-1 and alpha = L^-T L^-1 targets,
-  ///     2 E + E^2,  E = e sqrt(sum |c_i|_1^2 / p),   and   e |alpha|_1 / sqrt(p),
-  /// and in single precision, to first order, the rounding of the rows and of the maps.
+  ///     2 E + E^2,  E = e sqrt(sum |c_i|_1^2 / p),   and   e |alpha|_1 / sqrt(p).
   const char* engine() const { return choice_.engine->name(); }
   const std::string& engine_reason() const { return choice_.reason; }
   double error_bound() const;

@@ -41,32 +41,14 @@ std::vector<Override> job_overrides(const SweepPlan& plan, const Combination& co
   return overrides;
 }
 
-/// What the config says of names that no combination sets, for `where`.
-class BaseValues {
- public:
-  BaseValues(const Tree& base, const PluginSource& plugins) : base_(base), plugins_(plugins) {}
-
-  std::optional<std::string> operator()(const std::string& name) {
-    if (is_of_sweep(name)) return std::nullopt;
-    if (const Tree* said = base_.find_path(name)) return condition_text(*said);
-    if (!defaults_) {
-      defaults_.emplace();
-      try {
-        *defaults_ = resolve_experiment(base_, plugins_).tree;
-      } catch (const Error&) {  // what it lacks is swept: then it has no defaults either
-      }
-    }
-    const Tree* found = defaults_->find_path(name);
-    return found != nullptr ? std::optional(condition_text(*found)) : std::nullopt;
+/// The config without any combination; none if it is no whole config, as when all that it lacks is swept.
+std::optional<ResolvedConfig> resolve_alone(const Tree& base, const PluginSource& plugins) {
+  try {
+    return resolve_experiment(base, plugins);
+  } catch (const Error&) {  // what is wrong with it beside that, its jobs say
+    return std::nullopt;
   }
-
- private:
-  static bool is_of_sweep(const std::string& name) { return name == "sweep" || name.compare(0, 6, "sweep.") == 0; }
-
-  const Tree& base_;
-  const PluginSource& plugins_;
-  std::optional<Tree> defaults_;
-};
+}
 
 /// A combination but for its seed, resolved: the config, and what each key came to in it.
 struct Resolved {
@@ -239,8 +221,13 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
     plan.shared.back().value.set_layer(kGroupLayer);
   }
 
-  BaseValues base_values(base, host);
-  const Condition::Values base_value = [&](const std::string& name) { return base_values(name); };
+  const std::optional<ResolvedConfig> alone = resolve_alone(base, host);
+  const Condition::Values base_value = [&](const std::string& name) -> std::optional<std::string> {
+    if (name == "sweep" || name.compare(0, 6, "sweep.") == 0) return std::nullopt;
+    const Tree* found = base.find_path(name);
+    if (found == nullptr && alone) found = alone->tree.find_path(name);
+    return found != nullptr ? std::optional(condition_text(*found)) : std::nullopt;
+  };
   std::shared_ptr<const ResolvedConfig> first;
   Planner planner(plan, composer, host);
   for (std::size_t number = 0; number < description.size(); ++number) {
@@ -258,7 +245,7 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   }
   planner.finish();
   plan.name = first->options.name;
-  plan.config = written_config(file, base, description, *first, host);
+  plan.config = written_config(file, base, alone, description, *first);
   check_readable(plan.config, file.string());
   plan.sweep.directory = runs / slug(plan.name) / sweep_id(plan.config, plan.sweep);
   return plan;

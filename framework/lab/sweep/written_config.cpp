@@ -3,10 +3,7 @@
 
 #include "config/yaml.hpp"
 
-#include <palpate/error.hpp>
-
 #include <algorithm>
-#include <optional>
 
 namespace palpate {
 namespace {
@@ -43,32 +40,24 @@ void erase_path(Tree& tree, const std::string& path) {
   if (parent != nullptr) parent->erase(path.substr(dot == std::string::npos ? 0 : dot + 1));
 }
 
-/// `base` without the options that its own plugins leave out; none if it is no whole config, as when all that it lacks
-/// is swept.
-std::optional<Tree> settled(const Tree& base, const PluginSource& plugins) {
-  Tree out = base;
-  try {
-    for (const ResolveNotes::Origin& one : resolve_experiment(base, plugins).notes.dropped) erase_path(out, one.path);
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-  return out;
-}
-
 }  // namespace
 
-Tree written_config(const std::filesystem::path& file, const Tree& base, const SweepDescription& description,
-                    const ResolvedConfig& first, const PluginSource& plugins) {
+Tree written_config(const std::filesystem::path& file, const Tree& base, const std::optional<ResolvedConfig>& alone,
+                    const SweepDescription& description, const ResolvedConfig& first) {
   const Tree own = read_yaml(file);
-  const std::optional<Tree> whole = settled(base, plugins);
+  // Without the options that its own plugins leave out.
+  Tree settled = base;
+  if (alone) {
+    for (const ResolveNotes::Origin& one : alone->notes.dropped) erase_path(settled, one.path);
+  }
   const auto is_own = [&](const std::string& top) {
-    return top != "expect" && (!whole || is_touched(top, description.keys()));
+    return top != "expect" && (!alone || is_touched(top, description.keys()));
   };
   Tree out = Tree::map();
   const Tree* name = base.find("name");
   out.at("name") = Tree::scalar(name != nullptr ? name->text : first.options.name, true);
   // What of the groups below is a strategy's cannot be told any more: where any of it is needed all of it is.
-  const bool needs_strategy = !whole || std::any_of(description.keys().begin(), description.keys().end(), is_choice);
+  const bool needs_strategy = !alone || std::any_of(description.keys().begin(), description.keys().end(), is_choice);
   Tree kept = Tree::list();
   if (const Tree* defaults = own.find("defaults")) {
     for (const Tree& item : defaults->items) {
@@ -82,7 +71,7 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const S
   }
   if (!kept.items.empty()) out.at("defaults") = std::move(kept);
   for (const std::string& top : ordered_keys(base, first.tree)) {
-    const Tree* said = is_own(top) ? own.find(top) : (whole ? *whole : base).find(top);
+    const Tree* said = is_own(top) ? own.find(top) : settled.find(top);
     if (said != nullptr) out.at(top) = *said;
   }
   out.at("sweep") = description.written();

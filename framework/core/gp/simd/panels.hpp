@@ -14,28 +14,27 @@ namespace palpate::simd {
 constexpr int round_up(int value, int unit) { return (value + unit - 1) / unit * unit; }
 
 /// Numbers from a cache line on, not initialised: memory that is never touched costs nothing.
-template <class Real>
 class Lines {
  public:
   Lines() = default;
   explicit Lines(std::size_t size)
-      : numbers_(static_cast<Real*>(::operator new (size * sizeof(Real), std::align_val_t{kLineBytes}))), size_(size) {}
+      : numbers_(static_cast<double*>(::operator new (size * sizeof(double), std::align_val_t{kLineBytes}))),
+        size_(size) {}
 
   std::size_t size() const { return size_; }
-  Real* data() { return numbers_.get(); }
-  const Real* data() const { return numbers_.get(); }
+  double* data() { return numbers_.get(); }
+  const double* data() const { return numbers_.get(); }
 
  private:
   struct Release {
-    void operator()(Real* numbers) const { ::operator delete (numbers, std::align_val_t{kLineBytes}); }
+    void operator()(double* numbers) const { ::operator delete (numbers, std::align_val_t{kLineBytes}); }
   };
-  std::unique_ptr<Real, Release> numbers_;
+  std::unique_ptr<double, Release> numbers_;
   std::size_t size_ = 0;
 };
 
 /// A matrix that grows by rows, cut into panels of `width` columns; the rows of a panel follow each other in memory.
 /// The last panel is as wide as its columns need, rounded up to `unit`; what lies beyond the columns is 0.
-template <class Real>
 class Panels {
  public:
   Panels() = default;
@@ -49,19 +48,19 @@ class Panels {
   int width(int panel) const { return std::min(width_, padded_ - panel * width_); }
   /// Numbers from one panel to the next.
   std::size_t stride() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(capacity_); }
-  const Real* panel(int panel) const { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
-  Real* panel(int panel) { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
-  Real* row(int panel, int row) { return this->panel(panel) + static_cast<std::ptrdiff_t>(row) * width(panel); }
+  const double* panel(int panel) const { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
+  double* panel(int panel) { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
+  double* row(int panel, int row) { return this->panel(panel) + static_cast<std::ptrdiff_t>(row) * width(panel); }
 
   void clear() { rows_ = 0; }
 
   /// Room for so many rows; what is there is kept.
   void reserve(int rows) {
     if (rows <= capacity_) return;
-    const Lines<Real> old = std::move(numbers_);
+    const Lines old = std::move(numbers_);
     const std::size_t old_stride = stride();
     capacity_ = rows;
-    numbers_ = Lines<Real>(static_cast<std::size_t>(panels_) * stride());
+    numbers_ = Lines(static_cast<std::size_t>(panels_) * stride());
     for (int p = 0; p < panels_; ++p) {
       const auto count = static_cast<std::ptrdiff_t>(rows_) * width(p);
       std::copy_n(old.data() + static_cast<std::size_t>(p) * old_stride, count, panel(p));
@@ -78,11 +77,11 @@ class Panels {
   void append(const double* values) {
     extend();
     for (int p = 0; p < panels_; ++p) {
-      Real* const out = row(p, rows_ - 1);
+      double* const out = row(p, rows_ - 1);
       const int first = p * width_;
       const int count = std::min(width(p), columns_ - first);
-      for (int i = 0; i < count; ++i) out[i] = static_cast<Real>(values[first + i]);
-      std::fill(out + count, out + width(p), Real{0});
+      for (int i = 0; i < count; ++i) out[i] = values[first + i];
+      std::fill(out + count, out + width(p), 0.0);
     }
   }
 
@@ -93,7 +92,7 @@ class Panels {
   int panels_ = 0;
   int rows_ = 0;
   int capacity_ = 0;
-  Lines<Real> numbers_;
+  Lines numbers_;
 };
 
 }  // namespace palpate::simd

@@ -25,7 +25,7 @@ const Table& fastest() {
 }
 
 std::size_t packed_row(int i) {
-  const auto line = static_cast<std::size_t>(kLine<double>);
+  const auto line = static_cast<std::size_t>(kLine);
   const std::size_t block = static_cast<std::size_t>(i) / line;
   const std::size_t row = static_cast<std::size_t>(i) % line;
   // The blocks before have 1, 2, ... lines a row.

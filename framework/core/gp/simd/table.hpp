@@ -12,11 +12,10 @@ namespace palpate::simd {
 // Memory is laid out in cache lines, whatever the width of the registers, so that no layout depends on the instruction
 // set. All pointers below are aligned to a line; what they point to must not overlap.
 constexpr int kLineBytes = 64;
-template <class Real>
-constexpr int kLine = kLineBytes / static_cast<int>(sizeof(Real));  ///< numbers in a line
-constexpr int kPanelLines = 3;                                      ///< width of a panel of a matrix, in lines
-constexpr int kStripRows = 8;                                       ///< rows of a grid that are updated together
-constexpr int kPiece = kStripRows * kPanelLines * kLine<double>;    ///< cells of a dense map updated together
+constexpr int kLine = kLineBytes / static_cast<int>(sizeof(double));  ///< numbers in a line
+constexpr int kPanelLines = 3;                                        ///< width of a panel of a matrix, in lines
+constexpr int kStripRows = 8;                                         ///< rows of a grid that are updated together
+constexpr int kPiece = kStripRows * kPanelLines * kLine;              ///< cells of a dense map updated together
 
 /// How the score of a cell follows from its maps.
 enum class Score {
@@ -30,26 +29,24 @@ constexpr int kMeans = 3;  ///< maps that a row is added to, at most
 
 /// What a new row v of the posterior does to the cells of some strips, or of a piece:
 ///     mean_k += coefficient_k v,   variance -= v^2,   best = the largest score of a tile of cells afterwards.
-template <class Real>
 struct Update {
   int means;
-  Real coefficient[kMeans];
-  Real* mean[kMeans];
-  Real* variance;
+  double coefficient[kMeans];
+  double* mean[kMeans];
+  double* variance;
   Score score;
-  Real scale, shift;
-  Real* best;  ///< one a tile; untouched without a score
+  double scale, shift;
+  double* best;  ///< one a tile; untouched without a score
 };
 
 /// A product C = A B of a few strips: 8 x depth times depth x columns each. The A of a strip has its columns one after
 /// the other, 8 numbers each. B lies in panels of kPanelLines lines, each depth rows of consecutive numbers; the last
 /// may be narrower. The C of the strips follow each other, each a sequence of tiles, one a panel, row by row.
-template <class Real>
 struct Product {
-  const Real* a;
+  const double* a;
   std::size_t a_stride;  ///< numbers from one strip's A to the next
   int strips;
-  const Real* b;
+  const double* b;
   std::size_t panel_stride;  ///< numbers from one panel of B to the next
   int depth;
   int lines;  ///< of all columns
@@ -58,20 +55,10 @@ struct Product {
 /// A product on a grid that is its own mirror image: the first `even` rows of B are the left halves of even functions
 /// of the columns, the others of odd ones. So v = E + O on the left and, mirrored, E - O on the right: half of the
 /// work. The cells of a tile's mirror image lie `mirror` cells beyond its own, in the same order; `best` is of both.
-template <class Real>
 struct MirroredProduct {
-  Product<Real> half;
+  Product half;
   int even;
   std::ptrdiff_t mirror;
-};
-
-template <class Real>
-struct Functions {
-  /// c = A B.
-  void (*multiply)(const Product<Real>&, Real* c);
-  /// v = A B, which is never stored, taken into the maps.
-  void (*absorb_product)(const Product<Real>&, const Update<Real>&);
-  void (*absorb_mirrored)(const MirroredProduct<Real>&, const Update<Real>&);
 };
 
 /// v = (v - sum over i of row_i factor_i) / pivot for one piece of a dense map, taken into its maps. The rows of the
@@ -85,9 +72,12 @@ struct DenseRow {
 
 struct Table {
   const char* name;
-  Functions<double> f64;
-  Functions<float> f32;
-  void (*absorb_dense)(const DenseRow&, const Update<double>&);
+  /// c = A B.
+  void (*multiply)(const Product&, double* c);
+  /// v = A B, which is never stored, taken into the maps.
+  void (*absorb_product)(const Product&, const Update&);
+  void (*absorb_mirrored)(const MirroredProduct&, const Update&);
+  void (*absorb_dense)(const DenseRow&, const Update&);
   // L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
   // matrix goes. Both work in place on n numbers, with room up to a line.
   void (*solve_lower)(const double* lower, int n, double* x);             ///< x = L^-1 x

@@ -2,11 +2,9 @@
 #include "report/exchange/exchange.hpp"
 
 #include "experiment/metrics.hpp"
-#include "record/row.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
 #include <iterator>
 
 namespace palpate {
@@ -73,20 +71,6 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
   return to_string(out);
 }
 
-std::string surface_table(const ReconstructedSurface& surface) {
-  const SurfaceMesh& mesh = surface.mesh;
-  Buffer out;
-  put(out, "x,y,z,normal_x,normal_y,normal_z,standard_deviation,on_surface_probability{}\n",
-      surface.true_height ? ",true_height" : "");
-  for (Eigen::Index i = 0; i < mesh.points.rows(); ++i) {
-    put(out, "{},{},{},{},{},{},{},{}", mesh.points(i, 0), mesh.points(i, 1), mesh.points(i, 2), mesh.normals(i, 0),
-        mesh.normals(i, 1), mesh.normals(i, 2), surface.standard_deviation(i), surface.on_surface_probability(i));
-    if (surface.true_height) put(out, ",{}", (*surface.true_height)(i));
-    put(out, "\n");
-  }
-  return to_string(out);
-}
-
 std::string taps_ply(const Recording& recording, const std::string& run) {
   Buffer points;
   int contacts = 0;
@@ -105,33 +89,6 @@ std::string taps_ply(const Recording& recording, const std::string& run) {
   declare(out, "uchar", {"on_surface"});
   put(out, "end_header\n");
   return to_string(out) + to_string(points);
-}
-
-std::string taps_table(const Recording& recording) {
-  // Names of the record, but z for the height as in the surface: the two are drawn over each other.
-  constexpr std::array<std::pair<const char*, const char*>, 11> kFields{{{"tap", "tap"},
-                                                                         {"source", "source"},
-                                                                         {"x", "x"},
-                                                                         {"y", "y"},
-                                                                         {"z", "height"},
-                                                                         {"on_surface", "on_surface"},
-                                                                         {"outcome", "outcome"},
-                                                                         {"reason", "reason"},
-                                                                         {"force", "force"},
-                                                                         {"robot_seconds", "robot_seconds"},
-                                                                         {"true_on_surface", "true_on_surface"}}};
-  std::vector<Row> rows;
-  for (const Row& tap : recording.rows) {
-    Row row;
-    row.add("run", recording.config.options.name);
-    row.add("id", recording.config.id);
-    for (const auto& [name, field] : kFields) {
-      const Scalar* value = tap.find(field);
-      row.fields.emplace_back(name, value != nullptr ? *value : Scalar());
-    }
-    rows.push_back(std::move(row));
-  }
-  return to_csv(rows);
 }
 
 }  // namespace palpate

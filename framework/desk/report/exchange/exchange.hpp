@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a run found out, in the formats of other programs: PLY for those that show meshes, CSV for those that compute.
+// What a run found out, as programs that show meshes read it: PLY. Tables are the run's own surface.csv and taps.csv.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -28,14 +28,8 @@ ReconstructedSurface reconstruct(Experiment& experiment);
 /// and a grid of candidates is small. `run` names the run in a comment: what could break a header in it is replaced.
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run);
 
-/// The same numbers, a candidate a row, in double precision: shortest digits that read back bit for bit.
-std::string surface_table(const ReconstructedSurface& surface);
-
 /// The contacts as points: x, y, z, `tap` (its number), `on_surface` (1 or 0).
 std::string taps_ply(const Recording& recording, const std::string& run);
-
-/// All taps, failed ones included, with name and id of the run in each row.
-std::string taps_table(const Recording& recording);
 
 /// Text as a PLY header can hold it: one line of printable ASCII, at most 200 letters, without the word that ends it.
 std::string header_text(const std::string& text);

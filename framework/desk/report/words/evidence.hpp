@@ -34,6 +34,13 @@ class Evidence {
   /// Whether any star was asked for: then the text owes its reader a word on it.
   bool starred() const { return starred_; }
 
+  /// The number as `words` has it, with its star; "" where there is none.
+  template <class Words>
+  std::string shown(std::string_view field, const Words& words) const {
+    const std::optional<double> value = number(field);
+    return value ? words(*value) + star(field) : std::string();
+  }
+
   /// The fields that begin with `prefix`, without it.
   std::vector<std::string> below(const std::string& prefix) const;
 

@@ -88,16 +88,20 @@ class Explanation {
   }
 
   int contacts_before() const {
-    return static_cast<int>(std::count_if(recording_.taps.begin(), recording_.taps.begin() + number_ - 1,
-                                          [](const PastTap& tap) { return tap.contact.outcome == Outcome::contact; }));
+    return count_before([](const Contact&) { return true; });
   }
 
   int hits_before() {
     const Scene& scene = playback_.experiment().scene();
-    return static_cast<int>(
-        std::count_if(recording_.taps.begin(), recording_.taps.begin() + number_ - 1, [&](const PastTap& tap) {
-          return tap.contact.outcome == Outcome::contact && scene.on_surface(tap.contact.height);
-        }));
+    return count_before([&](const Contact& contact) { return scene.on_surface(contact.height); });
+  }
+
+  /// Contacts before this tap of which `is_counted` holds.
+  template <class Counted>
+  int count_before(const Counted& is_counted) const {
+    return static_cast<int>(std::count_if(
+        recording_.taps.begin(), recording_.taps.begin() + number_ - 1,
+        [&](const PastTap& tap) { return tap.contact.outcome == Outcome::contact && is_counted(tap.contact); }));
   }
 
   // The choice.
@@ -236,9 +240,9 @@ class Explanation {
     if (!x || !y || !second) return page_.say("There is no runner-up.");
     std::string by = "the same";
     if (const double less = score - *second; less != 0.0) {
-      const char* sense = less > 0.0 ? "less" : "more, which is a tie";
-      by = score == 0.0 ? fmt::format("{:.3g} {}", std::abs(less), sense)
-                        : fmt::format("{:.3g} % {}", 100.0 * std::abs(less / score), sense);
+      by = score == 0.0 ? fmt::format("{:.3g}", std::abs(less))
+                        : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
+      by += less > 0.0 ? " less" : " more, which is a tie";
     }
     page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second), by));
   }

@@ -21,6 +21,9 @@ struct Subject {
   const std::optional<ProcessState>& now;
 
   std::string amount(double value) const { return metric ? length_words(value) : plain_words(value); }
+  std::string amount(const Evidence& evidence, const char* name) const {
+    return evidence.shown(field(name), metric ? length_words : plain_words);
+  }
   std::string field(const char* name) const { return prefix + name; }
 };
 
@@ -34,27 +37,22 @@ std::string parameter_words(std::string name) {
 
 std::string kernel_words(const Subject& subject, const Evidence& evidence) {
   const std::string prefix = subject.field("kernel.");
-  std::vector<std::string> words{subject.kernel.type};
+  std::string out = subject.kernel.type;
   for (const std::string& name : evidence.below(prefix)) {
-    const double value = evidence.number(prefix + name).value_or(0.0);
     Unit unit = Unit::none;  // which unit a parameter has, no record says and no fit changes
     if (subject.now) {
       for (const KernelParameter& one : subject.now->kernel) unit = one.name == name ? one.unit : unit;
     }
-    words.push_back(fmt::format("{} {}{}", parameter_words(name),
-                                unit == Unit::metre ? length_words(value) : plain_words(value),
-                                evidence.star(prefix + name)));
+    out += fmt::format(", {} {}", parameter_words(name),
+                       evidence.shown(prefix + name, unit == Unit::metre ? length_words : plain_words));
   }
-  return fmt::format("{}", fmt::join(words, ", "));
+  return out;
 }
 
 std::string settings_words(const Subject& subject, const Evidence& evidence) {
-  const auto amount = [&](const char* name) {
-    const std::string field = subject.field(name);
-    return subject.amount(evidence.number(field).value_or(0.0)) + evidence.star(field);
-  };
-  return fmt::format("signal {} and noise {} (standard deviations), prior mean {}{}", amount("signal"), amount("noise"),
-                     amount("mean"), subject.metric ? " above the desk" : "");
+  return fmt::format("signal {} and noise {} (standard deviations), prior mean {}{}",
+                     subject.amount(evidence, "signal"), subject.amount(evidence, "noise"),
+                     subject.amount(evidence, "mean"), subject.metric ? " above the desk" : "");
 }
 
 std::string fit_words(const Subject& subject, const Evidence& evidence) {
@@ -68,27 +66,25 @@ std::string fit_words(const Subject& subject, const Evidence& evidence) {
   std::string out = fmt::format("Its latest tap was followed by a fit ({}), which {}{}", subject.fitting.type,
                                 *changed ? "changed the hyperparameters" : "left the hyperparameters as they were",
                                 evidence.star(subject.field("fit.changed")));
-  if (const auto value = evidence.number(subject.field("fit.objective")))
-    out += fmt::format("; objective {}{}", plain_words(*value), evidence.star(subject.field("fit.objective")));
-  if (const auto count = evidence.number(subject.field("fit.evaluations")))
-    out += fmt::format(" after {}{}", counted(std::lround(*count), "evaluation"),
-                       evidence.star(subject.field("fit.evaluations")));
+  if (const std::string value = evidence.shown(subject.field("fit.objective"), plain_words); !value.empty())
+    out += "; objective " + value;
+  const auto evaluations = [](double count) { return counted(std::lround(count), "evaluation"); };
+  if (const std::string count = evidence.shown(subject.field("fit.evaluations"), evaluations); !count.empty())
+    out += " after " + count;
   const std::string reason = evidence.text(subject.field("fit.reason"));
   return out + (reason.empty() ? "." : ": " + reason + ".");
 }
 
 std::string likelihood_words(const Subject& subject, const Evidence& evidence) {
-  std::string out;
-  const std::string likelihood = subject.field("log_marginal_likelihood");
-  if (const auto value = evidence.number(likelihood)) {
-    out = fmt::format("Log marginal likelihood {}{} (of its taps under these hyperparameters: more is better)",
-                      plain_words(*value), evidence.star(likelihood));
-  }
+  const std::string value = evidence.shown(subject.field("log_marginal_likelihood"), plain_words);
+  std::string out =
+      value.empty() ? value
+                    : "Log marginal likelihood " + value + " (of its taps under these hyperparameters: more is better)";
   const std::string condition = subject.field("condition");
-  if (const auto value = evidence.number(condition)) {
-    const auto digits = static_cast<int>(std::floor(std::log10(std::max(1.0, *value))));
+  if (const auto least = evidence.number(condition)) {
+    const auto digits = static_cast<int>(std::floor(std::log10(std::max(1.0, *least))));
     out += fmt::format("{}ondition of its matrix at least {:.2g}{}: {} the 16 digits of a number",
-                       out.empty() ? "C" : "; c", *value, evidence.star(condition),
+                       out.empty() ? "C" : "; c", *least, evidence.star(condition),
                        digits == 0 ? "rounding costs none of" : fmt::format("rounding costs about {} of", digits));
   }
   return out.empty() ? out : out + ".";
@@ -147,20 +143,18 @@ void explain_process(Page& page, const Evidence& evidence, const Subject& subjec
 }
 
 void explain_deviation(Page& page, const Evidence& evidence) {
-  const auto greatest = evidence.number("max_standard_deviation");
-  const auto mean = evidence.number("mean_standard_deviation");
-  if (!greatest || !mean) return;
-  page.say(fmt::format("The standard deviation of the height is {}{} on average and {}{} at most.", length_words(*mean),
-                       evidence.star("mean_standard_deviation"), length_words(*greatest),
-                       evidence.star("max_standard_deviation")));
+  const std::string mean = evidence.shown("mean_standard_deviation", length_words);
+  if (mean.empty()) return;
+  page.say(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
+                       evidence.shown("max_standard_deviation", length_words)));
 }
 
 void explain_range_of_weight(Page& page, const Evidence& evidence, bool clipped) {
   const auto least = evidence.number("min_weight");
   const auto greatest = evidence.number("max_weight");
   if (!least || !greatest) return;
-  std::string out = fmt::format("w runs from {}{} to {}{}", plain_words(*least), evidence.star("min_weight"),
-                                plain_words(*greatest), evidence.star("max_weight"));
+  std::string out = fmt::format("w runs from {} to {}", evidence.shown("min_weight", plain_words),
+                                evidence.shown("max_weight", plain_words));
   constexpr double kRounding = 1e-12;
   if (*least < -kRounding || *greatest > 1.0 + kRounding) {
     out += fmt::format(
@@ -179,9 +173,8 @@ void explain_footprint(Page& page, const Evidence& evidence, const std::string& 
   const std::string prefix = "footprint.";
   std::vector<std::string> numbers;
   for (const std::string& name : evidence.below(prefix)) {
-    if (const auto value = evidence.number(prefix + name))
-      numbers.push_back(
-          fmt::format("{} {}{}", parameter_words(name), plain_words(*value), evidence.star(prefix + name)));
+    if (const std::string value = evidence.shown(prefix + name, plain_words); !value.empty())
+      numbers.push_back(parameter_words(name) + " " + value);
   }
   page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
                        numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
@@ -192,19 +185,14 @@ void explain_footprint(Page& page, const Evidence& evidence, const std::string& 
 }  // namespace
 
 void explain_place(Page& page, const Evidence& evidence, const std::string& footprint) {
-  const auto u = evidence.number("u");
-  if (!u) return;
-  std::string text = fmt::format("There u = {}{} (how little is known of the height: 0 all, 1 nothing)",
-                                 plain_words(*u), evidence.star("u"));
-  if (const auto p = evidence.number("p")) {
-    text += fmt::format(", p = {}{} (the probability that an object is there, by footprint/{})", plain_words(*p),
-                        evidence.star("p"), footprint);
+  const auto shown = [&](const char* field) { return evidence.shown(field, plain_words); };
+  if (!evidence.has("u")) return;
+  std::string text = fmt::format("There u = {} (how little is known of the height: 0 all, 1 nothing)", shown("u"));
+  if (evidence.has("p")) {
+    text += fmt::format(", p = {} (the probability that an object is there, by footprint/{})", shown("p"), footprint);
   }
-  const auto w = evidence.number("w");
-  const auto e = evidence.number("e");
-  if (w && e) {
-    text += fmt::format(", w = {}{} (what speaks for an object: 0 desk, 1 object), e = u w = {}{}", plain_words(*w),
-                        evidence.star("w"), plain_words(*e), evidence.star("e"));
+  if (evidence.has("w") && evidence.has("e")) {
+    text += fmt::format(", w = {} (what speaks for an object: 0 desk, 1 object), e = u w = {}", shown("w"), shown("e"));
   }
   page.say(text + ".");
 }
