@@ -13,12 +13,14 @@ namespace {
 
 Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
 
-/// The options of one plugin, with its type.
-Tree plugin_schema(const PluginHost& host, const PluginListing& row) {
-  Tree out = schema_of(describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); }));
-  out.at("title") = quoted(row.kind + "/" + row.name);
-  out.at("description") = quoted(row.summary);
-  out.at("properties").at("type").at("const") = quoted(row.name);
+/// The plugins of a kind that can be used, with their options; `palpate plugins` tells what is wrong with the others.
+std::vector<FieldDescription::CaseDescription> plugins_of(const PluginHost& host, const std::string& kind) {
+  std::vector<FieldDescription::CaseDescription> out;
+  for (const PluginListing& row : host.list(kind, "")) {
+    if (!row.trouble.empty()) continue;
+    out.push_back(
+        {row.name, row.summary, describe_fields([&](Fields& fields) { host.describe(kind, row.name, fields); })});
+  }
   return out;
 }
 
@@ -30,8 +32,12 @@ Tree kind_schema(const PluginHost& host, const std::string& kind) {
   name.at("type") = quoted("string");
   name.at("description") = quoted("the name of a group file or of a plugin");
   any.items.push_back(std::move(name));
-  for (const PluginListing& row : host.list(kind, "")) {
-    if (row.trouble.empty()) any.items.push_back(plugin_schema(host, row));
+  for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
+    Tree plugin = schema_of(one.fields);
+    plugin.at("title") = quoted(kind + "/" + one.name);
+    plugin.at("description") = quoted(one.meaning);
+    plugin.at("properties").at("type").at("const") = quoted(one.name);
+    any.items.push_back(std::move(plugin));
   }
   Tree out = Tree::map();
   out.at("anyOf") = std::move(any);
@@ -103,7 +109,8 @@ Tree sweep_schema() {
 
 int schema(Program& program) {
   ExperimentOptions options;
-  Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); }, &program.host));
+  Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); },
+                                       [&](const std::string& kind) { return plugins_of(program.host, kind); }));
   Tree& properties = out.at("properties");
   Tree scene = properties.at("scene");
   Tree scene_name = Tree::map();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The laws of shape.hpp, over every shape found that can be made without further options, and over meshes.
+// The laws of shape.hpp, over every shape found that can be made without further options, and over the others.
 #include "support/plugins.hpp"
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"
@@ -23,8 +23,11 @@ void PrintTo(const PluginCase& one, std::ostream* out) { *out << one.type << " "
 
 std::vector<PluginCase> plugin_cases() {
   const std::string cup = "file: '" + (source_folder() / "configs/scene/meshes/cup.stl").string() + "'";
-  std::vector<PluginCase> out{{"mesh", "mesh", "{" + cup + ", unit: 1 mm}"},
-                              {"mesh_on_its_side", "mesh", "{" + cup + ", unit: 0.4 mm, up: y}"}};
+  std::vector<PluginCase> out{
+      {"mesh", "mesh", "{" + cup + ", unit: 1 mm}"},
+      {"mesh_on_its_side", "mesh", "{" + cup + ", unit: 0.4 mm, up: y}"},
+      {"polygon", "polygon", "{outline: [[0 cm, 0 cm], [9 cm, 1 cm], [3 cm, 3 cm], [2 cm, 8 cm]]}"},
+      {"older_spelling", "plugin", "{shape: {type: cone}}"}};
   for (const std::string& name : plugins_under_contract("shape")) out.push_back({test_name(name), name, "{}"});
   return out;
 }

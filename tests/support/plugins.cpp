@@ -5,6 +5,7 @@
 #include "config/resolve.hpp"
 #include "config/yaml.hpp"
 #include "scene/scene_options.hpp"
+#include "support/filled.hpp"
 #include "support/support.hpp"
 
 #include <algorithm>
@@ -41,9 +42,8 @@ PluginChoice choose(const PluginHost& host, const std::string& kind, const std::
 
 const Scene& wave_scene() {
   static const std::unique_ptr<const Scene> scene = [] {
-    SceneOptions options;
-    options.objects.resize(1);
-    return build_scene(options, 1, contract_host());
+    const std::string yaml = "{area: {width: 23 cm, depth: 23 cm}, objects: [{type: wave}]}";
+    return build_scene(filled<SceneOptions>(yaml), 1, contract_host());
   }();
   return *scene;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The laws that shape.hpp states, for shapes built in and for plugins.
+// The laws that shape.hpp states.
 #pragma once
 
 #include <palpate/random.hpp>

@@ -83,6 +83,10 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/kernel/length_scal", "1.7 cm")) << "unknown option of a plugin";
   EXPECT_TRUE(refused("/fallback", "uncertain")) << "unknown choice";
   EXPECT_TRUE(refused("/scene/objects/0/type", "cube")) << "unknown shape";
+  EXPECT_TRUE(refused("/scene/objects/0/diameter", "3 cm")) << "an option of another shape";
+  EXPECT_TRUE(refused("/scene/objects/0/tilt", "3 cm")) << "a length for an angle";
+  EXPECT_TRUE(refused("/scene/objects/0", {{"length", "3 cm"}})) << "an object without type";
+  EXPECT_FALSE(refused("/scene/objects/0", {{"type", "ring"}, {"inner", "3 cm"}, {"at", {"9 cm", "9 cm"}}}));
   EXPECT_FALSE(refused("/kernel", "matern52")) << "a group by name is legal";
   const Json rbf = {{"type", "rbf"}, {"length_scale", "2 cm"}};
   const Json scaled = {{"type", "scale"}, {"factor", 2}, {"kernel", rbf}};

@@ -3,8 +3,6 @@
 
 #include "record/json.hpp"
 
-#include <palpate/error.hpp>
-
 #include <gtest/gtest.h>
 
 namespace palpate {
@@ -161,31 +159,16 @@ TEST(Schema, KnowsTheJsonTypeOfEveryField) {
 
 struct Points : Options {
   std::vector<std::array<double, 2>> places{{0.1, 0.2}, {0.3, 0.4}};
-  PluginChoice mesh{"shape", "mesh", nullptr};
+  PluginChoice shape{"shape", {}, nullptr};
   void list(Fields& fields) override {
     fields.table(places, Field("places", "corners").in(Unit::metre));
-    fields.adopt(mesh);
+    fields.adopt(shape, Field("type", "what stands there").needed());
   }
-};
-
-/// Knows shape/mesh, or nothing.
-class OneShape final : public PluginSource {
- public:
-  explicit OneShape(bool there) : there_(there) {}
-  void describe(const std::string&, const std::string&, Fields& fields) const override {
-    if (!there_) throw Error("", "no plugin shape/mesh");
-    std::string file;
-    fields.text(file, Field("file", "of triangles"));
-  }
-
- private:
-  bool there_;
 };
 
 TEST(Describe, TellsATableByItsRow) {
   Points points;
   const auto fields = describe_fields([&](Fields& list) { points.list(list); });
-  ASSERT_EQ(fields.size(), 1U) << "without plugins, what is adopted is left out";
   EXPECT_EQ(fields[0].type_name(), "rows of 2 lengths");
   EXPECT_EQ(fields[0].default_value, "[[0.1 m, 0.2 m], [0.3 m, 0.4 m]]");
   const Tree schema = schema_of(fields);
@@ -194,14 +177,19 @@ TEST(Describe, TellsATableByItsRow) {
   EXPECT_EQ(schema.find_path("properties.places.items.items.type")->text, "string");
 }
 
-TEST(Describe, ListsAnAdoptedPluginWhereItsLibraryCanTell) {
-  Points points;
-  const auto list = [&](Fields& fields) { points.list(fields); };
-  const OneShape known(true);
-  const OneShape missing(false);
-  ASSERT_EQ(describe_fields(list, &known).size(), 2U);
-  EXPECT_EQ(describe_fields(list, &known)[1].name, "file");
-  EXPECT_EQ(describe_fields(list, &missing).size(), 1U);
+TEST(Describe, ListsAdoptedPluginsAsCasesWithTheirOptions) {
+  const auto list = [](Fields& fields) { Points().list(fields); };
+  const auto fields = describe_fields(list, [](const std::string& kind) {
+    const auto length = describe_fields([](Fields& inner) { Part().list(inner); });
+    return std::vector<FieldDescription::CaseDescription>{{"dot", "a small " + kind, {}},
+                                                          {"box", "a large one", length}};
+  });
+  ASSERT_EQ(fields.size(), 2U);
+  EXPECT_EQ(fields[1].name, "type");
+  EXPECT_EQ(fields[1].type_name(), "one of dot, box");
+  EXPECT_EQ(fields[1].cases[0].meaning, "a small shape");
+  EXPECT_EQ(fields[1].cases[1].fields[0].name, "width");
+  EXPECT_EQ(describe_fields(list)[1].type_name(), "plugin of kind shape") << "without plugins their kind is known";
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Meshes made from the primitives agree with the primitives.
-#include "scene/shapes.hpp"
 #include "support/plugins.hpp"
 #include "support/shape_cases.hpp"
 #include "support/support.hpp"

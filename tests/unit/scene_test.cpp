@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gp/candidates.hpp"
 #include "scene/scene_options.hpp"
+#include "support/filled.hpp"
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>
@@ -14,23 +15,13 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-SceneOptions with(ObjectOptions object) {
-  SceneOptions options;
-  options.objects.push_back(std::move(object));
-  return options;
-}
-
-ObjectOptions wave_at(double x, double y, double rotation) {
-  ObjectOptions object;
-  object.type = ObjectOptions::Type::wave;
-  object.at[0] = x;
-  object.at[1] = y;
-  object.rotation = rotation;
-  return object;
+/// The area of the paper, with one object or none.
+SceneOptions with(const std::string& object) {
+  return test::filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}, objects: [" + object + "]}");
 }
 
 TEST(Scene, ObjectIHasTheHeightsOfThePaper) {
-  const auto scene = build_scene(with(wave_at(0.115, 0.115, 0.0)), 1, test::shared_host());
+  const auto scene = build_scene(with("{type: wave}"), 1, test::shared_host());
   EXPECT_DOUBLE_EQ(scene->height(0.115, 0.115), 0.11) << "a crest at the centre";
   EXPECT_DOUBLE_EQ(scene->height(0.155, 0.115), 0.07) << "a trough 4 cm along the length";
   EXPECT_DOUBLE_EQ(scene->height(0.135, 0.115), 0.09);
@@ -41,9 +32,7 @@ TEST(Scene, ObjectIHasTheHeightsOfThePaper) {
 }
 
 TEST(Scene, ObjectIiRisesFromTwoToEightCentimetres) {
-  ObjectOptions object;
-  object.type = ObjectOptions::Type::slope;
-  const auto scene = build_scene(with(object), 1, test::shared_host());
+  const auto scene = build_scene(with("{type: slope}"), 1, test::shared_host());
   EXPECT_NEAR(scene->height(0.115 - 0.0849999, 0.115), 0.02, 1e-7);
   EXPECT_NEAR(scene->height(0.115, 0.115), 0.05, 1e-15);
   EXPECT_NEAR(scene->height(0.115 + 0.0849999, 0.115), 0.08, 1e-7);
@@ -51,7 +40,7 @@ TEST(Scene, ObjectIiRisesFromTwoToEightCentimetres) {
 }
 
 TEST(Scene, RotationTurnsCounterClockwise) {
-  const auto scene = build_scene(with(wave_at(0.1, 0.1, kPi / 6)), 1, test::shared_host());
+  const auto scene = build_scene(with("{type: wave, at: [10 cm, 10 cm], rotation: 30 deg}"), 1, test::shared_host());
   const double along = 0.04;  // a trough
   EXPECT_NEAR(scene->height(0.1 + along * std::cos(kPi / 6), 0.1 + along * std::sin(kPi / 6)), 0.07, 1e-12);
 }
@@ -66,7 +55,7 @@ TEST(Scene, OnSurfaceIsStrictlyAboveTheMargin) {
 }
 
 TEST(Scene, RandomPlacementKeepsTheObjectWhollyInsideAndDependsOnTheSeed) {
-  SceneOptions options = with(wave_at(0.0, 0.0, 0.0));
+  SceneOptions options = with("{type: wave}");
   options.placement = SceneOptions::Placement::random;
   double first = -1.0;
   bool moved = false;
@@ -90,9 +79,7 @@ TEST(Scene, RandomPlacementKeepsTheObjectWhollyInsideAndDependsOnTheSeed) {
 }
 
 TEST(Scene, AnObjectTooLargeForTheAreaIsRefused) {
-  ObjectOptions object = wave_at(0.0, 0.0, 0.0);
-  object.wave.length = 0.4;
-  SceneOptions options = with(object);
+  SceneOptions options = with("{type: wave, length: 40 cm}");
   options.placement = SceneOptions::Placement::random;
   EXPECT_THROW(build_scene(options, 1, test::shared_host()), Error);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Every primitive, upright and tilted, against its definition as a set of points and as triangles.
-#include "scene/shapes.hpp"
 #include "support/plugins.hpp"
 #include "support/shape_cases.hpp"
 #include "support/shape_laws.hpp"
@@ -49,8 +48,8 @@ struct Frame {
 };
 
 std::shared_ptr<const Shape> shape_of(const ShapeCase& one) {
-  return make_shape(scene_options("{area: {width: 1 m, depth: 1 m}, objects: [" + one.options + "]}").objects[0],
-                    context_of(shared_host()));
+  const SceneOptions scene = scene_options("{area: {width: 1 m, depth: 1 m}, objects: [" + one.options + "]}");
+  return context_of(shared_host()).create<const Shape>(scene.objects[0].shape);
 }
 
 class Primitive : public testing::TestWithParam<ShapeCase> {};

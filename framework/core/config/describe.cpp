@@ -3,8 +3,6 @@
 
 #include "config/quantity.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +25,7 @@ std::string range_text(const Field& field) {
 
 class Describer final : public Fields {
  public:
-  explicit Describer(const PluginSource* plugins) : plugins_(plugins) {}
+  explicit Describer(const PluginCases& plugins) : plugins_(plugins) {}
 
   std::vector<FieldDescription> rows;
 
@@ -99,18 +97,16 @@ class Describer final : public Fields {
   void plugins(std::vector<PluginChoice>&, const char* kind, const Field& field) override {
     add(Type::plugins, field).kind = kind;
   }
-  void adopt(PluginChoice& choice) override {
-    if (plugins_ == nullptr) return;
-    try {
-      plugins_->describe(choice.kind, choice.type, *this);
-    } catch (const Error&) {
-      // `palpate plugins` tells what is wrong with a library; all other options can be described without it.
-    }
+  void adopt(PluginChoice& choice, const Field& field) override {
+    plugin(choice, field);
+    FieldDescription& row = rows.back();
+    if (plugins_) row.cases = plugins_(choice.kind);
+    if (!row.cases.empty()) row.type = Type::choice;
   }
   void require(bool, const char*, const std::string&) override {}
 
  private:
-  const PluginSource* plugins_;
+  const PluginCases& plugins_;
 
   FieldDescription& add(Type type, const Field& field) {
     FieldDescription row;
@@ -173,6 +169,26 @@ void row_schema(Tree& out, const FieldDescription& field) {
   out.at("maxItems") = Tree::scalar(std::to_string(field.count));
 }
 
+/// A group with a type has a schema for each of its cases, with the fields of that and of no other.
+Tree group_schema(const std::vector<FieldDescription>& fields) {
+  const auto typed = std::find_if(fields.begin(), fields.end(), [](const FieldDescription& field) {
+    return std::any_of(field.cases.begin(), field.cases.end(), [](const auto& one) { return !one.fields.empty(); });
+  });
+  if (typed == fields.end()) return schema_of(fields);
+  Tree out = Tree::map();
+  Tree& any = out.at("anyOf");
+  any = Tree::list();
+  std::vector<FieldDescription> chosen = fields;
+  for (const auto& one : typed->cases) {
+    chosen[static_cast<std::size_t>(typed - fields.begin())].cases = {one};
+    any.items.push_back(schema_of(chosen));
+    if (!typed->required) continue;
+    any.items.back().at("required") = Tree::list();
+    any.items.back().at("required").items.push_back(quoted(typed->name));
+  }
+  return out;
+}
+
 Tree field_schema(const FieldDescription& field) {
   Tree out = Tree::map();
   const std::string range = field.range.empty() ? "" : " (" + field.range + ")";
@@ -204,7 +220,7 @@ Tree field_schema(const FieldDescription& field) {
       break;
     }
     case Type::section: {
-      Tree inner = schema_of(field.fields);
+      Tree inner = group_schema(field.fields);
       if (field.optional) {
         Tree none = Tree::map();
         none.at("const") = quoted("none");
@@ -218,7 +234,7 @@ Tree field_schema(const FieldDescription& field) {
     }
     case Type::sections: {
       out.at("type") = quoted("array");
-      out.at("items") = schema_of(field.fields);
+      out.at("items") = group_schema(field.fields);
       break;
     }
     case Type::plugin:
@@ -284,7 +300,7 @@ std::string FieldDescription::type_name() const {
   return {};
 }
 
-std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list, const PluginSource* plugins) {
+std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list, const PluginCases& plugins) {
   Describer describer(plugins);
   list(describer);
   return std::move(describer.rows);

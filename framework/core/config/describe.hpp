@@ -2,7 +2,6 @@
 // Option lists turned into text for people and into JSON Schema for editors.
 #pragma once
 
-#include "config/resolve.hpp"
 #include "config/tree.hpp"
 
 #include <palpate/options.hpp>
@@ -42,10 +41,13 @@ struct FieldDescription::CaseDescription {
   std::vector<FieldDescription> fields;
 };
 
-/// The description of what `list` lists. The options of plugins among them (Fields::adopt) come from `plugins`, and are
-/// left out if it is null or cannot tell.
+/// Every plugin of a kind, with its options.
+using PluginCases = std::function<std::vector<FieldDescription::CaseDescription>(const std::string& kind)>;
+
+/// The description of what `list` lists. A plugin whose options stand among them (Fields::adopt) is one of the cases
+/// that `plugins` tells; without it, or if there are none, only its kind is known.
 std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list,
-                                              const PluginSource* plugins = nullptr);
+                                              const PluginCases& plugins = {});
 
 /// An aligned table, a field a line, nested fields indented by their path.
 std::string describe_text(const std::vector<FieldDescription>& fields);

@@ -234,13 +234,19 @@ class Resolver final : public Fields {
     output_.at(field.name) = std::move(list);
   }
 
-  void adopt(PluginChoice& choice) override {
-    const Tree* type = input_ != nullptr ? input_->find("type") : nullptr;
-    const std::size_t before = output_.entries.size();
-    list_plugin(choice, type != nullptr ? type->place.text() : where(), *this);
+  void adopt(PluginChoice& choice, const Field& field) override {
+    const Tree& type = *claim(field);
+    choice.type = name_of_plugin(type, choice.kind, name(field));
+    type_layer_ = std::max(type_layer_, type.layer);
+    write(field, Tree::scalar(choice.type));
+    adopted_ = choice.kind + "/" + choice.type;
     Tree options = Tree::map();
+    options.place = type.place;  // where the plugin's own complaints will point, and what it lacks is missing
+    std::swap(output_.place, options.place);
+    const std::size_t before = output_.entries.size();
+    list_plugin(choice, type.place.text(), *this);
     options.entries.assign(output_.entries.begin() + static_cast<std::ptrdiff_t>(before), output_.entries.end());
-    options.place = type != nullptr ? type->place : output_.place;
+    std::swap(output_.place, options.place);
     choice.options = std::make_shared<const Tree>(std::move(options));
   }
 
@@ -274,6 +280,10 @@ class Resolver final : public Fields {
 
   /// Finds the field's value and remembers that the field exists. Null when the config does not say it.
   const Tree* claim(const Field& field) {
+    if (!adopted_.empty() && std::find(known_.begin(), known_.end(), field.name) != known_.end()) {
+      throw Error(where(), fmt::format("{} has an option '{}', and so has {}", adopted_, field.name, owner()),
+                  "the plugin needs another name for it");
+    }
     known_.emplace_back(field.name);
     const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
     if (tree == nullptr && field.required) {
@@ -371,6 +381,13 @@ class Resolver final : public Fields {
     return read_plugin(choice, tree, type, path);
   }
 
+  /// What stands at `path` to name a plugin.
+  static const std::string& name_of_plugin(const Tree& tree, const std::string& kind, const std::string& path) {
+    if (tree.is_scalar()) return tree.text;
+    throw Error(tree.place.text(), fmt::format("{} is not a name", path),
+                fmt::format("'palpate plugins {}' lists the types", kind));
+  }
+
   /// Lists the plugin's options to `fields`; trouble with its library is told at `place`.
   void list_plugin(const PluginChoice& choice, const std::string& place, Resolver& fields) {
     notes_.plugins.emplace(choice.kind, choice.type);
@@ -387,12 +404,7 @@ class Resolver final : public Fields {
   /// Fills `choice`; returns what goes into the resolved config.
   Tree read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const std::string& path) {
     const std::string at = type != nullptr ? type->place.text() : where();
-    if (type != nullptr) {
-      if (!type->is_scalar())
-        throw Error(at, fmt::format("{}.type is not a name", path),
-                    fmt::format("'palpate plugins {}' lists the types", choice.kind));
-      choice.type = type->text;
-    }
+    if (type != nullptr) choice.type = name_of_plugin(*type, choice.kind, path + ".type");
     Resolver inner(&tree, path + ".", plugins_, notes_, output_.place);
     inner.set_type(type != nullptr ? *type : tree, choice.kind + "/" + choice.type);
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
@@ -410,6 +422,7 @@ class Resolver final : public Fields {
   std::string path_;
   std::string plugin_;   ///< whose options these are; "" for none
   bool silent_ = false;  ///< a plugin among these is: any key may be its
+  std::string adopted_;  ///< whose options stand among them; "" for none
   const PluginSource& plugins_;
   ResolveNotes& notes_;
   Tree output_;

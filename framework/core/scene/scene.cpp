@@ -3,7 +3,6 @@
 #include "scene/body.hpp"
 #include "scene/placement.hpp"
 #include "scene/scene_options.hpp"
-#include "scene/shapes.hpp"
 
 #include <palpate/plugin.hpp>
 
@@ -20,10 +19,10 @@ class Desk final : public Scene {
         margin_(options.on_surface_above),
         effects_(options.effects.values()),
         context_{factory, *this, seed, nullptr} {
-    // A shape that is a plugin sees a desk that is still bare.
+    // Shapes see a desk that is still bare.
     std::vector<Body> bodies;
     for (const ObjectOptions& object : options.objects) {
-      bodies.emplace_back(make_shape(object, context_), object.tilt);
+      bodies.emplace_back(context_.create<const Shape>(object.shape), object.tilt);
       bodies.back().place(object.at[0], object.at[1], object.rotation);
     }
     if (options.placement == SceneOptions::Placement::random) {

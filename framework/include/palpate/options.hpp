@@ -130,9 +130,9 @@ class Fields {
   virtual void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) = 0;
   /// A list of plugins of one kind.
   virtual void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) = 0;
-  /// The options of the plugin `choice.kind`/`choice.type`, which the caller has set, among the fields at hand instead
-  /// of in a group of their own. Their names must differ from those of the fields beside them.
-  virtual void adopt(PluginChoice& choice) = 0;
+  /// Another plugin, whose name and options stand among the fields at hand instead of in a group of their own: the
+  /// needed `field` names it. Throws Error where one of its options has the name of a field beside it.
+  virtual void adopt(PluginChoice& choice, const Field& field) = 0;
   /// A law between fields: when `holds` is false, reading fails with `reason` at the place of `field`, which may be a
   /// dotted path to a field of a nested group.
   virtual void require(bool holds, const char* field, const std::string& reason) = 0;

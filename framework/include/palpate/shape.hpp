@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The form of an object, apart from where it stands. The scene turns, tilts and places it; a form that is not built in,
-// such as a mesh, is a plugin of this kind.
+// The form of an object, apart from where it stands. The scene turns, tilts and places it.
 #pragma once
 
 #include <Eigen/Core>

@@ -64,7 +64,7 @@ class Written final : public Fields {
   void plugin(PluginChoice&, const Field&) override {}
   void plugin(std::optional<PluginChoice>&, const char*, const Field&) override {}
   void plugins(std::vector<PluginChoice>&, const char*, const Field&) override {}
-  void adopt(PluginChoice&) override {}
+  void adopt(PluginChoice&, const Field&) override {}
   void require(bool, const char*, const std::string&) override {}
 
  private:

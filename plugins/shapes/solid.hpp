@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The part of a line that lies in a convex set.
+// What the shapes share: the part of a line that lies in a convex set, and an option.
 #pragma once
+
+#include <palpate/options.hpp>
 
 #include <algorithm>
 #include <limits>
 
-namespace palpate {
+namespace palpate::shapes {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -37,4 +39,9 @@ struct Interval {
   }
 };
 
-}  // namespace palpate
+/// The option of all that has one height.
+inline void list_height(double& height, Fields& fields) {
+  fields.real(height, Field("height", "of the top above the desk, upright").in(Unit::metre).above(0));
+}
+
+}  // namespace palpate::shapes

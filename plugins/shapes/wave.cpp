@@ -1,19 +1,41 @@
 // SPDX-License-Identifier: MIT
-#include "scene/wave.hpp"
+// A block whose top is a wave along its length, the paper's object I: closed form when upright, critical points and
+// bisection when tilted.
+#include "solid.hpp"
 
-#include "scene/interval.hpp"
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace palpate {
-namespace {
+namespace palpate::shapes {
+
+struct WaveOptions : Options {
+  double length = 0.16;
+  double width = 0.06;
+  double height = 0.09;
+  double amplitude = 0.02;
+  double period = 0.08;
+
+  void list(Fields& fields) override {
+    fields.real(length,
+                Field("length", "extent along the wave").in(Unit::metre).above(0).from("Sun and Min 2021: 16 cm"));
+    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0).from("Sun and Min 2021: 6 cm"));
+    fields.real(height, Field("height", "mean height of the top above the desk").in(Unit::metre).above(0));
+    fields.real(amplitude, Field("amplitude", "of the wave, with a crest at the centre").in(Unit::metre).at_least(0));
+    fields.real(period, Field("period", "distance from crest to crest").in(Unit::metre).above(0));
+    fields.require(amplitude <= height, "amplitude",
+                   "is larger than the mean height, the top would dip below the desk");
+  }
+};
 
 constexpr double kPi = 3.14159265358979323846;
 
 class Wave final : public Shape {
  public:
-  explicit Wave(const WaveOptions& o)
+  using Options = WaveOptions;
+  Wave(const Options& o, const Context&)
       : height_(o.height),
         amplitude_(o.amplitude),
         period_(o.period),
@@ -101,8 +123,6 @@ class Wave final : public Shape {
   double height_, amplitude_, period_, half_length_, half_width_;
 };
 
-}  // namespace
+PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top: the paper's object I")
 
-std::unique_ptr<const Shape> make_wave(const WaveOptions& options) { return std::make_unique<Wave>(options); }
-
-}  // namespace palpate
+}  // namespace palpate::shapes

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "solid.hpp"
+
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::shapes {
+
+struct BlockOptions : Options {
+  double length = 0.12;
+  double width = 0.08;
+  double height = 0.05;
+
+  void list(Fields& fields) override {
+    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
+    list_height(height, fields);
+  }
+};
+
+class Block final : public Shape {
+ public:
+  using Options = BlockOptions;
+  Block(const Options& o, const Context&) : half_length_(o.length / 2), half_width_(o.width / 2), height_(o.height) {}
+
+  double first_hit(const Line& line) const override {
+    Interval inside;
+    inside.clip(line.origin.z(), line.direction.z(), 0.0, height_);
+    inside.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
+    inside.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
+    return inside.first();
+  }
+
+  double support(const Eigen::Vector3d& direction) const override {
+    return std::abs(direction.x()) * half_length_ + std::abs(direction.y()) * half_width_ +
+           std::max(0.0, direction.z() * height_);
+  }
+
+ private:
+  double half_length_, half_width_, height_;
+};
+
+PALPATE_PLUGIN(Shape, Block, "block", "box with a flat top")
+
+}  // namespace palpate::shapes

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "quadric.hpp"
+
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+namespace palpate::shapes {
+
+struct CylinderOptions : Options {
+  double diameter = 0.08;
+  double height = 0.06;
+
+  void list(Fields& fields) override {
+    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
+    list_height(height, fields);
+  }
+};
+
+class Cylinder final : public Round {
+ public:
+  using Options = CylinderOptions;
+  Cylinder(const Options& o, const Context&)
+      : Round({{1, 1, 0}, {0, 0, 0}, o.diameter * o.diameter / 4}, o.height), radius_(o.diameter / 2) {}
+
+  double support(const Vector3d& direction) const override {
+    return disk_support(direction, radius_) + std::max(0.0, direction.z() * height_);
+  }
+
+ private:
+  double radius_;
+};
+
+PALPATE_PLUGIN(Shape, Cylinder, "cylinder", "standing cylinder")
+
+}  // namespace palpate::shapes

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// The cap of a ball, at most half of it.
+#include "quadric.hpp"
+
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+namespace palpate::shapes {
+
+struct DomeOptions : Options {
+  double diameter = 0.12;
+  double height = 0.04;
+
+  void list(Fields& fields) override {
+    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
+    list_height(height, fields);
+    fields.require(height <= diameter / 2, "height", "is more than half the diameter, which makes half a ball");
+  }
+};
+
+class Dome final : public Round {
+ public:
+  using Options = DomeOptions;
+  Dome(const Options& o, const Context&)
+      : Dome(o, (o.diameter * o.diameter / 4 + o.height * o.height) / (2 * o.height)) {}
+
+  double support(const Vector3d& direction) const override {
+    // Where the ball reaches furthest at a point below the plane 0, the cap does so at its rim.
+    const double length = direction.norm();
+    const double centre = height_ - ball_;
+    if (centre * length + ball_ * direction.z() < 0.0) return disk_support(direction, rim_);
+    return centre * direction.z() + ball_ * length;
+  }
+
+ private:
+  Dome(const DomeOptions& o, double ball)
+      : Round({{1, 1, 1}, {0, 0, o.height - ball}, ball * ball}, o.height), rim_(o.diameter / 2), ball_(ball) {}
+
+  double rim_, ball_;
+};
+
+PALPATE_PLUGIN(Shape, Dome, "dome", "cap of a ball")
+
+}  // namespace palpate::shapes

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "quadric.hpp"
+
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+namespace palpate::shapes {
+
+struct EllipsoidOptions : Options {
+  double length = 0.14;
+  double width = 0.09;
+  double height = 0.06;
+
+  void list(Fields& fields) override {
+    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
+    list_height(height, fields);
+  }
+};
+
+class Ellipsoid final : public Round {
+ public:
+  using Options = EllipsoidOptions;
+  Ellipsoid(const Options& o, const Context&)
+      : Round({{4 / (o.length * o.length), 4 / (o.width * o.width), 4 / (o.height * o.height)},
+               {0, 0, o.height / 2},
+               1.0},
+              o.height),
+        half_(o.length / 2, o.width / 2, o.height / 2) {}
+
+  double support(const Vector3d& direction) const override {
+    return direction.z() * half_.z() + direction.cwiseProduct(half_).norm();
+  }
+
+ private:
+  Vector3d half_;
+};
+
+PALPATE_PLUGIN(Shape, Ellipsoid, "ellipsoid", "whole ellipsoid, resting on the desk")
+
+}  // namespace palpate::shapes

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "prism.hpp"
+#include "solid.hpp"
+
+#include <palpate/plugin.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace palpate::shapes {
+namespace {
+
+double cross(const Point& a, const Point& b, const Point& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+bool within_box(const Point& a, const Point& b, const Point& p) {
+  return p[0] >= std::min(a[0], b[0]) && p[0] <= std::max(a[0], b[0]) && p[1] >= std::min(a[1], b[1]) &&
+         p[1] <= std::max(a[1], b[1]);
+}
+
+/// Whether two segments have a point in common.
+bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const double c_side = cross(a, b, c);
+  const double d_side = cross(a, b, d);
+  const double a_side = cross(c, d, a);
+  const double b_side = cross(c, d, b);
+  if (((c_side > 0) != (d_side > 0)) && ((a_side > 0) != (b_side > 0)) && c_side != 0 && d_side != 0 && a_side != 0 &&
+      b_side != 0) {
+    return true;
+  }
+  return (c_side == 0 && within_box(a, b, c)) || (d_side == 0 && within_box(a, b, d)) ||
+         (a_side == 0 && within_box(c, d, a)) || (b_side == 0 && within_box(c, d, b));
+}
+
+/// Edge `i` folds back onto itself at its end.
+bool folds(const Outline& outline, std::size_t i) {
+  const Point& a = outline[i];
+  const Point& b = next(outline, i);
+  const Point& c = next(outline, (i + 1) % outline.size());
+  return cross(a, b, c) == 0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0;
+}
+
+/// Of a corner or an edge: counted from 1, as people do.
+std::string number(std::size_t i) { return std::to_string(i + 1); }
+
+/// Why `outline` is not that of a solid: too few points, two edges that meet where they should not, no extent. Empty if
+/// it is.
+std::string trouble_of_outline(const Outline& outline) {
+  constexpr std::size_t kMostPoints = 2000;
+  const std::size_t n = outline.size();
+  if (n < 3) return "needs three points or more";
+  if (n > kMostPoints)
+    return "has " + std::to_string(n) + " points, at most " + std::to_string(kMostPoints) + " are allowed";
+  for (std::size_t i = 0; i < n; ++i) {
+    if (outline[i] == next(outline, i)) {
+      return "points " + number(i) + " and " + number((i + 1) % n) + " are the same; it closes by itself";
+    }
+    if (folds(outline, i)) return "folds back at point " + number((i + 1) % n);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j + 1 == n) continue;  // neighbours
+      if (meet(outline[i], next(outline, i), outline[j], next(outline, j))) {
+        return "edge " + number(i) + " meets edge " + number(j);
+      }
+    }
+  }
+  return {};
+}
+
+/// Why `hole` is not within `outline`, both without trouble of their own; empty if it is.
+std::string trouble_of_hole(const Outline& outline, const Outline& hole) {
+  for (std::size_t i = 0; i < hole.size(); ++i) {
+    for (std::size_t j = 0; j < outline.size(); ++j) {
+      if (meet(hole[i], next(hole, i), outline[j], next(outline, j))) {
+        return "its edge " + number(i) + " meets edge " + number(j) + " of the outline";
+      }
+    }
+  }
+  return contains(outline, hole.front()) ? "" : "lies outside the outline";
+}
+
+}  // namespace
+
+struct PolygonOptions : Options {
+  Outline outline;
+  Outline hole;
+  double height = 0.05;
+
+  void list(Fields& fields) override {
+    fields.table(
+        outline,
+        Field("outline", "corners in their order, along and across; the rectangle around them is centred at `at`")
+            .in(Unit::metre)
+            .needed());
+    const std::string trouble = trouble_of_outline(outline);
+    fields.require(trouble.empty(), "outline", trouble);
+    fields.table(hole, Field("hole", "corners of a hole within the outline; [] for none").in(Unit::metre));
+    if (trouble.empty() && !hole.empty()) {
+      std::string hole_trouble = trouble_of_outline(hole);
+      if (hole_trouble.empty()) hole_trouble = trouble_of_hole(outline, hole);
+      fields.require(hole_trouble.empty(), "hole", hole_trouble);
+    }
+    list_height(height, fields);
+  }
+};
+
+struct Polygon final : Prism {
+  using Options = PolygonOptions;
+  Polygon(const Options& o, const Context&) : Prism(o.outline, o.hole, o.height) {}
+};
+
+PALPATE_PLUGIN(Shape, Polygon, "polygon", "any outline, raised")
+
+}  // namespace palpate::shapes

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Polygons raised to a height: any outline without crossings, with at most one hole.
+#pragma once
+
+#include <palpate/shape.hpp>
+
+#include <array>
+#include <vector>
+
+namespace palpate::shapes {
+
+using Point = std::array<double, 2>;
+/// Corners in their order, either way round; the last edge leads back to the first corner.
+using Outline = std::vector<Point>;
+
+/// The corner behind corner `i`.
+inline const Point& next(const Outline& outline, std::size_t i) { return outline[i + 1 == outline.size() ? 0 : i + 1]; }
+
+bool contains(const Outline& outline, const Point& point);
+
+class Prism : public Shape {
+ public:
+  /// `hole` may be empty. The bounding rectangle of `outline` is moved to the origin.
+  Prism(Outline outline, Outline hole, double height);
+
+  double top(double s, double t) const final;
+  double first_hit(const Line& line) const final;
+  double support(const Eigen::Vector3d& direction) const final;
+
+ private:
+  Outline outline_, hole_;
+  double height_;
+};
+
+}  // namespace palpate::shapes

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Not convex, but a cylinder less a cylinder: the same intervals.
+#include "quadric.hpp"
+
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+namespace palpate::shapes {
+
+struct RingOptions : Options {
+  double outer = 0.14;
+  double inner = 0.06;
+  double height = 0.05;
+
+  void list(Fields& fields) override {
+    fields.real(outer, Field("outer", "diameter of the outline").in(Unit::metre).above(0));
+    fields.real(inner, Field("inner", "diameter of the hole").in(Unit::metre).above(0));
+    list_height(height, fields);
+    fields.require(inner < outer, "inner", "is not less than the outer diameter");
+  }
+};
+
+class Ring final : public Shape {
+ public:
+  using Options = RingOptions;
+  Ring(const Options& o, const Context&)
+      : outer_{{1, 1, 0}, {0, 0, 0}, o.outer * o.outer / 4},
+        inner_{{1, 1, 0}, {0, 0, 0}, o.inner * o.inner / 4},
+        radius_(o.outer / 2),
+        height_(o.height) {}
+
+  double first_hit(const Line& line) const override {
+    Interval solid;
+    solid.clip(line.origin.z(), line.direction.z(), 0.0, height_);
+    outer_.clip(line, solid);
+    Interval hole;
+    inner_.clip(line, hole);
+    // Through the hole a line goes on to the wall behind it, or to the desk.
+    if (!solid.empty() && solid.begin > hole.begin) solid.begin = std::max(solid.begin, hole.end);
+    return solid.first();
+  }
+
+  double support(const Vector3d& direction) const override {
+    return disk_support(direction, radius_) + std::max(0.0, direction.z() * height_);
+  }
+
+ private:
+  Quadric outer_, inner_;
+  double radius_, height_;
+};
+
+PALPATE_PLUGIN(Shape, Ring, "ring", "cylinder with a round hole")
+
+}  // namespace palpate::shapes
