@@ -93,7 +93,7 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   return design;
 }
 
-Pick Chooser::pick(const Scores& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
+Pick Picker::pick(const Scores& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
   scores_ = &scores;
   allowed_ = &allowed;
   bounds_.resize(static_cast<std::size_t>(scores.pieces()));
@@ -119,7 +119,7 @@ Pick Chooser::pick(const Scores& scores, const std::vector<bool>& allowed, doubl
 }
 
 template <class Visit>
-void Chooser::for_allowed(int piece, double least, const Visit& visit) {
+void Picker::for_allowed(int piece, double least, const Visit& visit) {
   const int count = scores_->read(piece, cells_.data());
   for (int i = 0; i < count; ++i) {
     const Cell& cell = cells_[static_cast<std::size_t>(i)];
@@ -130,7 +130,7 @@ void Chooser::for_allowed(int piece, double least, const Visit& visit) {
   }
 }
 
-void Chooser::find_two() {
+void Picker::find_two() {
   best_ = second_ = {-1, -std::numeric_limits<double>::infinity()};
   const auto look = [&](int piece) {
     for_allowed(piece, second_.score, [&](const Cell& cell) {
@@ -149,7 +149,7 @@ void Chooser::find_two() {
   }
 }
 
-void Chooser::choose_first(double threshold, Pick& out) {
+void Picker::choose_first(double threshold, Pick& out) {
   // The second best stays the runner-up, unless it is the one that is chosen: then the best is.
   out.ties = 0;
   Cell chosen{-1, 0.0};
@@ -165,7 +165,7 @@ void Chooser::choose_first(double threshold, Pick& out) {
   if (chosen.candidate != best_.candidate) second_ = best_;
 }
 
-bool Chooser::any_below(double threshold) {
+bool Picker::any_below(double threshold) {
   bool found = false;
   for (int piece = 0; piece < scores_->pieces() && !found; ++piece) {
     for_allowed(piece, -std::numeric_limits<double>::infinity(),
@@ -174,7 +174,7 @@ bool Chooser::any_below(double threshold) {
   return found;
 }
 
-bool Chooser::before(const Cell& a, const Cell& b) {
+bool Picker::before(const Cell& a, const Cell& b) {
   return a.score > b.score || (a.score == b.score && a.candidate < b.candidate) || b.candidate < 0;
 }
 

@@ -38,7 +38,7 @@ struct Pick {
 /// tolerance x (|best| + scale) of the best are tied; the lowest index wins. So rounding decides nothing, as long as
 /// it stays below that bound. Reads only the pieces of the scores that may matter, and keeps its memory for the next
 /// choice. Throws Error when it meets a score that is not finite.
-class Chooser {
+class Picker {
  public:
   Pick pick(const Scores& scores, const std::vector<bool>& allowed, double scale, double tolerance);
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -147,7 +148,16 @@ std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
   return out;
 }
 
+Quantities TapBelief::surface_reads() const {
+  return two_part_ ? Quantity::height | Quantity::probability : Quantity::height;
+}
+
 void TapBelief::ask(Quantities wanted) {
+  asked_ = asked_ | wanted;
+  build(wanted);
+}
+
+void TapBelief::build(Quantities wanted) {
   const Quantities all = known(wanted);
   const PhaseClock::Scope infer(clock_, Phase::infer);
   if (all.has(Quantity::uncertainty)) show(heights_, 0);
@@ -277,6 +287,10 @@ const Eigen::VectorXd& TapBelief::kept(const Map& map) const {
   if (!map) throw std::logic_error("a map of the belief is read for which nobody asked");
   if (!current_) throw std::logic_error("a map of the belief is read that is older than the last tap");
   return *map;
+}
+
+Prediction TapBelief::predict(int candidate) const {
+  return {height_mean()(candidate), std::sqrt(height_variance()(candidate))};
 }
 
 double TapBelief::height_noise() const {

@@ -56,7 +56,7 @@ Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_
   const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
   PosteriorSettings posterior = settings;
   posterior.score = simd::Score::weighted;
-  Chooser chooser;
+  Picker picker;
   Replay out;
   const auto count = static_cast<std::size_t>(taps.places.rows());
   out.choices.reserve(count);
@@ -69,7 +69,7 @@ Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_
   for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
     process->add({taps.places(i, 0), taps.places(i, 1)}, taps.answers.row(i).transpose());
     if (i + 1 < kInitialTaps) continue;
-    out.choices.push_back(chooser.pick(*process, allowed, 1.0, 0.0).candidate);
+    out.choices.push_back(picker.pick(*process, allowed, 1.0, 0.0).candidate);
     out.seconds.push_back(seconds_since(std::exchange(before, Clock::now())));
   }
   out.total = seconds_since(start);

@@ -66,7 +66,7 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
     Process process(test::make<Kernel>(test::shared_host(), "rbf"),
                     std::vector<ProcessSettings>(2, {1.0, 1e-2, 0.0, 0.0}), candidates, settings);
     process.show(2);
-    Chooser chooser;
+    Picker picker;
     Eigen::VectorXd map(candidates.size());
     Random random(1, "allocation_test");
     long before = 0;
@@ -74,7 +74,7 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
       if (tap == 2) before = allocations;
       const Target place = candidates.target(static_cast<int>(random.index(3600)));
       process.add(place, Eigen::Vector2d(0.1 * random.uniform(), 1.0));
-      chooser.pick(process, allowed, 1.0, 1e-8);
+      picker.pick(process, allowed, 1.0, 1e-8);
       process.read_mean(0, map);
       process.read_relative_variance(map);
     }

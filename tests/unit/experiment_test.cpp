@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/experiment.hpp"
+#include "record/recording.hpp"
 #include "record/row.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
@@ -480,6 +481,25 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
       }
     }
   }
+}
+
+TEST(Experiment, SendsWhoeverTapsByHandWhereTheRunWent) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  Experiment whole(config.options, test::shared_host(), nullptr);
+  Collector collector;
+  whole.run(collector);
+  Experiment by_hand(config.options, test::shared_host(), nullptr, no_backend(true));
+  for (const TapRecord& made : collector.taps) {
+    std::optional<TapRecord> chosen = by_hand.choose_next();
+    ASSERT_TRUE(chosen.has_value());
+    EXPECT_EQ(by_hand.choose_next()->candidate, chosen->candidate) << "it is only asked again";
+    chosen->contact = made.contact;
+    chosen->on_surface = made.on_surface;
+    EXPECT_EQ(to_json_line(tap_row(*chosen)), to_json_line(tap_row(made)));
+    by_hand.observe({chosen->target, made.contact, chosen->source});
+  }
+  EXPECT_EQ(*by_hand.result().errors.rmse, *whole.result().errors.rmse);
+  EXPECT_EQ(by_hand.result().interventions, whole.result().interventions);
 }
 
 TEST(Experiment, TheDeskMayLieAnywhere) {
