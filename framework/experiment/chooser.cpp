@@ -3,12 +3,9 @@
 
 #include <palpate/error.hpp>
 
-#include <fmt/format.h>
-
 namespace palpate {
 
-Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context,
-                 TapBelief& belief)
+Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context)
     : options_(options),
       candidates_(candidates),
       acquisition_(context.create<Acquisition>(options.acquisition)),
@@ -16,20 +13,6 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       allowed_(static_cast<std::size_t>(candidates.size()), true) {
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
-  check_product();
-  belief.form(acquisition_->product());
-}
-
-void Chooser::check_product() const {
-  // Such scores come out of the models themselves; score() is not called, which would be held to reads().
-  const auto needs = [&](Quantity one, const char* name) {
-    if (acquisition_->reads().has(one)) return;
-    throw Error("acquisition/" + options_.acquisition.type,
-                fmt::format("says that its score is a product with {}, which its reads() does not name", name),
-                "add it there");
-  };
-  if (acquisition_->product() != Product::none) needs(Quantity::uncertainty, "the uncertainty u");
-  if (acquisition_->product() == Product::weighted) needs(Quantity::weight, "the weight w");
 }
 
 bool Chooser::starting() const { return search_ ? !hit_ && taps_ < allowed_.size() : taps_ < initial_.size(); }
@@ -41,12 +24,12 @@ bool Chooser::choose(TapBelief& belief, TapRecord& tap) {
     return true;
   }
   tap.source = Source::acquisition;
-  Pick picked = pick_best(belief);
+  Pick picked = pick_best(scores(belief), allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
   if (picked.flat && may_fall_back()) {
     tap.source = Source::fallback;
     tap.why = *picked.flat;
     belief.ask(kFallbackReads);
-    picked = picker_.pick(VectorScores(belief.uncertainty()), allowed_, 1.0, options_.tie_tolerance);
+    picked = pick_best(belief.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
   }
   if (picked.candidate < 0) return false;
   tap.candidate = picked.candidate;
@@ -59,22 +42,12 @@ bool Chooser::choose(TapBelief& belief, TapRecord& tap) {
   return true;
 }
 
-Pick Chooser::pick_best(const TapBelief& belief) {
-  const double scale = acquisition_->prior_scale();
-  if (const Scores* formed = belief.formed()) return picker_.pick(*formed, allowed_, scale, options_.tie_tolerance);
+const Eigen::VectorXd& Chooser::scores(const TapBelief& belief) {
   scores_.resize(candidates_.size());
   acquisition_->score(belief, scores_);
-  if (!scores_.allFinite()) {
-    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
-                Error::Kind::run);
-  }
-  return picker_.pick(VectorScores(scores_), allowed_, scale, options_.tie_tolerance);
-}
-
-Eigen::VectorXd Chooser::scores(const TapBelief& belief) const {
-  Eigen::VectorXd out(candidates_.size());
-  acquisition_->score(belief, out);
-  return out;
+  if (all_finite(scores_)) return scores_;
+  throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+              Error::Kind::run);
 }
 
 void Chooser::observe(const PastTap& tap, int candidate, bool hit) {

@@ -21,9 +21,8 @@ namespace palpate {
 /// belief.
 class Chooser {
  public:
-  /// `options`, `candidates` and `context` must outlive it; `belief` learns which score it shall form. Throws Error for
-  /// an acquisition that cannot be made, and for one whose product() has what its reads() does not name.
-  Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context, TapBelief& belief);
+  /// All must outlive it. Throws Error for an acquisition that cannot be made.
+  Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context);
 
   /// Whether the next tap is the initial design's. A search is over with the first hit, or when it has looked
   /// everywhere.
@@ -39,22 +38,18 @@ class Chooser {
   /// is read; a fallback asks it for more. False if no candidate is left.
   bool choose(TapBelief& belief, TapRecord& tap);
 
-  /// What the acquisition gives each candidate.
-  Eigen::VectorXd scores(const TapBelief& belief) const;
+  /// What the acquisition gives each candidate, until it is asked again. Throws Error for what is no finite number.
+  const Eigen::VectorXd& scores(const TapBelief& belief);
 
   /// Notes a tap at `candidate`; `hit`: a contact on an object.
   void observe(const PastTap& tap, int candidate, bool hit);
 
  private:
-  void check_product() const;
-  Pick pick_best(const TapBelief& belief);
-
   const ExperimentOptions& options_;
   const Candidates& candidates_;
   std::shared_ptr<Acquisition> acquisition_;
   std::vector<int> initial_;      ///< of a design that counts its taps
   std::optional<Search> search_;  ///< the other one
-  Picker picker_;
   Eigen::VectorXd scores_;
   std::vector<bool> allowed_;  ///< candidates that may be tapped
   std::size_t taps_ = 0;

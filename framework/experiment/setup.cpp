@@ -20,7 +20,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
       context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
       candidates_(make_candidates(options.candidates, scene_->area())),
       belief_(options_, candidates_, context_, clock_),
-      chooser_(options_, candidates_, context_, belief_),
+      chooser_(options_, candidates_, context_),
       backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),
       watch_(options_, candidates_, context_, backend_->scene_is_truth()) {}
 

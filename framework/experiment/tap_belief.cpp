@@ -172,9 +172,7 @@ void TapBelief::build(Quantities wanted) {
 
 void TapBelief::show(Model& model, int output) {
   if (!model.process) {
-    PosteriorSettings posterior = posterior_;
-    if (&model != &heights_) posterior.score = simd::Score::none;
-    model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior);
+    model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior_);
   } else if (model.process->shown() > output) {
     return;
   }
@@ -224,18 +222,6 @@ TapBelief::Output TapBelief::output(const Model& model, int output) {
   const Process& process = *model.process;
   const bool fitted = model.fit_at > 0 && model.fit_at == process.size();
   return {&process, output, fitted ? &model.fit : nullptr};
-}
-
-void TapBelief::form(Product product) {
-  if (product == Product::uncertainty) posterior_.score = simd::Score::variance;
-  if (product == Product::weighted && joined_) {
-    posterior_.score = clip_ ? simd::Score::weighted_clipped : simd::Score::weighted;
-  }
-}
-
-const Scores* TapBelief::formed() const {
-  if (posterior_.score == simd::Score::none) return nullptr;
-  return output(heights_, posterior_.score == simd::Score::variance ? 0 : 1).process;
 }
 
 namespace {

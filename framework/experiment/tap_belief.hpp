@@ -10,7 +10,6 @@
 #include "gp/candidates.hpp"
 #include "gp/process.hpp"
 
-#include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
@@ -72,12 +71,6 @@ class TapBelief final : public Belief {
 
   /// The mean of the weight process as it comes, whatever `weight.clip` says.
   const Eigen::VectorXd& weight_mean() const { return kept(weight_mean_); }
-
-  /// Says, before the first ask(), that scores are such a product: then formed() has them, with bounds that come out of
-  /// the update of the maps, valid until the next tap. It is null for other scores, and where heights and labels have
-  /// no common process.
-  void form(Product product);
-  const Scores* formed() const;
 
   /// One output of a process.
   struct Output {

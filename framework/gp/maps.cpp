@@ -76,10 +76,9 @@ simd::Update<Real> TiledMaps<Real>::update(int strip, const double* coefficients
     out.mean[k] = mean_[static_cast<std::size_t>(k)].data() + first;
   }
   out.variance = variance_.data() + first;
-  out.score = rule.score;
   out.scale = static_cast<Real>(rule.scale);
   out.shift = static_cast<Real>(rule.shift);
-  out.best = best_.data() + strip * tiling_.tiles_per_strip();
+  out.best = rule.wanted ? best_.data() + strip * tiling_.tiles_per_strip() : nullptr;
   return out;
 }
 

@@ -118,30 +118,6 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
   }
 }
 
-TEST(Experiment, AProductOfWhatIsNotReadIsRefusedBeforeTheFirstTap) {
-  struct Untold final : Acquisition {
-    Quantities reads() const override { return Quantity::uncertainty; }
-    void score(const Belief&, VectorOut out) const override { out.setOnes(); }
-    Product product() const override { return Product::weighted; }
-    double prior_scale() const override { return 1.0; }
-  };
-  struct Factory final : PluginFactory {
-    std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
-      if (choice.kind == Acquisition::kKind) return std::shared_ptr<Acquisition>(std::make_shared<Untold>());
-      return test::shared_host().create(choice, context);
-    }
-  } factory;
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  try {
-    Experiment experiment(config.options, factory, nullptr);
-    FAIL() << "it was taken";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "acquisition/weighted: says that its score is a product with the weight w, which its reads() does not "
-                 "name, add it there");
-  }
-}
-
 TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
   class Follower final : public Journal {
    public:
