@@ -26,7 +26,10 @@ struct FieldDescription {
   std::string meaning;
   std::string source;
   bool required = false;
-  bool optional = false;                 ///< a `section` that is absent unless it is written
+  bool optional = false;  ///< a `section` that is absent unless it is written
+  bool group = false;     ///< see Field::group()
+  std::string heir_of;    ///< see Field::inherits(); "" for none
+  Owner owner = Owner::unsaid;
   std::size_t count = 0;                 ///< of `reals`, and of a row of `table`
   std::string kind;                      ///< of `plugin`
   std::vector<CaseDescription> cases;    ///< of `choice`
@@ -41,6 +44,9 @@ struct FieldDescription::CaseDescription {
   std::string meaning;
   std::vector<FieldDescription> fields;
 };
+
+/// Of a key that is no option and says nothing but what it is.
+FieldDescription describe_key(const Field& field);
 
 /// The description of what `list` lists. The options of plugins among them (Fields::adopt) come from `plugins`, and are
 /// left out if it is null or cannot tell.
