@@ -243,7 +243,7 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
 int perform(const Action& action, bool asked, int argc, char** argv) {
   const Installation installation = find_installation();
   const PluginHost host(PluginHost::search_path(installation.plugins));
-  Composer composer(installation.configs);
+  Composer composer(installation.configs, config_keys());
   Program program{installation, host, composer, {host, installation, {argv, argv + argc}, &interrupted}};
   if (!asked) return action.perform(program);
   Needs needs;

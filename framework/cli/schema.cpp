@@ -45,7 +45,7 @@ Tree kind_schema(const PluginHost& host, const std::string& kind) {
 }
 
 /// `expect:`: fields of the summary and their statistics, with a comparison or several.
-Tree expect_schema() {
+void expect_schema(Tree& expect) {
   std::string fields = kFailedRuns;
   for (const RecordField& field : summary_fields()) fields += "|" + field.name;
   std::string statistics;
@@ -60,16 +60,13 @@ Tree expect_schema() {
   }
   Tree group = Tree::map();
   group.at("type") = quoted("string");
-  Tree expect = Tree::map();
-  expect.at("description") = quoted(fmt::format(
-      "what the summary must say, for example {0}: '<= 2 cm'; of a sweep, median({0}): '<= 2 cm'", main_error()));
   expect.at("type") = quoted("object");
   expect.at("patternProperties").at(keys).at("anyOf") = std::move(either);
   expect.at("additionalProperties") = Tree::scalar("false");
-  Tree out = Tree::map();
-  out.at("anyOf") = Tree::list();
-  out.at("anyOf").items = {std::move(group), std::move(expect)};
-  return out;
+  Tree any = Tree::list();
+  any.items = {std::move(group), std::move(expect)};
+  expect = Tree::map();
+  expect.at("anyOf") = std::move(any);
 }
 
 Tree of_type(const char* type, const char* description) {
@@ -79,9 +76,19 @@ Tree of_type(const char* type, const char* description) {
   return out;
 }
 
+/// `defaults:`: groups with their names.
+void defaults_schema(Tree& defaults) {
+  defaults.at("type") = quoted("array");
+  Tree& item = defaults.at("items");
+  item.at("type") = quoted("object");
+  item.at("additionalProperties").at("type") = quoted("string");
+  item.at("minProperties") = Tree::scalar("1");
+  item.at("maxProperties") = Tree::scalar("1");
+}
+
 /// `sweep:`: its blocks, whose keys may be any.
-Tree sweep_schema() {
-  Tree sweep = of_type("object", "what 'palpate sweep' varies; its blocks multiply with each other in their order");
+void sweep_schema(Tree& sweep) {
+  sweep.at("type") = quoted("object");
   sweep.at("additionalProperties") = Tree::scalar("false");
   Tree& blocks = sweep.at("properties");
   blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), log(1cm,5cm,8)");
@@ -102,7 +109,6 @@ Tree sweep_schema() {
   several.at("items").at("type") = quoted("string");
   blocks.at("where").at("anyOf") = Tree::list();
   blocks.at("where").at("anyOf").items = {of_type("string", condition), std::move(several)};
-  return sweep;
 }
 
 }  // namespace
@@ -112,37 +118,10 @@ int schema(Program& program) {
   Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); },
                                        [&](const std::string& kind) { return plugins_of(program.host, kind); }));
   Tree& properties = out.at("properties");
-  Tree scene = properties.at("scene");
-  Tree scene_name = Tree::map();
-  scene_name.at("type") = quoted("string");
-  Tree& effects = scene.at("properties").at("effects");
-  Tree either_effects = Tree::map();
-  either_effects.at("anyOf") = Tree::list();
-  either_effects.at("anyOf").items = {of_type("string", "the name of a set: standard reads effects/standard.yaml"),
-                                      std::move(effects)};
-  effects = std::move(either_effects);
-  properties.at("scene") = Tree::map();
-  Tree& either = properties.at("scene").at("anyOf");
-  either = Tree::list();
-  either.items = {std::move(scene_name), std::move(scene)};
-  properties.at("strategy") = of_type(
-      "string", "what decides where to tap and what is believed, by name: strategy/NAME.yaml, or a whole config");
-
-  Tree defaults = Tree::map();
-  defaults.at("description") =
-      quoted("groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries win, then this file");
-  defaults.at("type") = quoted("array");
-  Tree& item = defaults.at("items");
-  item.at("type") = quoted("object");
-  item.at("additionalProperties").at("type") = quoted("string");
-  item.at("minProperties") = Tree::scalar("1");
-  item.at("maxProperties") = Tree::scalar("1");
-  properties.at("defaults") = std::move(defaults);
-
-  properties.at("sweep") = sweep_schema();
-
-  properties.at("expect") = expect_schema();
-
+  for (const Field& field : keys_beside_options()) properties.at(field.name) = of_type("string", field.meaning);
+  defaults_schema(properties.at("defaults"));
+  sweep_schema(properties.at("sweep"));
+  expect_schema(properties.at("expect"));
   Tree& definitions = out.at("definitions");
   definitions = Tree::map();
   for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);

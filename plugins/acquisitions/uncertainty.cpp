@@ -12,7 +12,6 @@ class Uncertainty final : public Acquisition {
 
   Quantities reads() const override { return Quantity::uncertainty; }
   void score(const Belief& belief, VectorOut out) const override { out = belief.uncertainty(); }
-  Product product() const override { return Product::uncertainty; }
   double prior_scale() const override { return 1.0; }
 };
 

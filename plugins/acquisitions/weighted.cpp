@@ -15,7 +15,6 @@ class Weighted final : public Acquisition {
   void score(const Belief& belief, VectorOut out) const override {
     out = belief.uncertainty().cwiseProduct(belief.weight());
   }
-  Product product() const override { return Product::weighted; }
   /// u is 1 before any tap and w is a probability in the model's mind.
   double prior_scale() const override { return 1.0; }
 };

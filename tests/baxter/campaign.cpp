@@ -132,7 +132,7 @@ class Session {
 const BaxterOptions& shipped_options() {
   static const BaxterOptions options = [] {
     const std::filesystem::path configs = palpate::test::source_folder() / "configs";
-    Composer composer(configs);
+    Composer composer(configs, config_keys());
     const ResolvedConfig config = load_experiment(composer, shared_host(), configs / "paper" / "object_i.yaml",
                                                   {parse_override("backend=fake_baxter")});
     BaxterOptions out;

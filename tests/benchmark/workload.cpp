@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "benchmark/workload.hpp"
 
-#include "experiment/policy.hpp"
 #include "support/plugins.hpp"
 #include "support/support.hpp"
 
@@ -53,10 +52,8 @@ std::shared_ptr<Kernel> make_kernel() {
 
 Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
               const PosteriorSettings& settings, std::unique_ptr<Process>* last) {
-  const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
   PosteriorSettings posterior = settings;
-  posterior.score = simd::Score::weighted;
-  Chooser chooser;
+  posterior.scores = true;
   Replay out;
   const auto count = static_cast<std::size_t>(taps.places.rows());
   out.choices.reserve(count);
@@ -69,7 +66,7 @@ Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_
   for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
     process->add({taps.places(i, 0), taps.places(i, 1)}, taps.answers.row(i).transpose());
     if (i + 1 < kInitialTaps) continue;
-    out.choices.push_back(chooser.pick(*process, allowed, 1.0, 0.0).candidate);
+    out.choices.push_back(process->best());
     out.seconds.push_back(seconds_since(std::exchange(before, Clock::now())));
   }
   out.total = seconds_since(start);

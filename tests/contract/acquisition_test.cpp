@@ -123,16 +123,6 @@ TEST_P(AcquisitionContract, WritesItsOutputAndNothingBesideIt) {
   EXPECT_TRUE(same_bytes(around.segment(2, 5), score(*acquisition_, belief)));
 }
 
-TEST_P(AcquisitionContract, IsTheProductThatItSaysItIs) {
-  if (acquisition_->product() == Product::none) GTEST_SKIP() << "it says that it is none";
-  for (const ScriptedBelief& belief : beliefs()) {
-    Eigen::VectorXd expected = belief.uncertainty();
-    if (acquisition_->product() == Product::weighted) expected = expected.cwiseProduct(belief.weight());
-    EXPECT_LE((score(*acquisition_, belief) - expected).cwiseAbs().maxCoeff(),
-              4.0 * std::numeric_limits<double>::epsilon() * expected.cwiseAbs().maxCoeff());
-  }
-}
-
 TEST_P(AcquisitionContract, HasAScale) {
   EXPECT_TRUE(std::isfinite(acquisition_->prior_scale()));
   EXPECT_GE(acquisition_->prior_scale(), 0.0);

@@ -55,7 +55,7 @@ struct Arguments {
 };
 
 ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
-  Composer composer(std::filesystem::path(PALPATE_SOURCE_FOLDER) / "configs");
+  Composer composer(std::filesystem::path(PALPATE_SOURCE_FOLDER) / "configs", config_keys());
   std::vector<Override> overrides;
   for (const std::string& text : a.overrides) overrides.push_back(parse_override(text));
   return load_experiment(composer, plugins, a.config, overrides);

@@ -32,7 +32,7 @@ const Workshop& workshop() {
 const std::vector<std::string> kSmall{"taps=4", "initial.count=2", "candidates.count=5", "scene=object_i"};
 
 fs::path sound_run() {
-  Composer composer(shipped_configs());
+  Composer composer(shipped_configs(), config_keys());
   std::vector<Override> overrides;
   for (const std::string& one : kSmall) overrides.push_back(parse_override(one));
   const ResolvedConfig config =
@@ -43,7 +43,7 @@ fs::path sound_run() {
 }
 
 fs::path sound_sweep() {
-  Composer composer(shipped_configs());
+  Composer composer(shipped_configs(), config_keys());
   std::vector<std::string> words = kSmall;
   words.insert(words.end(), {"seed=range(0,3)", "kernel=rbf,matern52"});
   const fs::path runs = ground().path() / "sweeps";

@@ -20,9 +20,9 @@ namespace palpate::fuzz {
 void config(const std::string& bytes) {
   try {
     const std::filesystem::path file = ground().write("config.yaml", bytes);
-    Composer composer(shipped_configs());
+    Composer composer(shipped_configs(), config_keys());
     const ResolvedConfig first = load_experiment(composer, host(), file, {});
-    Composer again(shipped_configs());
+    Composer again(shipped_configs(), config_keys());
     const ResolvedConfig second = load_experiment(again, host(), ground().write("again.yaml", to_yaml(first.tree)), {});
     if (first.id != second.id) throw std::logic_error("written and read again, it is another config");
   } catch (const Error&) {

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 ResolvedConfig with(const std::vector<std::string>& words) {
-  Composer composer(shipped_configs());
+  Composer composer(shipped_configs(), config_keys());
   std::vector<Override> overrides{parse_override("candidates.count=5"), parse_override("taps=4")};
   for (const std::string& one : words) overrides.push_back(parse_override(one));
   return load_experiment(composer, host(), shipped_configs() / "paper" / "object_i.yaml", overrides);

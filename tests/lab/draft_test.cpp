@@ -39,7 +39,7 @@ class Draft : public testing::Test {
 
   TemporaryFolder folder_;
   fs::path runs_ = folder_.path() / "runs";
-  Composer composer_{source_folder() / "configs"};
+  Composer composer_{source_folder() / "configs", config_keys()};
 };
 
 TEST_F(Draft, AppearsUnderItsNameAtOnceAndWhole) {

@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 class Recorded {
  public:
   Recorded(const std::string& base, const std::vector<std::string>& words) {
-    Composer composer(test::source_folder() / "configs");
+    Composer composer(test::source_folder() / "configs", config_keys());
     std::vector<Override> overrides;
     for (const std::string& word : words) overrides.push_back(parse_override(word));
     const ResolvedConfig config =

@@ -26,7 +26,7 @@ struct Planned {
 };
 
 Planned planned(const fs::path& file, const Texts& words) {
-  Composer composer(kConfigs);
+  Composer composer(kConfigs, config_keys());
   Planned out;
   out.plan = plan_sweep(composer, test::shared_host(), file, words, "runs",
                         [&](const Job&, const ResolvedConfig& config) { out.configs.push_back(config); });
@@ -89,7 +89,7 @@ TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhateverConfigItIs) {
 }
 
 TEST(Plan, MakesTheSameConfigAgainForEveryJob) {
-  Composer composer(kConfigs);
+  Composer composer(kConfigs, config_keys());
   const fs::path file = kConfigs / "paper/object_i.yaml";
   for (const Texts& words :
        {Texts{"seed=range(0,5)", "acquisition=weighted,random"},

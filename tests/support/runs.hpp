@@ -15,7 +15,7 @@ namespace palpate::test {
 
 /// A shipped config (path below configs/) with overrides as typed on the command line.
 inline ResolvedConfig shipped_config(const std::string& file, const std::vector<std::string>& overrides = {}) {
-  Composer composer(source_folder() / "configs");
+  Composer composer(source_folder() / "configs", config_keys());
   std::vector<Override> parsed;
   for (const std::string& text : overrides) parsed.push_back(parse_override(text));
   return load_experiment(composer, shared_host(), source_folder() / "configs" / file, parsed);

@@ -85,7 +85,7 @@ TEST_F(WithoutLibraries, ARunIsToldWhatToInstallAndNotFirstWhatItsConfigLacks) {
   const PluginHost plugins = host();
   for (const auto& [override, words] : cases) {
     try {
-      Composer composer(configs);
+      Composer composer(configs, config_keys());
       const ResolvedConfig config =
           load_experiment(composer, plugins, configs / "paper" / "object_i.yaml", {parse_override(override)});
       Experiment(config.options, plugins, nullptr);
@@ -101,7 +101,7 @@ TEST_F(WithoutLibraries, WhatWasRecordedElsewhereHasTheSameConfigAndId) {
   // So what a robot recorded can be replayed, compared and drawn at a desk without ROS.
   const fs::path configs = test::source_folder() / "configs";
   const PluginHost plugins = host();
-  Composer composer(configs);
+  Composer composer(configs, config_keys());
   const ResolvedConfig here = load_experiment(composer, plugins, configs / "paper" / "object_i.yaml",
                                               {parse_override("backend=fake_baxter"), parse_override("fitting=ceres")});
   EXPECT_EQ(here.id, test::shipped_config("paper/object_i.yaml", {"backend=fake_baxter", "fitting=ceres"}).id);

@@ -56,17 +56,15 @@ namespace {
 TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
   if (test::kSanitized) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
   const Candidates candidates = grid_by_count({0.23, 0.23}, 60);
-  const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
   for (const auto kind :
        {PosteriorSettings::Kind::dense, PosteriorSettings::Kind::grid, PosteriorSettings::Kind::lowrank}) {
     PosteriorSettings settings;
     settings.engine = kind;
     settings.taps = 80;
-    settings.score = simd::Score::weighted;
+    settings.scores = true;
     Process process(test::make<Kernel>(test::shared_host(), "rbf"),
                     std::vector<ProcessSettings>(2, {1.0, 1e-2, 0.0, 0.0}), candidates, settings);
     process.show(2);
-    Chooser chooser;
     Eigen::VectorXd map(candidates.size());
     Random random(1, "allocation_test");
     long before = 0;
@@ -74,7 +72,7 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
       if (tap == 2) before = allocations;
       const Target place = candidates.target(static_cast<int>(random.index(3600)));
       process.add(place, Eigen::Vector2d(0.1 * random.uniform(), 1.0));
-      chooser.pick(process, allowed, 1.0, 1e-8);
+      process.best();
       process.read_mean(0, map);
       process.read_relative_variance(map);
     }

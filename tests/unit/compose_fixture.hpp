@@ -4,6 +4,7 @@
 
 #include "config/compose.hpp"
 #include "config/yaml.hpp"
+#include "experiment/experiment_options.hpp"
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>
@@ -21,7 +22,7 @@ class ComposeFixture : public ::testing::Test {
     const auto file = folder_.write("c.yaml", text);
     std::vector<Override> parsed;
     for (const std::string& one : overrides) parsed.push_back(parse_override(one));
-    return Composer("/nonexistent").compose(file, parsed);
+    return Composer("/nonexistent", config_keys()).compose(file, parsed);
   }
 
   /// The error with the folder's name left out.

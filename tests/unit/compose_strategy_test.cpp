@@ -95,10 +95,10 @@ TEST_F(ComposeStrategy, RefusesAnUnknownOneAndACycle) {
 }
 
 TEST_F(ComposeStrategy, DecidesWhatIsNotOfTheWorld) {
-  EXPECT_TRUE(is_of_strategy("kernel.length_scale"));
-  EXPECT_TRUE(is_of_strategy("initial.count"));
-  EXPECT_FALSE(is_of_strategy("scene.effects"));
-  EXPECT_FALSE(is_of_strategy("taps"));
+  EXPECT_TRUE(config_keys().is_of_strategy("kernel.length_scale"));
+  EXPECT_TRUE(config_keys().is_of_strategy("initial.count"));
+  EXPECT_FALSE(config_keys().is_of_strategy("scene.effects"));
+  EXPECT_FALSE(config_keys().is_of_strategy("taps"));
 }
 
 TEST_F(ComposeStrategy, EffectsTakeThePlaceOfThoseOfTheScene) {

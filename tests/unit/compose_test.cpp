@@ -157,7 +157,7 @@ TEST_F(Compose, BuildsAGroupOnAnotherOfItsKind) {
 TEST_F(Compose, FallsBackToTheShippedGroups) {
   const TemporaryFolder elsewhere;
   const auto file = elsewhere.write("c.yaml", "kernel: rough\n");
-  EXPECT_EQ(Composer(folder_.path()).compose(file, {}).find_path("kernel.nu")->text, "1.5");
+  EXPECT_EQ(Composer(folder_.path(), config_keys()).compose(file, {}).find_path("kernel.nu")->text, "1.5");
 }
 
 TEST_F(Compose, LetsAProcessInheritWhatItDoesNotSayOfTheSharedKernel) {
@@ -211,8 +211,8 @@ TEST_F(Compose, RefusesAnUnknownGroup) {
   EXPECT_EQ(refusal("defaults:\n  - kernl: rbf\n"), "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?");
   EXPECT_EQ(
       refusal("defaults:\n  - posterior: dense\n"),
-      "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, footprint, backend, scene, expect, "
-      "scene.effects, strategy");
+      "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
+      "backend, strategy, expect");
 }
 
 TEST_F(Compose, RefusesASceneWithoutFileAndNamesANearOne) {
@@ -264,7 +264,7 @@ TEST_F(Compose, RefusesAnOverrideIntoAValue) {
 
 TEST(ComposeFile, RefusesAnEmptyName) {
   try {
-    Composer("").compose("", {});
+    Composer("", config_keys()).compose("", {});
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "command line: the name of the config is empty, name a YAML file");
@@ -312,7 +312,7 @@ class GroupFolders : public ::testing::Test {
   /// Which folder the config's kernel comes from; what is said if it is refused.
   std::string from(const std::string& config) {
     const fs::path file = folder_.write(config, "kernel: mine\n");
-    Composer composer(folder_.path() / "shipped");
+    Composer composer(folder_.path() / "shipped", config_keys());
     try {
       const Tree tree = composer.compose(file, {});
       const Tree* name = tree.find_path("kernel.name");
@@ -357,7 +357,7 @@ TEST_F(GroupFolders, ThatMayNotBeSearchedAreNotTakenForEmptyOnes) {
       GTEST_SKIP() << "nobody else may enter the folder for temporary files";
     }
     try {
-      Composer(folder_.path() / "shipped").compose(config, {});
+      Composer(folder_.path() / "shipped", config_keys()).compose(config, {});
     } catch (const Error& error) {
       said = error.what();
     }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 class Earlier : public ::testing::TestWithParam<std::vector<std::string>> {
  protected:
   RunReport run(int taps) {
-    Composer composer(test::source_folder() / "configs");
+    Composer composer(test::source_folder() / "configs", config_keys());
     std::vector<Override> overrides;
     for (const std::string& word : GetParam()) overrides.push_back(parse_override(word));
     overrides.push_back(parse_override("taps=" + std::to_string(taps)));

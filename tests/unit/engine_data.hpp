@@ -57,7 +57,7 @@ inline const std::vector<ProcessSettings> kOutputs{{2.0, 0.1, 0.25, 0.0}, {0.5, 
 inline PosteriorSettings settings_of(Kind kind) {
   PosteriorSettings out;
   out.engine = kind;
-  out.score = simd::Score::weighted;
+  out.scores = true;
   return out;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/experiment.hpp"
+#include "record/recording.hpp"
 #include "record/row.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
@@ -114,30 +115,6 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
     if (last.surface_process) recorded.insert("surface process");
     if (last.footprint) recorded.insert("footprint shape");
     EXPECT_EQ(recorded, named) << (words.empty() ? "weighted" : words.front());
-  }
-}
-
-TEST(Experiment, AProductOfWhatIsNotReadIsRefusedBeforeTheFirstTap) {
-  struct Untold final : Acquisition {
-    Quantities reads() const override { return Quantity::uncertainty; }
-    void score(const Belief&, VectorOut out) const override { out.setOnes(); }
-    Product product() const override { return Product::weighted; }
-    double prior_scale() const override { return 1.0; }
-  };
-  struct Factory final : PluginFactory {
-    std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
-      if (choice.kind == Acquisition::kKind) return std::shared_ptr<Acquisition>(std::make_shared<Untold>());
-      return test::shared_host().create(choice, context);
-    }
-  } factory;
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  try {
-    Experiment experiment(config.options, factory, nullptr);
-    FAIL() << "it was taken";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "acquisition/weighted: says that its score is a product with the weight w, which its reads() does not "
-                 "name, add it there");
   }
 }
 
@@ -480,6 +457,25 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
       }
     }
   }
+}
+
+TEST(Experiment, SendsWhoeverTapsByHandWhereTheRunWent) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  Experiment whole(config.options, test::shared_host(), nullptr);
+  Collector collector;
+  whole.run(collector);
+  Experiment by_hand(config.options, test::shared_host(), nullptr, no_backend(true));
+  for (const TapRecord& made : collector.taps) {
+    std::optional<TapRecord> chosen = by_hand.choose_next();
+    ASSERT_TRUE(chosen.has_value());
+    EXPECT_EQ(by_hand.choose_next()->candidate, chosen->candidate) << "it is only asked again";
+    chosen->contact = made.contact;
+    chosen->on_surface = made.on_surface;
+    EXPECT_EQ(to_json_line(tap_row(*chosen)), to_json_line(tap_row(made)));
+    by_hand.observe({chosen->target, made.contact, chosen->source});
+  }
+  EXPECT_EQ(*by_hand.result().errors.rmse, *whole.result().errors.rmse);
+  EXPECT_EQ(by_hand.result().interventions, whole.result().interventions);
 }
 
 TEST(Experiment, TheDeskMayLieAnywhere) {

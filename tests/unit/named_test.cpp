@@ -48,7 +48,6 @@ struct BrokenFootprint final : Footprint {
 struct BrokenAcquisition final : Acquisition {
   Quantities reads() const override { fail(); }
   void score(const Belief&, VectorOut) const override { fail(); }
-  Product product() const override { fail(); }
   double prior_scale() const override { fail(); }
 };
 
@@ -116,7 +115,6 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(said([&] { footprint->remark(); }), "footprint/mine: it broke");
 
   const auto acquisition = broken<BrokenAcquisition, Acquisition>();
-  EXPECT_EQ(said([&] { acquisition->product(); }), "acquisition/mine: it broke");
   EXPECT_EQ(said([&] { acquisition->prior_scale(); }), "acquisition/mine: it broke");
 
   const auto backend = broken<BrokenBackend, Backend>();

@@ -17,22 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 7> kGroups{"kernel",  "acquisition", "fitting", "footprint",
-                                                  "backend", "scene",       "expect"};
-
-/// Groups that stand in one place only.
-constexpr const char* kStrategy = "strategy";
-constexpr const char* kEffects = "scene.effects";
-
-/// These groups are no plugins: they have no type, and a missing file is an error at once.
-bool is_plain(const std::string& group) { return group == "scene" || group == "expect" || group == "effects"; }
-
-/// What a strategy has no say in: the world and how it is divided, the budget, and what is kept of a run.
-constexpr std::array<std::string_view, 11> kNotOfStrategy{
-    "name", "seed", "taps", "candidates", "scene", "backend", "threads", "instruction_set", "log", "expect", "sweep"};
-
-std::string first_key(const std::string& path) { return path.substr(0, path.find('.')); }
-
 /// Where the files of a group are, the first first. A whole config is a strategy, too: configs/default.yaml is the
 /// strategy `default`. It comes last, so that a user's weighted.yaml may build on the strategy of its name.
 std::vector<fs::path> folders_of(const std::string& group) {
@@ -59,29 +43,6 @@ fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, c
     }
   }
   return {};
-}
-
-std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
-
-}  // namespace
-
-bool is_group(const std::string& path) {
-  return path == kStrategy || path == kEffects ||
-         std::find(kGroups.begin(), kGroups.end(), last_key(path)) != kGroups.end();
-}
-
-bool is_of_strategy(const std::string& path) {
-  return std::find(kNotOfStrategy.begin(), kNotOfStrategy.end(), first_key(path)) == kNotOfStrategy.end();
-}
-
-namespace {
-
-/// Whether `path` leads into a group, as kernel.kernels.0.kernel does: to a plugin inside another.
-bool is_inner(const std::string& path) {
-  for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
-    if (is_group(path.substr(0, dot))) return true;
-  }
-  return false;
 }
 
 bool is_name(const std::string& text) {
@@ -157,6 +118,13 @@ Override parse_override(const std::string& text) {
   return out;
 }
 
+bool Composer::is_inner(const std::string& path) const {
+  for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
+    if (keys_.is_group(path.substr(0, dot))) return true;
+  }
+  return false;
+}
+
 const Tree& Composer::load(const fs::path& file) {
   if (file.empty()) throw Error("command line", "the name of the config is empty", "name a YAML file");
   const fs::path key = fs::absolute(file).lexically_normal();
@@ -227,7 +195,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
   add_link(group, name, place, chain);
   const fs::path file = find_group(group, name, place, beside);
   if (file.empty()) {
-    if (is_plain(group)) throw no_file(group, name, place, beside);
+    if (!keys_.is_plugin(group)) throw no_file(group, name, place, beside);
     Tree content = Tree::map();
     content.place = place;
     content.at("type") = Tree::scalar(name);
@@ -283,10 +251,9 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
       throw Error(item.place.text(), "defaults: expects '- group: name'", "for example '- kernel: rbf'");
     }
     const Tree::Entry& entry = item.entries.front();
-    if (!is_group(entry.key)) {
-      std::vector<std::string> known{kGroups.begin(), kGroups.end()};
-      known.insert(known.end(), {kEffects, kStrategy});
-      throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key), suggestion(entry.key, known));
+    if (!keys_.is_group(entry.key)) {
+      throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key),
+                  suggestion(entry.key, keys_.groups()));
     }
     choices.push_back({entry.key, entry.value.text, entry.value.place, kGroupLayer});
   }
@@ -299,10 +266,10 @@ void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choic
   for (Tree::Entry& entry : tree.entries) {
     if (path.empty() && entry.key == "sweep") continue;
     const std::string here = path.empty() ? entry.key : path + "." + entry.key;
-    if (is_group(here) && entry.value.is_scalar()) {
+    if (keys_.is_group(here) && entry.value.is_scalar()) {
       choices.push_back({here, entry.value.text, entry.value.place, entry.value.layer});
       taken.push_back(entry.key);
-    } else if (entry.value.is_map() && (!is_group(here) || here == "scene")) {
+    } else if (entry.value.is_map() && !keys_.is_plugin(here)) {
       take_names(entry.value, here, choices);
     }
   }
@@ -318,16 +285,15 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
     set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
     layer += kLayersOfGroup;
     Tree& slot = tree.at_path(choice.path, choice.place);
-    if (slot.kind == Tree::Kind::null || choice.path == kEffects) slot = Tree::map();
+    if (slot.kind == Tree::Kind::null || keys_.is_part(choice.path)) slot = Tree::map();
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
   };
-  for (const Choice& choice : choices) {
-    if (choice.path != kEffects) lay(choice);
-  }
-  // Behind every scene: they take the place of the effects that it has.
-  for (const Choice& choice : choices) {
-    if (choice.path == kEffects) lay(choice);
+  // A part behind every whole: it takes the place of what that has there.
+  for (const bool parts : {false, true}) {
+    for (const Choice& choice : choices) {
+      if (keys_.is_part(choice.path) == parts) lay(choice);
+    }
   }
 }
 
@@ -345,10 +311,12 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   Tree own = load(file);
   own.set_layer(kGroupLayer);
   std::vector<Choice> inner = take_defaults(own);
-  for (const std::string_view key : kNotOfStrategy) own.erase(key);
+  const auto drop = [](auto& from, const auto& if_so) {
+    from.erase(std::remove_if(from.begin(), from.end(), if_so), from.end());
+  };
+  drop(own.entries, [&](const Tree::Entry& one) { return !keys_.is_of_strategy(one.key); });
   take_names(own, "", inner);
-  const auto is_else = [](const Choice& one) { return !is_of_strategy(one.path); };
-  inner.erase(std::remove_if(inner.begin(), inner.end(), is_else), inner.end());
+  drop(inner, [&](const Choice& one) { return !keys_.is_of_strategy(one.path); });
   const fs::path root = root_of(file, kStrategy);
   lay_strategy(tree, inner, root, layer, chain);
   lay_groups(tree, inner, root, layer);
@@ -370,7 +338,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   std::vector<Choice> choices = take_defaults(own);
   take_names(own, "", choices);
   for (const Override& one : overrides) {
-    if (!is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
+    if (!keys_.is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
     const auto at_path = [&](const Choice& choice) { return choice.path == one.path; };
     choices.erase(std::remove_if(choices.begin(), choices.end(), at_path), choices.end());
     choices.push_back({one.path, one.value.text, one.value.place, one.value.layer});
@@ -390,18 +358,18 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   lay_groups(tree, choices, beside, layer);
   tree.merge(own);
   for (const Override& one : overrides) {
-    if (is_group(one.path) && one.value.is_scalar()) {
+    if (keys_.is_group(one.path) && one.value.is_scalar()) {
       if (is_inner(one.path)) choose_inner(tree, {one.path, one.value.text, one.value.place, one.value.layer}, beside);
       continue;
     }
     Tree& slot = tree.at_path(one.path, one.value.place);
-    if (is_group(one.path) && one.path != kEffects && slot.is_map() && one.value.is_map()) {
+    if (keys_.is_group(one.path) && !keys_.is_part(one.path) && slot.is_map() && one.value.is_map()) {
       slot.merge(one.value);
     } else {
       slot = one.value;
     }
   }
-  inherit_shared(tree);
+  inherit_shared(tree, keys_);
   return tree;
 }
 
@@ -412,7 +380,7 @@ void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& be
   note_group(choice, beside);
   content.shift_layer(kFileLayer - 1);
   set_layer_of_type(content, choice.layer, choice.place);
-  if (choice.path == kEffects) {
+  if (keys_.is_part(choice.path)) {
     slot = std::move(content);
     return;
   }
@@ -423,21 +391,17 @@ void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& be
   slot = std::move(content);
 }
 
-void inherit_shared(Tree& tree) {
-  for (const char* process : {"height", "weight"}) {
-    Tree* own = tree.find(process);
-    if (own == nullptr || !own->is_map()) continue;
-    for (const char* shared : {"kernel", "fitting"}) {
-      Tree* part = own->find(shared);
-      const Tree* base = tree.find(shared);
-      if (part == nullptr || base == nullptr || !part->is_map() || !base->is_map()) continue;
-      Tree merged = *base;
-      // What the shared one says is older than anything said for this process alone.
-      merged.shift_layer(-2 * kCommandLineLayer);
-      merged.merge(*part);
-      merged.place = part->place;
-      *part = std::move(merged);
-    }
+void inherit_shared(Tree& tree, const ConfigKeys& keys) {
+  for (const auto& [heir, from] : keys.heirs()) {
+    const Tree* own = tree.find_path(heir);
+    const Tree* base = tree.find_path(from);
+    if (own == nullptr || base == nullptr || !own->is_map() || !base->is_map()) continue;
+    Tree merged = *base;
+    // What the shared one says is older than anything said for this process alone.
+    merged.shift_layer(-2 * kCommandLineLayer);
+    merged.merge(*own);
+    merged.place = own->place;
+    tree.at_path(heir, own->place) = std::move(merged);
   }
 }
 

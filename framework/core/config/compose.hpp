@@ -3,6 +3,7 @@
 // its place and its layer; nothing is checked yet but the grammar.
 #pragma once
 
+#include "config/keys.hpp"
 #include "config/tree.hpp"
 
 #include <palpate/error.hpp>
@@ -27,30 +28,24 @@ Override parse_override(const std::string& text);
 /// Throws Error, with `place`, for what is no dotted path.
 void check_path(const std::string& path, const std::string& place);
 
-/// Whether a dotted path ends in the name of a group: see Composer.
-bool is_group(const std::string& path);
-
-/// Whether the value at a dotted path may come from a strategy: see Composer.
-bool is_of_strategy(const std::string& path);
-
 /// Reads config files, once each, and composes them.
 ///
-/// Groups are the keys `kernel`, `acquisition`, `fitting`, `footprint`, `backend`, `scene` and `expect`, wherever they
-/// stand (`height.kernel` too). A plain name there, in the file or as an override, chooses the file
-/// <folder>/<group>/<name>.yaml, in the first folder that has it of: the config's own, the nearest named `configs`
-/// above it, ./configs, and the program's own configs. A name without such a file is taken as the type of a plugin with
-/// default options. A group may name a program to be run, so it has to be the user's: what lies in a folder into which
-/// all users put files (the sticky bit, as /tmp has it), or in a ./configs that others may write, is refused in words.
+/// Which keys are groups, the field list of the config says (Field::group()). A plain name there, in the file or as an
+/// override, chooses the file <folder>/<group>/<name>.yaml, in the first folder that has it of: the config's own, the
+/// nearest named `configs` above it, ./configs, and the program's own configs. A name without such a file is taken as
+/// the type of a plugin with default options. A group may name a program to be run, so it has to be the user's: what
+/// lies in a folder into which all users put files (the sticky bit, as /tmp has it), or in a ./configs that others may
+/// write, is refused in words.
 ///
-/// Two groups stand in one place. `scene.effects` is a set of effects, which takes the place of those that the scene
-/// has. `strategy` bundles settings of any keys that decide where to tap and what is believed: its file is a config
-/// like any other, in strategy/ or in the folder itself, so that a whole config is a strategy as well. Named by the
-/// config it is laid below the groups that the config names; as an override it takes the place of each top-level key
-/// that it has. What it says of the world, the candidates, the budget and the record of a run is left out.
+/// A group within another takes the place of what that one has there, as the set of effects that `scene.effects` names.
+/// The group `strategy` is no option: it bundles settings of any keys that decide where to tap and what is believed:
+/// its file is a config like any other, in strategy/ or in the folder itself, so that a whole config is a strategy as
+/// well. Named by the config it is laid below the groups that the config names; as an override it takes the place of
+/// each top-level key that it has. What it says of keys that are the run's own (Field::of_run()) is left out.
 class Composer {
  public:
-  /// `shipped` is the program's own folder of configs; it need not exist.
-  explicit Composer(std::filesystem::path shipped) : shipped_(std::move(shipped)) {}
+  /// `shipped` is the program's own folder of configs; it need not exist. `keys` must outlive it.
+  Composer(std::filesystem::path shipped, const ConfigKeys& keys) : shipped_(std::move(shipped)), keys_(keys) {}
 
   /// The strategy, groups in the order of `defaults`, then the file, then `overrides` in order.
   ///
@@ -105,15 +100,18 @@ class Composer {
   Tree group_content(const std::string& group, const std::string& name, const Place& place,
                      const std::filesystem::path& beside, std::vector<std::string>& chain);
 
+  /// Whether a path leads into a group, as kernel.kernels.0.kernel does: to a plugin inside another.
+  bool is_inner(const std::string& path) const;
+
   std::filesystem::path shipped_;
+  const ConfigKeys& keys_;
   std::map<std::filesystem::path, Tree> files_;
   std::vector<Group> groups_;
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.
   mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
 };
 
-/// Fills `height.kernel`, `weight.fitting` and their like, where present, from the shared ones, so that they may name
-/// only what differs.
-void inherit_shared(Tree& tree);
+/// Fills what inherits from another key (Field::inherits()), where present, so that it may name only what differs.
+void inherit_shared(Tree& tree, const ConfigKeys& keys);
 
 }  // namespace palpate

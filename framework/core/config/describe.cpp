@@ -109,15 +109,8 @@ class Describer final : public Fields {
   const PluginCases& plugins_;
 
   FieldDescription& add(Type type, const Field& field) {
-    FieldDescription row;
-    row.name = field.name;
-    row.type = type;
-    row.unit = field.unit;
-    row.range = range_text(field);
-    row.meaning = field.meaning;
-    row.source = field.source;
-    row.required = field.required;
-    rows.push_back(std::move(row));
+    rows.push_back(describe_key(field));
+    rows.back().type = type;
     return rows.back();
   }
 };
@@ -220,12 +213,17 @@ Tree field_schema(const FieldDescription& field) {
       break;
     }
     case Type::section: {
-      Tree inner = group_schema(field.fields);
-      if (field.optional) {
-        Tree none = Tree::map();
-        none.at("const") = quoted("none");
+      Tree inner = schema_of(field.fields);
+      if (field.optional || field.group) {
+        Tree word = Tree::map();
+        if (field.group) {
+          word.at("type") = quoted("string");
+          word.at("description") = quoted(fmt::format("a name: NAME reads {}/NAME.yaml", field.name));
+        } else {
+          word.at("const") = quoted("none");
+        }
         Tree either = Tree::list();
-        either.items = {std::move(none), std::move(inner)};
+        either.items = {std::move(word), std::move(inner)};
         out.at("anyOf") = std::move(either);
         break;
       }
@@ -298,6 +296,20 @@ std::string FieldDescription::type_name() const {
       return "list of plugins of kind " + kind;
   }
   return {};
+}
+
+FieldDescription describe_key(const Field& field) {
+  FieldDescription out;
+  out.name = field.name;
+  out.unit = field.unit;
+  out.range = range_text(field);
+  out.meaning = field.meaning;
+  out.source = field.source;
+  out.required = field.required;
+  out.group = field.is_group;
+  out.heir_of = field.heir_of;
+  out.owner = field.owner;
+  return out;
 }
 
 std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list, const PluginCases& plugins) {

@@ -25,7 +25,10 @@ struct FieldDescription {
   std::string meaning;
   std::string source;
   bool required = false;
-  bool optional = false;                 ///< a `section` that is absent unless it is written
+  bool optional = false;  ///< a `section` that is absent unless it is written
+  bool group = false;     ///< see Field::group()
+  std::string heir_of;    ///< see Field::inherits(); "" for none
+  Owner owner = Owner::unsaid;
   std::size_t count = 0;                 ///< of `reals`, and of a row of `table`
   std::string kind;                      ///< of `plugin`
   std::vector<CaseDescription> cases;    ///< of `choice`
@@ -40,6 +43,9 @@ struct FieldDescription::CaseDescription {
   std::string meaning;
   std::vector<FieldDescription> fields;
 };
+
+/// Of a key that is no option and says nothing but what it is.
+FieldDescription describe_key(const Field& field);
 
 /// Every plugin of a kind, with its options.
 using PluginCases = std::function<std::vector<FieldDescription::CaseDescription>(const std::string& kind)>;

@@ -5,22 +5,27 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace palpate {
 
 void Experiment::run(Journal& journal, int most_taps) {
-  budget_ = std::min<std::int64_t>(options_.taps, most_taps);
+  const std::int64_t budget = std::min<std::int64_t>(options_.taps, most_taps);
   for (;;) {
-    belief_.update();
+    belief_.update();  // fit, infer
     show_belief();
-    if (std::optional<std::string> reason = stop_reason()) return stop(*reason);
+    if (std::optional<std::string> reason = stop_reason(budget)) return watch_.stop(*reason);
     std::optional<TapRecord> tap = choose_next();
-    if (!tap) return stop("no candidate is left");
-    if (!journal.permits(*tap)) return stop(kStoppedByUser);
+    if (!tap) return watch_.stop("no candidate is left");
+    if (!journal.permits(*tap)) return watch_.stop(kStoppedByUser);
     journal.announce(*tap);
-    if (!perform(*tap)) return stop(kStoppedByUser);
+    tap->contact = touch(*tap);
+    if (is_broken_off(tap->contact)) return watch_.stop(kStoppedByUser);
+    if (tap->contact.outcome == Outcome::contact) tap->on_surface = scene_->on_surface(tap->contact.height);
+    observe({tap->target, tap->contact, tap->source});
     journal.record(*tap, clock_.take());
     check_backend(tap->contact);
   }
@@ -28,64 +33,75 @@ void Experiment::run(Journal& journal, int most_taps) {
 
 std::optional<TapRecord> Experiment::choose_next() {
   TapRecord tap;
-  tap.number = result_.taps + 1;
-  if (starting()) {
-    tap.candidate = search_ ? search_->next(allowed_) : initial_[static_cast<std::size_t>(result_.taps)];
-  } else {
-    choose_by_score(tap);
-    if (tap.candidate < 0) return std::nullopt;
+  tap.number = watch_.counts().taps + 1;
+  {
+    const PhaseClock::Scope acquire(clock_, Phase::acquire);
+    belief_.ask(reads_for(chooser_.starting() ? Source::initial : Source::acquisition));
+    if (!chooser_.choose(belief_, tap)) return std::nullopt;
   }
   tap.target = candidates_.target(tap.candidate);
-  if (backend_->wants_prediction()) {
-    ask(Quantity::height);
-    tap.predicted = predict(tap.candidate);
-  }
-  describe_state(tap);
+  if (backend_->wants_prediction()) tap.predicted = belief_.predict(tap.candidate);
+  const PhaseClock::Scope log(clock_, Phase::log);
+  watch_.describe(tap, belief_);
   return tap;
 }
 
-void Experiment::choose_by_score(TapRecord& tap) {
-  const PhaseClock::Scope acquire(clock_, Phase::acquire);
-  ask_for_strategy();
-  Pick picked = pick_best();
-  tap.source = Source::acquisition;
-  if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
-    tap.source = Source::fallback;
-    tap.why = *picked.flat;
-    ask(kFallbackReads);
-    picked = chooser_.pick(VectorScores(belief_.uncertainty()), allowed_, 1.0, options_.tie_tolerance);
-  }
-  tap.candidate = picked.candidate;
-  if (picked.candidate < 0) return;
-  tap.score = picked.score;
-  tap.ties = picked.ties;
-  if (picked.runner_up >= 0) {
-    tap.runner_up = candidates_.target(picked.runner_up);
-    tap.runner_up_score = picked.runner_up_score;
-  }
+void Experiment::observe(const PastTap& tap) {
+  const int candidate = candidates_.nearest(tap.target.x, tap.target.y, scene_->area());
+  const bool hit = tap.contact.outcome == Outcome::contact && scene_->on_surface(tap.contact.height);
+  belief_.observe(tap.target, tap.contact, tap.source == Source::initial);
+  chooser_.observe(tap, candidate, hit);
+  watch_.observe(tap, candidate, hit);
+  previous_ = tap.target;
 }
 
-bool Experiment::perform(TapRecord& tap) {
-  tap.contact = touch(tap);
-  if (stop_wished() && tap.contact.outcome == Outcome::aborted && backend_->repeatable()) return false;
-  if (tap.contact.outcome == Outcome::contact) tap.on_surface = scene_->on_surface(tap.contact.height);
-  absorb(tap.target, tap.contact, tap.source);
-  return true;
-}
-
-std::optional<std::string> Experiment::stop_reason() {
+std::optional<std::string> Experiment::stop_reason(std::int64_t budget) {
   if (stop_wished()) return kStoppedByUser;
-  if (result_.taps >= budget_) return "tap budget";
+  if (watch_.counts().taps >= budget) return "tap budget";
   const StopOptions& stop = options_.stop;
-  if (stop.robot_time && result_.robot_seconds >= *stop.robot_time) return "robot_time";
-  if (starting()) return std::nullopt;
-  ask_for_strategy();
+  if (stop.robot_time && watch_.counts().robot_seconds >= *stop.robot_time) return "robot_time";
+  if (chooser_.starting()) return std::nullopt;
+  belief_.ask(reads_for(Source::acquisition));
   if (stop.max_standard_deviation &&
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";
   }
-  if (stop.expected_rmse && good_enough(*forecast(), *stop.expected_rmse)) return "expected_rmse";
+  if (stop.expected_rmse && good_enough(*watch_.forecast(belief_), *stop.expected_rmse)) return "expected_rmse";
   return std::nullopt;
+}
+
+Contact Experiment::touch(const TapRecord& tap) {
+  const PhaseClock::Scope robot(clock_, Phase::robot);
+  Contact contact = backend_->tap(request_of(tap));
+  if (contact.outcome != Outcome::contact || std::isfinite(contact.height)) return contact;
+  return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused, contact.ends_run};
+}
+
+bool Experiment::is_broken_off(const Contact& contact) const {
+  return stop_wished() && contact.outcome == Outcome::aborted && backend_->repeatable();
+}
+
+void Experiment::check_backend(const Contact& last) {
+  const auto fail = [&](const std::string& reason, const std::string& hint = {}) {
+    throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
+  };
+  if (last.ends_run) fail(last.reason.empty() ? "cannot go on, and gives no reason" : last.reason);
+  if (last.outcome == Outcome::contact) failed_in_a_row_ = 0;
+  if (last.outcome == Outcome::contact || last.outcome == Outcome::unreachable || stop_wished()) return;
+  constexpr std::int64_t kOfARobot = 3;
+  const std::optional<std::int64_t> most =
+      options_.stop.failed_in_a_row || backend_->repeatable() ? options_.stop.failed_in_a_row : kOfARobot;
+  if (!most || ++failed_in_a_row_ < *most) return;
+  fail(fmt::format("{} failed, the last so: {}", *most == 1 ? "a tap" : fmt::format("{} taps in a row", *most),
+                   last.reason.empty() ? "no reason given" : last.reason),
+       "see to it, then 'palpate resume --retry-failed' carries on; stop.failed_in_a_row sets how many");
+}
+
+void Experiment::show_belief() {
+  const PhaseClock::Scope log(clock_, Phase::log);
+  if (watch_.counts().taps == 0) return;
+  belief_.ask(backend_->reads());
+  backend_->show(belief_);
 }
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/experiment_options.hpp"
 
+#include "config/keys.hpp"
 #include "gp/candidates.hpp"
 
 #include <fmt/format.h>
@@ -48,8 +49,8 @@ void HeightOptions::list(Fields& fields) {
   fields.real(
       noise,
       Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0).at_most(kMostSignal));
-  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
-  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
+  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one").inherits("kernel"));
+  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
 }
 
 void WeightOptions::list(Fields& fields) {
@@ -65,8 +66,8 @@ void WeightOptions::list(Fields& fields) {
         "those of the heights, noise in signals included, fitted to heights and labels together; signals stay "
         "apart",
         {}}});
-  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one"));
-  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one"));
+  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one").inherits("kernel"));
+  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
   const bool shared = hyperparameters == Hyperparameters::shared;
   fields.require(!shared || !kernel, "kernel",
                  "the labels have the heights' kernel when hyperparameters are shared; take it away, or choose own");
@@ -118,35 +119,40 @@ void LogOptions::list(Fields& fields) {
 }
 
 void ExperimentOptions::list(Fields& fields) {
-  fields.text(name, Field("name", "of the experiment; the folder of its runs is a slug of it"));
+  fields.text(name, Field("name", "of the experiment; the folder of its runs is a slug of it").of_run());
   fields.integer(seed, seed_field());
-  fields.integer(taps, Field("taps", "budget of taps, the initial ones included").at_least(1).at_most(100000));
-  fields.section(initial, Field("initial", "the first taps, drawn from the candidates without replacement"));
+  fields.integer(taps, Field("taps", "budget of taps, the initial ones included").of_run().at_least(1).at_most(100000));
+  fields.section(initial,
+                 Field("initial", "the first taps, drawn from the candidates without replacement").of_strategy());
   fields.section(candidates,
-                 Field("candidates", "the places among which the next tap is chosen: cell centres of a grid"));
-  fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes"));
-  fields.section(height, Field("height", "the process of the heights above the desk"));
-  fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk"));
+                 Field("candidates", "the places among which the next tap is chosen: cell centres of a grid").of_run());
+  fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes").of_strategy().group());
+  fields.section(height, Field("height", "the process of the heights above the desk").of_strategy());
+  fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk").of_strategy());
   fields.choice(
-      surface, Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it"),
+      surface,
+      Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it").of_strategy(),
       {{"single", "one process for the heights of object and desk, as the paper has it", {}},
        {"two_part", "heights from the taps on an object alone, where the footprint is at least 1/2; else desk", {}}});
-  fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates"),
+  fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates").of_strategy(),
                 {{"auto", "the fastest that is exact enough: see accuracy", {}},
                  {"dense", "any kernel; time and memory grow with taps times candidates", {}},
                  {"grid", "as exact, memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
                  {"lowrank", "time grows with candidates alone, not with taps; needs a separable kernel", {}}});
-  fields.section(lowrank, Field("lowrank", "the posterior engine of that name"));
-  fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate"));
-  fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both processes"));
-  fields.plugin(footprint, Field("footprint", "where the objects are, as a probability at every place"));
-  fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive"),
+  fields.section(lowrank, Field("lowrank", "the posterior engine of that name").of_strategy());
+  fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate").of_strategy().group());
+  fields.plugin(fitting,
+                Field("fitting", "how hyperparameters are chosen, shared by both processes").of_strategy().group());
+  fields.plugin(footprint,
+                Field("footprint", "where the objects are, as a probability at every place").of_strategy().group());
+  fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive").of_strategy(),
                 {{"uncertainty", "tap where the height is least known", {}},
                  {"none", "tap the first candidate, as the paper's rule does: it stalls", {}}});
-  fields.choice(repeat, Field("repeat", "may a candidate be tapped twice; failed ones never are"),
+  fields.choice(repeat, Field("repeat", "may a candidate be tapped twice; failed ones never are").of_strategy(),
                 {{"forbid", "no", {}}, {"allow", "yes, with independent noise", {}}});
   fields.real(tie_tolerance,
               Field("tie_tolerance", "scores within this times (|best| + the score's prior scale) of the best are tied")
+                  .of_strategy()
                   .at_least(0)
                   .at_most(1)
                   .from("rounding reaches 1e-12; below 1e-9 it decides taps at 1.7 cm"));
@@ -154,18 +160,22 @@ void ExperimentOptions::list(Fields& fields) {
               Field("accuracy",
                     "`posterior: auto` takes no engine whose error beyond dense's may exceed this, or a tenth "
                     "of tie_tolerance; in prior standard deviations, or prior variances")
+                  .of_strategy()
                   .at_least(0)
                   .at_most(1));
-  fields.integer(threads,
-                 Field("threads", "that update the maps together; the results are the same").at_least(1).at_most(64));
-  fields.choice(instruction_set, Field("instruction_set", "of the loops that update the maps"),
+  fields.integer(
+      threads,
+      Field("threads", "that update the maps together; the results are the same").of_run().at_least(1).at_most(64));
+  fields.choice(instruction_set, Field("instruction_set", "of the loops that update the maps").of_run(),
                 {{"auto", "the fastest that this processor has", {}},
                  {"baseline", "what every x86-64 has, for runs that are compared between machines", {}}});
-  fields.section(stop, Field("stop", "reasons to stop before the budget is spent"));
-  fields.section(scene, Field("scene", "what the world holds; a robot backend reads only area and desk"));
-  fields.plugin(backend, Field("backend", "what is tapped"));
-  fields.section(log, Field("log", "what is written"));
-  fields.integer(format, Field("format", "of this file and of the record beside it: see runs/README.md").at_least(1));
+  fields.section(stop, Field("stop", "reasons to stop before the budget is spent").of_strategy());
+  fields.section(scene,
+                 Field("scene", "what the world holds; a robot backend reads only area and desk").of_run().group());
+  fields.plugin(backend, Field("backend", "what is tapped").of_run().group());
+  fields.section(log, Field("log", "what is written").of_run());
+  fields.integer(format,
+                 Field("format", "of this file and of the record beside it: see runs/README.md").of_run().at_least(1));
   fields.require(
       initial.searches() || initial.count <= taps, "taps",
       fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
@@ -184,7 +194,30 @@ void ExperimentOptions::list(Fields& fields) {
                              initial.count, columns * rows));
 }
 
-Field seed_field() { return Field("seed", "fixes everything that is drawn").at_least(0); }
+Field seed_field() { return Field("seed", "fixes everything that is drawn").at_least(0).of_run(); }
+
+std::vector<Field> keys_beside_options() {
+  return {
+      Field("defaults", "groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries win, then this file")
+          .of_strategy(),
+      Field(kStrategy, "what decides where to tap and what is believed, by name: strategy/NAME.yaml, or a whole config")
+          .of_strategy()
+          .group(),
+      Field("sweep", "what 'palpate sweep' varies; its blocks multiply with each other in their order").of_run(),
+      Field("expect", "what the summary must say, for example first_hit_tap: '<= 9'; of a sweep, median(taps): '<= 17'")
+          .of_run()
+          .group()};
+}
+
+const ConfigKeys& config_keys() {
+  static const ConfigKeys keys = [] {
+    ExperimentOptions options;
+    std::vector<FieldDescription> fields = describe_fields([&](Fields& visitor) { options.list(visitor); });
+    for (const Field& field : keys_beside_options()) fields.push_back(describe_key(field));
+    return ConfigKeys(fields);
+  }();
+  return keys;
+}
 
 bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "format"; }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace palpate {
 
@@ -113,6 +114,13 @@ struct ExperimentOptions : Options {
 
 /// The option `seed`: alone, because a sweep gives many seeds to one config.
 Field seed_field();
+
+/// The keys that a config has beside these options, for those who read them: what each is for.
+std::vector<Field> keys_beside_options();
+
+/// What the lists of all these say to those who compose configs.
+class ConfigKeys;
+const ConfigKeys& config_keys();
 
 /// Top-level keys that do not change what a run computes: they stay out of its id.
 bool enters_id(const std::string& key);

@@ -56,10 +56,7 @@ SurfaceMaps maps_of(const TapBelief& belief, Quantities known) {
           known.has(Quantity::probability) ? &belief.probability() : nullptr, belief.two_part(), belief.desk()};
 }
 
-Eigen::VectorXd reconstruction(const TapBelief& belief) {
-  const Quantities reads = belief.two_part() ? Quantity::height | Quantity::probability : Quantity::height;
-  return gated(maps_of(belief, reads));
-}
+Eigen::VectorXd reconstruction(const TapBelief& belief) { return gated(maps_of(belief, belief.surface_reads())); }
 
 Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   Errors out;

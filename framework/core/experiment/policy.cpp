@@ -93,89 +93,69 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   return design;
 }
 
-Pick Chooser::pick(const Scores& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
-  scores_ = &scores;
-  allowed_ = &allowed;
-  bounds_.resize(static_cast<std::size_t>(scores.pieces()));
-  for (int piece = 0; piece < scores.pieces(); ++piece) bounds_[static_cast<std::size_t>(piece)] = scores.bound(piece);
+namespace {
 
+/// Visits the allowed candidates, in their order, whose score is not below `least()`, which may grow: by blocks, of
+/// which most have none.
+template <class Least, class Visit>
+void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Least& least,
+                 const Visit& visit) {
+  constexpr Eigen::Index kBlock = 64;
+  for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, scores.size() - first);
+    if (scores.segment(first, count).maxCoeff() < least()) continue;
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      if (scores(i) >= least() && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
+    }
+  }
+}
+
+}  // namespace
+
+Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  const auto score = [&](int candidate) { return candidate < 0 ? kNone : scores(candidate); };
+  int best = -1;  // of equals the first
+  int second = -1;
+  for_allowed(
+      scores, allowed, [&] { return score(second); },
+      [&](int i) {
+        if (score(i) > score(best)) {
+          second = std::exchange(best, i);
+        } else if (score(i) > score(second)) {
+          second = i;
+        }
+      });
   Pick out;
-  find_two();
-  if (best_.candidate < 0) return out;
-  out.candidate = best_.candidate;
-  out.score = best_.score;
+  if (best < 0) return out;
+  out.candidate = best;
   out.ties = 1;
-  const double threshold = best_.score - tolerance * (std::abs(best_.score) + scale);
-  const bool tied = second_.candidate >= 0 && second_.score >= threshold;
-  if (tied) choose_first(threshold, out);
-  out.runner_up = second_.candidate;
-  if (second_.candidate >= 0) out.runner_up_score = second_.score;
-  if (best_.score <= 0.0) {
+  const double threshold = score(best) - tolerance * (std::abs(score(best)) + scale);
+  const bool tied = second >= 0 && score(second) >= threshold;
+  if (tied) {
+    out.candidate = -1;
+    out.ties = 0;
+    for_allowed(
+        scores, allowed, [&] { return threshold; },
+        [&](int i) {
+          if (out.ties++ == 0) out.candidate = i;
+        });
+  }
+  // The second best stays the runner-up, unless it is the one that is chosen: then the best is.
+  out.runner_up = out.candidate == best ? second : best;
+  out.score = score(out.candidate);
+  if (out.runner_up >= 0) out.runner_up_score = score(out.runner_up);
+  if (score(best) <= 0.0) {
     out.flat = "no score is positive";
-  } else if (tied && !any_below(threshold)) {
+  } else if (tied && out.ties == std::count(allowed.begin(), allowed.end(), true)) {
     out.flat = "every score is equal";
   }
   return out;
 }
 
-template <class Visit>
-void Chooser::for_allowed(int piece, double least, const Visit& visit) {
-  const int count = scores_->read(piece, cells_.data());
-  for (int i = 0; i < count; ++i) {
-    const Cell& cell = cells_[static_cast<std::size_t>(i)];
-    // Not a number is not less.
-    if (cell.score < least || !(*allowed_)[static_cast<std::size_t>(cell.candidate)]) continue;
-    if (!std::isfinite(cell.score)) throw Error("", "a score is not a finite number", {}, Error::Kind::run);
-    visit(cell);
-  }
-}
-
-void Chooser::find_two() {
-  best_ = second_ = {-1, -std::numeric_limits<double>::infinity()};
-  const auto look = [&](int piece) {
-    for_allowed(piece, second_.score, [&](const Cell& cell) {
-      if (before(cell, best_)) {
-        second_ = std::exchange(best_, cell);
-      } else if (before(cell, second_)) {
-        second_ = cell;
-      }
-    });
-  };
-  // The first piece has two good scores most often, so that few of the others need be read.
-  const auto first = static_cast<int>(std::max_element(bounds_.begin(), bounds_.end()) - bounds_.begin());
-  look(first);
-  for (int piece = 0; piece < scores_->pieces(); ++piece) {
-    if (piece != first && bounds_[static_cast<std::size_t>(piece)] >= second_.score) look(piece);
-  }
-}
-
-void Chooser::choose_first(double threshold, Pick& out) {
-  // The second best stays the runner-up, unless it is the one that is chosen: then the best is.
-  out.ties = 0;
-  Cell chosen{-1, 0.0};
-  for (int piece = 0; piece < scores_->pieces(); ++piece) {
-    if (bounds_[static_cast<std::size_t>(piece)] < threshold) continue;
-    for_allowed(piece, threshold, [&](const Cell& cell) {
-      ++out.ties;
-      if (chosen.candidate < 0 || cell.candidate < chosen.candidate) chosen = cell;
-    });
-  }
-  out.candidate = chosen.candidate;
-  out.score = chosen.score;
-  if (chosen.candidate != best_.candidate) second_ = best_;
-}
-
-bool Chooser::any_below(double threshold) {
-  bool found = false;
-  for (int piece = 0; piece < scores_->pieces() && !found; ++piece) {
-    for_allowed(piece, -std::numeric_limits<double>::infinity(),
-                [&](const Cell& cell) { found |= cell.score < threshold; });
-  }
-  return found;
-}
-
-bool Chooser::before(const Cell& a, const Cell& b) {
-  return a.score > b.score || (a.score == b.score && a.candidate < b.candidate) || b.candidate < 0;
+bool all_finite(const Eigen::VectorXd& values) {
+  // What is not finite is not equal to itself less itself.
+  return (values - values).sum() == 0.0;
 }
 
 }  // namespace palpate

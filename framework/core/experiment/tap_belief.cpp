@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -146,7 +147,16 @@ std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
   return out;
 }
 
+Quantities TapBelief::surface_reads() const {
+  return two_part_ ? Quantity::height | Quantity::probability : Quantity::height;
+}
+
 void TapBelief::ask(Quantities wanted) {
+  asked_ = asked_ | wanted;
+  build(wanted);
+}
+
+void TapBelief::build(Quantities wanted) {
   const Quantities all = known(wanted);
   const PhaseClock::Scope infer(clock_, Phase::infer);
   if (all.has(Quantity::uncertainty)) show(heights_, 0);
@@ -161,9 +171,7 @@ void TapBelief::ask(Quantities wanted) {
 
 void TapBelief::show(Model& model, int output) {
   if (!model.process) {
-    PosteriorSettings posterior = posterior_;
-    if (&model != &heights_) posterior.score = simd::Score::none;
-    model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior);
+    model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior_);
   } else if (model.process->shown() > output) {
     return;
   }
@@ -215,18 +223,6 @@ TapBelief::Output TapBelief::output(const Model& model, int output) {
   return {&process, output, fitted ? &model.fit : nullptr};
 }
 
-void TapBelief::form(Product product) {
-  if (product == Product::uncertainty) posterior_.score = simd::Score::variance;
-  if (product == Product::weighted && joined_) {
-    posterior_.score = clip_ ? simd::Score::weighted_clipped : simd::Score::weighted;
-  }
-}
-
-const Scores* TapBelief::formed() const {
-  if (posterior_.score == simd::Score::none) return nullptr;
-  return output(heights_, posterior_.score == simd::Score::variance ? 0 : 1).process;
-}
-
 namespace {
 
 /// The values of a map, of its right size.
@@ -276,6 +272,10 @@ const Eigen::VectorXd& TapBelief::kept(const Map& map) const {
   if (!map) throw std::logic_error("a map of the belief is read for which nobody asked");
   if (!current_) throw std::logic_error("a map of the belief is read that is older than the last tap");
   return *map;
+}
+
+Prediction TapBelief::predict(int candidate) const {
+  return {height_mean()(candidate), std::sqrt(height_variance()(candidate))};
 }
 
 double TapBelief::height_noise() const {

@@ -10,7 +10,7 @@
 #include "gp/candidates.hpp"
 #include "gp/process.hpp"
 
-#include <palpate/acquisition.hpp>
+#include <palpate/backend.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
 
@@ -35,9 +35,12 @@ class TapBelief final : public Belief {
   /// labels 1 or 0 by the scene's rule.
   void observe(const Target& place, const Contact& contact, bool initial = false);
 
-  /// From now on these quantities are kept: builds the models that they lack, with all taps so far, and updates. Models
-  /// go through the very states that they would have had, had they been there from the first tap.
+  /// From now on these quantities are kept and belong to the record: builds the models that they lack, with all taps so
+  /// far, and updates. Models go through the very states that they would have had, had they been there from the first
+  /// tap.
   void ask(Quantities wanted);
+  /// The same, but nothing more belongs to the record.
+  void build(Quantities wanted);
 
   /// Has the models take in the taps noted since, one by one, fits included, and their maps follow.
   void update();
@@ -45,8 +48,11 @@ class TapBelief final : public Belief {
   /// The models behind some quantities, by their names: "height process", "footprint shape".
   std::vector<std::string> models_of(Quantities quantities) const;
 
-  /// What can be read where `asked` was asked for: also what comes from the same models.
-  Quantities known(Quantities asked) const;
+  /// The quantities that belong to the record: those that were asked for, and what comes from the same models.
+  Quantities recorded() const { return known(asked_); }
+
+  /// What the reconstruction of the surface is made of.
+  Quantities surface_reads() const;
 
   // Belief, for acquisitions.
   const Points& candidates() const override { return candidates_.points; }
@@ -65,12 +71,6 @@ class TapBelief final : public Belief {
 
   /// The mean of the weight process as it comes, whatever `weight.clip` says.
   const Eigen::VectorXd& weight_mean() const { return kept(weight_mean_); }
-
-  /// Says, before the first ask(), that scores are such a product: then formed() has them, with bounds that come out of
-  /// the update of the maps, valid until the next tap. It is null for other scores, and where heights and labels have
-  /// no common process.
-  void form(Product product);
-  const Scores* formed() const;
 
   /// One output of a process.
   struct Output {
@@ -100,6 +100,9 @@ class TapBelief final : public Belief {
   /// Standard deviation of the noise of one tap's height, metres.
   double height_noise() const;
 
+  /// Of the height at a candidate, which was asked for.
+  Prediction predict(int candidate) const;
+
  private:
   struct Datum {
     Target place;
@@ -123,6 +126,7 @@ class TapBelief final : public Belief {
 
   Model make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
                    const ProcessSettings& settings) const;
+  Quantities known(Quantities asked) const;
   bool equal_for_good(const ExperimentOptions& options) const;
   const Model& labels() const { return joined_ ? heights_ : labels_; }
   int label_output() const { return joined_ ? 1 : 0; }
@@ -147,6 +151,7 @@ class TapBelief final : public Belief {
   bool joined_ = false;  ///< heights and labels are two outputs of one process
   int taps_ = 0;
   int initial_taps_ = 0;
+  Quantities asked_;
   bool current_ = true;  ///< update() has seen all taps
   Model heights_;
   Model labels_;                          ///< unless joined

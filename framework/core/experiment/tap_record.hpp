@@ -73,6 +73,9 @@ struct TapRecord {
 /// The reason to stop of a run whose user wanted it: it has no summary, and can be carried on.
 constexpr const char* kStoppedByUser = "interrupted";
 
+/// The reason of a tap that failed because its height is none.
+constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
+
 /// The result of a run, in the order of summary.json but for what the record adds (clocks, memory, names).
 struct RunResult {
   std::string stop_reason;
@@ -121,7 +124,7 @@ class Journal {
   virtual void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) = 0;
 };
 
-/// A tap that an earlier process made, for a run that is carried on.
+/// A tap that was made, as far as what comes after depends on it.
 struct PastTap {
   Target target;
   Contact contact;

@@ -72,10 +72,9 @@ simd::Update Maps::update(int strip, const double* coefficients, const ScoreRule
     out.mean[k] = mean_[static_cast<std::size_t>(k)].data() + first;
   }
   out.variance = variance_.data() + first;
-  out.score = rule.score;
   out.scale = rule.scale;
   out.shift = rule.shift;
-  out.best = best_.data() + strip * tiling_.tiles_per_strip();
+  out.best = rule.wanted ? best_.data() + strip * tiling_.tiles_per_strip() : nullptr;
   return out;
 }
 

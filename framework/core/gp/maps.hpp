@@ -75,9 +75,9 @@ class Tiling {
   std::ptrdiff_t mirror_ = 0;
 };
 
-/// How the exploration function follows from the maps, where it is one of those that the loops can form.
+/// Whether the loops form the exploration function e = u w, and how the weight w follows from the maps.
 struct ScoreRule {
-  simd::Score score = simd::Score::none;
+  bool wanted = false;
   double scale = 1.0;  ///< the weight is scale * (second mean) + shift
   double shift = 0.0;
 };

@@ -5,7 +5,6 @@
 #include "gp/candidates.hpp"
 #include "gp/factor.hpp"
 #include "gp/posterior.hpp"
-#include "gp/scores.hpp"
 
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
@@ -26,6 +25,11 @@ struct ProcessSettings {
   double mean_ratio = 0.0;
 };
 
+struct ScoredCell {
+  int candidate;
+  double score;
+};
+
 /// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates, of
 /// one quantity or of several that were measured at the same places and have the same kernel and ratio of noise to
 /// signal. These, the outputs, share all that does not depend on the targets: one factorisation, and one variance but
@@ -44,7 +48,7 @@ struct ProcessSettings {
 /// added to the whole diagonal and reported by jitter(); it is part of the model from then on. A matrix that is
 /// singular even so (a kernel that is not positive definite) is factorised with pivoting, and taps that the others
 /// already tell everything about are set aside: they stay recorded but do not enter the posterior.
-class Process final : public Scores {
+class Process {
  public:
   /// `candidates` must outlive the process. All `outputs` have the same noise / signal and mean_ratio, which may differ
   /// from 0 only for a single output. Throws Error if there is an objection() to `posterior`.
@@ -66,11 +70,14 @@ class Process final : public Scores {
   void show(int outputs);
   int shown() const { return shown_; }
 
-  /// Scores of the kind that the settings name, of u, the relative variance, and w, the mean of output 1, which is
-  /// shown.
-  int pieces() const override { return maps().tiling().tiles(); }
-  double bound(int piece) const override;
-  int read(int piece, ScoredCell* out) const override;
+  /// The candidate of the highest score u w, of equals the first; u is the relative variance, w the mean of output 1,
+  /// which is shown. Most pieces of the maps need not be read for it, if the settings say that it will be asked for.
+  int best() const;
+  /// The scores in pieces: no score of a piece is above its bound. read() gives the candidates of a piece, in any order
+  /// and at most kMostCells, and returns how many.
+  int pieces() const { return maps().tiling().tiles(); }
+  double bound(int piece) const;
+  int read(int piece, ScoredCell* out) const;
 
   /// Posterior mean over the candidates, unit of the targets, of an output that is shown.
   void read_mean(int output, VectorOut out) const;
@@ -124,7 +131,6 @@ class Process final : public Scores {
   double prior_of_constant() const { return outputs_.front().mean_ratio * outputs_.front().mean_ratio; }
 
   const Maps& maps() const { return choice_.engine->maps(); }
-  bool scores_weight() const { return shown_ > 1 && posterior_.score > simd::Score::variance; }
   void take_prior();
   void reserve(int taps);
   void choose(double error = 0.0);

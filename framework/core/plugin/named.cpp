@@ -121,9 +121,6 @@ class NamedAcquisition final : public Named<Acquisition> {
   void score(const Belief& belief, VectorOut out) const override {
     in_plugin([&](const Acquisition& inner) { inner.score(Declared(belief, inner.reads(), this->name()), out); });
   }
-  Product product() const override {
-    return in_plugin([](const Acquisition& inner) { return inner.product(); });
-  }
   double prior_scale() const override {
     return in_plugin([](const Acquisition& inner) { return inner.prior_scale(); });
   }

@@ -49,7 +49,9 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   input.erase("sweep");
   input.erase("expect");
   ResolvedConfig out;
-  out.tree = resolve(out.options, input, plugins, out.notes, {"defaults", "strategy", "sweep", "expect"});
+  std::vector<std::string> beside;
+  for (const Field& field : keys_beside_options()) beside.emplace_back(field.name);
+  out.tree = resolve(out.options, input, plugins, out.notes, beside);
   if (const Tree* expect = composed.find("expect")) {
     out.expectations = read_expectations(expect);
     if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);

@@ -93,7 +93,7 @@ std::string surface_csv(Experiment& experiment) {
 
 std::string maps_csv(const Experiment& experiment) {
   const TapBelief& belief = experiment.belief();
-  const Quantities known = experiment.recorded();
+  const Quantities known = belief.recorded();
   std::vector<Column> columns;
   if (known.has(Quantity::height)) {
     columns.insert(columns.end(),

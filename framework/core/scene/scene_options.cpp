@@ -45,7 +45,7 @@ void SceneOptions::list(Fields& fields) {
                   "position and rotation of each object from the seed, wholly inside the area, none over another",
                   {}}});
   fields.sections(objects, Field("objects", "what stands on the desk"));
-  fields.section(effects, Field("effects", "how taps differ from perfect ones; each is absent by default"));
+  fields.section(effects, Field("effects", "how taps differ from perfect ones; each is absent by default").group());
 }
 
 }  // namespace palpate

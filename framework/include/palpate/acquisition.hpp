@@ -7,13 +7,6 @@
 
 namespace palpate {
 
-/// Scores that are a product of maps of the belief. The posterior can form these itself while it updates the maps.
-enum class Product {
-  none,         ///< something else
-  uncertainty,  ///< u
-  weighted,     ///< u w
-};
-
 /// Laws, checked by the contract tests: the score is a pure function of the belief (same belief, same bytes; no clock,
 /// no state), finite, and fills every candidate; it reads what reads() says, and all of that.
 class Acquisition {
@@ -27,9 +20,6 @@ class Acquisition {
 
   /// Scores all candidates at once; `out` has M elements. The candidate of the highest score is tapped next.
   virtual void score(const Belief& belief, VectorOut out) const = 0;
-
-  /// If score() is nothing but such a product, which one; score() need not be called then.
-  virtual Product product() const { return Product::none; }
 
   /// The size of a typical score before any tap: the unit in which ties are judged when scores become small.
   virtual double prior_scale() const = 0;

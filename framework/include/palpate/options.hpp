@@ -55,6 +55,10 @@ struct PluginChoice {
   std::shared_ptr<const Tree> options;  ///< its options, checked and complete
 };
 
+/// Who sets a key of a config: a strategy, which decides where to tap and what is believed, or the run alone: the
+/// world, how it is divided, the budget, and what is kept.
+enum class Owner { unsaid, strategy, run };
+
 /// What is said about one field: everything but its value.
 class Field {
  public:
@@ -71,6 +75,14 @@ class Field {
   Field& from(const char* text) { return source = text, *this; }
   /// No default: a config must say it.
   Field& needed() { return required = true, *this; }
+  /// A name in the place of its value chooses a file, from the folder that is called like the key: `kernel: rbf` reads
+  /// kernel/rbf.yaml.
+  Field& group() { return is_group = true, *this; }
+  /// What it does not say of its own, the key at `path` says, a path from the top.
+  Field& inherits(const char* path) { return heir_of = path, *this; }
+  /// Whose it is; every top-level key of a config says one of the two.
+  Field& of_strategy() { return owner = Owner::strategy, *this; }
+  Field& of_run() { return owner = Owner::run, *this; }
 
   const char* name;
   const char* meaning;
@@ -80,6 +92,9 @@ class Field {
   double most = std::numeric_limits<double>::infinity();
   bool open_below = false;
   bool required = false;
+  bool is_group = false;
+  const char* heir_of = "";
+  Owner owner = Owner::unsaid;
 };
 
 /// One of the named values of a choice. A choice that is a `type` may bring fields of its own.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/description.hpp"
 
+#include "experiment/experiment_options.hpp"
 #include "sweep/sobol.hpp"
 
 #include <palpate/error.hpp>
@@ -285,8 +286,8 @@ Combination SweepDescription::at(std::size_t number) const {
 /// and nearly all by a strategy.
 bool SweepDescription::depends(const std::string& name, const std::string& choice) const {
   if (!is_choice(choice)) return false;
-  if (choice == "strategy") return name != choice && is_of_strategy(name);
-  const std::string scope = is_group(choice) ? choice : choice.substr(0, choice.rfind('.'));
+  if (choice == kStrategy) return name != choice && config_keys().is_of_strategy(name);
+  const std::string scope = config_keys().is_group(choice) ? choice : choice.substr(0, choice.rfind('.'));
   return name != choice && is_below(name, scope);
 }
 
@@ -302,7 +303,7 @@ bool SweepDescription::wanted(const Combination& combination, const Condition::V
       if (!depends(name, choice)) continue;
       if (swept) return "";  // another item of the list has it
       // Nearly any word could be an option of a strategy; one that nobody knows is a value.
-      if (choice == "strategy" && !base(name)) continue;
+      if (choice == kStrategy && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
                   fmt::format("sweep it too, or compare '{}'", choice));
     }
@@ -354,6 +355,6 @@ std::string condition_text(const Tree& value) {
   return type != nullptr && type->is_scalar() ? type->text : value_text(value);
 }
 
-bool is_choice(const std::string& key) { return is_group(key) || key.substr(key.rfind('.') + 1) == "type"; }
+bool is_choice(const std::string& key) { return config_keys().is_group(key) || last_key(key) == "type"; }
 
 }  // namespace palpate

@@ -136,10 +136,9 @@ class Planner {
       });
     };
     if (!dropped(key)) return false;
-    for (const char* process : {"height.", "weight."}) {
-      if (composed.find_path(process + key) != nullptr && !dropped(process + key)) return false;
-    }
-    return true;
+    const std::vector<std::string> heirs = config_keys().heirs_of(key);
+    return std::none_of(heirs.begin(), heirs.end(),
+                        [&](const std::string& heir) { return composed.find_path(heir) != nullptr && !dropped(heir); });
   }
 
   void note_siblings(std::size_t key, const ResolveNotes& notes) {

@@ -8,8 +8,6 @@
 namespace palpate {
 namespace {
 
-std::string head(const std::string& key) { return key.substr(0, key.find('.')); }
-
 /// Top-level keys, in the order in which a resolved config has them.
 std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
   std::vector<std::string> out;
@@ -25,12 +23,11 @@ std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
 /// Whether what stands below the top-level key depends on what is chosen in a combination.
 bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
   return std::any_of(swept.begin(), swept.end(), [&](const std::string& key) {
-    const std::string other = head(key);
-    if (key == "strategy") return true;
-    if (top == "height" || top == "weight") {
-      if (other == "kernel" || other == "fitting") return true;  // they take over what they do not say themselves
+    if (key == kStrategy) return true;
+    for (const std::string& heir : config_keys().heirs_of(key)) {
+      if (first_key(heir) == top) return true;
     }
-    return other == top && is_choice(key);
+    return first_key(key) == top && is_choice(key);
   });
 }
 
@@ -61,13 +58,13 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
   Tree kept = Tree::list();
   if (const Tree* defaults = own.find("defaults")) {
     for (const Tree& item : defaults->items) {
-      const std::string group = head(item.entries.front().key);
-      if (group == "strategy" ? needs_strategy : is_own(group)) kept.items.push_back(item);
+      const std::string group = first_key(item.entries.front().key);
+      if (group == kStrategy ? needs_strategy : is_own(group)) kept.items.push_back(item);
     }
   }
-  if (const Tree* strategy = own.find("strategy"); strategy != nullptr && needs_strategy) {
+  if (const Tree* strategy = own.find(kStrategy); strategy != nullptr && needs_strategy) {
     kept.items.push_back(Tree::map());
-    kept.items.back().at("strategy") = *strategy;
+    kept.items.back().at(kStrategy) = *strategy;
   }
   if (!kept.items.empty()) out.at("defaults") = std::move(kept);
   for (const std::string& top : ordered_keys(base, first.tree)) {

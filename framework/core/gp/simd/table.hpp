@@ -17,26 +17,18 @@ constexpr int kPanelLines = 3;                                        ///< width
 constexpr int kStripRows = 8;                                         ///< rows of a grid that are updated together
 constexpr int kPiece = kStripRows * kPanelLines * kLine;              ///< cells of a dense map updated together
 
-/// How the score of a cell follows from its maps.
-enum class Score {
-  none,
-  variance,          ///< u = max(variance, 0)
-  weighted,          ///< u w, w = scale mean_1 + shift
-  weighted_clipped,  ///< u w, w clipped to [0, 1]
-};
-
 constexpr int kMeans = 3;  ///< maps that a row is added to, at most
 
 /// What a new row v of the posterior does to the cells of some strips, or of a piece:
-///     mean_k += coefficient_k v,   variance -= v^2,   best = the largest score of a tile of cells afterwards.
+///     mean_k += coefficient_k v,   variance -= v^2,   best = the largest score of a tile of cells afterwards,
+/// where the score is u w with u = max(variance, 0) and w = scale mean_1 + shift.
 struct Update {
   int means;
   double coefficient[kMeans];
   double* mean[kMeans];
   double* variance;
-  Score score;
   double scale, shift;
-  double* best;  ///< one a tile; untouched without a score
+  double* best;  ///< one a tile; null: not wanted
 };
 
 /// A product C = A B of a few strips: 8 x depth times depth x columns each. The A of a strip has its columns one after

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What chooses: the initial design or the search, then the acquisition's scores, ties, and the fallback where the
+// scores say nothing.
+#pragma once
+
+#include "experiment/policy.hpp"
+#include "experiment/search.hpp"
+#include "experiment/tap_belief.hpp"
+#include "experiment/tap_record.hpp"
+
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+/// Chooses one tap after the other. It is told where was tapped and whether anything was hit, and reads the rest in the
+/// belief.
+class Chooser {
+ public:
+  /// All must outlive it. Throws Error for an acquisition that cannot be made.
+  Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context);
+
+  /// Whether the next tap is the initial design's. A search is over with the first hit, or when it has looked
+  /// everywhere.
+  bool starting() const;
+
+  /// What is read for a tap of the acquisition.
+  Quantities reads() const { return acquisition_->reads(); }
+  /// What the fallback reads beside that.
+  static constexpr Quantities kFallbackReads = Quantity::uncertainty;
+  bool may_fall_back() const { return options_.fallback == ExperimentOptions::Fallback::uncertainty; }
+
+  /// Chooses a candidate and notes in `tap` which, by whom, and all about its score. `belief` has been asked for what
+  /// is read; a fallback asks it for more. False if no candidate is left.
+  bool choose(TapBelief& belief, TapRecord& tap);
+
+  /// What the acquisition gives each candidate, until it is asked again. Throws Error for what is no finite number.
+  const Eigen::VectorXd& scores(const TapBelief& belief);
+
+  /// Notes a tap at `candidate`; `hit`: a contact on an object.
+  void observe(const PastTap& tap, int candidate, bool hit);
+
+ private:
+  const ExperimentOptions& options_;
+  const Candidates& candidates_;
+  std::shared_ptr<Acquisition> acquisition_;
+  std::vector<int> initial_;      ///< of a design that counts its taps
+  std::optional<Search> search_;  ///< the other one
+  Eigen::VectorXd scores_;
+  std::vector<bool> allowed_;  ///< candidates that may be tapped
+  std::size_t taps_ = 0;
+  bool hit_ = false;  ///< by any of them
+};
+
+}  // namespace palpate

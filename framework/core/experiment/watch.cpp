@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr Quantities kErrorsRead = Quantity::height | Quantity::probability;
+
+ProcessState state_of(const TapBelief::Output& one) {
+  const Process& process = *one.process;
+  const int output = one.output;
+  ProcessState out;
+  out.kernel = process.kernel().parameters();
+  out.settings = process.settings(output);
+  out.log_marginal_likelihood = process.log_marginal_likelihood(output);
+  out.jitter = process.jitter(output);
+  out.condition = process.condition();
+  out.engine = process.engine();
+  out.engine_reason = process.engine_reason();
+  out.error_bound = process.error_bound();
+  if (one.last_fit != nullptr) out.fit = *one.last_fit;
+  return out;
+}
+
+FootprintState state_of(const Footprint& footprint) { return {footprint.numbers(), footprint.remark()}; }
+
+}  // namespace
+
+Watch::Watch(const ExperimentOptions& options, const Candidates& candidates, const Context& context, bool truth_known)
+    : options_(options),
+      candidates_(candidates),
+      context_(context),
+      truth_known_(truth_known),
+      touched_(static_cast<std::size_t>(candidates.size()), false) {
+  constexpr std::int64_t kRoom = 1024;  // within it no tap of the loop has to make any
+  taps_.reserve(static_cast<std::size_t>(std::min(options.taps, kRoom)));
+  if (options.stop.expected_rmse) forecaster_.emplace();
+  result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
+                           {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
+}
+
+void Watch::observe(const PastTap& tap, int candidate, bool hit) {
+  const Contact& contact = tap.contact;
+  taps_.push_back(tap);
+  if (beside_) beside_->observe(tap.target, tap.contact, tap.source == Source::initial);
+  ++result_.taps;
+  result_.robot_seconds += contact.seconds;
+  if (tap.source == Source::fallback) ++result_.interventions["fallback"];
+  if (contact.reason == kHeightRefused) ++result_.interventions["height_refused"];
+  if (contact.outcome != Outcome::contact) {
+    ++result_.failed_taps;
+    return;
+  }
+  touched_[static_cast<std::size_t>(candidate)] = true;
+  ++(hit ? result_.on_surface_taps : result_.off_surface_taps);
+  if (!hit) return;
+  if (!result_.first_hit_tap) result_.first_hit_tap = result_.taps;
+  if (forecaster_) forecaster_->hit(contact.height - context_.scene.desk());
+}
+
+std::optional<Forecast> Watch::forecast(TapBelief& belief) const {
+  if (!forecaster_) return std::nullopt;
+  if (forecaster_->hits() > 0) belief.ask(belief.surface_reads());
+  return forecaster_->forecast(belief);
+}
+
+void Watch::describe(TapRecord& tap, TapBelief& belief) {
+  tap.forecast = forecast(belief);
+  const Quantities known = belief.recorded();
+  if (known.has(Quantity::uncertainty)) {
+    tap.uncertainty = belief.uncertainty()(tap.candidate);
+    const Eigen::VectorXd& variance = belief.all_taps_variance();
+    tap.max_standard_deviation = std::sqrt(variance.maxCoeff());
+    tap.mean_standard_deviation = variance.cwiseSqrt().mean();
+    tap.height_process = state_of(belief.height_process());
+  }
+  if (belief.two_part() && known.has(Quantity::height)) tap.surface_process = state_of(belief.surface_process());
+  if (known.has(Quantity::weight)) {
+    tap.weight = belief.weight()(tap.candidate);
+    tap.min_weight = belief.weight_mean().minCoeff();
+    tap.max_weight = belief.weight_mean().maxCoeff();
+    tap.weight_process = state_of(belief.weight_process());
+  }
+  if (known.has(Quantity::probability) && !belief.footprint_is_weight()) {
+    tap.probability = belief.probability()(tap.candidate);
+    tap.footprint = state_of(*belief.footprint());
+  }
+  if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
+  if (const Truth* real = truth()) {
+    tap.true_on_surface = real->on(tap.candidate);
+    tap.errors = errors_of(maps_of(belief, known), *real);
+  }
+}
+
+const Truth* Watch::truth() {
+  if (!truth_known_) return nullptr;
+  if (!truth_) truth_ = truth_at(candidates_, context_.scene);
+  return &*truth_;
+}
+
+Errors Watch::errors(const TapBelief& belief) {
+  const Truth* real = truth();
+  if (real == nullptr) return {};
+  SurfaceMaps maps = maps_of(belief, belief.recorded());
+  Quantities lacking;
+  if (maps.height == nullptr) lacking = lacking | Quantity::height;
+  if (maps.probability == nullptr) lacking = lacking | Quantity::probability;
+  if (lacking == Quantities()) return errors_of(maps, *real);
+  if (!beside_) {
+    beside_ = std::make_unique<TapBelief>(options_, candidates_, context_, unrecorded_);
+    for (const PastTap& tap : taps_) beside_->observe(tap.target, tap.contact, tap.source == Source::initial);
+  }
+  beside_->ask(lacking);
+  const SurfaceMaps others = maps_of(*beside_, lacking);
+  if (maps.height == nullptr) maps.height = others.height;
+  if (maps.probability == nullptr) maps.probability = others.probability;
+  return errors_of(maps, *real);
+}
+
+RunResult Watch::result(TapBelief& belief) {
+  RunResult out = result_;
+  belief.update();
+  out.forecast = forecast(belief);
+  out.interrupted = out.stop_reason == kStoppedByUser;
+  if (const Truth* real = truth()) {
+    belief.build(kErrorsRead);
+    out.errors = errors_of(maps_of(belief, kErrorsRead), *real);
+    out.calibration = calibration(belief, *real, touched_);
+  }
+  const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {
+    if (!one) return;
+    const Process& process = *one.process;
+    state = state_of(one);
+    out.jitter_max = std::max(out.jitter_max, state->jitter);
+    out.interventions["jitter"] += process.jitter_raised();
+    out.interventions["pivoted"] += process.pivoted();
+    out.interventions["set_aside"] += process.set_aside();
+    out.interventions["variance_clamped"] += process.variances_clamped();
+  };
+  take(belief.height_process(), out.height_process);
+  take(belief.weight_process(), out.weight_process);
+  if (belief.two_part()) take(belief.surface_process(), out.surface_process);
+  if (const Footprint* footprint = belief.footprint()) out.footprint = state_of(*footprint);
+  out.interventions["fit_failed"] = belief.failed_fits();
+  return out;
+}
+
+}  // namespace palpate
