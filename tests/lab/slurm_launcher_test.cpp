@@ -21,6 +21,17 @@ using ::testing::IsEmpty;
 
 namespace fs = std::filesystem;
 
+TEST(ShellWord, IsReadByAShellAsItWas) {
+  const test::TemporaryFolder folder;
+  for (const char* word : {"plain/path-1.2", "", " ", "a  b", "it's", "''", "$HOME", "`ls`", "a\nb", "\\", "~", "*",
+                           "-n", "\"", "a;b", "#", "!", "\xc3\xa4"}) {
+    const std::string shown =
+        test::run_program({"sh", "-c", fmt::format("printf %s {}", shell_word(word))}, folder.path()).out;
+    EXPECT_EQ(shown, word);
+  }
+  EXPECT_EQ(shell_word("/plain/path-1.2"), "/plain/path-1.2");
+}
+
 TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
   check_sbatch_words({"--mem=4G", "-Cfast", "--constraint=intel", "--nice", "--timeout=3", "--partitions=x"});
   for (const char* word : {"--array=0-3", "-a0-3", "--partition=x", "-px", "--time", "-t1", "--wait", "-W", "-c4",
@@ -163,6 +174,17 @@ TEST_F(FakeSlurm, HearsOptionsOnlyIfTheyAreGivenAndUsersWordsBeforeThem) {
                                       "--output={0}/2/%A_%a.log --cpus-per-task=2 --partition=long --time=1:00 "
                                       "--account=me {0}/2/task.sh 10",
                                       logs)));
+}
+
+TEST_F(FakeSlurm, SeesNoSettingsOfTheUsersThatWouldChangeWhatItPrints) {
+  const std::vector<const char*> names{"SQUEUE_FORMAT", "SINFO_FORMAT", "SBATCH_WAIT", "SBATCH_WAIT_ALL_NODES"};
+  for (const char* name : names) ::setenv(name, "x", 1);
+  answer("sbatch", "env >seen; echo 1");
+  launcher().submit({3});
+  for (const char* name : names) ::unsetenv(name);
+  const std::string seen = test::text_of(folder_.path() / "seen");
+  EXPECT_THAT(seen, ::testing::Not(::testing::ContainsRegex("SQUEUE_FORMAT|SINFO_FORMAT|SBATCH_WAIT=")));
+  EXPECT_THAT(seen, HasSubstr("SBATCH_WAIT_ALL_NODES=x\n"));
 }
 
 TEST_F(FakeSlurm, LetsTasksRunOneAtATimeThoughTheArrayIsSplit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/files.hpp"
 
+#include "children/child_process.hpp"
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>
@@ -23,37 +24,16 @@ using test::TemporaryFolder;
 using test::text_of;
 
 /// A process that takes the lock, says so, and then holds it until it is killed.
-class Holder {
- public:
-  explicit Holder(const fs::path& file) {
-    int pipe_ends[2];
-    if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      const FileLock lock(file);
-      if (::write(pipe_ends[1], "x", 1) == 1) ::pause();
-      ::_exit(0);
-    }
-    char said = 0;
-    if (::read(pipe_ends[0], &said, 1) != 1) throw std::runtime_error("the holder is gone");
-    ::close(pipe_ends[0]);
-    ::close(pipe_ends[1]);
+std::unique_ptr<ChildProcess> holder_of(const fs::path& file) {
+  auto out = ChildProcess::fork([&](const ChildProcess::Say& say) {
+    const FileLock lock(file);
+    say("it is taken");
+    return ::pause();
+  });
+  while (out->said().empty() && !out->wait(0.001)) {
   }
-  ~Holder() {
-    if (pid_ > 0) kill();
-  }
-  Holder(const Holder&) = delete;
-  Holder& operator=(const Holder&) = delete;
-
-  void kill() {
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-    pid_ = -1;
-  }
-
- private:
-  pid_t pid_ = -1;
-};
+  return out;
+}
 
 std::string refused_lock(const fs::path& file, Error::Kind kind) {
   try {
@@ -78,7 +58,7 @@ std::ptrdiff_t entries(const fs::path& folder) {
 TEST(Lock, IsBusyWhileAnotherProcessHoldsIt) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "lock";
-  const Holder holder(file);
+  const auto holder = holder_of(file);
   EXPECT_TRUE(FileLock::is_held(file));
   EXPECT_EQ(refused_lock(file, Error::Kind::busy),
             folder.path().string() + ": another process holds this run, wait for it, or stop it");
@@ -87,8 +67,8 @@ TEST(Lock, IsBusyWhileAnotherProcessHoldsIt) {
 TEST(Lock, IsFreeOnceItsHolderWasKilled) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "lock";
-  Holder holder(file);
-  holder.kill();
+  auto holder = holder_of(file);
+  holder.reset();
   EXPECT_FALSE(FileLock::is_held(file));
   EXPECT_EQ(refused_lock(file, Error::Kind::busy), "locked");
 }

@@ -14,11 +14,7 @@
 #include <cstring>
 #include <utility>
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 namespace palpate {
 namespace {
@@ -42,10 +38,6 @@ bool is_crash(int signal) {
   return std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
 }
 
-Error system_error(const char* what) {
-  return Error("", fmt::format("{}: {}", what, std::strerror(errno)), {}, Error::Kind::run);
-}
-
 /// Not with fmt::print, which throws when stderr is a terminal that was closed.
 void mention(std::size_t job, const char* what) { std::fputs(fmt::format("job {}: {}\n", job, what).c_str(), stderr); }
 
@@ -53,47 +45,22 @@ void mention(std::size_t job, const char* what) { std::fputs(fmt::format("job {}
 
 LocalLauncher::LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of,
                              const LocalOptions& options)
-    : workshop_(workshop), sweep_(sweep), config_of_(std::move(config_of)), options_(options), parent_(::getpid()) {}
-
-LocalLauncher::~LocalLauncher() {
-  for (const Child& child : running_) ::kill(child.pid, SIGKILL);
-  for (const Child& child : running_) {
-    ::close(child.pipe);
-    while (::waitpid(child.pid, nullptr, 0) < 0 && errno == EINTR) {
-    }
-  }
-}
+    : workshop_(workshop), sweep_(sweep), config_of_(std::move(config_of)), options_(options) {}
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
 }
 
 bool LocalLauncher::start(std::size_t job) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    if (!running_.empty()) return false;
-    throw system_error("no pipe for a job");
-  }
-  std::fflush(nullptr);  // or the child would print it again
-  const pid_t pid = ::fork();
-  if (pid == 0) {
-    ::close(ends[0]);
+  std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say&) -> int {
     // What it may open is for its own files.
-    for (const Child& other : running_) ::close(other.pipe);
-    be_child(job);
-  }
-  const int why = errno;
-  ::close(ends[1]);
-  if (pid < 0) {
-    ::close(ends[0]);
-    if (!running_.empty()) return false;
-    errno = why;
-    throw system_error("no process for a job");
-  }
-  // A group of its own, made on both sides because either may be first: of the terminal's signals this process hears,
-  // and passes them on once.
-  ::setpgid(pid, pid);
-  running_.push_back({job, pid, ends[0]});
+    for (const Running& other : running_) other.process->forget();
+    // Not as children end otherwise: plugins have things to take down, such as a robot's node.
+    std::exit(be_child(job));
+  });
+  if (!process && !running_.empty()) return false;
+  if (!process) throw Error("", fmt::format("no process for a job: {}", std::strerror(errno)), {}, Error::Kind::run);
+  running_.push_back({job, std::move(process)});
   return true;
 }
 
@@ -111,22 +78,15 @@ JobEnd LocalLauncher::run(std::size_t job) const {
   return run_job(workshop_, *config, directory_of(job), options_.resume);
 }
 
-void LocalLauncher::be_child(std::size_t job) {
-  // Between fork and this call the parent may have died already.
-  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent_) ::_exit(kUnrecorded);
-  ::setpgid(0, 0);
-  int status = kUnrecorded;
+int LocalLauncher::be_child(std::size_t job) const {
   try {
-    status = status_of(run(job));
+    return status_of(run(job));
   } catch (const std::exception& trouble) {
     std::error_code none;
     // Who conducts the sweep says once that all of it is gone.
     if (std::filesystem::exists(sweep_.directory, none)) mention(job, trouble.what());
-  } catch (...) {
-    mention(job, "something was thrown that is no exception");
   }
-  // Not _exit(): plugins have things to take down, such as a robot's node.
-  std::exit(status);
+  return kUnrecorded;
 }
 
 Launcher::State LocalLauncher::poll(double seconds) {
@@ -137,36 +97,23 @@ Launcher::State LocalLauncher::poll(double seconds) {
   while (!waiting_.empty() && static_cast<int>(running_.size()) < options_.workers && start(waiting_.front())) {
     waiting_.pop_front();
   }
-  std::vector<pollfd> pipes;
-  for (const Child& child : running_) pipes.push_back({child.pipe, POLLIN, 0});
+  std::vector<ChildProcess*> processes;
+  for (const Running& one : running_) processes.push_back(one.process.get());
   if (!later_.empty()) seconds = std::min(seconds, std::chrono::duration<double>(kBusyPause).count());
   if (running_.empty() && later_.empty()) seconds = 0.0;
-  ::poll(pipes.data(), pipes.size(), static_cast<int>(1000.0 * seconds));
+  ChildProcess::listen(processes, seconds);
   State state;
-  std::vector<Child> still;
-  for (std::size_t i = 0; i < running_.size(); ++i) {
-    if (pipes[i].revents == 0) {
-      still.push_back(running_[i]);
-    } else {
-      reap(running_[i], state);
-    }
-  }
-  running_ = std::move(still);
+  const auto ended =
+      std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });
+  for (auto one = ended; one != running_.end(); ++one) conclude(one->job, one->process->status(), state);
+  running_.erase(ended, running_.end());
   state.running = static_cast<int>(running_.size());
   state.waiting = static_cast<int>(waiting_.size() + later_.size());
   return state;
 }
 
-void LocalLauncher::reap(const Child& child, State& state) {
-  ::close(child.pipe);
-  int status = 0;
-  while (::waitpid(child.pid, &status, 0) < 0) {
-    if (errno != EINTR) throw system_error("a job's process is lost");
-  }
-  conclude(child.job, status, state);
-}
-
 void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
+  if (wait_status < 0) throw Error("", "a job's process is lost", {}, Error::Kind::run);
   if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
   const int status = WEXITSTATUS(wait_status);
   if (status == status_of(JobEnd::busy) && options_.wait_for_others && !cancelled_) {
@@ -209,7 +156,7 @@ void LocalLauncher::cancel() {
   cancelled_ = true;
   waiting_.clear();
   later_.clear();
-  for (const Child& child : running_) ::kill(child.pid, SIGTERM);
+  for (const Running& one : running_) one.process->signal(SIGTERM);
 }
 
 }  // namespace palpate

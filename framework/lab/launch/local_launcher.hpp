@@ -4,6 +4,7 @@
 // the back of `resume`.
 #pragma once
 
+#include "children/child_process.hpp"
 #include "launch/job.hpp"
 #include "launch/launcher.hpp"
 #include "sweep/sweep.hpp"
@@ -12,6 +13,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -28,12 +30,8 @@ class LocalLauncher final : public Launcher {
  public:
   /// `config_of` is called in the child. All must outlive the launcher.
   using Configs = std::function<ResolvedConfig(std::size_t job)>;
+  /// At its end it kills what still runs.
   LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of, const LocalOptions& options);
-
-  /// Kills what still runs.
-  ~LocalLauncher() override;
-  LocalLauncher(const LocalLauncher&) = delete;
-  LocalLauncher& operator=(const LocalLauncher&) = delete;
 
   void submit(const std::vector<std::size_t>& jobs) override;
   State poll(double seconds) override;
@@ -41,11 +39,10 @@ class LocalLauncher final : public Launcher {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A job under way. The pipe says nothing: that it closes is the child's end.
-  struct Child {
+  /// A job under way.
+  struct Running {
     std::size_t job = 0;
-    int pid = -1;
-    int pipe = -1;
+    std::unique_ptr<ChildProcess> process;
   };
   /// A job that somebody else had in hand, to be looked at again.
   struct Later {
@@ -55,10 +52,10 @@ class LocalLauncher final : public Launcher {
 
   /// Returns false where this process may have no more files or children, and has to go on with those it has.
   bool start(std::size_t job);
-  [[noreturn]] void be_child(std::size_t job);
+  /// In the child: the exit status.
+  int be_child(std::size_t job) const;
   /// In the child. A config that cannot be read fails its job alone.
   JobEnd run(std::size_t job) const;
-  void reap(const Child& child, State& state);
   void conclude(std::size_t job, int wait_status, State& state);
   /// Whether an exit status is a job's own: a plugin that calls exit(0) or exit(1) leaves no result behind.
   bool is_borne_out(std::size_t job, int status) const;
@@ -69,10 +66,9 @@ class LocalLauncher final : public Launcher {
   const Sweep& sweep_;
   Configs config_of_;
   LocalOptions options_;
-  int parent_;
   std::deque<std::size_t> waiting_;
   std::deque<Later> later_;
-  std::vector<Child> running_;
+  std::vector<Running> running_;
   std::map<std::size_t, int> kills_;  ///< of each job's processes
   bool cancelled_ = false;
 };

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <sstream>
 
 #include <poll.h>
@@ -64,32 +66,29 @@ std::optional<int> setting(const std::string& text, const std::string& name) {
 bool begins_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 
 /// Settings by which users change what these commands print or how long they stay, behind the back of who reads it.
-bool is_seen(std::string_view name) {
-  return !begins_with(name, "SQUEUE_") && !begins_with(name, "SINFO_") && name != "SBATCH_WAIT";
+bool is_seen(std::string_view variable) {
+  return !begins_with(variable, "SQUEUE_") && !begins_with(variable, "SINFO_") &&
+         !begins_with(variable, "SBATCH_WAIT=");
 }
 
-std::unique_ptr<Command> start(const std::vector<std::string>& words) {
-  try {
-    return std::make_unique<Command>(words, is_seen);
-  } catch (const Error& trouble) {
-    throw Error(trouble.where(), trouble.reason(), kAskedElsewhere, trouble.kind());
-  }
+std::unique_ptr<ChildProcess> start(const std::vector<std::string>& words) {
+  Program program{words};
+  auto& sees = program.environment;
+  sees.erase(std::remove_if(sees.begin(), sees.end(), [](const std::string& one) { return !is_seen(one); }),
+             sees.end());
+  std::unique_ptr<ChildProcess> out = ChildProcess::start(program);
+  if (out) return out;
+  if (errno == ENOENT) throw Error(words.front(), "is not installed, or not on PATH", kAskedElsewhere);
+  throw Error(words.front(), fmt::format("cannot be started: {}", std::strerror(errno)), kAskedElsewhere);
 }
 
 /// Runs a program to its end that may be cut off.
 std::string ask(const std::vector<std::string>& words, const std::string& hint = kAskedElsewhere) {
-  const std::unique_ptr<Command> command = start(words);
-  const auto begun = std::chrono::steady_clock::now();
-  const auto left = [&] {
-    return kPatience - std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  };
-  while (!command->wait(left())) {
-    if (left() <= 0.0) {
-      throw Error(words.front(), fmt::format("has not answered for {:.0f} s", kPatience), hint);
-    }
-  }
-  if (command->status() != 0) throw Error(words.front(), words_of(command->output()), hint);
-  return command->output();
+  const std::unique_ptr<ChildProcess> command = start(words);
+  if (!command->wait(kPatience))
+    throw Error(words.front(), fmt::format("has not answered for {:.0f} s", kPatience), hint);
+  if (command->status() != 0) throw Error(words.front(), words_of(command->said()), hint);
+  return command->said();
 }
 
 }  // namespace
@@ -194,13 +193,11 @@ int most_cpus(const std::string& partition) {
 int submit(const std::vector<std::string>& words) {
   std::vector<std::string> all{"sbatch", "--parsable"};
   all.insert(all.end(), words.begin(), words.end());
-  const std::unique_ptr<Command> command = start(all);
-  // However long it takes: cut off, it could have submitted or not.
-  while (!command->wait(kPatience)) {
-  }
-  const std::optional<int> id = parse_array_id(command->output());
+  const std::unique_ptr<ChildProcess> command = start(all);
+  command->wait();  // however long it takes: cut off, it could have submitted or not
+  const std::optional<int> id = parse_array_id(command->said());
   if (command->status() != 0 || !id) {
-    throw Error("sbatch", words_of(command->output()), "nothing of this array was submitted; 'sinfo' lists partitions");
+    throw Error("sbatch", words_of(command->said()), "nothing of this array was submitted; 'sinfo' lists partitions");
   }
   return *id;
 }
@@ -222,20 +219,21 @@ std::optional<std::vector<Task>> Watch::look(double seconds) {
     query_ = start({"squeue", "--noheader", "--array", fmt::format("--user={}", ::geteuid()), "--format=%F|%K|%t"});
     next_ = now + kPause;
   }
-  if (!query_->wait(seconds)) {
+  ChildProcess::listen({query_.get()}, seconds);
+  if (!query_->ended()) {
     if (now < next_ + std::chrono::seconds(static_cast<int>(kPatience))) return std::nullopt;
     trouble_ = fmt::format("has not answered for {:.0f} s", kPatience);
     query_.reset();
     return std::nullopt;
   }
-  const std::unique_ptr<Command> query = std::move(query_);
+  const std::unique_ptr<ChildProcess> query = std::move(query_);
   if (query->status() != 0) {
-    trouble_ = words_of(query->output());
+    trouble_ = words_of(query->said());
     return std::nullopt;
   }
   trouble_.clear();
   answered_ = Clock::now();
-  return parse_queue(query->output());
+  return parse_queue(query->said());
 }
 
 double Watch::silence() const { return std::chrono::duration<double>(Clock::now() - answered_).count(); }

@@ -3,7 +3,7 @@
 // knows of jobs; a task is one index of an array.
 #pragma once
 
-#include "launch/command.hpp"
+#include "children/child_process.hpp"
 
 #include <chrono>
 #include <memory>
@@ -74,7 +74,7 @@ void cancel(const std::vector<int>& arrays);
 /// Looks at the queue now and then, without waiting for an answer.
 class Watch {
  public:
-  /// Waits until squeue has answered or `seconds` are over, but not beyond a signal; asks at most once a second.
+  /// Waits until squeue says something or `seconds` are over, but not beyond a signal; asks at most once a second.
   /// Returns this user's tasks when it has answered, none when it has not yet, or with trouble().
   std::optional<std::vector<Task>> look(double seconds);
 
@@ -85,7 +85,7 @@ class Watch {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::unique_ptr<Command> query_;
+  std::unique_ptr<ChildProcess> query_;
   Clock::time_point next_ = Clock::now();  ///< question
   Clock::time_point answered_ = Clock::now();
   std::string trouble_;

@@ -72,6 +72,20 @@ std::string without_placeholders(const fs::path& folder) {
 
 }  // namespace
 
+std::string shell_word(const std::string& text) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=@+%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      out += "'\\''";
+    } else {
+      out += c;
+    }
+  }
+  return out + "'";
+}
+
 void check_sbatch_words(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word.size() < 2 || word.front() != '-' || word == "--") {

@@ -37,6 +37,9 @@ struct SlurmArray {
   std::filesystem::path logs;
 };
 
+/// `text` as one word of a shell, in quotes only where it needs them.
+std::string shell_word(const std::string& text);
+
 /// Throws Error for words to sbatch that palpate says itself, or that are no options.
 void check_sbatch_words(const std::vector<std::string>& words);
 

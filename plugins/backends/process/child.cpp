@@ -10,11 +10,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <thread>
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,66 +26,6 @@ using Clock = std::chrono::steady_clock;
 [[noreturn]] void fail(const std::string& what, int number) {
   throw Error("command", what + ": " + std::strerror(number), {}, Error::Kind::run);
 }
-
-struct Pipe {
-  Pipe() {
-    // Closed on exec from the first moment on: other threads start programs, too.
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("cannot open a pipe", errno);
-    to_read = above_standard(ends[0]);
-    to_write = above_standard(ends[1]);
-  }
-  Descriptor to_read;
-  Descriptor to_write;
-};
-
-/// posix_spawn and not fork: no copy of a large process, nothing of another thread's half-held locks. And not execvp,
-/// which hands a file that is no program to a shell.
-class Start {
- public:
-  Start() {
-    ::posix_spawn_file_actions_init(&actions_);
-    ::posix_spawnattr_init(&attributes_);
-    sigset_t none;
-    ::sigemptyset(&none);
-    ::posix_spawnattr_setsigmask(&attributes_, &none);
-    sigset_t usual;
-    ::sigemptyset(&usual);
-    for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaddset(&usual, signal);
-    ::posix_spawnattr_setsigdefault(&attributes_, &usual);
-    ::posix_spawnattr_setpgroup(&attributes_, 0);
-    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  }
-  ~Start() {
-    ::posix_spawnattr_destroy(&attributes_);
-    ::posix_spawn_file_actions_destroy(&actions_);
-  }
-  Start(const Start&) = delete;
-  Start& operator=(const Start&) = delete;
-
-  /// Hands `file` over under the next number, from that of stdin on.
-  void hand_over(const Descriptor& file) { ::posix_spawn_file_actions_adddup2(&actions_, file.number(), ++inherited_); }
-
-  /// The process, or -1 with errno set.
-  pid_t operator()(const std::string& file, const std::vector<std::string>& words, const std::string& mark) {
-    // Files that the program holds open without the flag, as streams of the standard library do.
-    ::posix_spawn_file_actions_addclosefrom_np(&actions_, inherited_ + 1);
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    std::vector<char*> environment{const_cast<char*>(mark.c_str())};  // the first of a name counts
-    for (char** one = environ; *one != nullptr; ++one) environment.push_back(*one);
-    environment.push_back(nullptr);
-    pid_t pid = -1;
-    errno = ::posix_spawn(&pid, file.c_str(), &actions_, &attributes_, arguments.data(), environment.data());
-    return errno == 0 ? pid : -1;
-  }
-
- private:
-  int inherited_ = -1;  ///< the last number
-  posix_spawn_file_actions_t actions_;
-  posix_spawnattr_t attributes_;
-};
 
 /// Keeps SIGPIPE from this thread, and from the program, while it writes to a pipe that may have no reader.
 class NoSigpipe {
@@ -122,17 +62,17 @@ bool glance(const Descriptor& descriptor, short events, Clock::time_point until)
 Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
              const Descriptor* kept)
     : diary_(diary) {
-  Pipe in;
-  Pipe out;
-  Start start;
-  start.hand_over(in.to_read);
-  start.hand_over(out.to_write);
-  start.hand_over(diary_.descriptor());
-  if (kept != nullptr) start.hand_over(*kept);
-  pid_ = start(file, words, descent_.mark());
+  std::optional<Pipe> in = open_pipe();
+  std::optional<Pipe> out = open_pipe();
+  if (!in || !out) fail("cannot open a pipe", errno);
+  std::vector<int> files{in->to_read.number(), out->to_write.number(), diary_.descriptor().number()};
+  if (kept != nullptr) files.push_back(kept->number());
+  Program program{words, file};
+  program.environment.insert(program.environment.begin(), descent_.mark());
+  pid_ = spawn(program, files);
   if (pid_ < 0) fail("cannot start '" + file + "'", errno);
-  input_ = std::move(in.to_write);
-  output_ = std::move(out.to_read);
+  input_ = std::move(in->to_write);
+  output_ = std::move(out->to_read);
   for (const Descriptor* end : {&input_, &output_}) ::fcntl(end->number(), F_SETFL, O_NONBLOCK);
 }
 

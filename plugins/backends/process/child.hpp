@@ -2,8 +2,8 @@
 // A program under way, spoken to in lines. It knows nothing of taps.
 #pragma once
 
+#include "children/child_process.hpp"
 #include "process/descent.hpp"
-#include "process/descriptor.hpp"
 #include "process/diary.hpp"
 
 #include <atomic>
@@ -30,6 +30,10 @@ struct Patience {
 /// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
 /// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
 /// directory, and of open files the three standard ones and at most one more.
+///
+/// It is spawned as every program is, and for the rest no ChildProcess: it is spoken to while it runs, its lines must
+/// not fill the memory, its stderr outlives this process, and it is asked to end before it is killed. Above all it is
+/// not reaped before all that it started is dead: until then its number is that of their group, and nobody else's.
 class Child {
  public:
   /// A longer line is refused: a program that never ends its line must not fill the memory.

@@ -42,12 +42,7 @@ void Diary::trim() {
   // What the program writes now is lost between the two, or comes to stand before the note: no more than that.
   left_out_ += std::max<off_t>(0, size() - end);
   if (::ftruncate(file_.number(), kFirst) != 0) return;
-  const std::string text = note_of(left_out_) + last;
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t wrote = ::write(file_.number(), text.data() + done, text.size() - done);
-    if (wrote < 0 && errno != EINTR) break;  // a full disk costs words of a program, no tap
-    done += static_cast<std::size_t>(std::max<ssize_t>(wrote, 0));
-  }
+  write_all(file_, note_of(left_out_) + last);  // a full disk costs words of a program, no tap
   begin_ = std::min(begin_, kFirst);
 }
 

@@ -2,7 +2,7 @@
 // What a program says on its stderr, kept beside the record: its beginning and its end, however much it says.
 #pragma once
 
-#include "process/descriptor.hpp"
+#include "process/recorded.hpp"
 
 #include <string>
 

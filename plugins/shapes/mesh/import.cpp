@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "import.hpp"
 
+#include "children/child_process.hpp"
+
 #include <palpate/error.hpp>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <string_view>
@@ -152,46 +155,6 @@ Soup triangles_by_assimp(const std::string& bytes, const std::string& file, cons
   return out;
 }
 
-/// Where the answer goes on its way from one process to the other.
-class Pipe {
- public:
-  Pipe() {
-    if (pipe2(ends_, O_CLOEXEC) != 0)
-      throw Error("", std::string("no pipe: ") + std::strerror(errno), "", Error::Kind::run);
-  }
-  ~Pipe() {
-    close_end(0);
-    close_end(1);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-
-  void close_end(int end) {
-    if (ends_[end] >= 0) close(ends_[end]);
-    ends_[end] = -1;
-  }
-  void write_all(const void* from, std::size_t bytes) const {
-    const char* at = static_cast<const char*>(from);
-    while (bytes > 0) {
-      const ssize_t done = write(ends_[1], at, bytes);
-      if (done <= 0 && errno != EINTR) return;
-      if (done > 0) at += done, bytes -= static_cast<std::size_t>(done);
-    }
-  }
-  std::string read_all() const {
-    std::string out;
-    std::vector<char> piece(1 << 16);
-    while (true) {
-      const ssize_t done = read(ends_[0], piece.data(), piece.size());
-      if (done > 0) out.append(piece.data(), static_cast<std::size_t>(done));
-      if (done == 0 || (done < 0 && errno != EINTR)) return out;
-    }
-  }
-
- private:
-  int ends_[2];
-};
-
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define PALPATE_SANITIZED
 #elif defined(__has_feature)
@@ -212,11 +175,10 @@ void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*ou
 #endif
 }
 
-const Pipe* pipe_of_child = nullptr;
+const ChildProcess::Say* say_in_child = nullptr;
 
-/// In the process of its own: answers 'T' and the triangles, or 'E', reason and hint.
-[[noreturn]] void answer(const Pipe& pipe, const std::string& bytes, const std::string& file,
-                         const std::string& format) {
+/// In the process of its own: answers 'T' and the triangles, or 'E', reason and hint. Returns the exit status.
+int answer(const ChildProcess::Say& say, const std::string& bytes, const std::string& file, const std::string& format) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   const rlim_t seconds = 5 + bytes.size() / 1'000'000;
@@ -225,23 +187,19 @@ const Pipe* pipe_of_child = nullptr;
   alarm(static_cast<unsigned>(12 * seconds));  // and where it waits for ever
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // a failed assertion of assimp would be a second line
-  pipe_of_child = &pipe;
+  say_in_child = &say;
   limit_memory(bytes.size(), [] {
-    constexpr std::string_view kWords = "Etakes more memory than any sound file of its size\nexport it again";
-    pipe_of_child->write_all(kWords.data(), kWords.size());
+    (*say_in_child)("Etakes more memory than any sound file of its size\nexport it again");
     _exit(0);
   });
   try {
     const Soup soup = triangles_by_assimp(bytes, file, format);
-    pipe.write_all("T", 1);
-    pipe.write_all(soup.data(), soup.size() * sizeof soup.front());
+    say("T");
+    say({reinterpret_cast<const char*>(soup.data()), soup.size() * sizeof soup.front()});
   } catch (const Error& error) {
-    const std::string text = "E" + error.reason() + '\n' + error.hint();
-    pipe.write_all(text.data(), text.size());
-  } catch (...) {
-    _exit(1);
+    say("E" + error.reason() + '\n' + error.hint());
   }
-  _exit(0);
+  return 0;
 }
 
 }  // namespace
@@ -251,16 +209,13 @@ Soup import_triangles(const std::string& bytes, const std::string& file) {
   if (format == "stl") check_stl(bytes, file);
   if (format == "ply") check_ply(bytes, file);
   // On some broken files assimp 5.2 crashes, aborts or never ends, which must not befall the experiment.
-  Pipe pipe;
-  const pid_t child = fork();
-  if (child < 0)
+  const std::unique_ptr<ChildProcess> reader =
+      ChildProcess::fork([&](const ChildProcess::Say& say) { return answer(say, bytes, file, format); });
+  if (!reader)
     throw Error(file, std::string("no process to read it in: ") + std::strerror(errno), "", Error::Kind::run);
-  if (child == 0) answer(pipe, bytes, file, format);
-  pipe.close_end(1);
-  const std::string said = pipe.read_all();
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  reader->wait();  // which it sees to itself that is not for ever
+  const std::string& said = reader->said();
+  const int status = reader->status();
   if (status != 0 || said.empty()) {
     const bool endless = WIFSIGNALED(status) &&
                          (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGKILL);
