@@ -213,7 +213,7 @@ Tree field_schema(const FieldDescription& field) {
       break;
     }
     case Type::section: {
-      Tree inner = schema_of(field.fields);
+      Tree inner = group_schema(field.fields);
       if (field.optional || field.group) {
         Tree word = Tree::map();
         if (field.group) {
