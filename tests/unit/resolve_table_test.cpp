@@ -99,7 +99,7 @@ TEST(ResolveAdopted, DropsAndListsOptionsThatALaterTypeLacks) {
   input.find("type")->layer = kCommandLineLayer;
   Adopting some;
   ResolveNotes notes;
-  EXPECT_EQ(to_yaml(resolve(some, input, TwoPlugins(), notes)), "type: smooth\nscale: 0.03 m\nlast: 2\n");
+  EXPECT_EQ(to_yaml(resolve(some, input, test::TwoPlugins(), notes)), "type: smooth\nscale: 0.03 m\nlast: 2\n");
   ASSERT_EQ(notes.dropped.size(), 1U);
   EXPECT_EQ(notes.dropped[0].path, "nu");
 }
