@@ -18,8 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const Installation& installation() {
-  static const Installation one{fs::path(PALPATE_BUILD_FOLDER) / "palpate",
-                                fs::path(PALPATE_BUILD_FOLDER) / "lib" / "palpate", shipped_configs()};
+  const fs::path build = PALPATE_BUILD_FOLDER;
+  static const Installation one{build / "palpate", build / "palpate-whole", build / "lib" / "palpate",
+                                shipped_configs()};
   return one;
 }
 
