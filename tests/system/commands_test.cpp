@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every command but `run` as a user calls it: what it prints, where, and with which exit status.
+#include "record/json.hpp"
 #include "system/shipped.hpp"
 
 #include <gmock/gmock.h>

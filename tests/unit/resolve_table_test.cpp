@@ -14,7 +14,7 @@ namespace {
 using test::refusal;
 using test::resolved;
 
-struct Points : Options {
+struct Table : Options {
   std::vector<std::array<double, 2>> points;
   void list(Fields& fields) override {
     fields.table(points, Field("points", "some places").in(Unit::metre).at_least(0));
@@ -42,27 +42,26 @@ struct Clashing : Options {
 };
 
 TEST(Resolve, ReadsATableRowByRow) {
-  Points some;
+  Table some;
   const Tree tree = resolved(some, "points: [[1 cm, 2 cm], [3 mm, 0 m], [5 m, 6 m]]\n");
   EXPECT_EQ(some.points, (std::vector<std::array<double, 2>>{{0.01, 0.02}, {0.003, 0.0}, {5.0, 6.0}}));
-  Points again;
+  Table again;
   EXPECT_EQ(resolved(again, "points: [[0.01 m, 0.02 m], [3 mm, 0 cm], [5 m, 6 m]]").canonical(), tree.canonical());
-  Points none;
+  Table none;
   resolved(none, "points: []\n");
   EXPECT_TRUE(none.points.empty());
 }
 
 TEST(Resolve, RefusesATableWithAWrongRow) {
   EXPECT_EQ(
-      refusal<Points>("points: [[1 cm, 2 cm], [3 cm]]\n"),
+      refusal<Table>("points: [[1 cm, 2 cm], [3 cm]]\n"),
       "c.yaml:1:24: points: expects a list of rows of 2 values, write [[1 cm, 2 cm], [3 cm, 4 cm]] with the values "
       "and units that it needs");
-  EXPECT_EQ(refusal<Points>("points: 3 cm\n").substr(0, 47), "c.yaml:1:9: points: expects a list of rows of 2");
-  EXPECT_EQ(refusal<Points>("points: [1 cm, 2 cm]\n").substr(0, 48),
-            "c.yaml:1:10: points: expects a list of rows of 2");
-  EXPECT_EQ(refusal<Points>("points: [[1 cm, -2 cm]]\n"),
+  EXPECT_EQ(refusal<Table>("points: 3 cm\n").substr(0, 47), "c.yaml:1:9: points: expects a list of rows of 2");
+  EXPECT_EQ(refusal<Table>("points: [1 cm, 2 cm]\n").substr(0, 48), "c.yaml:1:10: points: expects a list of rows of 2");
+  EXPECT_EQ(refusal<Table>("points: [[1 cm, -2 cm]]\n"),
             "c.yaml:1:17: points: -2 cm is out of range, it must be at least 0 m");
-  EXPECT_NE(refusal<Points>("points: [[1 cm, 2]]\n"), "accepted");
+  EXPECT_NE(refusal<Table>("points: [[1 cm, 2]]\n"), "accepted");
 }
 
 TEST(ResolveAdopted, ReadsThePluginAmongTheFieldsAtHand) {
