@@ -9,10 +9,6 @@
 namespace palpate {
 namespace {
 
-using test::Ended;
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
 
 class AFieldOfOneLine : public ::testing::Test {
  protected:

@@ -126,8 +126,8 @@ TEST(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {
 TEST(Earlier, SummariesHaveTheModelsThatABackendReadsWhereNoTruthIsKnown) {
   const TemporaryFolder folder;
   const std::vector<std::string> words{config("process.yaml"), "backend.motion.adaptive_hover={}", "name=early"};
-  const std::vector<std::string> sweep = test::plus({"sweep"}, words);
-  sweep.insert(sweep.end(), {"acquisition=random,grid", "taps=8", "--quiet"});
+  const std::vector<std::string> sweep =
+      test::plus(test::plus({"sweep"}, words), {"acquisition=random,grid", "taps=8", "--quiet"});
   ASSERT_EQ(test::palpate(sweep, folder.path()).status, 0);
   const fs::path directory = only_run(folder.path() / "runs");
   ASSERT_EQ(
