@@ -4,8 +4,8 @@
 #include "cli/commands.hpp"
 #include "cli/earlier.hpp"
 #include "config/hash.hpp"
-#include "record/resolved.hpp"
 #include "record/files.hpp"
+#include "record/resolved.hpp"
 
 #include <palpate/error.hpp>
 

@@ -17,7 +17,6 @@ std::string scaled(const std::optional<double>& value, double scale, const char*
   return value ? fmt::format(fmt::runtime(format), *value * scale) : "-";
 }
 
-
 }  // namespace
 
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}

@@ -2,8 +2,8 @@
 // The end of a run or a sweep as continuous integration sees it: expectations, JUnit file, exit status.
 #pragma once
 
-#include "record/resolved.hpp"
 #include "record/gate.hpp"
+#include "record/resolved.hpp"
 
 #include <string>
 #include <vector>

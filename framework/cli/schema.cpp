@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "config/describe.hpp"
-#include "record/expectation.hpp"
 #include "experiment/experiment_options.hpp"
+#include "record/expectation.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 

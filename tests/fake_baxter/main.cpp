@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // fake_baxter CONFIG [KEY=VALUE ...]: the robot of an experiment, on the ROS network that ROS_MASTER_URI names.
 #include "config/compose.hpp"
-#include "record/resolved.hpp"
 #include "fake_baxter/node.hpp"
 #include "plugin/host.hpp"
+#include "record/resolved.hpp"
 #include "scene/scene_options.hpp"
 
 #include <palpate/error.hpp>

@@ -5,8 +5,8 @@
 
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
-#include "record/resolved.hpp"
 #include "process/protocol.hpp"
+#include "record/resolved.hpp"
 #include "sweep/condition.hpp"
 #include "sweep/description.hpp"
 

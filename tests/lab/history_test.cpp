@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A run lived through again says at every tap what the run said then, and at its end what its summary says.
 #include "report/history.hpp"
-#include "record/session.hpp"
 #include "record/fields.hpp"
+#include "record/session.hpp"
 #include "record/tap_row.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"

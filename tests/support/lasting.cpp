@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/lasting.hpp"
 
-#include "record/json.hpp"
 #include "record/fields.hpp"
+#include "record/json.hpp"
 #include "support/support.hpp"
 
 #include <csignal>

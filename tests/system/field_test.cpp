@@ -9,7 +9,6 @@
 namespace palpate {
 namespace {
 
-
 class AFieldOfOneLine : public ::testing::Test {
  protected:
   Ended run(std::vector<std::string> words) {
@@ -31,10 +30,10 @@ TEST_F(AFieldOfOneLine, IsWrittenExpectedComparedAndDrawn) {
   for (const test::Cells& row : rows) EXPECT_EQ(row.at("thrice_taps"), "18");
   EXPECT_THAT(text_of(sweep / "jobs" / rows.front().at("id") / "summary.json"), HasSubstr("\"thrice_taps\": 18,"));
 
-  EXPECT_THAT(run({"compare", sweep.string(), "--by", "acquisition", "--metric", "thrice_taps", "--where",
-                   "thrice_taps > 17"})
-                  .out,
-              HasSubstr("thrice_taps"));
+  EXPECT_THAT(
+      run({"compare", sweep.string(), "--by", "acquisition", "--metric", "thrice_taps", "--where", "thrice_taps > 17"})
+          .out,
+      HasSubstr("thrice_taps"));
   EXPECT_THAT(run({"pareto", sweep.string(), "--cost", "thrice_taps", "--error", "footprint_iou"}).out,
               HasSubstr("thrice_taps"));
   EXPECT_THAT(run({"schema"}).out, HasSubstr("|taps|thrice_taps|"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a run leaves is read by every command, however large it is; what was damaged is said in one line.
-#include "record/json.hpp"
 #include "record/fields.hpp"
+#include "record/json.hpp"
 #include "system/shipped.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sweeps as a user calls them: one row a job, the bytes of single runs, and what becomes of broken and failed jobs.
-#include "record/json.hpp"
 #include "record/fields.hpp"
+#include "record/json.hpp"
 #include "system/shipped.hpp"
 
 #include <gmock/gmock.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a run had come to after fewer taps is what a run with that budget comes to.
 #include "record/earlier.hpp"
-#include "record/session.hpp"
 #include "record/fields.hpp"
+#include "record/session.hpp"
 #include "support/support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "config/quantity.hpp"
 #include "record/fields.hpp"
+#include "config/quantity.hpp"
 #include "record/json.hpp"
 #include "support/support.hpp"
 

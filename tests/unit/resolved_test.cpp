@@ -93,8 +93,9 @@ TEST(ResolvedConfig, SaysItsFormatAndRefusesALaterOne) {
   const ResolvedConfig config = test::shipped_config("paper/object_i.yaml");
   EXPECT_EQ(config.tree.find("format")->text, "1");
   EXPECT_EQ(test::shipped_config("paper/object_i.yaml", {"format=1"}).id, config.id);
-  EXPECT_EQ(refused_config({"format=2", "a_key_of_format_2=3"}),
-            "command line: format: 2 is newer than 1, the latest known here, take a palpate as new as the one that wrote it");
+  EXPECT_EQ(
+      refused_config({"format=2", "a_key_of_format_2=3"}),
+      "command line: format: 2 is newer than 1, the latest known here, take a palpate as new as the one that wrote it");
   EXPECT_EQ(refused_config({"format=0"}).substr(0, 22), "command line: format: ");
 }
 

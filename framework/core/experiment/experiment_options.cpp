@@ -219,6 +219,8 @@ const ConfigKeys& config_keys() {
   return keys;
 }
 
-bool enters_id(const std::string& key) { return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "format"; }
+bool enters_id(const std::string& key) {
+  return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "format";
+}
 
 }  // namespace palpate

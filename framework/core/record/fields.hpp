@@ -4,9 +4,9 @@
 // from there.
 #pragma once
 
-#include "record/resolved.hpp"
 #include "experiment/tap_record.hpp"
 #include "record/field.hpp"
+#include "record/resolved.hpp"
 
 #include <palpate/error.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Replay: the recorded contacts go through the same models, and every number is compared as text, bit for bit.
 #include "experiment/experiment.hpp"
+#include "record/fields.hpp"
 #include "record/recording.hpp"
 #include "record/summary.hpp"
-#include "record/fields.hpp"
 #include "record/tap_row.hpp"
 
 namespace palpate {

@@ -4,8 +4,8 @@
 
 #include "config/compose.hpp"
 #include "config/resolve.hpp"
-#include "record/expectation.hpp"
 #include "experiment/experiment_options.hpp"
+#include "record/expectation.hpp"
 
 #include <filesystem>
 #include <string>

@@ -2,9 +2,9 @@
 // The directory of one run: its lock, its files, and what state it is in. runs/README.md describes every file.
 #pragma once
 
-#include "record/resolved.hpp"
 #include "experiment/tap_record.hpp"
 #include "record/files.hpp"
+#include "record/resolved.hpp"
 #include "record/row.hpp"
 
 #include <filesystem>

@@ -3,9 +3,9 @@
 
 #include "config/yaml.hpp"
 #include "experiment/experiment.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
-#include "record/fields.hpp"
 #include "record/summary.hpp"
 
 #include <palpate/error.hpp>

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "record/resolved.hpp"
 #include "experiment/tap_record.hpp"
 #include "plugin/host.hpp"
 #include "record/build_info.hpp"
+#include "record/resolved.hpp"
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "sweep/condition.hpp"
 #include "config/expand.hpp"
+#include "sweep/condition.hpp"
 
 #include <cstddef>
 #include <string>

@@ -3,8 +3,8 @@
 // only when it is complete.
 #pragma once
 
-#include "record/resolved.hpp"
 #include "record/files.hpp"
+#include "record/resolved.hpp"
 #include "sweep/plan.hpp"
 
 #include <filesystem>

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "record/resolved.hpp"
 #include "plugin/host.hpp"
+#include "record/resolved.hpp"
 #include "sweep/description.hpp"
 #include "sweep/sweep.hpp"
 

@@ -3,9 +3,9 @@
 
 #include "config/hash.hpp"
 #include "config/yaml.hpp"
-#include "record/resolved.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
+#include "record/resolved.hpp"
 #include "record/session.hpp"
 
 #include <palpate/error.hpp>
