@@ -82,7 +82,7 @@ TEST(ResolveAdopted, ReadsThePluginAmongTheFieldsAtHand) {
 TEST(ResolveAdopted, TellsTheLineOfWhatIsWrongAndTheNearestName) {
   EXPECT_EQ(refusal<Adopting>("last: 3\n"), "c.yaml:1:1: 'type' is missing, what it is");
   EXPECT_EQ(refusal<Adopting>("typ: rough\n"), "c.yaml:1:1: unknown option 'typ', did you mean 'type'?");
-  EXPECT_EQ(refusal<Adopting>("type: ruff\n"), "c.yaml:1:7: no plugin kernel/ruff, did you mean 'rough'?");
+  EXPECT_EQ(refusal<Adopting>("type: ruff\n"), "c.yaml:1:7: no plugin kernel/ruff, known: rough, smooth");
   EXPECT_EQ(refusal<Adopting>("type: [rough]\n"),
             "c.yaml:1:7: type is not a name, 'palpate plugins kernel' lists the types");
   EXPECT_EQ(refusal<Adopting>("type: rough\nnuu: 2.5\n"), "c.yaml:2:1: unknown option 'nuu', did you mean 'nu'?");
