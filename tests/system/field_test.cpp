@@ -36,7 +36,7 @@ TEST_F(AFieldOfOneLine, IsWrittenExpectedComparedAndDrawn) {
       HasSubstr("thrice_taps"));
   EXPECT_THAT(run({"pareto", sweep.string(), "--cost", "thrice_taps", "--error", "footprint_iou"}).out,
               HasSubstr("thrice_taps"));
-  EXPECT_THAT(run({"schema"}).out, HasSubstr("|taps|thrice_taps|"));
+  EXPECT_THAT(run({"schema"}).out, HasSubstr("|thrice_taps|failed_taps|"));
   run({"report", sweep.string()});
   EXPECT_THAT(text_of(sweep / "report.html"), HasSubstr("{\"name\":\"thrice_taps\",\"better\":\"less\""));
 }

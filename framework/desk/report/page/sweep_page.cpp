@@ -168,7 +168,8 @@ std::string id_of(const Sweep& sweep) {
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   const std::vector<Row> results = sweep_results(sweep);
   std::vector<const Row*> rows;  // of each job
-  for (const JobResult& job : group_jobs(sweep, results, {}).front().jobs) rows.push_back(job.row);
+  const std::vector<JobGroup> all = group_jobs(sweep, results, {});
+  for (const JobResult& job : all.front().jobs) rows.push_back(job.row);
   const Tree config = read_run_config(sweep.directory);
   std::vector<std::string> keys;
   for (std::size_t key = 0; key < sweep.keys.size(); ++key) keys.push_back(json_of_key(sweep, key));
