@@ -83,7 +83,7 @@ std::vector<Case> cases() {
            "weight, surface, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, tie_tolerance, "
            "accuracy, "
            "threads, "
-           "instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
+           "instruction_set, stop, scene, backend, log, format, defaults, strategy, sweep, expect"),
       line("DottedKeyInAFile", "weight.clip: yes",
            "bad.yaml:10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
