@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 # A campaign of libFuzzer at every door by which bytes of others come in (fuzz/harness.hpp), two doors at a time: so many
 # inputs in all, most of them at the doors that are quick to answer. Ends with status 1 at a crash, an exception that is
-# no Error, an input that takes more than 2 s or 1 GiB (a mesh 60 s: its reader is a process that has 5 s of CPU time, and 60 s in all); the input is then in build/fuzz/found, and once it is mended
-# belongs into fuzz/corpus, which ./check goes through. Needs clang and its runtime libraries.
+# no Error, an input that takes more than 2 s or 1 GiB (a mesh 60 s: its reader is a process that has 5 s of CPU time,
+# and 60 s in all); the input is then in build/fuzz/found, and once it is mended belongs into fuzz/corpus, which ./check
+# goes through. Needs clang and its runtime libraries.
 #   sh tests/fuzz.sh [INPUTS]      (10000000)
 set -eu
 root=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
