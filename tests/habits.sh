@@ -1,12 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # What reviewers would otherwise have to look for, as a step of ./check: arrows between folders, headers that stand
-# alone, clang-format, clang-tidy. Of the last three only what changed since the commit before is looked at, and what is
+# alone, clang-format. Of the last two only what changed since the commit before is looked at, and what is
 # not committed; with --all every header. Ends with status 1 and a line a fault.
 #   sh tests/habits.sh [--all]
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/.."
-build=build/release
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT
 
@@ -34,17 +33,10 @@ elif [ -n "$changed" ]; then
   echo "habits: skipped: clang-format, which has to be version 14" >&2
 fi
 
-# The flags of a source that knows what a header of its folder may know.
-flags_of() {
-  sed -n 's|.*"command": "[^ ]* \(.*\) -o .*|\1|p' "$build/compile_commands.json" | head -n 1
-}
 [ "${1:-}" != --all ] || changed=$(git ls-files 'framework/*.hpp')
-[ -f "$build/compile_commands.json" ] || changed=
-includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework -Iframework/include -Iplugins -Iplugins/backends
+includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework/shared -Iframework -Iframework/include -Iplugins -Iplugins/backends
   -Itests -isystem /usr/include/eigen3"
-for header in $(echo "$changed" | grep '^framework/.*\.hpp$' || true); do
-  echo "$header"
-done | xargs -r -P "$(nproc)" -I FILE sh -c "g++ -std=c++17 -fsyntax-only $(echo $includes) -x c++ FILE >/dev/null 2>&1 ||
+echo "$changed" | grep '^framework/.*\.hpp$' | xargs -r -P "$(nproc)" -I FILE sh -c "g++ -std=c++17 -fsyntax-only $(echo $includes) -x c++ FILE >/dev/null 2>&1 ||
   echo 'FILE: does not stand alone: it lacks an include'" >>"$faults"
 
 sort -u "$faults" >&2
