@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What reviewers would otherwise have to look for, as a step of ./check: arrows between folders, headers that stand
-# alone, clang-format. Of the last two only what changed since the commit before is looked at, and what is
-# not committed; with --all every header. Ends with status 1 and a line a fault.
+# What reviewers would otherwise have to look for: arrows between folders, headers that stand alone, clang-format. Of the
+# last two only what changed since the commit before is looked at, and what is not committed; with --all every header.
+# Ends with status 1 and a line a fault.
 #   sh tests/habits.sh [--all]
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/.."
