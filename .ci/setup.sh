@@ -136,9 +136,12 @@ build() {
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
-    # Minutes of one core that everything takes, and what the first ./palpate run asks for.
-    whole=50
-    [ $# -eq 0 ] || whole=5
+    # Minutes of one core that everything takes, what ./check builds, and what the first ./palpate run asks for.
+    case "$*" in
+      '') whole=25 ;;
+      palpate_*) whole=14 ;;
+      *) whole=3 ;;
+    esac
     say "building preset $preset, about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time"
   fi
   if ! NINJA_STATUS='[%f/%t] ' told "building preset $preset" "$log" ninja -C "$root/build/$preset" "$@"; then

@@ -1,43 +1,64 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What reviewers would otherwise have to look for: arrows between folders, headers that stand alone, clang-format. Of the
-# last two only what changed since the commit before is looked at, and what is not committed; with --all every header.
-# Ends with status 1 and a line a fault.
+# What reviewers would otherwise have to look for: arrows between folders, headers that stand alone, clang-format and
+# clang-tidy. Of the last three only what changed since the commit before is looked at, and what is not committed;
+# clang-tidy takes seconds for a file, so it reads the first ten of them, without its analyzer. With --all everything is
+# looked at, with the analyzer, which takes the better part of an hour. Ends with status 1 and a line a fault.
 #   sh tests/habits.sh [--all]
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/.."
-faults=$(mktemp)
-trap 'rm -f "$faults"' EXIT
+found=$(mktemp -d)
+trap 'rm -rf "$found"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
 folders="children config plugin scene gp experiment record sweep launch analysis report cli"
 for file in $(git ls-files 'framework/core/*.[ch]pp' 'framework/lab/*.[ch]pp' 'framework/desk/*.[ch]pp' 'framework/cli/*.[ch]pp'); do
-  sed -n "s|^#include \"\([a-z_]*\)/.*|$file \1|p" "$file"
+  [ ! -f "$file" ] || sed -n "s|^#include \"\([a-z_]*\)/.*|$file \1|p" "$file"
 done | awk -v folders="$folders" '
   BEGIN { n = split(folders, names, " "); for (i = 1; i <= n; ++i) rank[names[i]] = i }
   { split($1, path, "/"); from = path[2] == "cli" ? "cli" : path[3]
     if (!($2 in rank)) print $1 ": includes " $2 "/, which is no folder of the framework"
-    else if (rank[$2] > rank[from]) print $1 ": " from " knows nothing of " $2 ", which stands below it" }' >>"$faults"
+    else if (rank[$2] > rank[from]) print $1 ": " from " knows nothing of " $2 ", which stands below it" }' >"$found/arrows"
 # Plugins see what their authors see, and each other's folders.
 git grep -nE '^#include "(config|plugin|scene|gp|experiment|record|sweep|launch|analysis|report|cli)/' -- plugins |
-  sed 's|:.*"\(.*\)"|: a plugin includes \1, which is not for plugins|' >>"$faults" || true
+  sed 's|:.*"\(.*\)"|: a plugin includes \1, which is not for plugins|' >"$found/plugins" || true
 
-changed=$( (git diff --name-only --diff-filter=d HEAD~1 2>/dev/null || true; git ls-files --others --exclude-standard) |
-  grep -E '^(framework|plugins|tests)/.*\.[ch]pp$' | sort -u || true)
+if [ "${1:-}" = --all ]; then
+  changed=$(git ls-files framework plugins tests)
+  most=100000 analyzer=
+else
+  changed=$(git diff --name-only --diff-filter=d HEAD~1 2>/dev/null || true; git ls-files --others --exclude-standard)
+  most=10 analyzer=-clang-analyzer-*
+fi
+changed=$(echo "$changed" | grep -E '^(framework|plugins|tests)/.*\.[ch]pp$' | sort -u || true)
 
-if [ -n "$changed" ] && clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
+# of14 TOOL: whether the tool is there, in the version whose word counts.
+of14() {
+  "$1" --version 2>/dev/null | grep -q 'version 14\.' || { echo "habits: skipped: $1, which has to be version 14" >&2; return 1; }
+}
+if [ -n "$changed" ] && of14 clang-format; then
   for file in $changed; do
     clang-format --dry-run -Werror "$file" 2>/dev/null || echo "$file: is not as clang-format -i would have it"
-  done >>"$faults"
-elif [ -n "$changed" ]; then
-  echo "habits: skipped: clang-format, which has to be version 14" >&2
+  done >"$found/format"
 fi
 
-[ "${1:-}" != --all ] || changed=$(git ls-files 'framework/*.hpp')
-includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework/shared -Iframework -Iframework/include -Iplugins -Iplugins/backends
-  -Itests -isystem /usr/include/eigen3"
-echo "$changed" | grep '^framework/.*\.hpp$' | xargs -r -P "$(nproc)" -I FILE sh -c "g++ -std=c++17 -fsyntax-only $(echo $includes) -x c++ FILE >/dev/null 2>&1 ||
-  echo 'FILE: does not stand alone: it lacks an include'" >>"$faults"
+# each FILES COMMAND: runs the command, which names FILE, for each of them, as many at once as there are cores, and keeps
+# what it says.
+each() { echo "$1" | xargs -r -P "$(nproc)" -I FILE sh -c "{ $2; } >\$(mktemp $found/each.XXXXXX) 2>/dev/null || true"; }
 
-sort -u "$faults" >&2
-[ ! -s "$faults" ]
+includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3"
+each "$(echo "$changed" | grep '^framework/.*\.hpp$')" \
+  "g++ -std=c++17 -fsyntax-only $includes -x c++ FILE || echo 'FILE: does not stand alone: it lacks an include'"
+
+# What ROS generates is there only where it was built.
+sources=$(echo "$changed" | grep '\.cpp$' | grep -vE '/(baxter|fake_baxter|fuzz|bad_plugins)/' || true)
+if [ -n "$sources" ] && of14 clang-tidy; then
+  cmake --preset habits >/dev/null
+  [ "$(echo "$sources" | wc -l)" -le "$most" ] ||
+    echo "habits: clang-tidy reads $most of $(echo "$sources" | wc -l) changed files, the rest with --all" >&2
+  each "$(echo "$sources" | head -n "$most")" \
+    "clang-tidy --quiet --checks='$analyzer' -p build/habits FILE | grep -E '(error|warning):' | sed 's|^$PWD/||'"
+fi
+
+cat "$found"/* | sort -u >&2
+[ -z "$(cat "$found"/*)" ]

@@ -11,16 +11,24 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <thread>
 #include <utility>
 
 namespace palpate::cli {
 namespace {
+
+/// Indices of those that are to run, as far as they are missing.
+std::vector<std::size_t> jobs_of(const Campaign& campaign) {
+  std::vector<std::size_t> jobs = campaign.only;
+  if (jobs.empty()) {
+    jobs.resize(campaign.sweep.jobs.size());
+    std::iota(jobs.begin(), jobs.end(), std::size_t{0});
+  }
+  return jobs;
+}
 
 /// Whether no job of the sweep is missing: then its results are complete.
 bool has_ended(const Sweep& sweep) {
@@ -117,17 +125,18 @@ int workers_of(const Campaign& campaign) {
   return campaign.launch.workers.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
 }
 
-void check_builds(const Program& program, const Campaign& campaign) {
-  for (std::size_t job = 0; job < campaign.sweep.jobs.size(); ++job) {
+void check_builds(const Program& program, Campaign& campaign, bool done_too) {
+  for (const std::size_t job : jobs_of(campaign)) {
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
-    std::error_code none;
-    if (!std::filesystem::exists(directory / "manifest.json", none)) continue;
+    if (!done_too && read_ending(directory).state == RunStatus::State::done) continue;
     bool elsewhere = false;
     try {
-      elsewhere = is_of_another_build(program.workshop, campaign.config_of(job), directory);
+      const ResolvedConfig config = campaign.config_of(job);
+      campaign.one_at_a_time = campaign.one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
+      elsewhere = is_of_another_build(program.workshop, config, directory);
     } catch (const Error&) {  // damaged: the job will say so, and costs itself alone
     }
-    if (elsewhere) check_build(program.workshop, campaign.config_of(job), directory);
+    if (elsewhere && !campaign.options.force) check_build(program.workshop, campaign.config_of(job), directory);
   }
 }
 
@@ -137,11 +146,7 @@ int run_campaign(Program& program, const Campaign& campaign) {
   check_locks(sweep.directory);
   listen_for_interrupts();
   const bool whole = campaign.only.empty();
-  std::vector<std::size_t> jobs = campaign.only;
-  if (whole) {
-    jobs.resize(sweep.jobs.size());
-    std::iota(jobs.begin(), jobs.end(), std::size_t{0});
-  }
+  const std::vector<std::size_t> jobs = jobs_of(campaign);
   const Missing missing = find_missing(sweep, jobs, campaign.options.retry_failed, launch.attempts);
   if (campaign.one_at_a_time && missing.jobs.size() > 1 && !launch.quiet) {
     mention("one job at a time: the backend has but one thing to move\n");
@@ -156,35 +161,6 @@ int run_campaign(Program& program, const Campaign& campaign) {
   SweepReport report = report_on(sweep, jobs);
   report.interrupted = program.workshop.interrupted->load();
   return whole ? conclude_whole(campaign, report) : conclude_part(sweep, report);
-}
-
-std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
-  const auto refuse = [&] {
-    return Error("command line", fmt::format("--jobs: '{}' is not understood", text),
-                 fmt::format("write 0-7,12, from 0 to {}", count - 1));
-  };
-  std::set<std::size_t> jobs;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const auto number = [&] {
-    std::size_t out = 0;
-    const auto read = std::from_chars(at, end, out);
-    if (read.ec != std::errc() || out >= count) throw refuse();
-    at = read.ptr;
-    return out;
-  };
-  for (;;) {
-    const std::size_t first = number();
-    std::size_t last = first;
-    if (at < end && *at == '-') {
-      ++at;
-      last = number();
-    }
-    if (last < first) throw refuse();
-    for (std::size_t job = first; job <= last; ++job) jobs.insert(job);
-    if (at == end) return {jobs.begin(), jobs.end()};
-    if (*at++ != ',') throw refuse();
-  }
 }
 
 }  // namespace palpate::cli

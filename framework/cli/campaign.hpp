@@ -25,8 +25,9 @@ struct Campaign {
 /// Jobs at a time on this machine or, on a cluster, in a task: one where only one can be.
 int workers_of(const Campaign& campaign);
 
-/// Throws Error if a job of the sweep was begun by another build: by its first tap, for none of them.
-void check_builds(const Program& program, const Campaign& campaign);
+/// Throws Error if a job that is to run, or with `done_too` one that is done, was begun by another build, unless that
+/// is forced: before the first job runs. Notes whether only one may run at a time.
+void check_builds(const Program& program, Campaign& campaign, bool done_too);
 
 /// conduct(), with a line of progress.
 void conduct_shown(const Program& program, const Campaign& campaign, Launcher& launcher, const Missing& missing);
@@ -37,8 +38,5 @@ bool run_on_slurm(const Program& program, const Campaign& campaign, const Missin
 
 /// Runs what is missing, prints the result and judges it. Returns the exit status.
 int run_campaign(Program& program, const Campaign& campaign);
-
-/// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
-std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count);
 
 }  // namespace palpate::cli

@@ -2,10 +2,13 @@
 #include "analysis/compare_report.hpp"
 #include "analysis/means_table.hpp"
 #include "cli/commands.hpp"
-#include "cli/earlier.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/sweep_display.hpp"
 #include "config/hash.hpp"
+#include "launch/children.hpp"
 #include "record/files.hpp"
 #include "record/resolved.hpp"
+#include "sweep/earlier_results.hpp"
 
 #include <palpate/error.hpp>
 
@@ -14,6 +17,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <thread>
 
 namespace palpate::cli {
 namespace {
@@ -34,6 +38,33 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
   if (comparison.after_taps) name += fmt::format("_at_{}", *comparison.after_taps);
   if (!where.empty()) name += "_where_" + hash_of(where).substr(0, kDigits);
   return sweep.directory / (name + ".csv");
+}
+
+/// For each of `taps` the rows of results.csv as they would be, had all jobs stopped there. What is missing is computed
+/// by `workers` processes, or as many as there are cores, with a line of progress on stderr. None if that was
+/// interrupted: what is done then is kept. Throws Error.
+std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, const Sweep& sweep,
+                                                        const std::vector<int>& taps, std::optional<int> workers) {
+  const EarlierResults earlier(sweep, taps);
+  const std::vector<std::size_t>& missing = earlier.missing();
+  const int together = workers.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  SweepLine line(false);
+  SweepProgress progress;
+  progress.jobs = static_cast<int>(missing.size());
+  const auto show = [&](std::size_t done) {
+    progress.done = static_cast<int>(done);
+    progress.running = std::min(together, progress.jobs - progress.done);
+    progress.last = done == missing.size();
+    line.show(progress);
+  };
+  listen_for_interrupts();
+  const bool all = in_children(
+      missing.size(), together, [&](std::size_t i) { earlier.compute(program.workshop, missing[i]); },
+      program.workshop.interrupted, show);
+  if (!all) return std::nullopt;
+  std::vector<std::vector<Row>> out;
+  for (const int count : taps) out.push_back(earlier.write(count));
+  return out;
 }
 
 /// All that is asked, of the jobs as they ended or as they were after so many taps; none if it was interrupted. Made as

@@ -10,6 +10,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <csignal>
@@ -20,7 +21,24 @@
 namespace palpate::cli {
 namespace {
 
-struct Arguments {
+/// What a command takes; see needs.hpp.
+using Need = std::function<void(Program&, Needs&)>;
+
+/// What to do once the command line is understood.
+struct Action {
+  std::function<int(Program&)> perform;
+  Need need;
+};
+
+/// What `need` adds for a word of the command line.
+Need with(void (*need)(Program&, const std::string&, Needs&), const std::string& word) {
+  return [need, &word](Program& program, Needs& needs) { need(program, word, needs); };
+}
+
+/// The commands with what they are called with.
+struct CommandLine {
+  CLI::App& app;
+  Action action;  ///< of the command that was named
   RunArguments run;
   SweepArguments sweep;
   ResumeArguments resume;
@@ -28,46 +46,51 @@ struct Arguments {
   CompareArguments compare;
   ReportArguments report;
   ExportArguments exported;
-  std::string directory;
-  int tap = 0;
+  std::string directory;  ///< of a command that has no arguments of its own
   std::vector<std::string> configs;
   std::string plugin;
   bool json = false;
-};
+  int tap = 0;
 
-/// What to do once the command line is understood.
-struct Action {
-  std::function<int(Program&)> perform;
-  std::function<void(Program&, Needs&)> need;  ///< what that takes; see needs.hpp
-};
+  explicit CommandLine(CLI::App& commands) : app(commands) {}
 
-void does(CLI::App* sub, Action& action, std::function<int(Program&)> perform,
-          std::function<void(Program&, Needs&)> need) {
-  sub->callback([&action, its = Action{std::move(perform), std::move(need)}] { action = its; });
-}
+  /// The arguments are read when the command is performed.
+  template <class... Parameters, class... Arguments>
+  CLI::App* add(const char* name, const char* help, Need need, int (*perform)(Program&, Parameters...),
+                const Arguments&... arguments) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    sub->callback([=, &arguments..., need = std::move(need)] {
+      action = {[perform, &arguments...](Program& program) { return perform(program, arguments...); }, need};
+    });
+    return sub;
+  }
+};
 
 constexpr const char* kStepHelp =
     "of a robot: show place, way and force limits of every tap before it is made; Enter taps, q ends, "
     "'palpate resume' carries on";
+constexpr const char* kRunsHelp = "where run directories are made";
+constexpr const char* kJunitHelp = "write what held and what failed as JUnit XML to this file";
+constexpr int kMany = 1000000;
 
-void add_run(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("run", "Run one experiment");
-  sub->add_option("CONFIG", a.run.config, "the experiment, a YAML file")->required();
-  sub->add_option("OVERRIDE", a.run.overrides,
+void add_run(CommandLine& line) {
+  CLI::App* sub = line.add(
+      "run", "Run one experiment",
+      [&line](Program& program, Needs& needs) { need_run(program, line.run.config, line.run.overrides, needs); }, run,
+      line.run);
+  sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->required();
+  sub->add_option("OVERRIDE", line.run.overrides,
                   "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
       ->type_name("KEY=VALUE");
-  sub->add_option("--runs", a.run.runs, "where run directories are made")->capture_default_str();
-  sub->add_flag("--json", a.run.json, "print summary.json and nothing else");
-  CLI::Option* quiet = sub->add_flag("--quiet", a.run.quiet, "print nothing");
-  sub->add_flag("--dry-run", a.run.dry_run, "say what would be run and where; move nothing");
-  sub->add_flag("--force", a.run.force, "move an earlier run of this id aside and run again");
-  sub->add_flag("--step", a.run.step, kStepHelp)->excludes(quiet);
-  CLI::Option* print = sub->add_flag("--print-config", a.run.print_config, "print the resolved config and stop");
-  sub->add_flag("--origins", a.run.origins, "with it, where each value came from")->needs(print);
-  sub->add_option("--junit", a.run.junit, "write what held and what failed as JUnit XML to this file");
-  does(
-      sub, action, [&](Program& program) { return run(program, a.run); },
-      [&](Program& program, Needs& needs) { need_run(program, a.run.config, a.run.overrides, needs); });
+  sub->add_option("--runs", line.run.runs, kRunsHelp)->capture_default_str();
+  sub->add_flag("--json", line.run.json, "print summary.json and nothing else");
+  CLI::Option* quiet = sub->add_flag("--quiet", line.run.quiet, "print nothing");
+  sub->add_flag("--dry-run", line.run.dry_run, "say what would be run and where; move nothing");
+  sub->add_flag("--force", line.run.force, "move an earlier run of this id aside and run again");
+  sub->add_flag("--step", line.run.step, kStepHelp)->excludes(quiet);
+  CLI::Option* print = sub->add_flag("--print-config", line.run.print_config, "print the resolved config and stop");
+  sub->add_flag("--origins", line.run.origins, "with it, where each value came from")->needs(print);
+  sub->add_option("--junit", line.run.junit, kJunitHelp);
 }
 
 /// What `sweep` and `resume` say alike.
@@ -76,12 +99,12 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
                   "jobs of a sweep at a time; if not given, the number of cores, in a task of Slurm 1")
       ->check(CLI::Range(1, 1024));
   sub->add_option("--attempts", launch.attempts, "how often a job may be begun before it stays failed")
-      ->check(CLI::Range(1, 1000000))
+      ->check(CLI::Range(1, kMany))
       ->capture_default_str();
   sub->add_flag("--quiet", launch.quiet, "show no progress");
-  sub->add_option("--junit", launch.junit, "write what held and what failed as JUnit XML to this file");
+  sub->add_option("--junit", launch.junit, kJunitHelp);
   sub->add_option("--launcher", launch.launcher, "who runs the jobs: this machine, or a cluster under Slurm")
-      ->check(CLI::IsMember({"local", "slurm"}))
+      ->check(CLI::IsMember({"local", kSlurm}))
       ->capture_default_str();
   const char* group = "With --launcher slurm";
   sub->add_option("--partition", launch.partition, "of the cluster; its default one if not given")->group(group);
@@ -91,131 +114,117 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
       ->allow_extra_args(false)
       ->group(group);
   sub->add_option("--jobs-per-task", launch.jobs_per_task, "jobs that a task runs, -j at a time; 1 if not given")
-      ->check(CLI::Range(1, 1000000))
+      ->check(CLI::Range(1, kMany))
       ->group(group);
   sub->add_flag("--wait", launch.wait, "stay until all have ended; Ctrl-C cancels them")->group(group);
 }
 
-void add_sweep(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("sweep", "Run many experiments: every combination of some values");
-  sub->add_option("CONFIG", a.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
-  sub->add_option("AXIS", a.sweep.axes,
+void add_sweep(CommandLine& line) {
+  CLI::App* sub =
+      line.add("sweep", "Run many experiments: every combination of some values", need_everything, sweep, line.sweep);
+  sub->add_option("CONFIG", line.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
+  sub->add_option("AXIS", line.sweep.axes,
                   "what to vary: seed=range(0,10), acquisition=weighted,random, "
                   "kernel.length_scale=log(1cm,5cm,8)")
       ->type_name("KEY=VALUES");
-  sub->add_option("--runs", a.sweep.runs, "where run directories are made")->capture_default_str();
-  sub->add_flag("--list", a.sweep.list, "list the jobs and stop");
-  add_launch(sub, a.sweep.launch);
-  does(
-      sub, action, [&](Program& program) { return sweep(program, a.sweep); }, need_everything);
+  sub->add_option("--runs", line.sweep.runs, kRunsHelp)->capture_default_str();
+  sub->add_flag("--list", line.sweep.list, "list the jobs and stop");
+  add_launch(sub, line.sweep.launch);
 }
 
-void add_resume(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("resume", "Carry on a broken run or sweep");
-  sub->add_option("DIR", a.resume.directory, "its directory")->required();
-  sub->add_flag("--retry-failed", a.resume.retry_failed, "carry on what failed, too");
-  sub->add_flag("--force", a.resume.force, "carry on what another build began");
-  sub->add_option("--jobs", a.resume.jobs,
+void add_resume(CommandLine& line) {
+  CLI::App* sub = line.add("resume", "Carry on a broken run or sweep", with(need_record, line.resume.directory), resume,
+                           line.resume);
+  sub->add_option("DIR", line.resume.directory, "its directory")->required();
+  sub->add_flag("--retry-failed", line.resume.retry_failed, "carry on what failed, too");
+  sub->add_flag("--force", line.resume.force, "carry on what another build began");
+  sub->add_option("--jobs", line.resume.jobs,
                   "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
-  add_launch(sub, a.resume.launch);
-  sub->add_flag("--step", a.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
-  does(
-      sub, action, [&](Program& program) { return resume(program, a.resume); },
-      [&](Program& program, Needs& needs) { need_record(program, a.resume.directory, needs); });
+  add_launch(sub, line.resume.launch);
+  sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
 }
 
-void add_rest(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("status", "Where a run or a sweep stands");
-  sub->add_option("DIR", a.directory, "its directory")->required();
-  does(
-      sub, action, [&](Program& program) { return status(program, a.directory); },
-      [&](Program&, Needs& needs) { needs.whole = is_sweep(a.directory); });
+void add_rest(CommandLine& line) {
+  CLI::App* sub = line.add(
+      "status", "Where a run or a sweep stands",
+      [&line](Program&, Needs& needs) { needs.whole = is_sweep(line.directory); }, status, line.directory);
+  sub->add_option("DIR", line.directory, "its directory")->required();
 
-  sub = app.add_subcommand("replay", "Send recorded taps through the same models and compare every number");
-  sub->add_option("DIR", a.directory, "the run's directory")->required();
-  does(
-      sub, action, [&](Program& program) { return replay(program, a.directory); },
-      [&](Program& program, Needs& needs) { need_record(program, a.directory, needs); });
+  sub = line.add("replay", "Send recorded taps through the same models and compare every number",
+                 with(need_record, line.directory), replay, line.directory);
+  sub->add_option("DIR", line.directory, "the run's directory")->required();
 
-  sub = app.add_subcommand("validate", "Check configs, run nothing");
-  sub->add_option("CONFIG", a.configs, "YAML files")->required();
-  does(
-      sub, action, [&](Program& program) { return validate(program, a.configs); },
-      [&](Program& program, Needs& needs) { need_configs(program, a.configs, needs); });
+  sub = line.add(
+      "validate", "Check configs, run nothing",
+      [&line](Program& program, Needs& needs) { need_configs(program, line.configs, needs); }, validate, line.configs);
+  sub->add_option("CONFIG", line.configs, "YAML files")->required();
 
-  sub = app.add_subcommand("plugins", "List plugins, or the options of one");
-  sub->add_option("PLUGIN", a.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
-  sub->add_flag("--json", a.json, "as JSON");
-  does(
-      sub, action, [&](Program& program) { return plugins(program, a.plugin, a.json); },
-      [&](Program& program, Needs& needs) { need_listing(program, a.plugin, needs); });
+  sub = line.add("plugins", "List plugins, or the options of one", with(need_listing, line.plugin), plugins,
+                 line.plugin, line.json);
+  sub->add_option("PLUGIN", line.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
+  sub->add_flag("--json", line.json, "as JSON");
 
-  sub = app.add_subcommand("pareto", "What accuracy costs: the settings of a sweep that none beats in both");
-  sub->add_option("DIR", a.pareto.directory, "the sweep's directory")->required();
-  sub->add_option("--cost", a.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")->required();
-  sub->add_option("--error", a.pareto.error, "another, an error: footprint_iou")->required();
-  sub->add_option("--within", a.pareto.within,
+  sub = line.add(
+      "pareto", "What accuracy costs: the settings of a sweep that none beats in both",
+      [](Program&, Needs& needs) { needs.whole = true; }, pareto, line.pareto);
+  sub->add_option("DIR", line.pareto.directory, "the sweep's directory")->required();
+  sub->add_option("--cost", line.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")
+      ->required();
+  sub->add_option("--error", line.pareto.error, "another, an error: footprint_iou")->required();
+  sub->add_option("--within", line.pareto.within,
                   "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm");
-  does(
-      sub, action, [&](Program& program) { return pareto(program, a.pareto); },
-      [](Program&, Needs& needs) { needs.whole = true; });
 
-  sub = app.add_subcommand("schema", "Print the JSON Schema of config files, for editors");
-  does(
-      sub, action, [&](Program& program) { return schema(program); },
-      [](Program&, Needs& needs) { needs.every_plugin = true; });
+  line.add(
+      "schema", "Print the JSON Schema of config files, for editors",
+      [](Program&, Needs& needs) { needs.every_plugin = true; }, schema);
 }
 
-void add_compare(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("compare", "Groups of a sweep's jobs, with intervals and paired tests");
-  sub->add_option("DIR", a.compare.directory, "the sweep's directory")->required();
-  const auto list = [&](const char* name, std::vector<std::string>& values, const char* help) {
-    sub->add_option(name, values, help)->required()->delimiter(',')->allow_extra_args(false);
+void add_compare(CommandLine& line) {
+  CLI::App* sub = line.add(
+      "compare", "Groups of a sweep's jobs, with intervals and paired tests",
+      [&line](Program&, Needs& needs) {
+        needs.whole = true;
+        needs.every_plugin = !line.compare.at.empty();
+      },
+      compare, line.compare);
+  sub->add_option("DIR", line.compare.directory, "the sweep's directory")->required();
+  const auto list = [&](const char* name, auto& values, const char* help) {
+    return sub->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
   };
-  list("--by", a.compare.by, "the swept keys that make the groups: acquisition or acquisition,kernel");
-  list("--metric", a.compare.metrics, "the columns of results.csv to compare: on_surface_taps,footprint_iou");
-  sub->add_option("--where", a.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
+  list("--by", line.compare.by, "the swept keys that make the groups: acquisition or acquisition,kernel")->required();
+  list("--metric", line.compare.metrics, "the columns of results.csv to compare: on_surface_taps,footprint_iou")
+      ->required();
+  sub->add_option("--where", line.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
   CLI::Option* baseline =
-      sub->add_option("--baseline", a.compare.baseline, "compare all groups with this one only: uncertainty");
-  CLI::Option* at =
-      sub->add_option(
-             "--at", a.compare.at,
-             "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, and kept")
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->check(CLI::Range(1, 1000000));
-  CLI::Option* ratio = sub->add_flag("--ratio", a.compare.ratio, "of every pair also the ratio of the means");
-  sub->add_flag("--table", a.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
+      sub->add_option("--baseline", line.compare.baseline, "compare all groups with this one only: uncertainty");
+  CLI::Option* at = list("--at", line.compare.at,
+                         "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, "
+                         "and kept")
+                        ->check(CLI::Range(1, kMany));
+  CLI::Option* ratio = sub->add_flag("--ratio", line.compare.ratio, "of every pair also the ratio of the means");
+  sub->add_flag("--table", line.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
       ->excludes(baseline)
       ->excludes(ratio);
-  sub->add_option("-j", a.compare.workers, "with --at, jobs at a time; if not given, the number of cores")
+  sub->add_option("-j", line.compare.workers, "with --at, jobs at a time; if not given, the number of cores")
       ->check(CLI::Range(1, 1024))
       ->needs(at);
-  does(
-      sub, action, [&](Program& program) { return compare(program, a.compare); },
-      [&](Program&, Needs& needs) { needs.whole = true, needs.every_plugin = !a.compare.at.empty(); });
 }
 
-void add_report(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("report", "A run or a sweep as one HTML page, and as pictures");
-  sub->add_option("DIR", a.report.directory, "its directory")->required();
-  sub->add_flag("--figures", a.report.figures, "PNG of the same panels, too, by gnuplot");
-  sub->add_flag("--paper", a.report.paper, "laid out as the figures of the paper");
-  does(
-      sub, action, [&](Program& program) { return report(program, a.report); },
-      [&](Program& program, Needs& needs) { need_whole(program, a.report.directory, needs); });
-}
+void add_about_one(CommandLine& line) {
+  CLI::App* sub = line.add("report", "A run or a sweep as one HTML page, and as pictures",
+                           with(need_whole, line.report.directory), report, line.report);
+  sub->add_option("DIR", line.report.directory, "its directory")->required();
+  sub->add_flag("--figures", line.report.figures, "PNG of the same panels, too, by gnuplot");
+  sub->add_flag("--paper", line.report.paper, "laid out as the figures of the paper");
 
-void add_one_run(CLI::App& app, Arguments& a, Action& action) {
-  CLI::App* sub = app.add_subcommand("explain", "Why a run made a tap where it made it, in words");
-  sub->add_option("RUN", a.directory, "the run's directory")->required();
-  sub->add_option("TAP", a.tap, "the number of the tap, from 1")->required();
-  does(
-      sub, action, [&](Program& program) { return explain(program, a.directory, a.tap); },
-      [&](Program& program, Needs& needs) { need_whole(program, a.directory, needs); });
+  sub = line.add("explain", "Why a run made a tap where it made it, in words", with(need_whole, line.directory),
+                 explain, line.directory, line.tap);
+  sub->add_option("RUN", line.directory, "the run's directory")->required();
+  sub->add_option("TAP", line.tap, "the number of the tap, from 1")->required();
 
-  sub = app.add_subcommand("export", "Write the surface and the taps of a run for other programs");
-  sub->add_option("RUN", a.exported.directory, "the run's directory")->required();
+  sub = line.add("export", "Write the surface and the taps of a run for other programs",
+                 with(need_whole, line.exported.directory), export_run, line.exported);
+  sub->add_option("RUN", line.exported.directory, "the run's directory")->required();
   sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
       ->check(CLI::Validator(
           [](const std::string& format) -> std::string {
@@ -224,18 +233,28 @@ void add_one_run(CLI::App& app, Arguments& a, Action& action) {
                                    : fmt::format("{} is not known, write ply", format);
           },
           "ply"));
-  sub->add_option("--to", a.exported.to, "the folder to write into; if not given, export/ of the run");
-  does(
-      sub, action, [&](Program& program) { return export_run(program, a.exported); },
-      [&](Program& program, Needs& needs) { need_whole(program, a.exported.directory, needs); });
+  sub->add_option("--to", line.exported.to, "the folder to write into; if not given, export/ of the run");
 }
 
-/// CLI11's own words, on one line, but of a command that there is not.
+/// CLI11's own words, on one line, but of a command that there is not, and of many directories where one belongs, which
+/// is what a shell makes of a *.
 int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::string& first) {
   if (app.get_subcommands().empty() && !first.empty() && first.front() != '-') {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
     throw Error("", fmt::format("no command '{}'", first), suggestion(first, names));
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    std::vector<std::string> takes;
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->get_positional()) takes.push_back("one " + option->get_name());
+    }
+    const std::vector<std::string> rest = command->remaining();
+    if (takes.empty() || rest.empty() || rest.front()[0] == '-') continue;
+    throw Error("command line",
+                fmt::format("{} takes {}, and '{}' stands beside it", command->get_name(), fmt::join(takes, " and "),
+                            rest.front()),
+                "where a * stands for several, name one of them");
   }
   throw Error("", trouble.what(), "see palpate --help");
 }
@@ -262,15 +281,8 @@ int run_main(int argc, char** argv) {
   // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
-  Arguments arguments;
-  Action action;
-  add_run(app, arguments, action);
-  add_sweep(app, arguments, action);
-  add_resume(app, arguments, action);
-  add_rest(app, arguments, action);
-  add_compare(app, arguments, action);
-  add_report(app, arguments, action);
-  add_one_run(app, arguments, action);
+  CommandLine line(app);
+  for (const auto add : {add_run, add_sweep, add_resume, add_rest, add_compare, add_about_one}) add(line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {
@@ -279,7 +291,7 @@ int run_main(int argc, char** argv) {
     return usage_error(app, trouble, argc > 1 ? argv[1] : "");
   }
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
-  return perform(action, asked, argc, argv);
+  return perform(line.action, asked, argc, argv);
 }
 
 int exit_status(Error::Kind kind) {

@@ -19,11 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string title_of(const std::string& name, const Pareto& pareto) {
-  int least = pareto.settings.front().jobs;
+  int least = pareto.settings.front().counts.jobs;
   int most = least;
   for (const Setting& one : pareto.settings) {
-    least = std::min(least, one.jobs);
-    most = std::max(most, one.jobs);
+    least = std::min(least, one.counts.jobs);
+    most = std::max(most, one.counts.jobs);
   }
   const std::string seeds = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
   return fmt::format("{}: {} settings, {} seed{} each; bars: 95 % intervals of the means", name, pareto.settings.size(),
@@ -56,11 +56,11 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
   const char* const kept =
-      pareto.error.more_is_better ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
+      pareto.more_is_better() ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
   fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
              fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
   fmt::print("# {}; {}; {} seeds, of which this is the first.\n{}", error_words(pareto, chosen),
-             cost_words(pareto, chosen), chosen.jobs, to_yaml(config));
+             cost_words(pareto, chosen), chosen.counts.jobs, to_yaml(config));
 }
 
 }  // namespace

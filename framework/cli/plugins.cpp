@@ -12,19 +12,17 @@
 namespace palpate::cli {
 namespace {
 
-Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
-
 std::vector<FieldDescription> options_of(const PluginHost& host, const PluginListing& row) {
   return describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); });
 }
 
 Tree row_tree(const PluginHost& host, const PluginListing& row) {
   Tree out = Tree::map();
-  out.at("kind") = quoted(row.kind);
-  out.at("name") = quoted(row.name);
-  out.at("summary") = quoted(row.summary);
-  out.at("file") = quoted(row.file.string());
-  out.at("trouble") = row.trouble.empty() ? Tree{} : quoted(row.trouble);
+  out.at("kind") = Tree::quote(row.kind);
+  out.at("name") = Tree::quote(row.name);
+  out.at("summary") = Tree::quote(row.summary);
+  out.at("file") = Tree::quote(row.file.string());
+  out.at("trouble") = row.trouble.empty() ? Tree{} : Tree::quote(row.trouble);
   out.at("options") = row.trouble.empty() ? describe_tree(options_of(host, row)) : Tree::list();
   return out;
 }

@@ -5,25 +5,39 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/split.hpp>
+
+#include <charconv>
+#include <set>
+
 namespace palpate::cli {
 namespace {
 
-/// Every job that will run is checked before the first does: it may have been begun by another build.
-void check_jobs(const Program& program, Campaign& campaign) {
-  const std::vector<std::size_t>& only = campaign.only;
-  for (std::size_t i = 0; i < (only.empty() ? campaign.sweep.jobs.size() : only.size()); ++i) {
-    const std::size_t job = only.empty() ? i : only[i];
-    const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
-    if (read_ending(directory).state == RunStatus::State::done) continue;
-    bool elsewhere = false;
-    try {
-      const ResolvedConfig config = campaign.config_of(job);
-      campaign.one_at_a_time = campaign.one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
-      elsewhere = is_of_another_build(program.workshop, config, directory);
-    } catch (const Error&) {  // damaged: the job will say so, and costs itself alone
-    }
-    if (elsewhere && !campaign.options.force) check_build(program.workshop, campaign.config_of(job), directory);
+/// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
+std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
+  const auto refuse = [&] {
+    return Error("command line", fmt::format("--jobs: '{}' is not understood", text),
+                 fmt::format("write 0-7,12, from 0 to {}", count - 1));
+  };
+  const auto number = [&](const std::string& word) {
+    const char* const end = word.data() + word.size();
+    std::size_t out = 0;
+    const auto read = std::from_chars(word.data(), end, out);
+    if (read.ec != std::errc() || read.ptr != end || out >= count) throw refuse();
+    return out;
+  };
+  std::set<std::size_t> jobs;
+  std::vector<std::string> parts;
+  for (const std::string& part : boost::split(parts, text, boost::is_any_of(","))) {
+    const auto dash = part.find('-');
+    const std::size_t first = number(part.substr(0, dash));
+    const std::size_t last = dash == std::string::npos ? first : number(part.substr(dash + 1));
+    if (last < first) throw refuse();
+    for (std::size_t job = first; job <= last; ++job) jobs.insert(job);
   }
+  return {jobs.begin(), jobs.end()};
 }
 
 }  // namespace
@@ -46,7 +60,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
     throw Error("command line", "--jobs and --junit do not go together: what is expected is judged of the whole sweep",
                 "leave one of them out");
   }
-  check_jobs(program, campaign);
+  check_builds(program, campaign, false);
   return run_campaign(program, campaign);
 }
 

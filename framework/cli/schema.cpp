@@ -11,8 +11,6 @@
 namespace palpate::cli {
 namespace {
 
-Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
-
 /// The plugins of a kind that can be used, with their options; `palpate plugins` tells what is wrong with the others.
 std::vector<FieldDescription::CaseDescription> plugins_of(const PluginHost& host, const std::string& kind) {
   std::vector<FieldDescription::CaseDescription> out;
@@ -29,14 +27,14 @@ std::vector<FieldDescription::CaseDescription> plugins_of(const PluginHost& host
 Tree kind_schema(const PluginHost& host, const std::string& kind) {
   Tree any = Tree::list();
   Tree name = Tree::map();
-  name.at("type") = quoted("string");
-  name.at("description") = quoted("the name of a group file or of a plugin");
+  name.at("type") = Tree::quote("string");
+  name.at("description") = Tree::quote("the name of a group file or of a plugin");
   any.items.push_back(std::move(name));
   for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
     Tree plugin = schema_of(one.fields);
-    plugin.at("title") = quoted(kind + "/" + one.name);
-    plugin.at("description") = quoted(one.meaning);
-    plugin.at("properties").at("type").at("const") = quoted(one.name);
+    plugin.at("title") = Tree::quote(kind + "/" + one.name);
+    plugin.at("description") = Tree::quote(one.meaning);
+    plugin.at("properties").at("type").at("const") = Tree::quote(one.name);
     any.items.push_back(std::move(plugin));
   }
   Tree out = Tree::map();
@@ -55,12 +53,12 @@ void expect_schema(Tree& expect) {
   Tree either = Tree::list();
   for (const char* type : {"string", "boolean", "array"}) {
     Tree one = Tree::map();
-    one.at("type") = quoted(type);
+    one.at("type") = Tree::quote(type);
     either.items.push_back(std::move(one));
   }
   Tree group = Tree::map();
-  group.at("type") = quoted("string");
-  expect.at("type") = quoted("object");
+  group.at("type") = Tree::quote("string");
+  expect.at("type") = Tree::quote("object");
   expect.at("patternProperties").at(keys).at("anyOf") = std::move(either);
   expect.at("additionalProperties") = Tree::scalar("false");
   Tree any = Tree::list();
@@ -71,42 +69,42 @@ void expect_schema(Tree& expect) {
 
 Tree of_type(const char* type, const char* description) {
   Tree out = Tree::map();
-  out.at("description") = quoted(description);
-  out.at("type") = quoted(type);
+  out.at("description") = Tree::quote(description);
+  out.at("type") = Tree::quote(type);
   return out;
 }
 
 /// `defaults:`: groups with their names.
 void defaults_schema(Tree& defaults) {
-  defaults.at("type") = quoted("array");
+  defaults.at("type") = Tree::quote("array");
   Tree& item = defaults.at("items");
-  item.at("type") = quoted("object");
-  item.at("additionalProperties").at("type") = quoted("string");
+  item.at("type") = Tree::quote("object");
+  item.at("additionalProperties").at("type") = Tree::quote("string");
   item.at("minProperties") = Tree::scalar("1");
   item.at("maxProperties") = Tree::scalar("1");
 }
 
 /// `sweep:`: its blocks, whose keys may be any.
 void sweep_schema(Tree& sweep) {
-  sweep.at("type") = quoted("object");
+  sweep.at("type") = Tree::quote("object");
   sweep.at("additionalProperties") = Tree::scalar("false");
   Tree& blocks = sweep.at("properties");
   blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), log(1cm,5cm,8)");
   blocks.at("zip") = of_type("object", "side by side: values of equal number");
   blocks.at("list") = of_type("array", "settings one after the other, each a little grid");
-  blocks.at("list").at("items").at("type") = quoted("object");
+  blocks.at("list").at("items").at("type") = Tree::quote("object");
   Tree& sobol = blocks.at("sobol") = of_type("object", "quasi-random points of continuous ranges");
   sobol.at("additionalProperties") = Tree::scalar("false");
   sobol.at("required") = Tree::list();
-  sobol.at("required").items = {quoted("samples"), quoted("keys")};
+  sobol.at("required").items = {Tree::quote("samples"), Tree::quote("keys")};
   Tree& samples = sobol.at("properties").at("samples") = of_type("integer", "how many points");
   samples.at("minimum") = Tree::scalar("1");
   samples.at("maximum") = Tree::scalar("100000");
   Tree& keys = sobol.at("properties").at("keys") = of_type("object", "ranges: uniform(0.1 mm, 1 mm), log(1cm, 10cm)");
-  keys.at("additionalProperties").at("type") = quoted("string");
+  keys.at("additionalProperties").at("type") = Tree::quote("string");
   const char* const condition = "combinations for which it does not hold are dropped: taps >= 12 and not kernel == rbf";
   Tree several = of_type("array", "all of which have to hold");
-  several.at("items").at("type") = quoted("string");
+  several.at("items").at("type") = Tree::quote("string");
   blocks.at("where").at("anyOf") = Tree::list();
   blocks.at("where").at("anyOf").items = {of_type("string", condition), std::move(several)};
 }
@@ -125,8 +123,8 @@ int schema(Program& program) {
   Tree& definitions = out.at("definitions");
   definitions = Tree::map();
   for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);
-  out.at("$schema") = quoted("http://json-schema.org/draft-07/schema#");
-  out.at("title") = quoted("palpate experiment");
+  out.at("$schema") = Tree::quote("http://json-schema.org/draft-07/schema#");
+  out.at("title") = Tree::quote("palpate experiment");
   fmt::print("{}", to_json(out));
   return kDone;
 }

@@ -34,19 +34,19 @@ std::string who_chose(const TapRecord& tap) {
 
 }  // namespace
 
-std::unique_ptr<Step> Step::when(bool wanted, const ExperimentOptions& options, const std::atomic<bool>* interrupted) {
+std::unique_ptr<Step> Step::when(bool wanted, const ExperimentOptions& options, const std::atomic<bool>* stopped) {
   if (!wanted) return nullptr;
   if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
     throw Error("command line", "--step: there is no terminal to show a tap and to ask whether it may be made",
                 "stdin and stderr must be one");
   }
-  return std::unique_ptr<Step>(new Step(options, interrupted));
+  return std::unique_ptr<Step>(new Step(options, stopped));
 }
 
-Step::Step(const ExperimentOptions& options, const std::atomic<bool>* interrupted)
+Step::Step(const ExperimentOptions& options, const std::atomic<bool>* stopped)
     : budget_(options.taps),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),
-      interrupted_(interrupted) {}
+      interrupted_(stopped) {}
 
 bool Step::permits(const TapRecord& tap, const Preview& preview) {
   std::string text = fmt::format("tap {} of {} at ({:.2f}, {:.2f}) cm, {}", tap.number, budget_, tap.target.x * 100,

@@ -48,8 +48,8 @@ int sweep(Program& program, const SweepArguments& arguments) {
                                       if (draft) draft->add(job, config);
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                     });
-  const auto config_of = [&](std::size_t job) { return planned_config(plan, program.composer, program.host, job); };
-  const Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
+  const auto config_of = [&](std::size_t job) { return planned_config(plan, program.host, job); };
+  Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
   if (arguments.list) {
     print_jobs(plan.sweep);
     if (!arguments.launch.quiet) mention(size_words(plan.sweep) + "\n");
@@ -57,7 +57,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   }
   const bool is_new = draft->publish(plan);
   draft.reset();
-  if (!is_new) check_builds(program, campaign);
+  if (!is_new) check_builds(program, campaign, true);
   if (!arguments.launch.quiet) {
     mention(fmt::format("{} in {}{}\n", size_words(plan.sweep), plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: what is missing is run"));

@@ -30,65 +30,31 @@ struct PartsOptions : Options {
   }
 };
 
-/// The parts of a sum or a product; parameters are named kernels.0.length_scale, in the order of the parts.
-class Parts {
- public:
-  Parts(const PartsOptions& options, const Context& context) {
-    for (const PluginChoice& choice : options.kernels) {
-      kernels_.push_back(context.create<Kernel>(choice));
-      counts_.push_back(static_cast<Eigen::Index>(kernels_.back()->parameters().size()));
-    }
-  }
-
-  std::size_t size() const { return kernels_.size(); }
-  const Kernel& operator[](std::size_t i) const { return *kernels_[i]; }
-  /// How many parameters part i has.
-  Eigen::Index parameters_of(std::size_t i) const { return counts_[i]; }
-
-  bool differentiable() const {
-    return std::all_of(kernels_.begin(), kernels_.end(), [](const auto& one) { return one->differentiable(); });
-  }
-
-  std::vector<KernelParameter> parameters() const {
-    std::vector<KernelParameter> out;
-    for (std::size_t i = 0; i < size(); ++i) {
-      for (KernelParameter one : kernels_[i]->parameters()) {
-        one.name = "kernels." + std::to_string(i) + "." + one.name;
-        out.push_back(std::move(one));
-      }
-    }
-    return out;
-  }
-
-  void set_parameters(const VectorView& values) {
-    Eigen::Index from = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
-      kernels_[i]->set_parameters(values.segment(from, counts_[i]));
-      from += counts_[i];
-    }
-  }
-
- private:
-  std::vector<std::shared_ptr<Kernel>> kernels_;
-  std::vector<Eigen::Index> counts_;
-};
-
-/// A kernel of parts. Join::apply(whole, part) takes the covariances of one more part into those of the parts before.
-/// What is left to the derived kernel is derivatives().
+/// A kernel of parts; parameters are named kernels.0.length_scale, in the order of the parts. `Join` says how parts
+/// make a whole:
+///     static constexpr double kNothing;          the whole of no part
+///     static void apply(whole, part);            takes the covariances of one more part into those of the parts before
+///     static void join_slopes(before, own, whole, part);   the same of the slopes of the parts before, and of its own;
+///                                                `whole` is that before apply()
 template <class Join>
 class Composed : public Kernel {
  public:
   using Options = PartsOptions;
 
-  Composed(const Options& options, const Context& context) : parts_(options, context) {}
+  Composed(const Options& options, const Context& context) {
+    for (const PluginChoice& choice : options.kernels) {
+      parts_.push_back(context.create<Kernel>(choice));
+      counts_.push_back(static_cast<Eigen::Index>(parts_.back()->parameters().size()));
+    }
+  }
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
-    parts_[0].covariance(a, b, out);
+    parts_[0]->covariance(a, b, out);
     for (std::size_t i = 1; i < parts_.size(); ++i) {
       for (Eigen::Index j = 0; j < b.rows(); ++j) {
         for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
           Piece part(count);
-          parts_[i].covariance(a.middleRows(from, count), b.row(j), part.matrix());
+          parts_[i]->covariance(a.middleRows(from, count), b.row(j), part.matrix());
           Join::apply(out.col(j).segment(from, count).array(), part);
         });
       }
@@ -96,25 +62,61 @@ class Composed : public Kernel {
   }
 
   void variance(const PointsView& a, VectorOut out) const override {
-    parts_[0].variance(a, out);
+    parts_[0]->variance(a, out);
     for (std::size_t i = 1; i < parts_.size(); ++i) {
       for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
         Piece part(count);
-        parts_[i].variance(a.middleRows(from, count), part.matrix());
+        parts_[i]->variance(a.middleRows(from, count), part.matrix());
         Join::apply(out.segment(from, count).array(), part);
       });
     }
   }
 
-  std::vector<KernelParameter> parameters() const override { return parts_.parameters(); }
-  bool differentiable() const override { return parts_.differentiable(); }
-  void set_parameters(const VectorView& values) override { parts_.set_parameters(values); }
+  std::vector<KernelParameter> parameters() const override {
+    std::vector<KernelParameter> out;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      for (KernelParameter one : parts_[i]->parameters()) {
+        one.name = "kernels." + std::to_string(i) + "." + one.name;
+        out.push_back(std::move(one));
+      }
+    }
+    return out;
+  }
+
+  bool differentiable() const override {
+    return std::all_of(parts_.begin(), parts_.end(), [](const auto& one) { return one->differentiable(); });
+  }
+
+  void set_parameters(const VectorView& values) override {
+    Eigen::Index from = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      parts_[i]->set_parameters(values.segment(from, counts_[i]));
+      from += counts_[i];
+    }
+  }
+
+  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
+    for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
+      Eigen::Index first = 0;
+      Piece part(count);
+      auto whole = value.segment(from, count).array();
+      whole.setConstant(Join::kNothing);
+      auto rows = slopes.middleRows(from, count);
+      for (std::size_t i = 0; i < parts_.size(); ++i) {
+        auto own = rows.middleCols(first, counts_[i]);
+        parts_[i]->derivatives(a.middleRows(from, count), b, part.matrix(), own);
+        Join::join_slopes(rows.leftCols(first), own, whole, part);
+        Join::apply(whole, part);
+        first += counts_[i];
+      }
+    });
+  }
 
  protected:
-  const Parts& parts() const { return parts_; }
+  std::vector<std::shared_ptr<Kernel>> parts_;
 
  private:
-  Parts parts_;
+  std::vector<Eigen::Index> counts_;  ///< of the parameters of each
 };
 
 }  // namespace palpate::kernels

@@ -5,9 +5,18 @@
 namespace palpate::kernels {
 
 struct Multiply {
+  static constexpr double kNothing = 1.0;
+
   template <class Whole>
   static void apply(Whole whole, const Piece& part) {
     whole *= part;
+  }
+  /// The slopes of this part times the values of those before it, and theirs times its value: no division, so that a
+  /// value of 0 does no harm.
+  template <class Slopes, class Own, class Whole>
+  static void join_slopes(Slopes before, Own& own, const Whole& whole, const Piece& part) {
+    own.array().colwise() *= whole;
+    before.array().colwise() *= part;
   }
 };
 
@@ -16,42 +25,20 @@ class Product final : public Composed<Multiply> {
   using Composed::Composed;
 
   bool separable() const override {
-    bool all = true;
-    for (std::size_t i = 0; i < parts().size(); ++i) all &= parts()[i].separable();
-    return all;
+    return std::all_of(parts_.begin(), parts_.end(), [](const auto& one) { return one->separable(); });
   }
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
-    parts()[0].axis_covariance(axis, a, b, out);
-    for (std::size_t i = 1; i < parts().size(); ++i) {
+    parts_[0]->axis_covariance(axis, a, b, out);
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
       for (Eigen::Index j = 0; j < b.size(); ++j) {
         for_pieces(a.size(), [&](Eigen::Index from, Eigen::Index count) {
           Piece part(count);
-          parts()[i].axis_covariance(axis, a.segment(from, count), b.segment(j, 1), part.matrix());
+          parts_[i]->axis_covariance(axis, a.segment(from, count), b.segment(j, 1), part.matrix());
           out.col(j).segment(from, count).array() *= part;
         });
       }
     }
-  }
-
-  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
-    for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
-      Eigen::Index first = 0;
-      Piece factor(count);
-      auto product = value.segment(from, count).array();
-      product.setOnes();
-      auto rows = slopes.middleRows(from, count);
-      for (std::size_t i = 0; i < parts().size(); ++i) {
-        const Eigen::Index own = parts().parameters_of(i);
-        parts()[i].derivatives(a.middleRows(from, count), b, factor.matrix(), slopes.block(from, first, count, own));
-        // The slopes of this part times the values of those before it, and theirs times its value: no division, so
-        // that a value of 0 does no harm.
-        rows.middleCols(first, own).array().colwise() *= product;
-        rows.leftCols(first).array().colwise() *= factor;
-        product *= factor;
-        first += own;
-      }
-    });
   }
 };
 

@@ -5,17 +5,13 @@
 
 namespace broken {
 
-struct NoOptions : palpate::Options {
-  void list(palpate::Fields&) override {}
-};
-
 struct OwnException final : std::exception {
   const char* what() const noexcept override { return "no score today"; }
 };
 
 class Acquisition final : public palpate::Acquisition {
  public:
-  using Options = NoOptions;
+  using Options = palpate::NoOptions;
   Acquisition(const Options&, const palpate::Context&) {}
   palpate::Quantities reads() const override { return palpate::Quantity::uncertainty; }
   void score([[maybe_unused]] const palpate::Belief& belief, [[maybe_unused]] palpate::VectorOut out) const override {

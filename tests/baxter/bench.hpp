@@ -29,6 +29,8 @@ inline BaxterOptions fake_options() {
   return out;
 }
 
+constexpr Target kMiddle{0.115, 0.115};  ///< of the area
+
 /// A planner over them with the program's own inverse kinematics.
 class PlannerBench {
  public:
@@ -41,6 +43,9 @@ class PlannerBench {
 
   /// Joints with the tool upright and its tip there, in the frame of the scene.
   Joints at(double x, double y, double z) const { return arm.solve(planner.pose({x, y}, z), untucked()).value(); }
+
+  /// The way down there from the height of travel.
+  Path down(const Target& place) const { return planner.column(place, kMiddle, 0.135, -0.02, 0.03); }
 
   Arm arm;
   Planner planner;

@@ -6,6 +6,7 @@
 #include "scene/scene_options.hpp"
 #include "support/filled.hpp"
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -16,24 +17,44 @@ namespace palpate::test {
 constexpr const char* kObjectI =
     "[{type: wave, length: 16 cm, width: 6 cm, height: 9 cm, amplitude: 2 cm, period: 8 cm, at: [11.5 cm, 11.5 cm], "
     "rotation: 90 deg}]";
+constexpr const char* kBare = "[]";
+constexpr const char* kQuiet = "{stiffness: {object: 1500 N/m}, force_noise: {deviation: 0 N}}";
 constexpr const char* kLikeBaxter =
     "{stiffness: {object: 1500 N/m}, joint_lag: {delay: 350 ms}, force_noise: {deviation: 1.5 N}}";
 
 /// Tool and place of configs/backend/fake_baxter.yaml.
 inline fake_baxter::BodyOptions fake_options() { return baxter::test::body_options(baxter::test::fake_options()); }
 
+/// A desk of 23 cm by 23 cm with these objects, a YAML list, and effects, a YAML map.
+inline std::unique_ptr<const Scene> scene_of(const std::string& objects, const std::string& effects,
+                                             std::uint64_t seed = 1) {
+  const std::string area = "area: {width: 23 cm, depth: 23 cm}";
+  const auto options = filled<SceneOptions>("{" + area + ", objects: " + objects + ", effects: " + effects + "}");
+  return build_scene(options, seed, shared_host());
+}
+
 class BodyBench {
  public:
-  /// `objects` is a YAML list, `effects` a YAML map.
+  using Change = std::function<void(fake_baxter::BodyOptions&)>;
+
+  /// On scene_of() these.
   explicit BodyBench(const std::string& objects = kObjectI, const std::string& effects = kLikeBaxter,
-                     const fake_baxter::BodyOptions& options = fake_options())
-      : scene(build_scene(filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}, objects: " + objects +
-                                               ", effects: " + effects + "}"),
-                          options.seed, shared_host())),
+                     const Change& change = nullptr)
+      : BodyBench(objects, effects, changed(change)) {}
+  BodyBench(const std::string& objects, const std::string& effects, const fake_baxter::BodyOptions& options)
+      : scene(scene_of(objects, effects, options.seed)),
         tool(Eigen::Vector3d(options.tool.tip)),
-        place(options.place),
+        frame(options.place.frame()),
         body(*scene, options),
         target(body.joints()) {}
+
+  /// Lets something go wrong, as its words on the command line have it.
+  void inject(const std::string& fault, const std::string& at = "start") {
+    body.inject(fake_baxter::parse_fault(fault), fake_baxter::parse_trigger(at));
+  }
+  baxter::StateReading state() const { return *body.said().state; }
+  Eigen::Vector3d force() const { return body.said().endpoint->force; }
+  bool reflex() const { return body.mode() == fake_baxter::Body::Mode::reflex; }
 
   /// Lets time pass with set-points at `target`, or without any.
   void hold(double seconds) {
@@ -47,14 +68,11 @@ class BodyBench {
   template <class Stop>
   void lead(const Eigen::Vector3d& goal, double speed, const Stop& stop) {
     baxter::Pose pose = tool.tip(target);
-    const Eigen::Vector3d end = in_base(goal);
+    const Eigen::Vector3d end = frame * goal;
     while (pose.position != end && !stop()) {
       const Eigen::Vector3d way = end - pose.position;
       const double step = speed * fake_baxter::Body::kPeriod;
-      pose.position = way.norm() <= step ? end : Eigen::Vector3d(pose.position + step * way.normalized());
-      const auto found = tool.solve(pose, target);
-      if (!found) throw std::runtime_error("out of reach");
-      target = *found;
+      aim(way.norm() <= step ? end : Eigen::Vector3d(pose.position + step * way.normalized()), pose);
       body.command(target);
       body.step();
     }
@@ -63,19 +81,32 @@ class BodyBench {
     lead(goal, speed, [] { return false; });
   }
 
-  Eigen::Vector3d in_base(const Eigen::Vector3d& at) const {
-    Eigen::Vector3d out;
-    out << Eigen::Vector2d(place.corner) + Eigen::Rotation2Dd(place.rotation) * at.head<2>(), place.height + at.z();
-    return out;
+  /// Puts the set-point there at once.
+  void jump(const Eigen::Vector3d& goal) {
+    baxter::Pose pose = tool.tip(target);
+    aim(frame * goal, pose);
   }
 
   std::unique_ptr<const Scene> scene;
   baxter::Arm tool;
-  baxter::PlaceOptions place;
+  Eigen::Isometry3d frame;  ///< of the scene, in `base`
   fake_baxter::Body body;
   baxter::Joints target;
 
  private:
+  static fake_baxter::BodyOptions changed(const Change& change) {
+    fake_baxter::BodyOptions out = fake_options();
+    if (change) change(out);
+    return out;
+  }
+
+  void aim(const Eigen::Vector3d& in_base, baxter::Pose& pose) {
+    pose.position = in_base;
+    const auto found = tool.solve(pose, target);
+    if (!found) throw std::runtime_error("out of reach");
+    target = *found;
+  }
+
   template <class Act>
   void periods(double seconds, const Act& act) {
     for (long i = std::lround(seconds / fake_baxter::Body::kPeriod); i > 0; --i) {

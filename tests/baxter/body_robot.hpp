@@ -25,6 +25,17 @@ inline BodyOptions body_options(const BaxterOptions& options) {
   return out;
 }
 
+/// Whether what lies within `reach` (m) of a place differs by less than that: what the tool finds beside an edge is
+/// another question.
+inline bool is_even(const Scene& scene, const Target& place, double reach) {
+  const double here = scene.height(place.x, place.y);
+  for (int side = 0; side < 8; ++side) {
+    const Eigen::Vector2d beside = reach * Eigen::Rotation2Dd(side * 0.785398).toRotationMatrix().col(0);
+    if (!(std::abs(scene.height(place.x + beside.x(), place.y + beside.y()) - here) < reach)) return false;
+  }
+  return true;
+}
+
 class BodyRobot final : public Robot {
  public:
   BodyRobot(const Scene& scene, const BodyOptions& options)

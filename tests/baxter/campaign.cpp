@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/campaign.hpp"
 
+#include "baxter/body_bench.hpp"
 #include "config/compose.hpp"
 #include "record/resolved.hpp"
-#include "scene/scene_options.hpp"
-#include "support/filled.hpp"
 
 #include <palpate/random.hpp>
 
@@ -24,15 +23,6 @@ constexpr double kSpike = 9.0;       // N
 constexpr double kStall = 0.05;      // s
 constexpr double kTouched = 0.5;     // N of true force from which on a tap has touched
 constexpr double kAfterwards = 3.0;  // s after which an arm that is left alone stands
-
-std::unique_ptr<const Scene> scene_of(double stiffness) {
-  return build_scene(palpate::test::filled<SceneOptions>(fmt::format(
-                         "{{area: {{width: 23 cm, depth: 23 cm}}, objects: [{{type: wave, length: 16 cm, width: 6 cm, "
-                         "height: 9 cm, amplitude: 2 cm, period: 8 cm, at: [11.5 cm, 11.5 cm], rotation: 90 deg}}], "
-                         "effects: {{stiffness: {{object: {} N/m}}}}}}",
-                         stiffness)),
-                     1, shared_host());
-}
 
 /// Of the same kind whatever was measured: digits are left out.
 std::string kind_of(const std::string& reason) {
@@ -102,18 +92,10 @@ class Session {
     if (random_.uniform() < kSpikes) reading.force.z() += random_.uniform() < 0.5 ? kSpike : -kSpike;
   }
 
-  /// What the tool finds beside an edge is another question.
   Target draw_place() {
     for (;;) {
       const Target out{0.01 + 0.21 * random_.uniform(), 0.01 + 0.21 * random_.uniform()};
-      const double here = scene_.height(out.x, out.y);
-      bool even = true;
-      for (int side = 0; side < 8; ++side) {
-        const double turn = side * 0.785398;
-        const double there = scene_.height(out.x + 0.006 * std::cos(turn), out.y + 0.006 * std::sin(turn));
-        even = even && std::abs(there - here) < 0.006;
-      }
-      if (even) return out;
+      if (is_even(scene_, out, 0.006)) return out;
     }
   }
 
@@ -156,7 +138,8 @@ void Tally::add(const Tally& other) {
 }
 
 Tally campaign(const Condition& condition, int taps, std::uint64_t seed) {
-  const std::unique_ptr<const Scene> scene = scene_of(condition.stiffness);
+  const std::unique_ptr<const Scene> scene = palpate::test::scene_of(
+      palpate::test::kObjectI, fmt::format("{{stiffness: {{object: {} N/m}}}}", condition.stiffness));
   Tally out;
   std::unique_ptr<Session> session;
   while (out.taps < taps) {

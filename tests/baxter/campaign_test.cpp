@@ -6,6 +6,7 @@
 #include "fake_baxter/mujoco.hpp"
 #include "support/sanitizers.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,17 +43,14 @@ int taps_of(Type arm, int daily) {
 }
 
 void report(const std::string& what, const Tally& tally) {
-  std::printf("%s: %s\n", what.c_str(), test::in_words(tally).c_str());
-  for (const auto& [reason, count] : tally.reasons) std::printf("    %d times: %s\n", count, reason.c_str());
+  fmt::print("{}: {}\n", what, test::in_words(tally));
+  for (const auto& [reason, count] : tally.reasons) fmt::print("    {} times: {}\n", count, reason);
   std::fflush(stdout);
 }
 
 std::string name_of(const Condition& condition) {
-  char out[100];
-  std::snprintf(out, sizeof out, "%s, %g kN/m, %.2f Nm%s%s", name_of(condition.arm.type).c_str(),
-                condition.stiffness / 1000, condition.arm.friction, condition.spikes ? ", spikes" : "",
-                condition.stalls ? ", stalls" : "");
-  return out;
+  return fmt::format("{}, {:g} kN/m, {:.2f} Nm{}{}", name_of(condition.arm.type), condition.stiffness / 1000,
+                     condition.arm.friction, condition.spikes ? ", spikes" : "", condition.stalls ? ", stalls" : "");
 }
 
 class Campaign : public testing::TestWithParam<Type> {

@@ -51,8 +51,9 @@ TEST(Description, WithoutTheLinkOrAUrdfThereIsNoMass) {
 
 TEST(Description, AMassThatIsNoneMakesTheSumUnknown) {
   for (const char* value : {"-1", "nan", "heavy", "", "1 kg", "1e999"}) {
-    const std::string urdf = std::string("<robot><link name=\"a\"/><link name=\"b\"><mass value=\"") + value +
-                             "\"/></link><joint name=\"j\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>";
+    const std::string urdf =
+        std::string("<robot><link name=\"a\"/><link name=\"b\"><inertial><mass value=\"") + value +
+        "\"/></inertial></link><joint name=\"j\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>";
     EXPECT_FALSE(mass_beyond(urdf, "a")) << value;
     EXPECT_TRUE(mass_beyond(urdf, "b")) << "it is not beyond";
   }
@@ -60,7 +61,7 @@ TEST(Description, AMassThatIsNoneMakesTheSumUnknown) {
 
 TEST(Description, LinksThatHangOnEachOtherAreCountedOnce) {
   const std::string urdf =
-      "<robot><link name=\"a\"><mass value=\"1\"/></link><link name=\"b\"><mass value=\"2\"/></link>"
+      "<robot><link name=\"a\"/><link name=\"b\"><inertial><mass value=\"2\"/></inertial></link>"
       "<joint name=\"i\"><parent link=\"a\"/><child link=\"b\"/></joint>"
       "<joint name=\"j\"><parent link=\"b\"/><child link=\"a\"/></joint></robot>";
   EXPECT_EQ(mass_beyond(urdf, "a"), 2.0);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "elsewhere.hpp"
 
+#include "children/child_process.hpp"
+#include "support/support.hpp"
+
 #include <palpate/error.hpp>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <memory>
 #include <stdexcept>
 
 #include <sys/wait.h>
@@ -35,33 +40,27 @@ std::string told(const std::function<std::string()>& act) {
 
 }  // namespace
 
+long threads() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return std::distance(begin(tasks), end(tasks));
+}
+
 Elsewhere elsewhere(const std::vector<std::string>& environment, const std::function<std::string()>& act) {
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
-  std::fflush(nullptr);
+  const TemporaryFolder folder;
+  const std::string file = folder.write("printed", "").string();
   const auto begin = std::chrono::steady_clock::now();
-  const pid_t child = fork();
-  if (child == 0) {
-    dup2(ends[1], STDOUT_FILENO);
-    dup2(ends[1], STDERR_FILENO);
-    close(ends[0]);
-    close(ends[1]);
+  const std::unique_ptr<ChildProcess> child = ChildProcess::fork([&](const ChildProcess::Say&) -> int {
+    if (std::freopen(file.c_str(), "w", stdout) == nullptr) return 1;
+    dup2(STDOUT_FILENO, STDERR_FILENO);
     set_environment(environment);
     std::fputs(told(act).c_str(), stdout);
     std::exit(0);
-  }
-  close(ends[1]);
-  Elsewhere result;
-  char buffer[4096];
-  for (ssize_t size = 0; (size = read(ends[0], buffer, sizeof buffer)) > 0;) {
-    result.printed.append(buffer, static_cast<std::size_t>(size));
-  }
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  result.status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-  return result;
+  });
+  if (!child) throw std::runtime_error("no process");
+  child->wait();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const int status = child->status();
+  return {text_of(file), seconds, WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status)};
 }
 
 }  // namespace palpate::test

@@ -19,4 +19,7 @@ struct Elsewhere {
 /// returns, or the line of an Error that it throws. The process then ends by exit(0) as from main().
 Elsewhere elsewhere(const std::vector<std::string>& environment, const std::function<std::string()>& act);
 
+/// Of this process.
+long threads();
+
 }  // namespace palpate::test

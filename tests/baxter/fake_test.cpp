@@ -11,6 +11,14 @@
 #include <map>
 #include <sstream>
 
+#include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionAvoidanceState.h>
+#include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndEffectorProperties.h>
+#include <baxter_core_msgs/EndpointState.h>
+#include <baxter_core_msgs/JointCommand.h>
+#include <baxter_core_msgs/SolvePositionIK.h>
+
 namespace palpate::test {
 namespace {
 
@@ -37,22 +45,22 @@ std::map<std::string, Heard> heard(const RobotLab& lab, const std::string& secon
 
 TEST(FakeRobot, ItsMessagesAreThoseOfARealRobotByTheirMd5Sums) {
   // As published by Rethink: in code generated from its definitions by others, too.
-  EXPECT_EQ(run_program({probe_file().string(), "md5"}, ".").out,
-            "EndpointState 44bea01d596ff699fa1447bec34167ac\n"
-            "JointCommand 19bfec8434dd568ab3c633d187c36f2e\n"
-            "AssemblyState 356d9dd237ce73b2667da9235f541933\n"
-            "OldAssemblyState d7ff2b9fa7d5f688665ce44db4ee2af8\n"
-            "CollisionDetectionState 7bde38c182b4d08fdc0635b116f65d04\n"
-            "CollisionAvoidanceState 30f5cb8ae019f1ffe8b599e6d2e589c7\n"
-            "EndEffectorProperties 21b83773ab9a35216d11e427573c76cc\n"
-            "SolvePositionIK 18cc92fd96853eb10b34de0b5c7d3cba\n"
-            "SolvePositionIKRequest 2587e42983d0081d0a2288230991073b\n"
-            "SolvePositionIKResponse d9b0c2b3932e08421f5094cf62743b9f\n");
+  using namespace baxter_core_msgs;
+  const std::pair<const char*, const char*> sums[] = {
+      {ros::message_traits::md5sum<EndpointState>(), "44bea01d596ff699fa1447bec34167ac"},
+      {ros::message_traits::md5sum<JointCommand>(), "19bfec8434dd568ab3c633d187c36f2e"},
+      {ros::message_traits::md5sum<AssemblyState>(), "356d9dd237ce73b2667da9235f541933"},
+      {ros::message_traits::md5sum<CollisionDetectionState>(), "7bde38c182b4d08fdc0635b116f65d04"},
+      {ros::message_traits::md5sum<CollisionAvoidanceState>(), "30f5cb8ae019f1ffe8b599e6d2e589c7"},
+      {ros::message_traits::md5sum<EndEffectorProperties>(), "21b83773ab9a35216d11e427573c76cc"},
+      {ros::service_traits::md5sum<SolvePositionIK>(), "18cc92fd96853eb10b34de0b5c7d3cba"},
+      {ros::message_traits::md5sum<SolvePositionIK::Request>(), "2587e42983d0081d0a2288230991073b"},
+      {ros::message_traits::md5sum<SolvePositionIK::Response>(), "d9b0c2b3932e08421f5094cf62743b9f"}};
+  for (const auto& [ours, theirs] : sums) EXPECT_STREQ(ours, theirs);
 }
 
 TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   const auto streams = heard(lab, "10");
   // In the robot's own time; of a queue of one message some may be lost on a busy machine.
   const auto expect_rate = [&](const std::string& name, double rate) {
@@ -70,8 +78,7 @@ TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
 }
 
 TEST(FakeRobot, StopsResetsAndIsEnabledLikeARealOne) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   EXPECT_EQ(lab.probe({"switches"}).out,
             "stop: ready 0 enabled 0 stopped 1 error 0 button 2 source 2\n"
             "enable: ready 0 enabled 0 stopped 1 error 0 button 2 source 2\n"
@@ -106,29 +113,13 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
   }
 }
 
-TEST(FakeRobot, AnswersForItsInverseKinematics) {
-  const auto answer = [](const std::vector<std::string>& more) {
-    RobotLab lab;
-    lab.start_robot(robot_words(more));
-    return lab.probe({"inverse"}).out;
-  };
-  EXPECT_EQ(answer({}), "7 joints, where they are\n");
-  EXPECT_EQ(answer({"--fault", "ik_invalid"}), "invalid\n");
-  EXPECT_EQ(answer({"--fault", "ik_absent"}), "absent\n");
-}
-
-TEST(FakeRobot, ASecondNodeMayClaimToBeTheRobot) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--fault", "second_state"}));
-  const auto streams = heard(lab, "5");
-  EXPECT_EQ(streams.count("/second_robot /robot/state 1"), 1U);
-  EXPECT_EQ(streams.count("/realtime_loop /robot/state 1"), 1U);
-}
-
-TEST(FakeRobot, OldFirmwareIsNotUnderstood) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--fault", "old_state"}));
-  const auto streams = heard(lab, "5");
+TEST(FakeRobot, ASecondNodeMayClaimToBeTheRobotAndOldFirmwareIsNotUnderstood) {
+  const RobotLab two(robot_words({"--fault", "second_state"}));
+  const auto states = heard(two, "5");
+  EXPECT_EQ(states.count("/second_robot /robot/state 1"), 1U);
+  EXPECT_EQ(states.count("/realtime_loop /robot/state 1"), 1U);
+  const RobotLab old(robot_words({"--fault", "old_state"}));
+  const auto streams = heard(old, "5");
   EXPECT_EQ(streams.count("/realtime_loop /robot/state 1"), 0U);
   EXPECT_EQ(streams.count("/realtime_loop /robot/joint_states 17"), 1U);
 }
@@ -143,10 +134,9 @@ TEST(FakeRobot, TellsOfItsOptionsAndFaults) {
 }
 
 TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
-  const auto refusal = [](const std::vector<std::string>& words) {
-    std::vector<std::string> all{fake_baxter_file().string()};
-    all.insert(all.end(), words.begin(), words.end());
-    const Ended ended = run_program(all, ".");
+  const auto refusal = [](std::vector<std::string> words) {
+    words.insert(words.begin(), fake_baxter_file().string());
+    const Ended ended = run_program(words, ".");
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     return ended.err;
@@ -155,13 +145,13 @@ TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
   EXPECT_THAT(refusal(robot_words({"--fault", "spikes=2"})), HasSubstr("spikes takes a number from 0 to 1, not '2'"));
   EXPECT_THAT(refusal(robot_words({"--fault", "stall=-1"})), HasSubstr("stall takes a number from 0 on, not '-1'"));
   EXPECT_THAT(refusal(robot_words({"--at", "soon"})), HasSubstr("takes 'start' or DESCENT:HEIGHT"));
-  EXPECT_THAT(refusal(robot_words({"--start", "asleep"})), HasSubstr("takes hover, low, untucked or tucked"));
+  EXPECT_THAT(refusal(robot_words({"--arm", "rubber"})), HasSubstr("--arm: "));
+  EXPECT_THAT(refusal(robot_words({"--start-at", "0.1,0.1"})), HasSubstr("--start-at: "));
   EXPECT_THAT(refusal({robot_words().front()}), HasSubstr("add backend=fake_baxter"));
 }
 
 TEST(FakeRobot, EndsWhenItIsToldAndUnregistersItsNodes) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
   const Ended ended = lab.end_robot();
   EXPECT_EQ(ended.status, 0) << ended.err;
@@ -181,30 +171,24 @@ std::vector<long> children_of(long pid) {
   return out;
 }
 
-TEST(FakeRobot, LeavesNothingRunning) {
-  std::vector<long> all;
-  std::filesystem::path folder;
-  {
-    RobotLab lab;
-    lab.start_robot(robot_words({"--fault", "second_state"}));
-    folder = lab.folder();
-    all = children_of(lab.robot().pid());
-    ASSERT_EQ(all.size(), 2U) << "nodes of their own";
-    all.push_back(lab.robot().pid());
-    all.push_back(lab.master_pid());
-    for (const long pid : all) EXPECT_TRUE(running(pid));
+TEST(FakeRobot, LeavesNothingRunningAndKilledTakesItsCompanionsAlong) {
+  for (const bool killed : {false, true}) {
+    std::vector<long> all;
+    std::filesystem::path folder;
+    {
+      RobotLab lab(robot_words({"--fault", "second_state"}));
+      folder = lab.folder();
+      all = children_of(lab.robot().pid());
+      ASSERT_EQ(all.size(), 2U) << "nodes of their own";
+      for (const long pid : all) EXPECT_TRUE(running(pid));
+      if (killed) lab.robot().signal(SIGKILL);
+      EXPECT_TRUE(!killed || eventually([&] { return !running(all[0]) && !running(all[1]); }));
+      all.push_back(lab.robot().pid());
+      all.push_back(lab.master_pid());
+    }
+    for (const long pid : all) EXPECT_FALSE(running(pid));
+    EXPECT_FALSE(std::filesystem::exists(folder));
   }
-  for (const long pid : all) EXPECT_FALSE(running(pid));
-  EXPECT_FALSE(std::filesystem::exists(folder));
-}
-
-TEST(FakeRobot, KilledItTakesItsCompanionsAlong) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  const std::vector<long> companions = children_of(lab.robot().pid());
-  ASSERT_EQ(companions.size(), 1U);
-  lab.robot().signal(SIGKILL);
-  EXPECT_TRUE(eventually([&] { return !running(companions.front()); }));
 }
 
 }  // namespace

@@ -51,8 +51,7 @@ std::string words(const Snapshot& seen) {
 /// What is heard of a robot that was started so, once all that it should bring has come.
 template <class Condition>
 std::string heard_of(const std::vector<std::string>& robot, const Condition& complete) {
-  RobotLab lab;
-  lab.start_robot(robot_words(robot));
+  RobotLab lab(robot_words(robot));
   return elsewhere(lab.environment(), [&] { return words(read_until(*connect({}), complete)); }).printed;
 }
 
@@ -75,8 +74,7 @@ TEST(Heard, OfAProgramThatHasGoneTheSettingsAreNot) {
 }
 
 TEST(Heard, IsEveryMessageOnceByItsCount) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--fault", "slow_endpoint=25"}));
+  RobotLab lab(robot_words({"--fault", "slow_endpoint=25"}));
   const Elsewhere result = elsewhere(lab.environment(), [] {
     const auto robot = connect({});
     const Snapshot first = robot->read();

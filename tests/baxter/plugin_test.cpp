@@ -20,14 +20,8 @@ constexpr const char* kOptions =
     "{motion: {type: continuous, speed: 2 cm/s, threshold: 6 N}, tool: {tip: [0 cm, 0 cm, 15 cm]}, "
     "place: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}, force_sign: negative}";
 
-long threads() {
-  const std::filesystem::directory_iterator tasks("/proc/self/task");
-  return std::distance(begin(tasks), end(tasks));
-}
-
 TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   const Elsewhere process = elsewhere(lab.environment(), [&] {
     const PluginHost host({plugin_folder()});
     std::string told;

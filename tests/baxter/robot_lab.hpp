@@ -19,8 +19,8 @@ std::filesystem::path probe_file();
 
 class RobotLab {
  public:
-  /// Starts a master in a folder of its own. Throws std::runtime_error.
-  RobotLab();
+  /// Starts a master in a folder of its own and, with words, the robot. Throws std::runtime_error.
+  explicit RobotLab(const std::vector<std::string>& robot = {});
   /// Ends the robot, then the master; what does not end is killed.
   ~RobotLab();
   RobotLab(const RobotLab&) = delete;
@@ -38,30 +38,26 @@ class RobotLab {
   Child& robot() { return *robot_; }
   /// Ends it by SIGTERM; what it left behind.
   Ended end_robot();
-  /// What the robot did so far, a row a period, complete once it has ended: see fake_baxter/node.hpp.
+  /// What the robot did so far, a row a period, complete once it has ended: see Trace in fake_baxter/node.cpp.
   std::vector<Cells> trace() const;
 
   /// Starts a program in this network.
   std::unique_ptr<Child> start(const std::vector<std::string>& words) const;
-  /// Runs one to its end; what takes longer than `limit` seconds is killed.
-  Ended run(const std::vector<std::string>& words, double limit = kLimit) const;
-  /// The same for palpate of this build, and for the probe of these tests (probe.cpp).
-  std::unique_ptr<Child> start_palpate(const std::vector<std::string>& words) const;
+  /// The same for palpate of this build; what takes longer than `limit` seconds is killed.
+  std::unique_ptr<Child> start_palpate(std::vector<std::string> words) const;
   Ended palpate(const std::vector<std::string>& words, double limit = kLimit) const;
-  Ended probe(const std::vector<std::string>& words, double limit = kLimit) const;
+  /// And for the probe of these tests (probe.cpp), to its end.
+  Ended probe(std::vector<std::string> words) const;
 
   /// The nodes that the master knows, sorted.
   std::vector<std::string> nodes() const;
   /// The master's process.
   int master_pid() const { return master_->pid(); }
-  void kill_master();
 
   static constexpr double kLimit = 300.0;
 
  private:
   bool start_master();
-  /// The answer of the master to a call without arguments but the caller's name, as it came; "" for none.
-  std::string ask_master(const std::string& method) const;
 
   TemporaryFolder folder_;
   int port_ = 0;

@@ -43,4 +43,11 @@ inline std::string field(const Row& row, const char* name) {
   return value != nullptr ? csv_cell(*value) : "no such field";
 }
 
+/// The same of all of them.
+inline std::vector<std::string> fields(const std::vector<Row>& rows, const char* name) {
+  std::vector<std::string> out;
+  for (const Row& row : rows) out.push_back(field(row, name));
+  return out;
+}
+
 }  // namespace palpate::test

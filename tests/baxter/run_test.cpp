@@ -16,35 +16,56 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <set>
 #include <thread>
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 
 namespace palpate::test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
 using ::testing::StartsWith;
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> outcomes(const fs::path& run) {
-  std::vector<std::string> out;
-  for (const Row& row : results(run)) out.push_back(field(row, "outcome"));
-  return out;
+fs::path run_of(const RobotLab& lab) { return only_run(lab.folder() / "runs"); }
+
+/// What became of the taps of the only run.
+std::vector<std::string> outcomes(const RobotLab& lab) { return fields(results(run_of(lab)), "outcome"); }
+
+/// palpate, which must come to a good end.
+void palpate_does(const RobotLab& lab, const std::vector<std::string>& words, double limit = 300.0) {
+  const Ended ended = lab.palpate(words, limit);
+  EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
 }
 
-/// Looks until the only run has so many lines in its log; another process writes it.
-bool logged(const fs::path& runs, int lines) {
-  return eventually([&] {
-    std::error_code none;
-    for (const auto& entry : fs::recursive_directory_iterator(runs, none)) {
-      if (entry.path().filename() != "taps.jsonl") continue;
-      const std::string text = text_of(entry.path());
-      return std::count(text.begin(), text.end(), '\n') >= lines;
-    }
-    return false;
-  });
+std::vector<std::string> resume_words(const RobotLab& lab) { return {"resume", run_of(lab).string(), "--quiet"}; }
+
+/// A file of a run, wherever below `runs` it is; "" if there is none yet.
+fs::path found(const fs::path& runs, const char* name) {
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(runs, none)) {
+    if (entry.path().filename() == name) return entry.path();
+  }
+  return {};
+}
+
+/// The lines in the log of the only run, so far.
+long lines(const RobotLab& lab) {
+  const fs::path log = found(lab.folder() / "runs", "taps.jsonl");
+  const std::string text = log.empty() ? "" : text_of(log);
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+/// Looks until that has so many; another process writes it.
+bool logged(const RobotLab& lab, long wanted) {
+  return eventually([&] { return lines(lab) >= wanted; });
 }
 
 /// Looks until the robot's tip has come below `height` (m).
@@ -83,20 +104,17 @@ double rmse_height(const fs::path& surface, const fs::path& truth) {
   return std::sqrt(sum / count);
 }
 
-TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffects) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  const Ended ended = lab.palpate({"run", object_i(), "backend=fake_baxter", "--runs", "robot"});
+TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffectsAndIsReplayedToTheLastDigitWithoutTheRobot) {
+  RobotLab lab(robot_words());
+  const Ended ended = lab.palpate({"run", object_i(), "backend=fake_baxter"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "") << "ROS keeps to itself";
   EXPECT_THAT(ended.out, HasSubstr("done: tap budget after 17 taps"));
-  const fs::path run = only_run(lab.folder() / "robot");
-  EXPECT_EQ(outcomes(run), std::vector<std::string>(17, "contact"));
+  const fs::path run = run_of(lab);
+  EXPECT_EQ(outcomes(lab), std::vector<std::string>(17, "contact"));
 
-  const Ended simulated =
-      lab.palpate({"run", object_i(), "scene=object_i_arm", "backend=continuous", "backend.motion.speed=2cm/s",
-                   "backend.motion.threshold=6N", "--runs", "simulator"});
-  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  palpate_does(lab, {"run", object_i(), "scene=object_i_arm", "backend=continuous", "backend.motion.speed=2cm/s",
+                     "backend.motion.threshold=6N", "--runs", "simulator"});
   const fs::path other = only_run(lab.folder() / "simulator");
   const double on_robot = rmse_height(run / "surface.csv", other / "surface.csv");
   const double in_simulator = rmse_height(other / "surface.csv", other / "surface.csv");
@@ -110,6 +128,7 @@ TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffects) {
   }
   EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop")) << "the program has signed off";
   lab.end_robot();
+  palpate_does(lab, {"replay", run.string()});
   for (const Cells& row : lab.trace())
     ASSERT_LT(std::stod(row.at("force")), 16.0) << "the firmware would have stopped it";
 }
@@ -119,43 +138,42 @@ TEST(RobotRun, WorksInRealTimeAsWell) {
   RobotLab lab;
   // Low, and above the desk, where the first tap of this seed goes: it takes seconds.
   lab.start_robot({object_i(), "backend=fake_baxter", "scene=object_i_arm", "--start-at", "0.04,0.07,0.07"});
-  const Ended ended = lab.palpate(run_words(1, {"backend.motion.hover=6cm"}));
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact"));
+  palpate_does(lab, run_words(1, {"backend.motion.hover=6cm"}));
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
 }
 
-TEST(RobotRun, TapsWithAnArmThatHasMassesSpringsAndFriction) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--arm", "springs", "--friction", "0.05"}));
-  const Ended ended = lab.palpate(run_words(1));
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact"));
-}
-
-TEST(RobotRun, IsReplayedToTheLastDigitWithoutTheRobot) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  ASSERT_EQ(lab.palpate(run_words(4)).status, 0);
-  lab.end_robot();
-  const Ended replay = lab.palpate({"replay", only_run(lab.folder() / "runs").string()});
-  EXPECT_EQ(replay.status, 0) << replay.out << replay.err;
+TEST(RobotRun, OfAnArmWithMassesSpringsAndFrictionIsRecordedInARosbagAndADiaryBesideItsTaps) {
+  const RobotLab lab(robot_words({"--arm", "springs", "--friction", "0.05"}));
+  palpate_does(lab, run_words(1, {"backend.bag=true"}));
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
+  EXPECT_THAT(text_of(run_of(lab) / "baxter.txt"), HasSubstr("\ntap 1: contact at "));
+  std::set<std::string> topics;
+  const rosbag::Bag bag((run_of(lab) / "baxter.bag").string(), rosbag::bagmode::Read);
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    topics.insert(message.getTopic() + " " + message.getDataType() + " " + message.getMD5Sum());
+  }
+  EXPECT_THAT(
+      topics,
+      IsSupersetOf({"/robot/limb/left/endpoint_state baxter_core_msgs/EndpointState 44bea01d596ff699fa1447bec34167ac",
+                    "/robot/joint_states sensor_msgs/JointState 3066dcd76a6cfaef579bd0f34173e9fd",
+                    "/robot/state baxter_core_msgs/AssemblyState 356d9dd237ce73b2667da9235f541933",
+                    "/robot/limb/left/joint_command baxter_core_msgs/JointCommand 19bfec8434dd568ab3c633d187c36f2e",
+                    "/palpate/surface sensor_msgs/PointCloud2 1158d486dd51d683ce2f1be655c3c181"}));
+  EXPECT_THAT(topics, Contains(StartsWith("/palpate/taps visualization_msgs/MarkerArray")));
 }
 
 TEST(RobotRun, KilledInATapLeavesTheArmHoldingAndIsResumedWithTheTapUnknown) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
-  ASSERT_TRUE(logged(lab.folder() / "runs", 3)) << "tap 2 is announced";
+  ASSERT_TRUE(logged(lab, 3)) << "tap 2 is announced";
   ASSERT_TRUE(low(lab, 0.07)) << "on the way down";
   program->signal(SIGKILL);
   program->wait();
-  const fs::path run = only_run(lab.folder() / "runs");
   ASSERT_TRUE(eventually([&] { return lab.trace().back().at("mode") == "timed_out"; })) << "by its own time-out";
   EXPECT_LT(last_height(lab), 0.07);
 
-  const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_THAT(outcomes(run), ElementsAre("contact", "unknown", "contact", "contact"));
+  palpate_does(lab, resume_words(lab));
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact", "unknown", "contact", "contact"));
 }
 
 /// How often the tip came down from the height of travel, by the robot's own account.
@@ -176,31 +194,17 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
   const char* wanted = std::getenv("PALPATE_KILLS");
   const int kills = wanted != nullptr ? std::atoi(wanted) : 3;
   const int taps = 2 * kills + 3;
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   Random random(5, "run_test");
-  const fs::path runs = lab.folder() / "runs";
-  const auto begun = [&] {
-    std::error_code none;
-    for (const auto& entry : fs::recursive_directory_iterator(runs, none)) {
-      if (entry.path().filename() == "config.yaml") return true;
-    }
-    return false;
-  };
-  const auto next_words = [&]() -> std::vector<std::string> {
-    if (!begun()) return run_words(taps);
-    return {"resume", only_run(runs).string(), "--quiet"};
-  };
-  const auto lines = [&] {
-    const std::string text = begun() ? text_of(only_run(runs) / "taps.jsonl") : "";
-    return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+  const auto next_words = [&] {
+    return found(lab.folder() / "runs", "config.yaml").empty() ? run_words(taps) : resume_words(lab);
   };
   for (int i = 0; i < kills; ++i) {
-    const int before = lines();
+    const long before = lines(lab);
     const std::unique_ptr<Child> program = lab.start_palpate(next_words());
     // A quarter of the kills comes at any moment of the start, the others in or between taps.
     if (random.uniform() > 0.25) {
-      ASSERT_TRUE(logged(runs, before + 1 + (i % 2))) << program->err();
+      ASSERT_TRUE(logged(lab, before + 1 + (i % 2))) << program->err();
     }
     // The very subject is a kill at a moment that nothing announces.
     std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(random.uniform() * 1'000'000)));
@@ -208,13 +212,12 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
     program->signal(SIGKILL);
     program->wait();
   }
-  const Ended last = lab.palpate(next_words(), 3000.0);
-  ASSERT_EQ(last.status, 0) << last.err;
+  palpate_does(lab, next_words(), 3000.0);
   lab.end_robot();
 
   int number = 0;
   int contacts = 0;
-  for (const Row& row : results(only_run(runs))) {
+  for (const Row& row : results(run_of(lab))) {
     EXPECT_EQ(field(row, "tap"), std::to_string(++number)) << "none lost, none twice";
     contacts += field(row, "outcome") == "contact" ? 1 : 0;
   }
@@ -228,29 +231,27 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
   RecordProperty("descents", descents(lab));
 }
 
-TEST(RobotRun, InterruptedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
-  ASSERT_TRUE(logged(lab.folder() / "runs", 3));
-  ASSERT_TRUE(low(lab, 0.07));
-  program->signal(SIGINT);
-  const Ended ended = program->wait(300.0);
-  EXPECT_EQ(ended.status, 130) << ended.err;
-  const fs::path run = only_run(lab.folder() / "runs");
-  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted"));
-  EXPECT_EQ(field(results(run).back(), "reason"), "interrupted; the arm was raised to the height of travel");
-  EXPECT_NEAR(last_height(lab), 0.135, 0.011);
-  EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
-
-  const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));
+TEST(RobotRun, InterruptedOrWithItsTerminalClosedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
+  // A terminal that is closed may say it twice.
+  for (const std::vector<int>& signals : {std::vector<int>{SIGINT}, {SIGHUP, SIGHUP}}) {
+    const RobotLab lab(robot_words());
+    const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
+    ASSERT_TRUE(logged(lab, 3));
+    ASSERT_TRUE(low(lab, 0.07));
+    for (const int signal : signals) program->signal(signal);
+    const Ended ended = program->wait(300.0);
+    EXPECT_EQ(ended.status, 130) << ended.err;
+    EXPECT_THAT(outcomes(lab), ElementsAre("contact", "aborted"));
+    EXPECT_EQ(field(results(run_of(lab)).back(), "reason"), "interrupted; the arm was raised to the height of travel");
+    EXPECT_NEAR(last_height(lab), 0.135, 0.011);
+    EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
+    palpate_does(lab, resume_words(lab));
+    EXPECT_THAT(outcomes(lab), ElementsAre("contact", "aborted", "contact", "contact"));
+  }
 }
 
 TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   std::vector<std::string> words{program_file().string(), "run", object_i(), "backend=fake_baxter", "taps=2", "--step",
                                  "initial.count=2"};
   Terminal terminal(words, lab.folder(), lab.environment());
@@ -259,7 +260,7 @@ TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
   EXPECT_THAT(terminal.screen(), HasSubstr("stop at 5.0 N above the tare: a contact\r\n"
                                            "      stop whatever it does when the force changes by 14.0 N upwards"));
   EXPECT_EQ(commanded(lab), 0);
-  EXPECT_EQ(text_of(only_run(lab.folder() / "runs") / "taps.jsonl"), "") << "no tap is announced";
+  EXPECT_EQ(text_of(run_of(lab) / "taps.jsonl"), "") << "no tap is announced";
   terminal.type("\n");
   ASSERT_TRUE(terminal.shows("Enter taps, q ends: ", 2)) << terminal.screen();
   const int moves = commanded(lab);
@@ -267,17 +268,13 @@ TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
   terminal.type(std::string(1, Terminal::kControlC));
   EXPECT_EQ(terminal.wait(), 130) << terminal.screen();
   EXPECT_EQ(commanded(lab), moves) << "nothing was sent for the second tap";
-  const fs::path run = only_run(lab.folder() / "runs");
-  EXPECT_THAT(outcomes(run), ElementsAre("contact"));
-
-  const Ended resumed = lab.palpate({"resume", run.string(), "--quiet"});
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_THAT(outcomes(run), ElementsAre("contact", "contact"));
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
+  palpate_does(lab, resume_words(lab));
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact", "contact"));
 }
 
 TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   const std::unique_ptr<Child> other = lab.start({probe_file().string(), "drive", "1000", "0"});
   ASSERT_TRUE(eventually([&] {
     const std::vector<Cells> trace = lab.trace();
@@ -289,103 +286,58 @@ TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {
   EXPECT_FALSE(fs::exists(lab.folder() / "runs"));
 }
 
-TEST(RobotRun, RaisesTheArmWhenItsTerminalIsClosedWhichMaySayItTwice) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
-  ASSERT_TRUE(logged(lab.folder() / "runs", 3));
-  ASSERT_TRUE(low(lab, 0.07));
-  program->signal(SIGHUP);
-  program->signal(SIGHUP);
-  EXPECT_EQ(program->wait(300.0).status, 130);
-  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact", "aborted"));
-  EXPECT_NEAR(last_height(lab), 0.135, 0.011);
-}
-
 TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--fault", "estop=1", "--at", "2:8cm"}));
+  RobotLab lab(robot_words({"--fault", "estop=1", "--at", "2:8cm"}));
   const Ended failed = lab.palpate(run_words(4));
   EXPECT_EQ(failed.status, 1);
   EXPECT_THAT(failed.err, HasSubstr("the emergency stop is pressed"));
-  const fs::path run = only_run(lab.folder() / "runs");
-  const Ended too_early = lab.palpate({"resume", run.string(), "--retry-failed", "--quiet"});
+  const std::vector<std::string> again{"resume", run_of(lab).string(), "--retry-failed", "--quiet"};
+  const Ended too_early = lab.palpate(again);
   EXPECT_EQ(too_early.status, 1);
   EXPECT_THAT(too_early.err, HasSubstr("the emergency stop was pressed and is released: reset it (rosrun"));
-  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted")) << "what is refused before it moves is no tap";
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact", "aborted")) << "what is refused before it moves is no tap";
   ASSERT_THAT(lab.probe({"switches"}).out, EndsWith("enable: ready 1 enabled 1 stopped 0 error 0 button 0 source 0\n"));
-  const Ended resumed = lab.palpate({"resume", run.string(), "--retry-failed", "--quiet"});
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_THAT(outcomes(run), ElementsAre("contact", "aborted", "contact", "contact"));
-}
-
-TEST(RobotRun, RecordsARosbagAndADiaryBesideItsTaps) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  ASSERT_EQ(lab.palpate(run_words(1, {"backend.bag=true"})).status, 0);
-  const fs::path run = only_run(lab.folder() / "runs");
-  EXPECT_THAT(text_of(run / "baxter.txt"), HasSubstr("\ntap 1: contact at "));
-  const Ended bag = lab.probe({"bag", (run / "baxter.bag").string()});
-  ASSERT_EQ(bag.status, 0) << bag.err;
-  for (const char* line :
-       {"/robot/limb/left/endpoint_state baxter_core_msgs/EndpointState 44bea01d596ff699fa1447bec34167ac",
-        "/robot/joint_states sensor_msgs/JointState 3066dcd76a6cfaef579bd0f34173e9fd",
-        "/robot/state baxter_core_msgs/AssemblyState 356d9dd237ce73b2667da9235f541933",
-        "/robot/limb/left/joint_command baxter_core_msgs/JointCommand 19bfec8434dd568ab3c633d187c36f2e",
-        "/palpate/surface sensor_msgs/PointCloud2 1158d486dd51d683ce2f1be655c3c181",
-        "/palpate/taps visualization_msgs/MarkerArray"}) {
-    EXPECT_THAT(bag.out, HasSubstr(line));
-  }
+  palpate_does(lab, again);
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact", "aborted", "contact", "contact"));
 }
 
 TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
+  RobotLab lab(robot_words());
   const std::unique_ptr<Child> first = lab.start_palpate(run_words(3));
-  ASSERT_TRUE(logged(lab.folder() / "runs", 1));
+  ASSERT_TRUE(logged(lab, 1));
   const Ended second = lab.palpate(run_words(2, {"seed=2"}));
   EXPECT_EQ(second.status, 1);
   EXPECT_THAT(second.err, HasSubstr("joint_command: another palpate moves this arm, the node /palpate_"));
-  EXPECT_EQ(lab.palpate(run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"})).status, 0)
-      << "moves nothing";
+  palpate_does(lab, run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"}));  // which moves nothing
   const Ended ended = first->wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
 }
 
 TEST(RobotSweep, TapsOneJobAfterTheOtherHoweverManyMayRunAtATime) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  const Ended ended = lab.palpate(
-      {"sweep", object_i(), "backend=fake_baxter", "taps=2", "initial.count=2", "seed=1,2", "-j", "2", "--quiet"});
-  ASSERT_EQ(ended.status, 0) << ended.err;
+  const RobotLab lab(robot_words());
+  palpate_does(
+      lab, {"sweep", object_i(), "backend=fake_baxter", "taps=2", "initial.count=2", "seed=1,2", "-j", "2", "--quiet"});
 }
 
 TEST(RobotRun, AsksTheRobotsInverseKinematicsIfItIsToldTo) {
-  RobotLab lab;
-  lab.start_robot(robot_words());
-  const Ended ended = lab.palpate(run_words(2, {"backend.inverse_kinematics=robot"}));
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("contact", "contact"));
+  const RobotLab lab(robot_words());
+  palpate_does(lab, run_words(2, {"backend.inverse_kinematics=robot"}));
+  EXPECT_THAT(outcomes(lab), ElementsAre("contact", "contact"));
 }
 
 TEST(RobotRun, CallsAPlaceUnreachableWhereTheRobotsInverseKinematicsHasNoAnswer) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--fault", "ik_invalid"}));
-  const Ended ended = lab.palpate(run_words(2, {"backend.inverse_kinematics=robot"}));
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(outcomes(only_run(lab.folder() / "runs")), ElementsAre("unreachable", "unreachable"));
+  RobotLab lab(robot_words({"--fault", "ik_invalid"}));
+  palpate_does(lab, run_words(2, {"backend.inverse_kinematics=robot"}));
+  EXPECT_THAT(outcomes(lab), ElementsAre("unreachable", "unreachable"));
   lab.end_robot();
   EXPECT_EQ(lab.trace().back().at("commands"), "0");
 }
 
 TEST(RobotRun, ComputesEveryPoseOfTheAreaInADryRunAndMovesNothing) {
-  RobotLab lab;
-  lab.start_robot(robot_words({"--fault", "disabled"}));
-  const Ended ended = lab.palpate(run_words(2, {"backend.dry_run=true"}));
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  const fs::path run = only_run(lab.folder() / "runs");
-  EXPECT_THAT(outcomes(run), ElementsAre("aborted", "aborted"));
-  EXPECT_THAT(text_of(run / "baxter.txt"), StartsWith("dry run: all 169 places of the area can be reached"));
+  RobotLab lab(robot_words({"--fault", "disabled"}));
+  palpate_does(lab, run_words(2, {"backend.dry_run=true"}));
+  EXPECT_THAT(outcomes(lab), ElementsAre("aborted", "aborted"));
+  EXPECT_THAT(text_of(run_of(lab) / "baxter.txt"), StartsWith("dry run: all 169 places of the area can be reached"));
   lab.end_robot();
   EXPECT_EQ(lab.trace().back().at("commands"), "0");
 }

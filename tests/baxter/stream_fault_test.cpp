@@ -10,13 +10,7 @@ namespace {
 
 using fake_baxter::Body;
 using fake_baxter::Delivery;
-using fake_baxter::ForceFaults;
-using fake_baxter::parse_fault;
-using fake_baxter::parse_trigger;
 using fake_baxter::Said;
-
-constexpr const char* kBare = "[]";
-constexpr const char* kQuiet = "{stiffness: {object: 1500 N/m}, force_noise: {deviation: 0 N}}";
 
 /// A second of what arrives, by the period in which it does.
 std::vector<std::vector<Said>> second(BodyBench& bench) {
@@ -52,7 +46,7 @@ TEST(Delivery, BringsEachPeriodWhatIsSaidInIt) {
 
 TEST(Delivery, InBurstsBringsAllThatWasSaidSinceTheBurstBefore) {
   BodyBench bench;
-  bench.body.inject(parse_fault("bursts=0.045"));
+  bench.inject("bursts=0.045");
   const auto arrived = second(bench);
   for (std::size_t i = 0; i < arrived.size(); ++i) {
     EXPECT_EQ(arrived[i].size(), i == 0 ? 1U : i % 5 == 0 ? 5U : 0U) << "every fifth period is the first after 45 ms";
@@ -62,7 +56,7 @@ TEST(Delivery, InBurstsBringsAllThatWasSaidSinceTheBurstBefore) {
 
 TEST(Delivery, BehindAStallBringsAllAtOnceAndThenGoesOn) {
   BodyBench bench;
-  bench.body.inject(parse_fault("stall=0.3"));
+  bench.inject("stall=0.3");
   const auto arrived = second(bench);
   for (std::size_t i = 0; i < arrived.size(); ++i) {
     EXPECT_EQ(arrived[i].size(), i < 29 ? 0U : i == 29 ? 30U : 1U) << i;
@@ -74,7 +68,7 @@ TEST(FakeBody, ASlowEndpointComesAtItsRateAndTheOtherStreamsAtTheirs) {
   for (const auto& [rate, words] :
        {std::pair(25, "slow_endpoint"), {30, "slow_endpoint=30"}, {100, "slow_endpoint=100"}}) {
     BodyBench bench;
-    bench.body.inject(parse_fault(words));
+    bench.inject(words);
     int endpoints = 0;
     for (int i = 0; i < 1000; ++i) {
       bench.hold(Body::kPeriod);
@@ -88,14 +82,14 @@ TEST(FakeBody, ASlowEndpointComesAtItsRateAndTheOtherStreamsAtTheirs) {
 
 TEST(FakeBody, OneReadingInAHundredHasASpikeOfNineNewtonsAsThoughItWerePressedUpwards) {
   BodyBench bench(kBare, kQuiet);
-  const double rest = bench.body.said().endpoint->force.z();
-  bench.body.inject(parse_fault("spikes"));
+  const double rest = bench.force().z();
+  bench.inject("spikes");
   int spiked = 0;
   for (int i = 0; i < 10000; ++i) {
     bench.hold(Body::kPeriod);
-    const double change = bench.body.said().endpoint->force.z() - rest;
+    const double change = bench.force().z() - rest;
     if (std::abs(change) < 1.0) continue;  // noise of 0.01 N
-    EXPECT_NEAR(change, -ForceFaults::kSpike, 0.1);
+    EXPECT_NEAR(change, -Body::kSpike, 0.1);
     ++spiked;
   }
   EXPECT_NEAR(spiked, 100, 40) << "four standard deviations of so many drawn";
@@ -106,13 +100,13 @@ TEST(FakeBody, InMotionItsForceIsOffAgainstTheMotionAndSidewaysAndAtRestItIsNot)
   // The bias by the pose is the same in both: what is left is the fault's.
   BodyBench sound(kBare, kQuiet);
   BodyBench faulty(kBare, kQuiet);
-  faulty.body.inject(parse_fault("moving_force=4"));
+  faulty.inject("moving_force=4");
   const auto off = [&](double to, bool at_rest) {
     for (BodyBench* bench : {&sound, &faulty}) {
       bench->lead({0.115, 0.115, to}, 0.03);
       if (at_rest) bench->hold(3.0);
     }
-    return Eigen::Vector3d(faulty.body.said().endpoint->force - sound.body.said().endpoint->force);
+    return Eigen::Vector3d(faulty.force() - sound.force());
   };
   const Eigen::Vector3d down = off(0.10, false);
   const Eigen::Vector3d below = off(0.10, true);
@@ -125,17 +119,17 @@ TEST(FakeBody, InMotionItsForceIsOffAgainstTheMotionAndSidewaysAndAtRestItIsNot)
 }
 
 TEST(FakeBody, SaysWhatItsCollisionAvoidanceKeepsAwayFrom) {
-  BodyBench bench;
-  EXPECT_FALSE(bench.body.said().avoidance->other_arm);
-  EXPECT_TRUE(bench.body.said().avoidance->objects.empty());
-  BodyBench torso;
-  torso.body.inject(parse_fault("avoid"));
-  EXPECT_FALSE(torso.body.said().avoidance->other_arm);
-  EXPECT_EQ(torso.body.said().avoidance->objects, std::vector<std::string>{"torso"});
-  BodyBench arm;
-  arm.body.inject(parse_fault("avoid=other_arm"));
-  EXPECT_TRUE(arm.body.said().avoidance->other_arm);
-  EXPECT_TRUE(arm.body.said().avoidance->objects.empty());
+  const auto avoided = [](const char* fault) {
+    BodyBench bench;
+    if (*fault != '\0') bench.inject(fault);
+    return *bench.body.said().avoidance;
+  };
+  const auto nothing = avoided("");
+  EXPECT_TRUE(!nothing.other_arm && nothing.objects.empty());
+  const auto torso = avoided("avoid");
+  EXPECT_TRUE(!torso.other_arm && torso.objects == std::vector<std::string>{"torso"});
+  const auto arm = avoided("avoid=other_arm");
+  EXPECT_TRUE(arm.other_arm && arm.objects.empty());
 }
 
 TEST(FakeBody, TheEffortsOfItsJointsHaveThePowerWithWhichItPresses) {
@@ -158,8 +152,8 @@ TEST(FakeBody, AnotherProgramMaySlowItDownAndShortenItsPatienceInTheMiddleOfARun
   BodyBench bench(kBare, kQuiet);
   EXPECT_EQ(bench.body.speed_ratio(), 0.3);
   EXPECT_EQ(bench.body.command_timeout(), 0.2);
-  bench.body.inject(parse_fault("speed_ratio"), parse_trigger("1:12cm"));
-  bench.body.inject(parse_fault("command_timeout=0.05"), parse_trigger("1:12cm"));
+  bench.inject("speed_ratio", "1:12cm");
+  bench.inject("command_timeout=0.05", "1:12cm");
   EXPECT_EQ(bench.body.speed_ratio(), 0.3);
   bench.lead({0.115, 0.115, 0.10}, 0.05);
   bench.hold(1.0);

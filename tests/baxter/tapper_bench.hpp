@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 namespace palpate::baxter::test {
 
 using palpate::test::wave_scene;
@@ -19,13 +21,33 @@ inline constexpr double kHover = 0.135;
 inline const Target kOnObject{0.115, 0.115};
 inline const Target kOnDesk{0.03, 0.03};
 
-/// The driver taps, the test looks on.
+template <class Options>
+using Change = std::function<void(Options&)>;
+
+/// fake_options() with a change.
+inline BaxterOptions with(const Change<BaxterOptions>& change) {
+  BaxterOptions out = fake_options();
+  change(out);
+  return out;
+}
+
+/// A calibration tap there.
+inline void calibrate(BaxterOptions& options, double x, double y) {
+  options.calibration.emplace();
+  options.calibration->at[0] = x;
+  options.calibration->at[1] = y;
+}
+
+/// The robot finds the joints.
+inline BaxterOptions asking() {
+  return with([](BaxterOptions& o) { o.inverse_kinematics = BaxterOptions::InverseKinematics::robot; });
+}
+
+/// The driver, which goes by `options`, taps with a robot as fake_options() has it but for `change`; the test looks on.
 class TapperBench {
  public:
-  explicit TapperBench(const BaxterOptions& options = fake_options(), const BaxterOptions& truth = fake_options(),
-                       const std::function<void(BodyOptions&)>& change = nullptr)
-      : options_(options),
-        robot(wave_scene(), changed(truth, change)),
+  explicit TapperBench(const BaxterOptions& options = fake_options(), const Change<BodyOptions>& change = nullptr)
+      : robot(wave_scene(), changed(change)),
         tapper_(options, wave_scene(), robot, &interrupted,
                 [this](const std::string& line) { notes.push_back(line); }) {}
 
@@ -34,23 +56,36 @@ class TapperBench {
     previous_ = place;
     return tapper_.tap(request);
   }
+  /// A contact there, whose height is so near to that of the scene.
+  Contact touch(const Target& place, double within = 0.002) {
+    const Contact out = tap(place);
+    EXPECT_EQ(out.outcome, Outcome::contact) << out.reason;
+    EXPECT_NEAR(out.height, wave_scene().height(place.x, place.y), within);
+    return out;
+  }
   std::vector<std::string> describe(const Target& place) {
     return tapper_.describe({taps_ + 1, place, previous_, std::nullopt});
   }
   void check() { tapper_.check(); }
   std::string learnt_sign() const { return tapper_.learnt_sign(); }
   double tip() const { return robot.body.tip().z(); }
+  /// Another program, or somebody's hand, has the arm for five seconds.
+  void lead_away(const Joints& joints) {
+    for (int i = 0; i < 500; ++i) {
+      robot.body.command(joints);
+      robot.wait_until(robot.body.now() + 0.01);
+    }
+  }
 
   std::atomic<bool> interrupted{false};
   std::vector<std::string> notes;
 
  private:
-  static BodyOptions changed(const BaxterOptions& truth, const std::function<void(BodyOptions&)>& change) {
-    BodyOptions out = body_options(truth);
+  static BodyOptions changed(const Change<BodyOptions>& change) {
+    BodyOptions out = body_options(fake_options());
     if (change) change(out);
     return out;
   }
-  BaxterOptions options_;
 
  public:
   BodyRobot robot;

@@ -13,17 +13,18 @@ namespace palpate::baxter {
 namespace {
 
 using fake_baxter::FaultKind;
+using test::asking;
 using test::fake_options;
 using test::kOnObject;
-using test::wave_scene;
+using test::with;
 using Bench = test::TapperBench;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 TEST(ADryRun, CommandsNothing) {
-  BaxterOptions options = fake_options();
-  options.dry_run = true;
-  Bench bench(options, fake_options(), [](test::BodyOptions& body) { body.start = fake_baxter::Start::tucked; });
+  Bench bench(with([](BaxterOptions& o) { o.dry_run = true; }));
   bench.robot.body.inject({FaultKind::tucked, 0.0, {}});
   bench.check();
   const Contact contact = bench.tap(kOnObject);
@@ -33,37 +34,96 @@ TEST(ADryRun, CommandsNothing) {
   EXPECT_THAT(bench.notes, testing::Contains(HasSubstr("all 169 places of the area can be reached")));
 }
 
-TEST(BeforeFlight, WhatOthersLeftOnTheRobotIsToldAndRefusedWhereTheArmWouldNotDoWhatItIsTold) {
-  const auto refusal = [](const std::function<void(Snapshot&)>& spoil) -> std::string {
+using Answer = Robot::Answer;
+
+/// Has the robot answer so when it is asked for joints.
+void answer(Bench& bench, const Answer& said) {
+  bench.robot.answer = [said](const Pose&, const Joints&) { return said; };
+}
+
+TEST(TheRobotsInverseKinematics, IsAskedForEveryPose) {
+  Bench bench(asking());
+  bench.touch(kOnObject);
+  EXPECT_GT(bench.robot.asked, 30);
+}
+
+TEST(TheRobotsInverseKinematics, IsNotBelieved) {
+  const Arm gripper({0, 0, 0.025});
+  const std::function<Answer(const Pose&, const Joints&)> answers[] = {
+      [](const Pose&, const Joints&) { return Answer{}; },
+      [](const Pose&, const Joints&) {
+        return Answer{Joints::Constant(kNaN), {}};
+      },
+      [&](const Pose& pose, const Joints& seed) {  // another place
+        return Answer{gripper.solve({pose.position + Eigen::Vector3d(0, 0, 0.002), pose.rotation}, seed), {}};
+      },
+      [&](const Pose& pose, const Joints& seed) {  // beyond a limit
+        Answer out{gripper.solve(pose, seed), {}};
+        if (out.joints) (*out.joints)(6) += 2.0 * 3.14159265358979323846;
+        return out;
+      }};
+  for (const auto& one : answers) {
+    Bench bench(asking());
+    bench.robot.answer = one;
+    const Contact contact = bench.tap(kOnObject);
+    EXPECT_EQ(contact.outcome, Outcome::unreachable) << contact.reason;
+    EXPECT_TRUE(bench.robot.commands.empty());
+  }
+}
+
+TEST(TheRobotsInverseKinematics, EndsTheRunBeforeAnythingMovesWhenItDoesNotAnswer) {
+  Bench bench(asking());
+  answer(bench, {{}, "IKService did not answer"});
+  const Contact contact = bench.tap(kOnObject);
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_TRUE(contact.ends_run);
+  EXPECT_THAT(contact.reason, StartsWith("IKService did not answer"));
+  EXPECT_TRUE(bench.robot.commands.empty());
+}
+
+/// What is to be said, on one line, before anything is sent; "" where nothing is wrong.
+void expect_check(Bench& bench, const std::string& reason) {
+  std::string said;
+  try {
+    bench.check();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::run);
+    said = error.what();
+  }
+  EXPECT_EQ(said.empty(), reason.empty()) << said;
+  EXPECT_THAT(said, HasSubstr(reason));
+  EXPECT_TRUE(bench.robot.commands.empty());
+}
+
+TEST(BeforeFlight, WhatTheRobotSaysIsRefusedWhereTheArmWouldNotDoWhatItIsTold) {
+  const auto ratio = [](double value) { return [=](Snapshot& s) { s.speed_ratio = Setting{value, "/other"}; }; };
+  const auto timeout = [](double value) { return [=](Snapshot& s) { s.command_timeout = Setting{value, "/other"}; }; };
+  const auto avoids = [](bool arm, const std::vector<std::string>& objects) {
+    return [=](Snapshot& s) { s.avoidance = AvoidanceReading{{}, arm, objects}; };
+  };
+  const auto seldom = [held = std::optional<EndpointReading>()](Snapshot& s) mutable {  // 25 Hz
+    if (!held || s.now - held->received >= 0.04 - 1e-9) held = s.endpoint;
+    s.endpoint = held;
+  };
+  const char* other_timeout = "set it to 0.2, on /robot/limb/left/joint_command_timeout";
+  const std::pair<std::function<void(Snapshot&)>, const char*> cases[] = {
+      {ratio(0.3), ""},
+      {ratio(0.03), "/other has set it to 0.03, at which the arm cannot follow"},
+      {timeout(0.2), ""},
+      {timeout(0.02), other_timeout},
+      {timeout(5.0), other_timeout},
+      {timeout(kNaN), other_timeout},
+      {avoids(false, {}), ""},
+      {avoids(true, {"torso"}), "pushes the arm away from the other arm and torso"},
+      {seldom, "endpoint_state of the left arm came only "}};
+  for (const auto& [spoil, reason] : cases) {
     Bench bench;
     bench.robot.spoil = spoil;
-    try {
-      bench.check();
-    } catch (const Error& error) {
-      EXPECT_TRUE(bench.robot.commands.empty());
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(refusal([](Snapshot& s) { s.speed_ratio = Setting{0.3, "/other"}; }), "");
-  EXPECT_THAT(refusal([](Snapshot& s) {
-                s.speed_ratio = Setting{0.03, "/other"};
-              }),
-              HasSubstr("/other has set it to 0.03, at which the arm cannot follow"));
-  EXPECT_EQ(refusal([](Snapshot& s) { s.command_timeout = Setting{0.2, "/other"}; }), "");
-  for (const double timeout : {0.02, 5.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THAT(refusal([&](Snapshot& s) {
-                  s.command_timeout = Setting{timeout, "/other"};
-                }),
-                HasSubstr("set it to 0.2, on /robot/limb/left/joint_command_timeout"));
+    expect_check(bench, reason);
   }
-  EXPECT_EQ(refusal([](Snapshot& s) { s.avoidance = AvoidanceReading{}; }), "");
-  EXPECT_THAT(refusal([](Snapshot& s) {
-                s.avoidance = AvoidanceReading{};
-                s.avoidance->other_arm = true;
-                s.avoidance->objects = {"torso"};
-              }),
-              HasSubstr("pushes the arm away from the other arm and torso"));
+}
+
+TEST(BeforeFlight, WhatOthersLeftOnTheRobotIsTold) {
   Bench bench;
   bench.robot.spoil = [](Snapshot& s) {
     s.speed_ratio = Setting{0.5, "/other"};
@@ -75,93 +135,21 @@ TEST(BeforeFlight, WhatOthersLeftOnTheRobotIsToldAndRefusedWhereTheArmWouldNotDo
                                                 HasSubstr("rethink electric gripper, 0.8 kg beyond the flange")));
 }
 
-BaxterOptions asking() {
-  BaxterOptions out = fake_options();
-  out.inverse_kinematics = BaxterOptions::InverseKinematics::robot;
-  return out;
-}
-
-TEST(TheRobotsInverseKinematics, IsAskedForEveryPose) {
-  Bench bench(asking());
-  const Contact contact = bench.tap(kOnObject);
-  ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-  EXPECT_NEAR(contact.height, wave_scene().height(kOnObject.x, kOnObject.y), 0.002);
-  EXPECT_GT(bench.robot.asked, 30);
-}
-
-TEST(TheRobotsInverseKinematics, IsNotBelieved) {
-  const Arm gripper({0, 0, 0.025});
-  const auto expect_unreachable = [](const std::function<Robot::Answer(const Pose&, const Joints&)>& answer) {
-    Bench bench(asking());
-    bench.robot.answer = answer;
-    const Contact contact = bench.tap(kOnObject);
-    EXPECT_EQ(contact.outcome, Outcome::unreachable) << contact.reason;
-    EXPECT_TRUE(bench.robot.commands.empty());
-  };
-  expect_unreachable([](const Pose&, const Joints&) { return Robot::Answer{}; });
-  expect_unreachable([](const Pose&, const Joints&) {
-    return Robot::Answer{Joints::Constant(std::numeric_limits<double>::quiet_NaN()), {}};
-  });
-  expect_unreachable([&](const Pose& pose, const Joints& seed) {  // another place
-    Pose off = pose;
-    off.position.z() += 0.002;
-    return Robot::Answer{gripper.solve(off, seed), {}};
-  });
-  expect_unreachable([&](const Pose& pose, const Joints& seed) {  // beyond a limit
-    Robot::Answer out{gripper.solve(pose, seed), {}};
-    if (out.joints) (*out.joints)(6) += 2.0 * 3.14159265358979323846;
-    return out;
-  });
-}
-
-TEST(TheRobotsInverseKinematics, EndsTheRunBeforeAnythingMovesWhenItDoesNotAnswer) {
-  Bench bench(asking());
-  bench.robot.answer = [](const Pose&, const Joints&) { return Robot::Answer{{}, "IKService did not answer"}; };
-  const Contact contact = bench.tap(kOnObject);
-  EXPECT_EQ(contact.outcome, Outcome::aborted);
-  EXPECT_TRUE(contact.ends_run);
-  EXPECT_THAT(contact.reason, StartsWith("IKService did not answer"));
-  EXPECT_TRUE(bench.robot.commands.empty());
-}
-
-void expect_refused(Bench& bench, const std::string& reason) {
-  try {
-    bench.check();
-    FAIL() << "expected: " << reason;
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr(reason));
-    EXPECT_EQ(error.kind(), Error::Kind::run);
-  }
-  EXPECT_TRUE(bench.robot.commands.empty());
-}
-
-TEST(BeforeFlight, AGripperThatTheConfigDoesNotKnowIsNamedWithItsLength) {
-  BaxterOptions truth = fake_options();
-  truth.tool.gripper = 0.1585;
-  Bench bench(fake_options(), truth);
-  expect_refused(bench,
-                 "tool.gripper: the robot has left_gripper 15.85 cm from left_hand, the config has it at 2.50 cm");
-}
-
-TEST(BeforeFlight, AnArmBesideTheAreaIsRefused) {
-  Bench bench(fake_options(), fake_options(),
-              [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(-0.12, 0.1, 0.2); });
-  expect_refused(bench, "more than 10 cm beside the area, bring the tool by hand to a place above the area");
-}
-
-TEST(BeforeFlight, AToolThatDoesNotPointDownIsRefused) {
-  Bench bench;
-  Joints leaning = bench.robot.body.joints();
-  leaning(5) -= 0.5;
-  for (int i = 0; i < 500; ++i) {
-    bench.robot.body.command(leaning);
-    bench.robot.wait_until(bench.robot.body.now() + 0.01);
-  }
-  expect_refused(bench, "the tool does not point down");
+TEST(BeforeFlight, AnArmThatIsNotAsTheConfigHasItIsRefused) {
+  Bench longer(fake_options(), [](test::BodyOptions& body) { body.tool.gripper = 0.1585; });
+  expect_check(longer,
+               "tool.gripper: the robot has left_gripper 15.85 cm from left_hand, the config has it at 2.50 cm");
+  Bench beside(fake_options(), [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(-0.12, 0.1, 0.2); });
+  expect_check(beside, "more than 10 cm beside the area, bring the tool by hand to a place above the area");
+  Bench leaning;
+  Joints lean = leaning.robot.body.joints();
+  lean(5) -= 0.5;
+  leaning.lead_away(lean);
+  expect_check(leaning, "the tool does not point down");
 }
 
 TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
-  const std::vector<std::pair<FaultKind, const char*>> cases{
+  const std::pair<FaultKind, const char*> cases[] = {
       {FaultKind::disabled, "the robot is disabled: enable it"},
       {FaultKind::zero_wrench, "a force of exactly zero"},
       {FaultKind::second_state, "more than one node, /realtime_loop and /mock_robot"},
@@ -172,24 +160,21 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
     Bench bench;
     bench.robot.body.inject({kind, 100.0, {}});
     bench.robot.wait_until(bench.robot.body.now() + 0.1);
-    expect_refused(bench, reason);
+    expect_check(bench, reason);
   }
 }
 
 TEST(BeforeFlight, ACalibrationTapBesideTheAreaIsRefused) {
-  BaxterOptions options = fake_options();
-  options.calibration.emplace();
-  options.calibration->at[0] = 0.25;
-  Bench bench(options);
-  expect_refused(bench, "calibration.at: lies outside of the area");
+  Bench bench(with([](BaxterOptions& o) { test::calibrate(o, 0.25, 0.0); }));
+  expect_check(bench, "calibration.at: lies outside of the area");
 }
 
 TEST(BeforeFlight, ADryRunWithoutAnAnswerOfTheRobotsInverseKinematicsSaysSo) {
   BaxterOptions options = asking();
   options.dry_run = true;
   Bench bench(options);
-  bench.robot.answer = [](const Pose&, const Joints&) { return Robot::Answer{{}, "IKService did not answer"}; };
-  expect_refused(bench, "IKService did not answer");
+  answer(bench, {{}, "IKService did not answer"});
+  expect_check(bench, "IKService did not answer");
 }
 
 }  // namespace

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What goes wrong in a tap, and in which state that leaves the arm.
 #include "baxter/tapper_bench.hpp"
-
-#include <palpate/error.hpp>
+#include "baxter/troubles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <ostream>
 
 namespace palpate::baxter {
 namespace {
@@ -38,34 +35,21 @@ TEST(ATap, InterruptedIsAbortedAndTheArmRaised) {
 }
 
 TEST(ATap, WithTheForceOfTheOtherSignIsStoppedAndSaysWhatToSet) {
-  BaxterOptions options = fake_options();
-  options.force_sign = BaxterOptions::ForceSign::positive;
-  Bench bench(options);
+  Bench bench(test::with([](BaxterOptions& o) { o.force_sign = BaxterOptions::ForceSign::positive; }));
   const Contact contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr("force_sign is wrong"));
   EXPECT_NEAR(bench.tip(), kHover, 0.01);
 }
 
-enum class Arm_ { held, raised };
+class TroubleInATap : public testing::TestWithParam<palpate::test::Trouble> {};
 
-struct Trouble {
-  FaultKind kind;
-  double amount;
-  const char* reason;
-  Arm_ arm;
-  bool ends_run;
-};
-
-void PrintTo(const Trouble& trouble, std::ostream* out) { *out << trouble.reason; }
-
-class TroubleInATap : public testing::TestWithParam<Trouble> {};
-
-void expect_safe(const Trouble& trouble, fake_baxter::MechanicsOptions::Type arm) {
-  Bench bench(fake_options(), fake_options(), [&](test::BodyOptions& body) { body.mechanics.type = arm; });
+void expect_safe(const palpate::test::Trouble& trouble, fake_baxter::MechanicsOptions::Type arm) {
+  Bench bench(fake_options(), [&](test::BodyOptions& body) { body.mechanics.type = arm; });
   bench.check();
   ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
-  bench.robot.body.inject({trouble.kind, trouble.amount, {}}, {1, 0.125});  // on the way down to the object at 11 cm
+  bench.robot.body.inject(fake_baxter::parse_fault(trouble.fault),
+                          {1, 0.125});  // on the way down to the object at 11 cm
   double since = 0.0;
   double lowest = 1.0;
   bench.robot.every_period = [&] {
@@ -83,7 +67,7 @@ void expect_safe(const Trouble& trouble, fake_baxter::MechanicsOptions::Type arm
   const double left_at = bench.tip();
   for (int i = 0; i < 300; ++i) bench.robot.body.step();
   EXPECT_NEAR(bench.tip(), left_at, 0.005) << "it stands";
-  if (trouble.arm == Arm_::raised) {
+  if (trouble.raised) {
     EXPECT_THAT(contact.reason,
                 testing::AnyOf(EndsWith("the arm was raised to the height of travel"), HasSubstr("its zero moved")));
     EXPECT_NEAR(bench.tip(), kHover, 0.01);
@@ -102,27 +86,8 @@ TEST_P(TroubleInATap, LeavesTheArmWithMassesAsSafe) {
   expect_safe(GetParam(), fake_baxter::MechanicsOptions::Type::springs);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OnTheWayDown, TroubleInATap,
-    testing::Values(
-        Trouble{FaultKind::estop, 2, "the emergency stop is pressed", Arm_::held, true},
-        Trouble{FaultKind::error, 0, "the robot reports an error and is disabled", Arm_::held, true},
-        Trouble{FaultKind::squish, 0, "the arm's own reflex stopped it", Arm_::raised, true},
-        Trouble{FaultKind::freeze_endpoint, 0, "the same force to the last digit", Arm_::held, true},
-        Trouble{FaultKind::kill_endpoint, 0, "endpoint_state of the left arm did not come", Arm_::held, true},
-        Trouble{FaultKind::kill_joints, 0, "joint_states of the left arm did not come", Arm_::held, true},
-        Trouble{FaultKind::kill_state, 0, "/robot/state did not come", Arm_::held, true},
-        Trouble{FaultKind::stale_stamps, 0, "its data are stale", Arm_::held, true},
-        Trouble{FaultKind::second_state, 0, "more than one node", Arm_::held, true},
-        Trouble{FaultKind::nan_wrench, 0, "no number", Arm_::held, true},
-        Trouble{FaultKind::zero_wrench, 0, "exactly zero", Arm_::held, true},
-        Trouble{FaultKind::bias, 8, "its zero moved", Arm_::raised, false},
-        Trouble{FaultKind::bias, 20, "more than force_stop allows", Arm_::raised, true},
-        Trouble{FaultKind::bias, -12, "the force fell by more than the threshold", Arm_::raised, true},
-        Trouble{FaultKind::drop_commands, 5, "the arm does not follow", Arm_::held, true},
-        Trouble{FaultKind::jump_joints, 0.3, "jumped by", Arm_::held, true},
-        Trouble{FaultKind::freeze_clock, 0, "the clock of the robot's network stands still", Arm_::held, true}),
-    [](const auto& trouble) { return "Number" + std::to_string(trouble.index); });
+INSTANTIATE_TEST_SUITE_P(OnTheWayDown, TroubleInATap, testing::ValuesIn(palpate::test::kTroubles),
+                         [](const auto& trouble) { return name_of(trouble.param); });
 
 TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
   Bench bench;
@@ -175,11 +140,9 @@ TEST(AFault, ThatNobodyThoughtOfIsRecordedAndNothingMoreIsSent) {
 }
 
 TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
-  BaxterOptions options = fake_options();
-  options.inverse_kinematics = BaxterOptions::InverseKinematics::robot;
-  Bench bench(options);
+  Bench bench(test::asking());
   bench.check();
-  const Arm gripper({0, 0, options.tool.gripper});
+  const Arm gripper({0, 0, 0.025});
   bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
     bench.interrupted = true;
     return Robot::Answer{gripper.solve(pose, seed), {}};
@@ -193,9 +156,7 @@ TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
 }
 
 TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
-  BaxterOptions options = fake_options();
-  options.inverse_kinematics = BaxterOptions::InverseKinematics::robot;
-  Bench bench(options);
+  Bench bench(test::asking());
   bench.robot.every_period = [&] {
     if (bench.tip() > 0.12) return;
     bench.interrupted = true;

@@ -12,24 +12,29 @@ namespace palpate::baxter {
 namespace {
 
 using fake_baxter::Body;
+using test::calibrate;
 using test::fake_options;
 using test::kHover;
 using test::kOnDesk;
 using test::kOnObject;
 using test::wave_scene;
+using test::with;
 using Bench = test::TapperBench;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 using Type = tapping::MotionOptions::Type;
 
+/// A robot whose tip is there at the start.
+test::Change<test::BodyOptions> starts(const Eigen::Vector3d& at) {
+  return [at](test::BodyOptions& body) { body.start_at = at; };
+}
+
 TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
   Bench bench;
   bench.check();
   for (const Target& place : {kOnObject, kOnDesk, Target{0.115, 0.05}, Target{0.2, 0.21}}) {
-    const Contact contact = bench.tap(place);
-    ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-    EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.002);
+    const Contact contact = bench.touch(place);
     EXPECT_NEAR(bench.tip(), kHover, 0.01);
     EXPECT_GT(contact.force, 5.0);
     EXPECT_LT(contact.force, Body::kReflex);
@@ -41,17 +46,11 @@ TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
 
 TEST(ATap, CanBeMadeInEveryMotion) {
   for (const Type type : {Type::paper, Type::two_stage, Type::continuous}) {
-    BaxterOptions options = fake_options();
-    options.motion.type = type;
-    Bench bench(options);
+    Bench bench(with([&](BaxterOptions& o) { o.motion.type = type; }));
     double hardest = 0.0;
     bench.robot.every_period = [&] { hardest = std::max(hardest, bench.robot.body.pressing()); };
-    for (const Target& place : {kOnObject, kOnDesk}) {
-      const Contact contact = bench.tap(place);
-      ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-      // Where the arm rests, the object has given way by the force over 1500 N/m.
-      EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), type == Type::continuous ? 0.002 : 0.01);
-    }
+    // Where the arm rests, the object has given way by the force over 1500 N/m.
+    for (const Target& place : {kOnObject, kOnDesk}) bench.touch(place, type == Type::continuous ? 0.002 : 0.01);
     EXPECT_LT(hardest, Body::kReflex) << "the firmware never had to stop it";
   }
 }
@@ -74,8 +73,7 @@ TEST(ATap, CommandsTheMeasuredJointsFirstAndNeverJumpsButBackToThem) {
 }
 
 TEST(ATap, BelowTheHeightOfTravelGoesStraightUpFirst) {
-  Bench bench(fake_options(), fake_options(),
-              [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(0.02, 0.02, -0.002); });
+  Bench bench(fake_options(), starts({0.02, 0.02, -0.002}));
   const Eigen::Vector3d start = bench.robot.body.tip();
   double aside = 0.0;
   bool up = false;
@@ -91,25 +89,13 @@ TEST(ATap, BelowTheHeightOfTravelGoesStraightUpFirst) {
 
 TEST(ATap, GoesOnAfterTheArmWasMovedByHandInBetween) {
   Bench bench;
-  ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
-  // Seconds without commands: the arm is in nobody's hand, and another program drives it elsewhere above the area.
-  const test::PlannerBench plans;
-  const Joints elsewhere = plans.at(0.2, 0.05, 0.2);
-  for (int i = 0; i < 500; ++i) {
-    bench.robot.body.command(elsewhere);
-    bench.robot.wait_until(bench.robot.body.now() + 0.01);
-  }
-  const Contact contact = bench.tap(kOnObject);
-  ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-  EXPECT_NEAR(contact.height, wave_scene().height(kOnObject.x, kOnObject.y), 0.002);
+  bench.touch(kOnDesk);
+  bench.lead_away(test::PlannerBench().at(0.2, 0.05, 0.2));
+  bench.touch(kOnObject);
 }
 
 TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
-  BaxterOptions options = fake_options();
-  options.calibration.emplace();
-  options.calibration->at[0] = options.calibration->at[1] = 0.02;
-  Bench bench(options, fake_options(),
-              [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(0.04, 0.07, 0.05); });
+  Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.02, 0.02); }), starts({0.04, 0.07, 0.05}));
   EXPECT_THAT(
       bench.describe({0.1, 0.2}),
       ElementsAre("rise from 5.0 cm above the desk", "before it, a calibration tap on the bare desk at (2.0, 2.0) cm",
@@ -123,9 +109,7 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
 }
 
 TEST(ATap, OutOfReachMovesNothing) {
-  BaxterOptions far = fake_options();
-  far.place.corner[0] = 0.9;
-  Bench bench(far);
+  Bench bench(with([](BaxterOptions& o) { o.place.corner[0] = 0.9; }));
   const Contact contact = bench.tap({0.23, 0.0});
   EXPECT_EQ(contact.outcome, Outcome::unreachable);
   EXPECT_THAT(contact.reason, StartsWith("no position of the joints"));
@@ -134,10 +118,7 @@ TEST(ATap, OutOfReachMovesNothing) {
 }
 
 TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
-  BaxterOptions options = fake_options();
-  options.place.height += 0.1;  // the desk lies 10 cm lower than the config has it
-  options.motion.timeout = 60;
-  Bench bench(options);
+  Bench bench(with([](BaxterOptions& o) { o.place.height += 0.1; }));  // the desk lies lower than the config has it
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::no_contact);
   EXPECT_FALSE(contact.ends_run);
@@ -145,22 +126,16 @@ TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
 }
 
 TEST(ACalibrationTap, PutsTheZeroWhereTheDeskIs) {
-  BaxterOptions options = fake_options();
-  options.place.height += 0.006;  // measured too high
-  options.calibration.emplace();
-  options.calibration->at[0] = options.calibration->at[1] = 0.02;
-  Bench bench(options);
-  const Contact contact = bench.tap(kOnObject);
-  ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-  EXPECT_NEAR(contact.height, wave_scene().height(kOnObject.x, kOnObject.y), 0.002);
-  EXPECT_NEAR(bench.tap(kOnDesk).height, 0.0, 0.002) << "once is enough";
+  Bench bench(with([](BaxterOptions& o) {
+    o.place.height += 0.006;  // measured too high
+    calibrate(o, 0.02, 0.02);
+  }));
+  bench.touch(kOnObject);
+  bench.touch(kOnDesk);  // once is enough
 }
 
 TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
-  BaxterOptions options = fake_options();
-  options.calibration.emplace();
-  options.calibration->at[0] = options.calibration->at[1] = 0.115;  // on the object
-  Bench bench(options);
+  Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.115, 0.115); }));  // on the object
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
@@ -170,10 +145,10 @@ TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
 TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
   for (const Type type : {Type::paper, Type::two_stage, Type::continuous}) {
     const auto tapped = [&](bool rises) {
-      BaxterOptions options = fake_options();
-      options.motion.type = type;
-      if (rises) options.force_sign = BaxterOptions::ForceSign::positive;
-      Bench bench(options);
+      Bench bench(with([&](BaxterOptions& o) {
+        o.motion.type = type;
+        if (rises) o.force_sign = BaxterOptions::ForceSign::positive;
+      }));
       if (rises) bench.robot.spoil = [](Snapshot& seen) { seen.endpoint->force.z() *= -1.0; };
       return bench.tap(kOnObject);
     };
@@ -188,21 +163,13 @@ TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
 
 TEST(ACalibrationTap, LearnsTheSignOfTheForceAndComesDownGently) {
   for (const double sign : {1.0, -1.0}) {
-    BaxterOptions options = fake_options();
-    options.calibration.emplace();
-    options.calibration->at[0] = options.calibration->at[1] = 0.02;
-    options.force_sign.reset();  // what the config says nothing of
-    Bench bench(options);
+    Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.02, 0.02); }));  // which says nothing of force_sign
     bench.robot.spoil = [&](Snapshot& seen) { seen.endpoint->force.z() *= sign; };
     double hardest = 0.0;
     bench.robot.every_period = [&] {
       if (bench.robot.body.tip().x() < 0.04) hardest = std::max(hardest, bench.robot.body.pressing());
     };
-    for (const Target& place : {kOnObject, Target{0.2, 0.2}}) {
-      const Contact contact = bench.tap(place);
-      ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-      EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.003);
-    }
+    for (const Target& place : {kOnObject, Target{0.2, 0.2}}) bench.touch(place, 0.003);
     EXPECT_EQ(bench.learnt_sign(), sign > 0.0 ? "negative" : "positive");
     EXPECT_LT(hardest, 11.0) << "4 N, and the noise and the lag of an arm that stops";
     EXPECT_GT(hardest, 2.0);
@@ -220,9 +187,7 @@ TEST(ForceSign, IsLearntWithACalibrationTapAndElseThatOfOtherProgramsUnlessTheCo
 }
 
 TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
-  BaxterOptions options = fake_options();
-  options.motion.type = Type::two_stage;
-  Bench bench(options);
+  Bench bench(with([](BaxterOptions& o) { o.motion.type = Type::two_stage; }));
   // The springs have another zero after the first contact: beside the force of the second it would be too much.
   bool touched = false;
   bool over = false;
@@ -252,11 +217,7 @@ TEST(ATap, IsBelievedThoughTheForceIsAnotherWhileTheArmMoves) {
   for (const double offset : {4.0, -4.0}) {
     Bench bench;
     bench.robot.spoil = moves(offset, bench);
-    for (const Target& place : {kOnObject, kOnDesk, Target{0.2, 0.03}, Target{0.115, 0.08}}) {
-      const Contact contact = bench.tap(place);
-      ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-      EXPECT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.003) << offset;
-    }
+    for (const Target& place : {kOnObject, kOnDesk, Target{0.2, 0.03}, Target{0.115, 0.08}}) bench.touch(place, 0.003);
     ASSERT_FALSE(bench.notes.empty());
     EXPECT_THAT(bench.notes.front(), StartsWith("coming down in the air the force along z reads "));
   }
@@ -292,38 +253,17 @@ TEST(ATap, DoesNotMakeUpForPeriodsThatItsComputerMissed) {
   Bench bench;
   int period = 0;
   bench.robot.late = [&] { return ++period % 20 == 0 ? 0.045 : 0.0; };
-  const Contact contact = bench.tap(kOnObject);
-  ASSERT_EQ(contact.outcome, Outcome::contact) << contact.reason;
-  EXPECT_NEAR(contact.height, wave_scene().height(kOnObject.x, kOnObject.y), 0.003);
+  bench.touch(kOnObject, 0.003);
   ASSERT_GT(bench.robot.commanded.size(), 300U);
   for (std::size_t i = 1; i < bench.robot.commanded.size(); ++i) {
     ASSERT_GT(bench.robot.commanded[i] - bench.robot.commanded[i - 1], 0.0099) << "set-point " << i;
   }
 }
 
-TEST(ARobot, WhoseForceComesTooSeldomIsRefusedBeforeAnythingMoves) {
-  Bench bench;
-  std::optional<EndpointReading> held;
-  bench.robot.spoil = [&](Snapshot& seen) {
-    if (!held || seen.now - held->received >= 0.04 - 1e-9) held = seen.endpoint;
-    seen.endpoint = held;
-  };
-  try {
-    bench.check();
-    FAIL() << "25 Hz were taken";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("endpoint_state of the left arm came only "));
-  }
-  EXPECT_TRUE(bench.robot.commands.empty());
-}
-
 TEST(ATap, IsNotBegunWhereTheWayToItCannotBePlanned) {
-  BaxterOptions options = fake_options();
-  options.inverse_kinematics = BaxterOptions::InverseKinematics::robot;
-  const auto begin = [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(0.02, 0.02, 0.05); };
-  Bench bench(options, fake_options(), begin);
+  Bench bench(test::asking(), starts({0.02, 0.02, 0.05}));
   const test::PlannerBench plans;
-  const Arm gripper({0, 0, options.tool.gripper});
+  const Arm gripper({0, 0, 0.025});
   bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
     const Eigen::Vector3d at = plans.planner.to_scene(pose.position);
     const bool on_the_way = (at - Eigen::Vector3d(0.07, 0.07, at.z())).norm() < 0.02;

@@ -4,6 +4,7 @@
 
 #include "elsewhere.hpp"
 #include "robot_lab.hpp"
+#include "robot_words.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -26,19 +27,18 @@ namespace {
 
 using baxter::View;
 using sensor_msgs::PointCloud2;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 /// The corner at (0.5, 0.1, -0.2) of the robot's base, turned by a right angle: x of the scene is y of the base.
-std::unique_ptr<View> turned_view() {
+std::unique_ptr<View> turned_view(baxter::Robot& robot) {
   baxter::PlaceOptions place;
   place.corner[0] = 0.5;
   place.corner[1] = 0.1;
   place.height = -0.2;
   place.rotation = std::acos(0.0);
-  return baxter::make_view(place, {0.3, 0.2}, 0.01);
+  return baxter::make_view(robot, place, {0.3, 0.2}, 0.01);
 }
 
 /// What somebody sees who comes late; "nothing" if a message does not come in 20 s.
@@ -80,52 +80,44 @@ std::string told(const PointCloud2& cloud) {
   return text;
 }
 
-class Shown : public ::testing::Test {
- protected:
-  Shown() {
-    lab_.start_robot(
-        {(source_folder() / "configs/paper/object_i.yaml").string(), "backend=fake_baxter", "scene=object_i_arm"});
-  }
-
-  template <class Message>
-  std::string seen(const std::string& topic, const std::function<void(View&)>& show) const {
-    return elsewhere(lab_.environment(),
-                     [&] {
-                       const auto robot = baxter::connect({false, false});
-                       const std::unique_ptr<View> view = turned_view();
-                       show(*view);
-                       return seen_late<Message>(topic, [](const Message& message) { return told(message); });
-                     })
-        .printed;
-  }
-
-  RobotLab lab_;
-};
-
-TEST_F(Shown, TheAreaStandsInTheRobotsFrameBeforeTheFirstTap) {
-  EXPECT_EQ(seen<MarkerArray>("palpate/taps", [](View&) {}),
-            "area 0 in base at 0: (0.500 0.100 -0.190) (0.500 0.400 -0.190) (0.300 0.400 -0.190) (0.300 0.100 -0.190) "
-            "(0.500 0.100 -0.190)\n"
-            "on object 0 in base at 0, gone:\n"
-            "off object 0 in base at 0, gone:\n"
-            "next 0 in base at 0, gone:\n");
+/// What comes, late, of what is shown.
+template <class Message>
+std::string seen(const RobotLab& lab, const std::string& topic, const std::function<void(View&)>& show) {
+  return elsewhere(lab.environment(),
+                   [&] {
+                     const auto robot = baxter::connect({false, false});
+                     const std::unique_ptr<View> view = turned_view(*robot);
+                     show(*view);
+                     return seen_late<Message>(topic, [](const Message& message) { return told(message); });
+                   })
+      .printed;
 }
 
-TEST_F(Shown, TapsOnAndOffTheObjectAreToldApartAndTheNextStandsAboveTheDesk) {
-  EXPECT_THAT(seen<MarkerArray>("palpate/taps",
-                                [](View& view) {
-                                  view.target({0.1, 0.0});
-                                  view.tapped({0.1, 0.0}, 0.08, true);
-                                  view.target({0.2, 0.0});
-                                  view.tapped({0.2, 0.0}, 0.01, false);
-                                  view.target({0.0, 0.1});
-                                }),
-              HasSubstr("on object 0 in base at 0: (0.500 0.200 -0.120)\n"
-                        "off object 0 in base at 0: (0.500 0.300 -0.190)\n"
-                        "next 0 in base at 0: (0.400 0.100 -0.110) (0.400 0.100 -0.190)\n"));
+std::vector<std::string> in_real_time() { return {object_i(), "backend=fake_baxter", "scene=object_i_arm"}; }
+
+TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsFrame) {
+  const RobotLab lab(in_real_time());
+  const std::string area =
+      "area 0 in base at 0: (0.500 0.100 -0.190) (0.500 0.400 -0.190) (0.300 0.400 -0.190) (0.300 0.100 -0.190) "
+      "(0.500 0.100 -0.190)\n";
+  EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", [](View&) {}),
+            area + "on object 0 in base at 0, gone:\noff object 0 in base at 0, gone:\nnext 0 in base at 0, gone:\n");
+  const auto show = [](View& view) {
+    view.target({0.1, 0.0});
+    view.tapped({0.1, 0.0}, 0.08, true);
+    view.target({0.2, 0.0});
+    view.tapped({0.2, 0.0}, 0.01, false);
+    view.target({0.0, 0.1});
+  };
+  EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", show),
+            area +
+                "on object 0 in base at 0: (0.500 0.200 -0.120)\n"
+                "off object 0 in base at 0: (0.500 0.300 -0.190)\n"
+                "next 0 in base at 0: (0.400 0.100 -0.110) (0.400 0.100 -0.190)\n");
 }
 
-TEST_F(Shown, TheSurfaceHasItsStandardDeviationForIntensity) {
+TEST(Shown, TheSurfaceHasItsStandardDeviationForIntensity) {
+  const RobotLab lab(in_real_time());
   const auto show = [](double second) {
     return [second](View& view) {
       Points places(2, 2);
@@ -133,9 +125,9 @@ TEST_F(Shown, TheSurfaceHasItsStandardDeviationForIntensity) {
       view.surface(places, Eigen::Vector2d(0.05, second), Eigen::Vector2d(0.002, 0.01));
     };
   };
-  EXPECT_EQ(seen<PointCloud2>("palpate/surface", show(0.07)),
+  EXPECT_EQ(seen<PointCloud2>(lab, "palpate/surface", show(0.07)),
             "base\n0.500 0.100 -0.150: 0.002\n0.300 0.200 -0.130: 0.010\n");
-  EXPECT_THAT(seen<PointCloud2>("palpate/surface", show(std::numeric_limits<double>::quiet_NaN())),
+  EXPECT_THAT(seen<PointCloud2>(lab, "palpate/surface", show(std::numeric_limits<double>::quiet_NaN())),
               StartsWith("base, not dense\n"));
 }
 

@@ -7,26 +7,31 @@
 
 #include <functional>
 #include <limits>
-#include <ostream>
 
 namespace palpate::baxter {
 namespace {
 
+using test::IsFault;
+using test::IsNothing;
 using test::kInside;
 using test::kSpace;
+using test::kZero;
 using test::pose;
+using test::Rules;
 using test::sound;
+using test::Spoil;
 using testing::HasSubstr;
 using Then = Fault::Then;
+using Button = StateReading::Button;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// One thing that is wrong with a robot, and what is to be said and done about it.
 struct Wrong {
   const char* name;
-  std::function<void(Snapshot&)> spoil;
+  Spoil spoil;
   const char* reason;
-  Then then;
+  Then then = Then::silence;
 };
 
 void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.reason; }
@@ -34,145 +39,140 @@ void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.reason; }
 class BrokenRule : public testing::TestWithParam<Wrong> {};
 
 TEST_P(BrokenRule, StopsTheArmAndSaysWhy) {
-  Watch watch(kSpace, 14.0);
-  ASSERT_FALSE(watch.look(sound(1.0, pose()), kInside)) << "nothing is wrong before";
-  Snapshot seen = sound(1.01, pose());
-  GetParam().spoil(seen);
-  const std::optional<Fault> fault = watch.look(seen, kInside);
-  ASSERT_TRUE(fault);
-  EXPECT_THAT(fault->reason, HasSubstr(GetParam().reason));
-  EXPECT_EQ(fault->then, GetParam().then);
+  Rules rules;
+  ASSERT_THAT(rules.at(1.0), IsNothing()) << "before";
+  const std::optional<Fault> fault = rules.at(1.01, GetParam().spoil);
+  ASSERT_THAT(fault, IsFault(GetParam().reason, GetParam().then));
   EXPECT_TRUE(fault->ends_run);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheRobot, BrokenRule,
     testing::Values(
-        Wrong{"EmergencyStop", [](Snapshot& s) { s.state->estop_button = StateReading::Button::pressed; },
-              "the emergency stop is pressed: release it", Then::silence},
-        Wrong{"EmergencyStopReleased", [](Snapshot& s) { s.state->estop_button = StateReading::Button::released; },
-              "was pressed and is released: reset it (rosrun", Then::silence},
+        Wrong{"EmergencyStop", [](Snapshot& s) { s.state->estop_button = Button::pressed; },
+              "the emergency stop is pressed: release it"},
+        Wrong{"EmergencyStopReleased", [](Snapshot& s) { s.state->estop_button = Button::released; },
+              "was pressed and is released: reset it (rosrun"},
         Wrong{
             "Error",
             [](Snapshot& s) {
               s.state->error = true;
               s.state->enabled = false;
             },
-            "reports an error and is disabled: see its screen, then reset it (rosrun baxter_tools enable_robot.py -r)",
-            Then::silence},
-        Wrong{"Stopped", [](Snapshot& s) { s.state->stopped = true; }, "the robot is stopped", Then::silence},
-        Wrong{"Disabled", [](Snapshot& s) { s.state->enabled = false; }, "the robot is disabled: enable it",
-              Then::silence},
+            "reports an error and is disabled: see its screen, then reset it (rosrun baxter_tools enable_robot.py -r)"},
+        Wrong{"Stopped", [](Snapshot& s) { s.state->stopped = true; }, "the robot is stopped"},
+        Wrong{"Disabled", [](Snapshot& s) { s.state->enabled = false; }, "the robot is disabled: enable it"},
         Wrong{"Tucked",
               [](Snapshot& s) {
                 s.state->enabled = false;
                 s.joints->position(1) = -2.07;
               },
-              "its arm is tucked (left_s1 at -118.6 deg): untuck it", Then::silence},
-        Wrong{"NotReady", [](Snapshot& s) { s.state->ready = false; }, "not ready", Then::silence},
-        Wrong{"OldState", [](Snapshot& s) { s.state->received -= 0.51; }, "/robot/state did not come for 0.51 s",
-              Then::silence},
+              "its arm is tucked (left_s1 at -118.6 deg): untuck it"},
+        Wrong{"NotReady", [](Snapshot& s) { s.state->ready = false; }, "not ready"},
+        Wrong{"OldState", [](Snapshot& s) { s.state->received -= 0.51; }, "/robot/state did not come for 0.51 s"},
         Wrong{"TwoSendersOfState", [](Snapshot& s) { s.state_senders.push_back("/mock"); },
-              "/robot/state comes from more than one node, /realtime_loop and /mock", Then::silence},
+              "/robot/state comes from more than one node, /realtime_loop and /mock"},
         Wrong{"TwoSendersOfJoints", [](Snapshot& s) { s.joint_senders.push_back("/mock"); },
-              "joints of the left arm come from more than one node", Then::silence},
+              "joints of the left arm come from more than one node"},
         Wrong{"Malformed", [](Snapshot& s) { s.malformed = "joint_states has 17 names and 3 positions"; },
-              "17 names and 3 positions", Then::silence},
-        Wrong{"OldJoints", [](Snapshot& s) { s.joints->received -= 0.11; }, "joint_states of the left arm did not come",
-              Then::silence},
+              "17 names and 3 positions"},
+        Wrong{"OldJoints", [](Snapshot& s) { s.joints->received -= 0.11; },
+              "joint_states of the left arm did not come"},
         Wrong{"OldEndpoint", [](Snapshot& s) { s.endpoint->received -= 0.11; },
               "endpoint_state of the left arm did not", Then::hold},
-        Wrong{"JointIsNoNumber", [](Snapshot& s) { s.joints->position(3) = kNaN; }, "a position that is no number",
-              Then::silence},
+        Wrong{"JointIsNoNumber", [](Snapshot& s) { s.joints->position(3) = kNaN; }, "a position that is no number"},
         Wrong{"ForceIsNoNumber", [](Snapshot& s) { s.endpoint->force.z() = kNaN; },
               "a force or a place that is no number", Then::hold},
         Wrong{"NoForce", [](Snapshot& s) { s.endpoint->force.setZero(); }, "exactly zero", Then::hold},
         Wrong{"StampsLag", [](Snapshot& s) { s.endpoint->stamp -= 0.31; },
               "endpoint_state comes with stamps 0.31 s older", Then::hold},
         Wrong{"JointStampsLag", [](Snapshot& s) { s.joints->stamp -= 0.31; },
-              "joint_states comes with stamps 0.31 s older", Then::silence},
-        Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.07; }, "/robot/joint_states jumped by 4.0 deg",
-              Then::silence},
+              "joint_states comes with stamps 0.31 s older"},
+        Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.07; }, "/robot/joint_states jumped by 4.0 deg"},
         Wrong{"CommandedByAnother", [](Snapshot& s) { s.commanders = {"/palpate_2"}; },
-              "the arm is commanded by /palpate_2, too", Then::silence},
+              "the arm is commanded by /palpate_2, too"},
         Wrong{"StoppedByAProgram",
               [](Snapshot& s) {
                 s.state->stopped = true;
-                s.state->estop_button = StateReading::Button::unknown;
+                s.state->estop_button = Button::unknown;
               },
-              "a program stopped the robot (/robot/set_super_stop)", Then::silence},
+              "a program stopped the robot (/robot/set_super_stop)"},
         Wrong{"Reflex", [](Snapshot& s) { s.collision->collision = true; }, "the arm's own reflex stopped it",
               Then::retreat}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
 
 TEST(AJoint, BeyondItsLimitIsNamed) {
-  Watch watch(kSpace, 14.0);
   Joints joints = pose();
   joints(3) = 2.62;
-  const std::optional<Fault> fault = watch.look(sound(1.0, joints), kInside);
-  ASSERT_TRUE(fault);
-  EXPECT_THAT(fault->reason, HasSubstr("left_e1 is at 150.1 deg, beyond its limit"));
-  EXPECT_EQ(fault->then, Then::hold);
+  EXPECT_THAT(Rules().at(1.0, nullptr, joints), IsFault("left_e1 is at 150.1 deg, beyond its limit", Then::hold));
 }
 
 TEST(JointsThatAreNotKnown, AreNotHeldWhateverElseIsWrong) {
-  const std::vector<std::function<void(Snapshot&)>> unknown = {
+  const Spoil unknown[] = {
       [](Snapshot& s) { s.joints->position(3) = kNaN; },
       [](Snapshot& s) { s.joints->position(2) += 0.16; },
       [](Snapshot& s) { s.joints->stamp -= 0.31; },
   };
-  const std::vector<std::function<void(Snapshot&)>> worth_holding = {
+  const Spoil worth_holding[] = {
       [](Snapshot& s) { s.endpoint->received -= 0.11; },  [](Snapshot& s) { s.endpoint->force.z() = kNaN; },
       [](Snapshot& s) { s.endpoint->force.setZero(); },   [](Snapshot& s) { s.endpoint->stamp -= 0.31; },
       [](Snapshot& s) { s.collision->collision = true; },
   };
-  for (const auto& spoil_joints : unknown) {
-    for (const auto& spoil_more : worth_holding) {
-      Watch watch(kSpace, 14.0);
-      ASSERT_FALSE(watch.look(sound(1.0, pose()), kInside));
-      Snapshot seen = sound(1.01, pose());
-      spoil_joints(seen);
-      spoil_more(seen);
-      const std::optional<Fault> fault = watch.look(seen, kInside);
-      ASSERT_TRUE(fault);
-      EXPECT_EQ(fault->then, Then::silence) << fault->reason;
+  for (const Spoil& spoil_joints : unknown) {
+    for (const Spoil& spoil_more : worth_holding) {
+      Rules rules;
+      ASSERT_THAT(rules.at(1.0), IsNothing());
+      const std::optional<Fault> fault = rules.at(1.01, [&](Snapshot& s) {
+        spoil_joints(s);
+        spoil_more(s);
+      });
+      EXPECT_THAT(fault, IsFault("", Then::silence));
     }
   }
 }
 
 TEST(AnArmBesideTheArea, IsNotRaisedEvenIfItsReflexStoppedIt) {
-  Watch watch(kSpace, 14.0);
   Snapshot seen = sound(1.0, pose());
+  EXPECT_THAT(Rules().look(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
   seen.collision->collision = true;
-  const std::optional<Fault> fault = watch.look(seen, {0.1, 0.1, -0.05});
-  ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->then, Then::hold);
+  EXPECT_THAT(Rules().look(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
 }
 
-TEST(ASoundRobot, MayHaveAClockThatGoesALittleFaster) {
-  Watch watch(kSpace, 14.0);
+TEST(ASoundRobot, BreaksNoRule) {
+  Rules rules;
+  rules.set_tare(kZero);
+  for (double now = 1.0; now < 3.0; now += 0.01) {
+    rules.sent(now, pose());
+    ASSERT_THAT(rules.at(now), IsNothing());
+  }
+  EXPECT_THAT(rules.at(3.0, [](Snapshot& s) { s.state->error = true; }), IsNothing())
+      << "enabled it moves all the same";
+}
+
+TEST(ASoundRobot, MayHaveAnotherClockThatGoesALittleFasterAndForgetACollisionStream) {
+  Rules rules;
   for (double now = 1.0; now < 4.0 * 3600.0; now += 1.0) {
-    Snapshot seen = sound(now, pose());
-    seen.joints->stamp = seen.endpoint->stamp = 0.9999 * now;  // 1.4 s in four hours
-    watch.begin();                                             // it is looked at once a second, between motions
-    const std::optional<Fault> fault = watch.look(seen, kInside);
-    ASSERT_FALSE(fault) << now << ": " << fault->reason;
+    rules.begin();  // it is looked at once a second, between motions
+    ASSERT_THAT(rules.at(now,
+                         [&](Snapshot& s) {
+                           s.joints->stamp = s.endpoint->stamp = 12345.0 + 0.9999 * now;  // 1.4 s in four hours
+                           s.collision.reset();
+                         }),
+                IsNothing())
+        << now;
   }
 }
 
 /// Lets the stream of collisions come every `period` seconds and then no more; whether that was noticed in two seconds.
 bool noticed_silence_of_collisions(double period) {
-  Watch watch(kSpace, 14.0);
+  Rules rules;
   double last = 1.0;
   for (double now = 1.0; now < 7.0; now += 0.01) {
     if (now < 5.0 && now - last >= period) last = now;
-    Snapshot seen = sound(now, pose());
-    seen.collision->received = last;
-    if (const std::optional<Fault> fault = watch.look(seen, kInside)) {
-      EXPECT_THAT(fault->reason, HasSubstr("collision_detection_state of the left arm did not come"));
-      EXPECT_EQ(fault->then, Then::hold);
-      return true;
-    }
+    const std::optional<Fault> fault = rules.at(now, [&](Snapshot& s) { s.collision->received = last; });
+    if (!fault) continue;
+    EXPECT_THAT(fault, IsFault("collision_detection_state of the left arm did not come", Then::hold));
+    return true;
   }
   return false;
 }
@@ -180,31 +180,6 @@ bool noticed_silence_of_collisions(double period) {
 TEST(AStreamOfCollisions, MustGoOnIfItCameAgainAndAgain) {
   EXPECT_TRUE(noticed_silence_of_collisions(0.02));
   EXPECT_FALSE(noticed_silence_of_collisions(1.5)) << "it is sent when it changes";
-}
-
-TEST(ASoundRobot, MayReportAnErrorWhileItIsEnabled) {
-  Watch watch(kSpace, 14.0);
-  Snapshot seen = sound(1.0, pose());
-  seen.state->error = true;
-  EXPECT_FALSE(watch.look(seen, kInside)) << "it moves all the same";
-}
-
-TEST(ASoundRobot, BreaksNoRule) {
-  Watch watch(kSpace, 14.0);
-  watch.set_tare(Eigen::Vector3d(0.3, -0.2, 1.0));
-  for (double now = 1.0; now < 3.0; now += 0.01) {
-    watch.sent(now, pose());
-    const std::optional<Fault> fault = watch.look(sound(now, pose()), kInside);
-    ASSERT_FALSE(fault) << fault->reason;
-  }
-}
-
-TEST(ASoundRobot, MayHaveAnotherClockAndForgetACollisionStream) {
-  Watch watch(kSpace, 14.0);
-  Snapshot seen = sound(1.0, pose());
-  seen.joints->stamp = seen.endpoint->stamp = 12345.0;
-  seen.collision.reset();
-  EXPECT_FALSE(watch.look(seen, kInside));
 }
 
 TEST(ADisabledRobot, IsFitWhereNothingMoves) {
@@ -216,75 +191,55 @@ TEST(ADisabledRobot, IsFitWhereNothingMoves) {
 }
 
 TEST(AFrozenForce, IsNoticedHalfASecondLater) {
-  Watch watch(kSpace, 14.0);
-  Snapshot frozen = sound(1.0, pose());
-  double noticed = 0.0;
-  for (double now = 1.0; now < 2.0 && noticed == 0.0; now += 0.01) {
-    Snapshot seen = sound(now, pose());
-    seen.endpoint->force = frozen.endpoint->force;
-    if (const std::optional<Fault> fault = watch.look(seen, kInside)) {
-      EXPECT_THAT(fault->reason, HasSubstr("the same force to the last digit"));
-      EXPECT_EQ(fault->then, Then::hold);
-      noticed = now;
-    }
-  }
-  EXPECT_NEAR(noticed, 1.51, 0.015);
+  Rules rules;
+  double now = 1.0;
+  std::optional<Fault> fault;
+  for (; now < 2.0 && !fault; now += 0.01) fault = rules.at(now, [](Snapshot& s) { s.endpoint->force = kZero; });
+  EXPECT_THAT(fault, IsFault("the same force to the last digit", Then::hold));
+  EXPECT_NEAR(now, 1.52, 0.015);
 }
 
 TEST(AForce, StopsAfterThreeReadingsBeyondTheLimitAndSidewaysHalfAsMuchAgain) {
   for (const Eigen::Vector3d& push : {Eigen::Vector3d(0, 0, 14.5), Eigen::Vector3d(0, 0, -14.5),
                                       Eigen::Vector3d(21.5, 0, 0), Eigen::Vector3d(15.5, 15, 7)}) {
-    Watch watch(kSpace, 14.0);
-    const Eigen::Vector3d zero(0.3, -0.2, 1.0);
-    watch.set_tare(zero);
+    Rules rules;
+    rules.set_tare(kZero);
     std::optional<Fault> fault;
     for (int i = 1; i <= 3; ++i) {
-      EXPECT_FALSE(fault) << "one or two samples may be noise";
-      Snapshot seen = sound(1.0 + 0.01 * i, pose());
-      seen.endpoint->force = zero + (1.0 + 0.001 * i) * push;
-      fault = watch.look(seen, kInside);
+      EXPECT_THAT(fault, IsNothing()) << "one or two samples may be noise";
+      fault = rules.at(1.0 + 0.01 * i, [&](Snapshot& s) { s.endpoint->force = kZero + (1.0 + 0.001 * i) * push; });
     }
-    ASSERT_TRUE(fault);
-    EXPECT_THAT(fault->reason, HasSubstr("more than force_stop allows"));
-    EXPECT_EQ(fault->then, Then::retreat);
+    EXPECT_THAT(fault, IsFault("more than force_stop allows", Then::retreat));
   }
+}
+
+/// Whether a force on top of the zero, by the period, stops an arm within so many of them.
+bool stopped(Watch::Zero zero, int periods, const std::function<Eigen::Vector3d(int)>& force) {
+  Rules rules;
+  rules.set_tare(kZero, zero);
+  for (int i = 1; i <= periods; ++i) {
+    if (rules.at(1.0 + 0.01 * i, [&](Snapshot& s) { s.endpoint->force += force(i); })) return true;
+  }
+  return false;
 }
 
 TEST(AForce, SidewaysOfAnArmWhoseJointsRubStopsNoTapButStopsTravel) {
-  for (const auto zero : {Watch::Zero::stays, Watch::Zero::follows}) {
-    Watch watch(kSpace, 14.0);
-    watch.set_tare(Eigen::Vector3d(0.3, -0.2, 1.0), zero);
-    bool stopped = false;
-    for (int i = 1; i <= 5; ++i) {
-      Snapshot seen = sound(1.0 + 0.01 * i, pose());
-      seen.endpoint->force += Eigen::Vector3d(17, 9, 0);
-      stopped = stopped || watch.look(seen, kInside);
-    }
-    EXPECT_EQ(stopped, zero == Watch::Zero::follows);
-  }
+  const auto rubs = [](int) { return Eigen::Vector3d(17, 9, 0); };
+  EXPECT_FALSE(stopped(Watch::Zero::stays, 5, rubs));
+  EXPECT_TRUE(stopped(Watch::Zero::follows, 5, rubs));
 }
 
 TEST(AForce, WhoseZeroFollowsStopsWhenItRisesFastAndNotWhenItDrifts) {
-  const auto stopped = [](double rise) {  // N/s
-    Watch watch(kSpace, 14.0);
-    for (int i = 0; i < 300; ++i) {
-      Snapshot seen = sound(1.0 + 0.01 * i, pose());
-      if (i == 0) watch.set_tare(seen.endpoint->force, Watch::Zero::follows);
-      seen.endpoint->force.x() += 0.01 * rise * i;
-      if (watch.look(seen, kInside)) return true;
-    }
-    return false;
-  };
-  EXPECT_FALSE(stopped(10.0));
-  EXPECT_TRUE(stopped(50.0));
+  for (const double rise : {10.0, 50.0}) {  // N/s
+    const auto rises = [rise](int period) { return Eigen::Vector3d(0.01 * rise * period, 0, 0); };
+    EXPECT_EQ(stopped(Watch::Zero::follows, 300, rises), rise > 20.0);
+  }
 }
 
 TEST(AForce, CountsFromTheTareOnly) {
-  Watch watch(kSpace, 14.0);
+  Rules rules;
   for (const double now : {1.0, 1.01, 1.02}) {
-    Snapshot seen = sound(now, pose());
-    seen.endpoint->force.z() += 40.0;
-    EXPECT_FALSE(watch.look(seen, kInside)) << "nothing is tared yet";
+    EXPECT_THAT(rules.at(now, [](Snapshot& s) { s.endpoint->force.z() += 40.0; }), IsNothing()) << "nothing is tared";
   }
 }
 
@@ -296,28 +251,23 @@ TEST(TheWorkspace, EndsTenCentimetresBesideTheAreaAndAtFloorAndCeiling) {
   EXPECT_THAT(kSpace.breach({0.1, 0.1, 0.44}), HasSubstr("above the ceiling of 43.5 cm"));
   EXPECT_NE(kSpace.breach({kNaN, 0.1, 0.1}), "");
   EXPECT_NE(kSpace.breach({0.1, 0.1, kNaN}), "");
-  Watch watch(kSpace, 14.0);
-  const std::optional<Fault> fault = watch.look(sound(1.0, pose()), {0.1, 0.1, -0.05});
-  ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->then, Then::hold);
 }
 
 /// Sends a ramp of joint s1 at `speed` (rad/s) while the arm is where `follows` says (s) it was sent to; when that was
 /// noticed, or 0.
 double noticed(double speed, const std::function<double(double now)>& follows) {
-  Watch watch(kSpace, 14.0);
+  Rules rules;
   for (double now = 0.0; now < 4.0; now += 0.01) {
     const auto ramp = [&](double time) {
       Joints out = pose();
       out(1) += speed * std::max(0.0, time);
       return out;
     };
-    watch.sent(now, ramp(now));
-    if (const std::optional<Fault> fault = watch.look(sound(now, ramp(follows(now))), kInside)) {
-      EXPECT_THAT(fault->reason, HasSubstr("the arm does not follow"));
-      EXPECT_EQ(fault->then, Then::hold);
-      return now;
-    }
+    rules.sent(now, ramp(now));
+    const std::optional<Fault> fault = rules.at(now, nullptr, ramp(follows(now)));
+    if (!fault) continue;
+    EXPECT_THAT(fault, IsFault("the arm does not follow", Then::hold));
+    return now;
   }
   return 0.0;
 }
@@ -339,17 +289,17 @@ TEST(AnArm, ThatDoesNotFollowIsNoticed) {
 }
 
 TEST(BeginningAnew, ForgetsWhatWasSentAndFelt) {
-  Watch watch(kSpace, 14.0);
-  watch.set_tare(Eigen::Vector3d::Zero());
-  watch.sent(1.0, pose());
-  ASSERT_FALSE(watch.look(sound(1.0, pose()), kInside));
-  watch.begin();
-  EXPECT_FALSE(watch.last_sent());
+  Rules rules;
+  rules.set_tare(Eigen::Vector3d::Zero());
+  rules.sent(1.0, pose());
+  ASSERT_THAT(rules.at(1.0), IsNothing());
+  rules.begin();
+  EXPECT_FALSE(rules.last_sent());
   Joints elsewhere = pose();
   elsewhere(0) += 0.5;  // moved by hand meanwhile
-  Snapshot seen = sound(9.0, elsewhere);
-  seen.endpoint->force.z() = 30.0;
-  EXPECT_FALSE(watch.look(seen, kInside));
+  EXPECT_THAT(rules.at(
+                  9.0, [](Snapshot& s) { s.endpoint->force.z() = 30.0; }, elsewhere),
+              IsNothing());
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ Outcome run(std::vector<std::string> overrides, const std::string& engine, const
   out.variance = experiment.belief().uncertainty();
   timer.add(experiment.clock().take());
   out.seconds = timer.seconds;
-  for (const TapRecord& tap : timer.taps) out.taps.push_back({tap.target, tap.contact, tap.source});
+  out.taps.assign(timer.taps.begin(), timer.taps.end());
   const RunResult result = experiment.result();
   out.error_bound = result.height_process->error_bound;
   out.rmse = result.errors.rmse.value();

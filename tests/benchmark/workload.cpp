@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "benchmark/workload.hpp"
 
+#include "experiment/policy.hpp"
 #include "support/plugins.hpp"
 #include "support/support.hpp"
 
@@ -52,21 +53,25 @@ std::shared_ptr<Kernel> make_kernel() {
 
 Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
               const PosteriorSettings& settings, std::unique_ptr<Process>* last) {
-  PosteriorSettings posterior = settings;
-  posterior.scores = true;
   Replay out;
   const auto count = static_cast<std::size_t>(taps.places.rows());
   out.choices.reserve(count);
   out.seconds.reserve(count);
   const auto start = Clock::now();
   const std::vector<ProcessSettings> outputs(2, {1.0, 1e-2, 0.0, 0.0});
-  auto process = std::make_unique<Process>(kernel, outputs, candidates, posterior);
+  auto process = std::make_unique<Process>(kernel, outputs, candidates, settings);
   process->show(2);
+  Eigen::VectorXd uncertainty(candidates.size());
+  Eigen::VectorXd weight(candidates.size());
+  const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
   auto before = Clock::now();
   for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
     process->add({taps.places(i, 0), taps.places(i, 1)}, taps.answers.row(i).transpose());
     if (i + 1 < kInitialTaps) continue;
-    out.choices.push_back(process->best());
+    process->read_relative_variance(uncertainty);
+    process->read_mean(1, weight);
+    weight.array() *= uncertainty.array();
+    out.choices.push_back(pick_best(weight, allowed, 1.0, 0.0).candidate);
     out.seconds.push_back(seconds_since(std::exchange(before, Clock::now())));
   }
   out.total = seconds_since(start);

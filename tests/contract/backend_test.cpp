@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The laws of backend.hpp, over every backend found that can be made without further options and whose taps can be
 // repeated: a test never moves a robot.
-#include "support/plugins.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace palpate::test {
 namespace {

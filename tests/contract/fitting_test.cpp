@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The laws of fitting.hpp, over every fitting found: no exception for numerical reasons, nothing changed when it says
 // so, and the same answer to the same question.
-#include "support/plugins.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/fitting.hpp>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstring>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace palpate::test {
 namespace {
@@ -71,7 +64,7 @@ struct State {
   }
 };
 
-bool same_bytes(const std::vector<double>& a, const std::vector<double>& b) {
+bool same_parameters(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
@@ -120,7 +113,7 @@ TEST_P(FittingContract, ChangesNothingUnlessItSaysSo) {
     const auto outputs = static_cast<std::size_t>(one.targets.cols());
     before.signals.assign(outputs, 1.0);
     before.means.assign(outputs, 0.0);
-    EXPECT_TRUE(same_bytes(state.numbers(), before.numbers())) << one.name;
+    EXPECT_TRUE(same_parameters(state.numbers(), before.numbers())) << one.name;
   }
 }
 
@@ -132,7 +125,7 @@ TEST_P(FittingContract, GivesTheSameAnswerToTheSameQuestion) {
     const FitSummary b = fit(*make<Fitting>(contract_host(), GetParam()), one, second);
     EXPECT_EQ(a.changed, b.changed) << one.name;
     EXPECT_EQ(a.evaluations, b.evaluations) << one.name;
-    EXPECT_TRUE(same_bytes(first.numbers(), second.numbers())) << one.name;
+    EXPECT_TRUE(same_parameters(first.numbers(), second.numbers())) << one.name;
   }
 }
 

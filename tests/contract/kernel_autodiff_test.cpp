@@ -3,18 +3,13 @@
 // automatically (ceres::Jet), in long double, whose 64 bits of mantissa leave the oracle's rounding out of account.
 #include "config/quantity.hpp"
 #include "contract/kernel_cases.hpp"
-#include "support/support.hpp"
 
 #include <palpate/kernel.hpp>
 
 #include <ceres/jet.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
-#include <string>
 
 namespace palpate::test {
 namespace {
@@ -27,6 +22,8 @@ struct Walk {
   long double dx, dy;        ///< between the two points
   int next = 0;              ///< parameter
   double largest_alpha = 0;  ///< of the rational quadratics on the way
+  int formulas = 0;          ///< that were passed, and of the last with a distance its square in length scales
+  double r2 = 0;
 
   /// The option as the next parameter: its slope is by the logarithm.
   Jet parameter(const Tree& options, const char* name, Unit unit) {
@@ -46,22 +43,24 @@ Jet scaled_square(const Tree& options, Walk& walk) {
   const Jet along_y = own_y ? walk.parameter(options, "length_scale_y", Unit::metre) : along_x;
   const Jet x = walk.dx / along_x;
   const Jet y = walk.dy / along_y;
-  return x * x + y * y;
+  const Jet r2 = x * x + y * y;
+  walk.r2 = static_cast<double>(r2.a);
+  return r2;
 }
 
 using Formula = std::function<Jet(const Tree& options, Walk& walk)>;
-using Shape = Jet (*)(const Jet& r2);
+using RadialShape = Jet (*)(const Jet& r2);
 
 /// A kernel of unit variance without parameters but its length scales. At r = 0 it is 1 whatever they are; there the
 /// slope of the square root would be infinity times 0.
-Formula stationary(Shape shape) {
+Formula stationary(RadialShape shape) {
   return [shape](const Tree& options, Walk& walk) {
     const Jet r2 = scaled_square(options, walk);
     return r2.a > 0 ? shape(r2) : Jet(1);
   };
 }
 
-const std::map<std::string, Formula>& formulas() {
+const std::map<std::string, Formula>& all_formulas() {
   static const std::map<std::string, Formula> all{
       {"rbf", stationary([](const Jet& r2) { return exp(-r2 / 2.0L); })},
       {"matern12", stationary([](const Jet& r2) { return exp(-sqrt(r2)); })},
@@ -101,7 +100,10 @@ const std::map<std::string, Formula>& formulas() {
   return all;
 }
 
-Jet Walk::evaluate(const std::string& type, const Tree& options) { return formulas().at(type)(options, *this); }
+Jet Walk::evaluate(const std::string& type, const Tree& options) {
+  ++formulas;
+  return all_formulas().at(type)(options, *this);
+}
 
 class KernelFormula : public testing::TestWithParam<KernelCase> {};
 
@@ -117,6 +119,7 @@ TEST_P(KernelFormula, HasTheValuesAndSlopesThatAutomaticDifferentiationFinds) {
     const Points b = a.row(0);
     const double variance_here = variance(*kernel, b)(0);
     const Derivatives found = derivatives(*kernel, a, b);
+    const Eigen::MatrixXd covariances = covariance(*kernel, a, b);
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
       Walk walk{static_cast<long double>(a(i, 0)) - b(0, 0), static_cast<long double>(a(i, 1)) - b(0, 1)};
       const Jet expected = walk.evaluate(choice.type, *choice.options);
@@ -130,6 +133,11 @@ TEST_P(KernelFormula, HasTheValuesAndSlopesThatAutomaticDifferentiationFinds) {
       };
       const auto value = static_cast<double>(expected.a);
       EXPECT_NEAR(found.value(i), value, near(expected.a)) << "extent " << extent << ", point " << i;
+      // Of a kernel that is no composition z is r^2 / 2 or at most sqrt(5) r.
+      const double z = std::max(walk.r2 / 2, std::sqrt(5 * walk.r2));
+      const double powers = walk.largest_alpha > 2.5 ? 4 * walk.largest_alpha : 0.0;
+      const double plain = (8 + 4 * z + powers) * kEpsilon * value + 1e-280;
+      EXPECT_NEAR(covariances(i, 0), value, walk.formulas > 1 ? near(expected.a) : plain) << "extent " << extent;
       for (Eigen::Index p = 0; p < parameters; ++p) {
         const KernelParameter parameter = kernel->parameters()[static_cast<std::size_t>(p)];
         const long double slope = expected.v(p);
@@ -147,7 +155,7 @@ TEST_P(KernelFormula, HasTheValuesAndSlopesThatAutomaticDifferentiationFinds) {
 std::vector<KernelCase> shipped_cases() {
   std::vector<KernelCase> out;
   for (const KernelCase& one : kernel_cases()) {
-    if (formulas().count(one.type) != 0) out.push_back(one);
+    if (all_formulas().count(one.type) != 0) out.push_back(one);
   }
   return out;
 }
@@ -157,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(Every, KernelFormula, testing::ValuesIn(shipped_cases()
 
 TEST(ShippedKernel, HasItsFormulaInThisFile) {
   for (const PluginListing& row : shared_host().list("kernel", "")) {
-    EXPECT_EQ(formulas().count(row.name), 1U) << "kernel/" << row.name;
+    EXPECT_EQ(all_formulas().count(row.name), 1U) << "kernel/" << row.name;
   }
 }
 

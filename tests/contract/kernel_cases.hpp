@@ -3,21 +3,12 @@
 #pragma once
 
 #include "config/describe.hpp"
-#include "support/plugins.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/kernel.hpp>
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <ostream>
-#include <string>
-#include <vector>
 
 namespace palpate::test {
 
@@ -99,6 +90,12 @@ constexpr double kNothing = 1e-280;
 /// different exponentials of 1 to 2 ulp error each; a kernel may combine a few such.
 inline void expect_same_value(double a, double b) {
   EXPECT_NEAR(a, b, 8 * kEpsilon * std::max(std::abs(a), std::abs(b)) + kNothing);
+}
+
+inline void expect_same_values(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  ASSERT_EQ(a.rows(), b.rows());
+  ASSERT_EQ(a.cols(), b.cols());
+  for (Eigen::Index i = 0; i < a.size(); ++i) expect_same_value(a(i), b(i));
 }
 
 /// Points spread over `extent` metres; every tenth is a copy of an earlier one.

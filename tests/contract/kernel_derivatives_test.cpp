@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The laws of kernel.hpp for kernels whose hyperparameters a fit may change.
 #include "contract/kernel_cases.hpp"
-#include "support/support.hpp"
+#include "support/arrays.hpp"
 
 #include <palpate/kernel.hpp>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
 #include <set>
-#include <string>
-#include <vector>
 
 namespace palpate::test {
 namespace {
@@ -39,9 +33,7 @@ TEST_P(KernelDerivatives, ComeWithTheCovariance) {
   // More than one piece of 128 rows, by which the shipped kernels work.
   const Places at(300);
   for (const auto& kernel : kernels_) {
-    const Eigen::MatrixXd expected = covariance(*kernel, at.a, at.b);
-    const Eigen::VectorXd value = derivatives(*kernel, at.a, at.b).value;
-    for (Eigen::Index i = 0; i < at.a.rows(); ++i) expect_same_value(value(i), expected(i, 0));
+    expect_same_values(derivatives(*kernel, at.a, at.b).value, covariance(*kernel, at.a, at.b));
   }
 }
 
@@ -119,11 +111,8 @@ TEST_P(KernelDerivatives, FollowTheParametersThatWereSet) {
       EXPECT_EQ(now[p].name, old[p].name);
       EXPECT_EQ(now[p].unit, old[p].unit);
     }
-    const Eigen::MatrixXd moved = covariance(*kernel, at.a, at.b);
-    const Eigen::VectorXd value = derivatives(*kernel, at.a, at.b).value;
-    for (Eigen::Index i = 0; i < at.a.rows(); ++i) expect_same_value(value(i), moved(i, 0));
-    const Eigen::VectorXd own = variance(*kernel, at.b);
-    expect_same_value(own(0), covariance(*kernel, at.b, at.b)(0, 0));
+    expect_same_values(derivatives(*kernel, at.a, at.b).value, covariance(*kernel, at.a, at.b));
+    expect_same_values(variance(*kernel, at.b), covariance(*kernel, at.b, at.b));
     kernel->set_parameters(before);
     EXPECT_EQ(parameter_values(*kernel), before);
     EXPECT_TRUE(covariance(*kernel, at.a, at.b) == covariances)
@@ -151,15 +140,9 @@ TEST_P(KernelDerivatives, WriteTheirOutputsAndNothingBeside) {
   const Places at(5);
   for (const auto& kernel : kernels_) {
     const auto parameters = static_cast<Eigen::Index>(kernel->parameters().size());
-    Eigen::VectorXd along = Eigen::VectorXd::Constant(9, 7.25);
-    Eigen::MatrixXd around = Eigen::MatrixXd::Constant(9, parameters + 2, 7.25);
-    kernel->derivatives(at.a, at.b, along.segment(2, 5), around.block(2, 1, 5, parameters));
-    EXPECT_TRUE((along.head(2).array() == 7.25).all());
-    EXPECT_TRUE((along.tail(2).array() == 7.25).all());
-    EXPECT_TRUE((around.topRows(2).array() == 7.25).all());
-    EXPECT_TRUE((around.bottomRows(2).array() == 7.25).all());
-    EXPECT_TRUE((around.leftCols(1).array() == 7.25).all());
-    EXPECT_TRUE((around.rightCols(1).array() == 7.25).all());
+    written_inside(5, 1, [&](MatrixOut value) {
+      written_inside(5, parameters, [&](MatrixOut slopes) { kernel->derivatives(at.a, at.b, value.col(0), slopes); });
+    });
   }
 }
 

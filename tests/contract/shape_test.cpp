@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The laws of shape.hpp, over every shape found that can be made without further options, and over the others.
-#include "support/plugins.hpp"
 #include "support/shape_laws.hpp"
-#include "support/support.hpp"
-
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
 #include <ostream>
-#include <string>
-#include <vector>
 
 namespace palpate::test {
 namespace {

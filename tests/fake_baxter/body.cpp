@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate::fake_baxter {
 namespace {
@@ -15,6 +16,7 @@ constexpr double kBias = 2.0;             // N, standard deviation of the bias
 constexpr double kBiasByJoints = 2.0;     // N/rad, of how it depends on each joint
 constexpr double kTuckedShoulder = -1.6;  // rad: with left_s1 below it the robot refuses to be enabled
 constexpr double kAbove = 0.03;           // m, of the start
+constexpr double kMoving = 0.01;          // m/s from which the force of a motion is at its full
 constexpr double kAvoidanceRate = 10.0;   // Hz; not known of a real one
 constexpr double kSlack = 1e-9;           // of times that are sums of periods, s
 
@@ -29,24 +31,7 @@ bool due(long period, double rate) {
   return period == 0 || so_far(period) > so_far(period - 1);
 }
 
-/// Straight down, with the hand turned about the vertical as in the untucked posture.
-Eigen::Quaterniond straight_down(const baxter::Arm& arm) {
-  const Eigen::Matrix3d untucked_hand = arm.tip(untucked()).rotation.toRotationMatrix();
-  Eigen::Vector3d x = untucked_hand.col(0);
-  x.z() = 0.0;
-  x.normalize();
-  const Eigen::Vector3d z(0.0, 0.0, -1.0);
-  Eigen::Matrix3d rotation;
-  rotation << x, z.cross(x), z;
-  return Eigen::Quaterniond(rotation);
-}
-
 }  // namespace
-
-const Joints& untucked() {
-  static const Joints joints = (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.50).finished();
-  return joints;
-}
 
 const Joints& tucked() {
   static const Joints joints = (Joints() << -1.0, -2.174, 3.0, 2.55, 0.0, 0.01, 0.0).finished();
@@ -63,7 +48,7 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       mechanics_(make_mechanics(options.mechanics, ground_, Eigen::Vector3d(options.tool.tip))),
       noise_(kForceNoise),
       normal_(Random(options.seed, "fake_baxter/noise")),
-      force_faults_(options.seed),
+      spikes_(options.seed, "fake_baxter/spikes"),
       timeout_(options.command_timeout),
       speed_ratio_(options.speed_ratio) {
   const Effects& effects = scene.effects();
@@ -72,25 +57,18 @@ Body::Body(const Scene& scene, const BodyOptions& options)
   for (double& one : bias_.reshaped()) one = kBias * bias();
   for (double& one : bias_by_joints_.reshaped()) one = kBiasByJoints * bias();
 
-  target_ = start_joints(options);
-  mechanics_->put(target_);
-  hold(true);
-  if (options.start == Start::tucked && !options.start_at) assembly_ = Assembly(false);
-  measure();
+  stand(start_joints(options));
 }
 
 Joints Body::start_joints(const BodyOptions& options) const {
-  if (!options.start_at && options.start == Start::untucked) return untucked();
-  if (!options.start_at && options.start == Start::tucked) return tucked();
   const Area area = scene_.area();
-  Eigen::Vector3d at(area.width / 2, area.depth / 2, scene_.desk() + options.hover + kAbove);
-  if (options.start == Start::low) at = {kAbove, kAbove, scene_.desk() + kAbove};
-  if (options.start_at) at = *options.start_at;
+  const Eigen::Vector3d above(area.width / 2, area.depth / 2, scene_.desk() + options.hover + kAbove);
   baxter::Pose pose;
-  pose.position = ground_.in_base(at);
-  pose.rotation = straight_down(tool_);
+  pose.position = ground_.in_base(options.start_at.value_or(above));
+  pose.rotation = baxter::straight_down();
   const std::optional<Joints> found = tool_.solve(pose, untucked());
-  if (!found) throw Error("--start", "the arm cannot reach where it should start", "move the scene by backend.place");
+  if (!found)
+    throw Error("--start-at", "the arm cannot reach where it should start", "move the scene by backend.place");
   return *found;
 }
 
@@ -141,40 +119,36 @@ void Body::begin(Armed& armed) {
   armed.since = now();
   switch (armed.fault.kind) {
     case FaultKind::estop:
-      assembly_.press();
-      break;
+      return assembly_.press();
     case FaultKind::stop:
-      assembly_.stop();
-      break;
+      return assembly_.stop();
     case FaultKind::error:
-      assembly_.fail();
-      break;
+      return assembly_.fail();
     case FaultKind::complaint:
-      assembly_.complain();
-      break;
+      return assembly_.complain();
     case FaultKind::squish:
       held_until_ = now() + kHeld;
-      hold(false);
-      break;
+      return hold(false);
     case FaultKind::disabled:
-      assembly_.enable(false, false);
-      break;
+      return assembly_.enable(false, false);
     case FaultKind::speed_ratio:
-      set_speed_ratio(armed.fault.amount);
-      break;
+      return set_speed_ratio(armed.fault.amount);
     case FaultKind::command_timeout:
-      set_command_timeout(armed.fault.amount);
-      break;
+      return set_command_timeout(armed.fault.amount);
     case FaultKind::tucked:
       assembly_.enable(false, true);
-      target_ = tucked();
-      mechanics_->put(target_);
-      hold(true);
-      measure();
-      break;
+      return stand(tucked());
     default:
       break;
   }
+}
+
+/// There at once.
+void Body::stand(const Joints& joints) {
+  target_ = joints;
+  mechanics_->put(joints);
+  hold(true);
+  measure();
 }
 
 void Body::watch_faults(double height_before) {
@@ -223,15 +197,29 @@ void Body::feel_reflex() {
 
 void Body::measure() {
   const baxter::Pose pose = gripper_.tip(joints());
+  const Eigen::Vector3d way = pose.position - endpoint_.pose.position;
+  endpoint_speed_ = periods_ == 0 ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(way / kPeriod);
   Eigen::Vector3d force = bias_ + bias_by_joints_ * (joints() - untucked()) - arm().felt;
   for (double& one : force.reshaped()) one += noise_ * normal_();
-  force = force_faults_.spoilt(force, tool_.jacobian(joints()) * arm().velocity,
-                               [&](FaultKind kind) { return active(kind); });
+  spoil(force);
   if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
-  endpoint_speed_ = (pose.position - endpoint_.pose.position) / kPeriod;
-  if (periods_ == 0) endpoint_speed_.setZero();
   endpoint_.pose = pose;
   endpoint_.force = force;
+}
+
+/// What faults make of the force that is estimated.
+void Body::spoil(Eigen::Vector3d& force) {
+  if (const Fault* bias = active(FaultKind::bias)) force.z() -= bias->amount;
+  if (const Fault* spikes = active(FaultKind::spikes)) {
+    if (spikes_.uniform() < spikes->amount) force.z() -= kSpike;
+  }
+  if (const Fault* moving = active(FaultKind::moving_force)) {
+    // Friction in the joints: an arm on its way down feels as though something pressed it upwards.
+    const Eigen::Vector3d way = endpoint_speed_ / std::max(kMoving, endpoint_speed_.norm());
+    force += moving->amount * (way + way.z() * Eigen::Vector3d(0.5, -0.3, 0.0));
+  }
+  if (active(FaultKind::zero_wrench) != nullptr) force.setZero();
+  if (active(FaultKind::nan_wrench) != nullptr) force.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 void Body::step() {
@@ -254,15 +242,13 @@ Said Body::said() const {
     if (one.fault.kind == FaultKind::stale_stamps && one.since) stamp = *one.since;
   }
   const Fault* never = active(FaultKind::no_data);
-  const auto heard = [&](FaultKind killed, const char* stream) {
-    return active(killed) == nullptr && (never == nullptr || never->text != stream);
-  };
+  const auto heard = [&](const char* stream) { return never == nullptr || never->text != stream; };
   const auto stamped = [&](auto reading) {
     reading.received = now();
     reading.stamp = stamp;
     return reading;
   };
-  if (heard(FaultKind::kill_joints, "joints")) {
+  if (heard("joints") && active(FaultKind::kill_joints) == nullptr) {
     baxter::JointReading joints;
     joints.position = arm().position;
     if (const Fault* jump = active(FaultKind::jump_joints)) joints.position(1) += jump->amount;
@@ -271,44 +257,29 @@ Said Body::said() const {
     out.effort = arm().effort;
   }
   const Fault* slow = active(FaultKind::slow_endpoint);
-  if (heard(FaultKind::kill_endpoint, "endpoint") && (slow == nullptr || due(periods_, slow->amount))) {
+  const double rate = slow != nullptr ? slow->amount : 1.0 / kPeriod;
+  if (heard("endpoint") && active(FaultKind::kill_endpoint) == nullptr && due(periods_, rate)) {
     out.endpoint = stamped(endpoint_);
     out.tip_speed = endpoint_speed_;
   }
-  if (heard(FaultKind::kill_state, "state")) {
+  if (heard("state") && active(FaultKind::kill_state) == nullptr) {
     out.state = assembly_.state();
     out.state->received = now();
   }
-  if (never == nullptr || never->text != "collision") {
-    baxter::CollisionReading collision;
-    collision.collision = now() < held_until_ - kSlack;
-    out.collision = stamped(collision);
-  }
-  if ((never == nullptr || never->text != "avoidance") && due(periods_, kAvoidanceRate)) {
+  if (heard("collision")) out.collision = stamped(baxter::CollisionReading{{}, now() < held_until_ - kSlack});
+  if (heard("avoidance") && due(periods_, kAvoidanceRate)) {
     baxter::AvoidanceReading avoidance;
-    if (const Fault* avoid = active(FaultKind::avoid)) {
-      avoidance.other_arm = avoid->text == "other_arm";
-      if (!avoidance.other_arm) avoidance.objects = {avoid->text};
-    }
+    const Fault* avoid = active(FaultKind::avoid);
+    avoidance.other_arm = avoid != nullptr && avoid->text == "other_arm";
+    if (avoid != nullptr && !avoidance.other_arm) avoidance.objects = {avoid->text};
     out.avoidance = stamped(avoidance);
   }
   return out;
 }
 
 const char* name_of(Body::Mode mode) {
-  switch (mode) {
-    case Body::Mode::following:
-      return "following";
-    case Body::Mode::timed_out:
-      return "timed_out";
-    case Body::Mode::reflex:
-      return "reflex";
-    case Body::Mode::stopped:
-      return "stopped";
-    case Body::Mode::disabled:
-      return "disabled";
-  }
-  return "";
+  constexpr const char* kNames[] = {"following", "timed_out", "reflex", "stopped", "disabled"};
+  return kNames[static_cast<int>(mode)];
 }
 
 }  // namespace palpate::fake_baxter

@@ -7,7 +7,6 @@
 #include "baxter/options.hpp"
 #include "fake_baxter/assembly.hpp"
 #include "fake_baxter/faults.hpp"
-#include "fake_baxter/force_faults.hpp"
 #include "fake_baxter/mechanics.hpp"
 #include "simulator/normal.hpp"
 
@@ -19,27 +18,19 @@
 
 namespace palpate::fake_baxter {
 
-/// Untucked, as Rethink's tools leave the arm: the posture that the arm keeps while it works, radians.
-const Joints& untucked();
+using baxter::untucked;
 /// Tucked, as a real arm reads: left_s1 is beyond the limit of its description.
 const Joints& tucked();
-
-/// How the arm stands when it is switched on.
-enum class Start {
-  hover,     ///< tool straight down, 3 cm above the height of travel, over the middle of the area
-  low,       ///< tool straight down, 3 cm above the desk, 3 cm from the corner of the area
-  untucked,  ///< as Rethink's tools leave it
-  tucked     ///< as it is shipped; cannot be enabled
-};
 
 struct BodyOptions {
   baxter::ToolOptions tool;
   baxter::PlaceOptions place;
   double hover = 0.135;    ///< of travel, metres above the desk
   std::uint64_t seed = 1;  ///< of all noise
-  Start start = Start::hover;
-  std::optional<Eigen::Vector3d> start_at;  ///< of the tip, straight down, in the scene's frame; goes before `start`
-  double begin = 100.0;                     ///< time at the start, seconds
+  /// Of the tip, straight down, in the scene's frame; else 3 cm above the height of travel, over the middle of the
+  /// area.
+  std::optional<Eigen::Vector3d> start_at;
+  double begin = 100.0;  ///< time at the start, seconds
   MechanicsOptions mechanics;
   /// What another program has left behind: the robot keeps both until somebody sets them again.
   double speed_ratio = 0.3;
@@ -67,6 +58,7 @@ class Body {
  public:
   static constexpr double kPeriod = Mechanics::kPeriod;
   static constexpr double kReflex = 16.0;  ///< N, above which the firmware holds the arm
+  static constexpr double kSpike = 9.0;    ///< N, of the fault `spikes`
   static constexpr double kHeld = 2.0;     ///< s, for so long
   static constexpr double kLetGo = 0.1;    ///< s for which it then goes on at least; not known of a real one
   static constexpr double kLag = Mechanics::kLag;
@@ -126,9 +118,11 @@ class Body {
   void watch_faults(double height_before);
   Mode choose_mode() const;
   void hold(bool brakes);
+  void stand(const Joints& joints);
   void follow();
   void feel_reflex();
   void measure();
+  void spoil(Eigen::Vector3d& force);
 
   const Scene& scene_;
   Ground ground_;
@@ -139,7 +133,7 @@ class Body {
   std::unique_ptr<Mechanics> mechanics_;
   double noise_;  ///< N
   backends::Normal normal_;
-  ForceFaults force_faults_;
+  Random spikes_;
   Eigen::Vector3d bias_;                        ///< N, in the untucked posture
   Eigen::Matrix<double, 3, 7> bias_by_joints_;  ///< N/rad
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fake_baxter/dynamics.hpp"
 
-#include "baxter/left_arm.hpp"
+#include "baxter/kdl.hpp"
 #include "fake_baxter/links.hpp"
 
 #include <kdl/chain.hpp>
@@ -16,10 +16,8 @@ namespace palpate::fake_baxter {
 namespace {
 
 using namespace baxter::description;
-
-KDL::Frame frame(const Step& step) {
-  return {KDL::Rotation::RPY(step.roll, step.pitch, step.yaw), KDL::Vector(step.x, step.y, step.z)};
-}
+using baxter::array_of;
+using baxter::frame;
 
 KDL::RigidBodyInertia body(const Link& link) {
   const double* i = link.inertia;
@@ -39,12 +37,6 @@ KDL::Chain heavy_arm(const Eigen::Vector3d& tip) {
     if (last) inertia = inertia + hand * (body(kHandLink) + body(tool_link(tip)));
     out.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotZ), end, end.Inverse() * inertia));
   }
-  return out;
-}
-
-KDL::JntArray array_of(const Joints& joints) {
-  KDL::JntArray out(7);
-  out.data = joints;
   return out;
 }
 

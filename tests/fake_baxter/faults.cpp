@@ -6,10 +6,13 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <vector>
 
 namespace palpate::fake_baxter {
 namespace {
@@ -81,12 +84,6 @@ constexpr Known kKnown[] = {
 
 constexpr const char* kStreams[] = {"endpoint", "joints", "state", "collision", "avoidance"};
 
-std::string all_names() {
-  std::string out;
-  for (const Known& one : kKnown) out += (out.empty() ? "" : ", ") + std::string(one.name);
-  return out;
-}
-
 double number(const Known& fault, const std::string& text) {
   char* end = nullptr;
   const double out = std::strtod(text.c_str(), &end);
@@ -113,15 +110,15 @@ Fault parse_fault(const std::string& words) {
     if (one.takes == Takes::nothing) throw Error("--fault", name + " takes no value");
     if (one.takes == Takes::number) out.amount = number(one, value);
     if (one.takes == Takes::text) out.text = value;
-    if (one.kind == FaultKind::no_data) {
-      bool stream = false;
-      for (const char* known : kStreams) stream = stream || value == known;
-      if (!stream)
-        throw Error("--fault", "no_data takes endpoint, joints, state, collision or avoidance, not '" + value + "'");
+    if (one.kind == FaultKind::no_data &&
+        std::find(std::begin(kStreams), std::end(kStreams), value) == std::end(kStreams)) {
+      throw Error("--fault", "no_data takes endpoint, joints, state, collision or avoidance, not '" + value + "'");
     }
     return out;
   }
-  throw Error("--fault", "there is no fault '" + name + "'", "there are " + all_names());
+  std::vector<std::string> names;
+  for (const Known& one : kKnown) names.emplace_back(one.name);
+  throw Error("--fault", "there is no fault '" + name + "'", fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
 std::string describe_faults() {
@@ -131,17 +128,8 @@ std::string describe_faults() {
 }
 
 bool starts_with_robot(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::old_state:
-    case FaultKind::no_data:
-    case FaultKind::disabled:
-    case FaultKind::tucked:
-    case FaultKind::ik_absent:
-    case FaultKind::software:
-      return true;
-    default:
-      return false;
-  }
+  return std::any_of(std::begin(kKnown), std::end(kKnown),
+                     [&](const Known& one) { return one.kind == kind && one.meaning[0] == '*'; });
 }
 
 Trigger parse_trigger(const std::string& words) {

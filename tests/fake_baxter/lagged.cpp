@@ -9,7 +9,7 @@ namespace palpate::fake_baxter {
 
 Lagged::Lagged(const Ground& ground, const Eigen::Vector3d& tip)
     : ground_(ground),
-      arm_(tip),
+      dynamics_(tip),
       lag_(joint_lag(ground.scene())),
       object_give_(1.0 / object_stiffness(ground.scene())) {
   const Effects& effects = ground.scene().effects();
@@ -42,7 +42,7 @@ void Lagged::advance(const Joints& reference) {
 
 /// Where the tip is under what it presses on.
 void Lagged::touch() {
-  const double pressed = std::max(0.0, -ground_.clearance(arm_.tip(unloaded_).position));
+  const double pressed = std::max(0.0, -ground_.clearance(dynamics_.tip(unloaded_)));
   state_.pressing = pressed / (object_give_ + arm_give_);
   state_.peak = state_.pressing;
   state_.depth = object_give_ * state_.pressing;
@@ -50,7 +50,7 @@ void Lagged::touch() {
   state_.felt = {0.0, 0.0, state_.pressing};
   state_.effort.setZero();
   if (!(state_.pressing > 0.0)) return;
-  const Eigen::Matrix<double, 3, 7> jacobian = arm_.jacobian(unloaded_);
+  const Eigen::Matrix<double, 3, 7> jacobian = dynamics_.jacobian(unloaded_).topRows<3>();
   state_.effort = -jacobian.transpose() * state_.felt;
   if (!(arm_give_ > 0.0)) return;
   const Eigen::Matrix3d square = jacobian * jacobian.transpose();

@@ -2,6 +2,7 @@
 // An arm without mass: every joint follows its reference with a lag, and what it presses on is a spring.
 #pragma once
 
+#include "fake_baxter/dynamics.hpp"
 #include "fake_baxter/mechanics.hpp"
 #include "simulator/arm.hpp"
 
@@ -25,7 +26,7 @@ class Lagged final : public Mechanics {
   void touch();
 
   Ground ground_;
-  baxter::Arm arm_;
+  Dynamics dynamics_;
   JointLag lag_;
   double object_give_;  ///< m/N
   double arm_give_;     ///< m/N

@@ -44,14 +44,11 @@ struct Arguments {
   std::string config;
   std::vector<std::string> overrides;
   NodeOptions node;
-  std::string start = "hover";
-  std::string start_at;
+  std::vector<double> start_at;
   BodyOptions body;
   std::vector<std::string> faults;
   std::string at = "start";
   std::string companion;
-  std::string arm = "lagged";
-  double friction = 0.0;
 };
 
 ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
@@ -61,29 +58,13 @@ ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
   return load_experiment(composer, plugins, a.config, overrides);
 }
 
-Eigen::Vector3d parse_place(const std::string& text) {
-  double at[3];
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &at[0], &at[1], &at[2], &used) != 3 ||
-      text.size() != static_cast<std::size_t>(used)) {
-    throw Error("--start-at", "takes x,y,z in metres, for example 0.115,0.115,0.1, not '" + text + "'");
-  }
-  return Eigen::Vector3d(at);
-}
-
 BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter, std::uint64_t seed) {
   BodyOptions out = a.body;
   out.tool = baxter.tool;
   out.place = baxter.place;
   out.hover = baxter.motion.hover;
   out.seed = seed;
-  const std::vector<std::string> starts{"hover", "low", "untucked", "tucked"};
-  const auto found = std::find(starts.begin(), starts.end(), a.start);
-  if (found == starts.end()) throw Error("--start", "takes hover, low, untucked or tucked, not '" + a.start + "'");
-  out.start = static_cast<Start>(found - starts.begin());
-  out.mechanics.type = parse_mechanics(a.arm);
-  out.mechanics.friction = a.friction;
-  if (!a.start_at.empty()) out.start_at = parse_place(a.start_at);
+  if (!a.start_at.empty()) out.start_at = Eigen::Vector3d(a.start_at.data());
   if (a.node.rate <= 0.0) {
     out.begin = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   }
@@ -149,16 +130,22 @@ int run_main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--patience", a.node.patience, "seconds that /clock waits for a driver that was sending")
       ->check(CLI::Range(0.0, 60.0));
-  app.add_option("--start", a.start, "hover, low, untucked or tucked");
-  app.add_option("--start-at", a.start_at, "x,y,z of the tip in the scene's frame, metres");
+  app.add_option("--start-at", a.start_at, "x,y,z of the tip in the scene's frame, metres")
+      ->expected(3)
+      ->delimiter(',');
   app.add_option("--speed-ratio", a.body.speed_ratio, "what another program has set and left, of set_speed_ratio")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--command-timeout", a.body.command_timeout, "likewise of joint_command_timeout, seconds")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
-  app.add_option("--arm", a.arm, "lagged (joints without mass), springs (rigid bodies, by KDL) or mujoco");
-  app.add_option("--friction", a.friction, "of every joint of springs and mujoco, Nm")->check(CLI::Range(0.0, 5.0));
+  using Arm = MechanicsOptions::Type;
+  app.add_option("--arm", a.body.mechanics.type,
+                 "lagged (joints without mass), springs (rigid bodies, by KDL) or mujoco")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Arm>{{"lagged", Arm::lagged}, {"springs", Arm::springs}, {"mujoco", Arm::mujoco}}));
+  app.add_option("--friction", a.body.mechanics.friction, "of every joint of springs and mujoco, Nm")
+      ->check(CLI::Range(0.0, 5.0));
   app.add_option("--gripper", a.node.gripper,
                  "the product that the robot has recognised at its flange; none if absent");
   app.add_option("--tool-mass", a.node.tool_mass, "kilograms that the robot has been told of, beyond its flange")

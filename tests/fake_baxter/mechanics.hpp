@@ -18,18 +18,18 @@ using baxter::Joints;
 /// What there is to press on: a scene where `place` puts it before the robot. Keeps a reference to the scene.
 class Ground {
  public:
-  Ground(const Scene& scene, const baxter::PlaceOptions& place) : scene_(scene), place_(place) {}
+  Ground(const Scene& scene, const baxter::PlaceOptions& place) : scene_(scene), frame_(place.frame()) {}
 
   const Scene& scene() const { return scene_; }
   /// A place in the robot's frame `base` as one of the scene, metres; and back.
-  Eigen::Vector3d in_scene(const Eigen::Vector3d& in_base) const;
-  Eigen::Vector3d in_base(const Eigen::Vector3d& in_scene) const;
+  Eigen::Vector3d in_scene(const Eigen::Vector3d& in_base) const { return frame_.inverse() * in_base; }
+  Eigen::Vector3d in_base(const Eigen::Vector3d& in_scene) const { return frame_ * in_scene; }
   /// How far a place of `base` is above what lies there, metres; negative below it.
   double clearance(const Eigen::Vector3d& in_base) const;
 
  private:
   const Scene& scene_;
-  baxter::PlaceOptions place_;
+  Eigen::Isometry3d frame_;
 };
 
 /// How the joints trail their references: scene.effects.joint_lag, 0.35 s if absent.
@@ -83,9 +83,6 @@ struct MechanicsOptions {
   double friction = 0.0;  ///< of every joint, Nm; lagged has none
   double step = 1e-3;     ///< of springs, s, which goes into a period
 };
-
-/// Reads `lagged`, `springs` or `mujoco`. Throws Error.
-MechanicsOptions::Type parse_mechanics(const std::string& word);
 
 /// The arm with a tool whose tip is there in the frame left_hand, metres, over `ground`, which it keeps; the effects of
 /// the scene say how stiff what it presses on is and how the joints lag. Throws Error for an arm that this build does

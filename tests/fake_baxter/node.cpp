@@ -26,6 +26,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+
+#include <fmt/format.h>
 
 namespace palpate::fake_baxter {
 namespace {
@@ -56,24 +59,23 @@ ros::Time time_of(double seconds) {
   return out;
 }
 
+template <class Xyz>
+void put(Xyz& out, const Eigen::Vector3d& value) {
+  out.x = value.x();
+  out.y = value.y();
+  out.z = value.z();
+}
+
 /// A message as it goes over the wire; the force in it stands for the arm's whole wrench.
 baxter_core_msgs::EndpointState message_of(const baxter::EndpointReading& reading, const Eigen::Vector3d& speed) {
   baxter_core_msgs::EndpointState out;
   out.header.frame_id = "base";
   out.header.stamp = time_of(reading.stamp);
-  out.pose.position.x = reading.pose.position.x();
-  out.pose.position.y = reading.pose.position.y();
-  out.pose.position.z = reading.pose.position.z();
-  out.pose.orientation.x = reading.pose.rotation.x();
-  out.pose.orientation.y = reading.pose.rotation.y();
-  out.pose.orientation.z = reading.pose.rotation.z();
+  put(out.pose.position, reading.pose.position);
+  put(out.pose.orientation, reading.pose.rotation.vec());
   out.pose.orientation.w = reading.pose.rotation.w();
-  out.twist.linear.x = speed.x();
-  out.twist.linear.y = speed.y();
-  out.twist.linear.z = speed.z();
-  out.wrench.force.x = reading.force.x();
-  out.wrench.force.y = reading.force.y();
-  out.wrench.force.z = reading.force.z();
+  put(out.twist.linear, speed);
+  put(out.wrench.force, reading.force);
   return out;
 }
 
@@ -142,6 +144,33 @@ void join_network(bool clock) {
   // Nodes look at it when they start.
   if (clock) ros::param::set("/use_sim_time", true);
 }
+
+/// One row a period of what is so, whatever is said: t, x, y, z of the tip in the scene's frame, height of the
+/// set-point, pressing force, mode, commands so far, whether a fault has begun.
+class Trace {
+ public:
+  /// "" writes nothing. Throws Error.
+  explicit Trace(const std::string& file) {
+    if (file.empty()) return;
+    out_.open(file);
+    if (!out_) throw Error(file, "cannot be written");
+    out_ << "t,x,y,z,set_z,force,mode,commands,fault\n";
+  }
+
+  void write(const Body& body) {
+    if (!out_.is_open()) return;
+    const Eigen::Vector3d tip = body.tip();
+    out_ << fmt::format("{:.2f},{:.5f},{:.5f},{:.5f},{:.5f},{:.3f},{},{},{}\n", body.now(), tip.x(), tip.y(), tip.z(),
+                        body.set_point_height(), body.pressing(), name_of(body.mode()), body.commands(),
+                        body.faulty() ? 1 : 0);
+    if (++rows_ % 50 == 0) flush();
+  }
+  void flush() { out_.flush(); }
+
+ private:
+  std::ofstream out_;
+  long rows_ = 0;
+};
 
 class Node {
  public:
@@ -237,13 +266,7 @@ class Node {
     const bool positions = message.mode == baxter_core_msgs::JointCommand::POSITION_MODE ||
                            message.mode == baxter_core_msgs::JointCommand::RAW_POSITION_MODE;
     if (!positions || message.names.size() != message.command.size()) return;
-    Joints target = body_.set_point();
-    for (std::size_t i = 0; i < message.names.size(); ++i) {
-      for (std::size_t j = 0; j < baxter::kJointNames.size(); ++j) {
-        if (message.names[i] == baxter::kJointNames[j]) target(static_cast<Eigen::Index>(j)) = message.command[i];
-      }
-    }
-    body_.command(target);
+    body_.command(overlaid(body_.set_point(), message.names, message.command));
   }
 
   /// Every command lets the clock go on by one period, so that a driver that hears of the time late does not fall back
@@ -271,8 +294,8 @@ class Node {
     }
     if (inverse_) {
       const Fault* slow = body_.active(FaultKind::ik_slow);
-      inverse_->standing(body_.joints());
-      inverse_->spoil(body_.active(FaultKind::ik_invalid) != nullptr, slow != nullptr ? slow->amount : 0.0);
+      inverse_->set(
+          {body_.joints(), body_.active(FaultKind::ik_invalid) != nullptr, slow != nullptr ? slow->amount : 0});
     }
     publish();
   }

@@ -6,7 +6,6 @@
 #include "fake_baxter/companion.hpp"
 
 #include <atomic>
-#include <fstream>
 #include <list>
 #include <string>
 
@@ -20,7 +19,7 @@ struct NodeOptions {
   /// Of the streams: only where messages come in bursts must all of them arrive; who is late has less to catch up with
   /// if they need not.
   std::uint32_t queue = 1;
-  std::string trace;       ///< a file, "" for none
+  std::string trace;       ///< a CSV file of what is so, a row a period; "" for none
   std::string gripper;     ///< its product name, as the robot has recognised it; "" for none
   double tool_mass = 0.0;  ///< kg, as the robot has been told
 };
@@ -30,20 +29,6 @@ struct Beside {
   Beside(FaultKind kind, const std::string& role) : with(kind), node(role) {}
   FaultKind with;
   Companion node;
-};
-
-/// One row a period of what is so, whatever is said: t, x, y, z of the tip in the scene's frame, height of the
-/// set-point, pressing force, mode, commands so far, whether a fault has begun.
-class Trace {
- public:
-  /// "" writes nothing. Throws Error.
-  explicit Trace(const std::string& file);
-  void write(const Body& body);
-  void flush() { out_.flush(); }
-
- private:
-  std::ofstream out_;
-  long rows_ = 0;
 };
 
 /// Publishes what `body` says 100 times a second of its time and hands it what comes, until `stop`. Needs a master,

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A small node that looks at a robot on the network of ROS_MASTER_URI, for the tests of fake_baxter.
-//   md5                        name and md5 sum of every message, a line each; needs no network
 //   listen SECONDS             of the robot's time: sender, topic, messages, rate, a line each
 //   switches                   stop, enable, reset, enable: what /robot/state says after each
 //   drive SECONDS STALL        sends a set-point every 10 ms of the robot's time, STALL s of real time late each
-//   inverse                    asks IKService for the pose where the arm is
-#include "fake_baxter/old_state.hpp"
-
 #include <baxter_core_msgs/AssemblyState.h>
 #include <baxter_core_msgs/CollisionAvoidanceState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
-#include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
-#include <baxter_core_msgs/SolvePositionIK.h>
 #include <fmt/format.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Empty.h>
@@ -35,38 +27,16 @@ namespace {
 using baxter_core_msgs::AssemblyState;
 using baxter_core_msgs::CollisionAvoidanceState;
 using baxter_core_msgs::CollisionDetectionState;
-using baxter_core_msgs::EndEffectorProperties;
 using baxter_core_msgs::EndpointState;
 using baxter_core_msgs::JointCommand;
-using baxter_core_msgs::SolvePositionIK;
 using sensor_msgs::JointState;
 
-constexpr const char* kService = "/ExternalTools/left/PositionKinematicsNode/IKService";
 constexpr double kPatience = 20.0;  // s of real time for anything to come
-
-template <class Message>
-void print_md5(const char* name) {
-  fmt::print("{} {}\n", name, ros::message_traits::md5sum<Message>());
-}
-
-int md5() {
-  print_md5<EndpointState>("EndpointState");
-  print_md5<JointCommand>("JointCommand");
-  print_md5<AssemblyState>("AssemblyState");
-  fmt::print("OldAssemblyState {}\n", old_state_md5());
-  print_md5<CollisionDetectionState>("CollisionDetectionState");
-  print_md5<CollisionAvoidanceState>("CollisionAvoidanceState");
-  print_md5<EndEffectorProperties>("EndEffectorProperties");
-  fmt::print("SolvePositionIK {}\n", ros::service_traits::md5sum<SolvePositionIK>());
-  print_md5<SolvePositionIK::Request>("SolvePositionIKRequest");
-  print_md5<SolvePositionIK::Response>("SolvePositionIKResponse");
-  return 0;
-}
 
 class Probe {
  public:
   Probe() {
-    hear<EndpointState>("/robot/limb/left/endpoint_state", [this](const auto& m) { endpoint = m; });
+    hear<EndpointState>("/robot/limb/left/endpoint_state", [](const auto&) {});
     hear<JointState>("/robot/joint_states", [this](const auto& m) {
       if (m.name.size() > 1) joints = m;
     });
@@ -97,9 +67,7 @@ class Probe {
     return out;
   }
 
-  ros::NodeHandle& node() { return node_; }
   std::map<std::string, long> counts;  ///< of messages, by sender, topic and, of joints, how many
-  std::optional<EndpointState> endpoint;
   std::optional<JointState> joints;
   std::optional<AssemblyState> state;
 
@@ -190,46 +158,7 @@ int drive(Probe& probe, double seconds, double stall) {
   return 0;
 }
 
-int inverse(Probe& probe) {
-  if (!probe.until([&] { return probe.endpoint.has_value() && probe.joints.has_value(); })) return 1;
-  SolvePositionIK call;
-  call.request.pose_stamp.resize(1);
-  call.request.pose_stamp[0].header.frame_id = "base";
-  call.request.pose_stamp[0].pose = probe.endpoint->pose;
-  if (!ros::service::exists(kService, false)) {
-    fmt::print("absent\n");
-  } else if (!ros::service::call(kService, call)) {
-    fmt::print("failed\n");
-  } else if (call.response.isValid.at(0) == 0 || call.response.result_type.at(0) == 0) {
-    fmt::print("invalid\n");
-  } else {
-    double gap = 0.0;
-    const JointState& found = call.response.joints.at(0);
-    for (std::size_t i = 0; i < found.name.size(); ++i) {
-      for (std::size_t j = 0; j < probe.joints->name.size(); ++j) {
-        if (found.name[i] != probe.joints->name[j]) continue;
-        gap = std::max(gap, std::abs(found.position[i] - probe.joints->position[j]));
-      }
-    }
-    fmt::print("{} joints, {}\n", found.name.size(), gap < 1e-4 ? "where they are" : "elsewhere");
-  }
-  return 0;
-}
-
-/// The topics of a rosbag, a line each: topic, type, md5 sum, messages.
-int bag(const std::string& file) {
-  const rosbag::Bag read(file, rosbag::bagmode::Read);
-  std::map<std::string, int> counts;
-  for (const rosbag::MessageInstance& message : rosbag::View(read)) {
-    ++counts[message.getTopic() + " " + message.getDataType() + " " + message.getMD5Sum()];
-  }
-  for (const auto& [topic, count] : counts) fmt::print("{} {}\n", topic, count);
-  return 0;
-}
-
 int run(const std::vector<std::string>& words) {
-  if (words.size() == 1 && words[0] == "md5") return md5();
-  if (words.size() == 2 && words[0] == "bag") return bag(words[1]);
   ros::init(ros::M_string(), "probe", ros::init_options::AnonymousName);
   int status = 2;
   {
@@ -240,7 +169,6 @@ int run(const std::vector<std::string>& words) {
     if (words.size() == 3 && words[0] == "drive") {
       status = drive(probe, std::atof(words[1].c_str()), std::atof(words[2].c_str()));
     }
-    if (words.size() == 1 && words[0] == "inverse") status = inverse(probe);
   }
   ros::shutdown();
   return status;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace palpate {
 namespace {
@@ -16,6 +17,12 @@ double width(const MeanInterval& interval) { return interval.high - interval.low
 
 /// Ends scatter by about 1 % of the width from stream to stream; three times that, and a little for scipy's.
 constexpr double kScatter = 0.035;
+
+void expect_near(const std::optional<MeanInterval>& found, const MeanInterval& oracle) {
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->low, oracle.low, kScatter * width(oracle));
+  EXPECT_NEAR(found->high, oracle.high, kScatter * width(oracle));
+}
 
 /// 200 numbers between 0 and 1, most of them small.
 std::vector<double> skewed_values() {
@@ -31,28 +38,17 @@ TEST(BootstrapMean, OfFewSkewedValuesIsTheWidenedBcaIntervalOfScipy) {
   const MeanEstimate mean = bootstrap_mean({0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7, 5.1, 7.9, 16.0});
   EXPECT_NEAR(mean.mean, 41.0 / 12.0, 1e-12);
   EXPECT_EQ(mean.count, 12U);
-  ASSERT_TRUE(mean.interval);
-  const MeanInterval scipy{1.5, 8.316666666666668};
-  EXPECT_NEAR(mean.interval->low, scipy.low, kScatter * width(scipy));
-  EXPECT_NEAR(mean.interval->high, scipy.high, kScatter * width(scipy));
+  expect_near(mean.interval, {1.5, 8.316666666666668});
 }
 
 TEST(BootstrapMean, OfManySkewedValuesIsTheWidenedBcaIntervalOfScipy) {
-  const MeanEstimate mean = bootstrap_mean(skewed_values());
-  const MeanInterval scipy{0.1890972855115677, 0.264400389511537};
-  ASSERT_TRUE(mean.interval);
-  EXPECT_NEAR(mean.interval->low, scipy.low, kScatter * width(scipy));
-  EXPECT_NEAR(mean.interval->high, scipy.high, kScatter * width(scipy));
+  expect_near(bootstrap_mean(skewed_values()).interval, {0.1890972855115677, 0.264400389511537});
 }
 
 TEST(BootstrapMean, OfNormalValuesIsStudentsInterval) {
   std::vector<double> values;
   for (int i = 1; i < 400; ++i) values.push_back(5.0 + 2.0 * normal_quantile(i / 400.0));
-  const MeanEstimate mean = bootstrap_mean(values);
-  const MeanInterval student = *estimate_mean(values).interval;
-  ASSERT_TRUE(mean.interval);
-  EXPECT_NEAR(mean.interval->low, student.low, kScatter * width(student));
-  EXPECT_NEAR(mean.interval->high, student.high, kScatter * width(student));
+  expect_near(bootstrap_mean(values).interval, *estimate_mean(values).interval);
 }
 
 /// How many of 300 samples of `count` values have 1 in their interval; `draw` has the mean 1.
@@ -144,19 +140,16 @@ TEST(BootstrapRatio, OfPairsIsTheWidenedBcaIntervalOfAnOracle) {
   ASSERT_TRUE(ratio && ratio->interval);
   EXPECT_EQ(ratio->count, 12U);
   EXPECT_NEAR(ratio->ratio, 18.7 / 22.6, 1e-12);
-  const MeanInterval oracle{0.6412213740458015, 1.108};
-  EXPECT_NEAR(ratio->interval->low, oracle.low, kScatter * width(oracle));
-  EXPECT_NEAR(ratio->interval->high, oracle.high, kScatter * width(oracle));
+  expect_near(ratio->interval, {0.6412213740458015, 1.108});
 }
 
 TEST(BootstrapRatio, ToOnesIsTheIntervalOfTheMean) {
   const std::vector<double> values = skewed_values();
   const auto ratio = bootstrap_ratio(values, std::vector<double>(values.size(), 1.0));
   const MeanEstimate mean = bootstrap_mean(values);
-  ASSERT_TRUE(ratio && ratio->interval);
+  ASSERT_TRUE(ratio);
   EXPECT_NEAR(ratio->ratio, mean.mean, 1e-12);
-  EXPECT_NEAR(ratio->interval->low, mean.interval->low, kScatter * width(*mean.interval));
-  EXPECT_NEAR(ratio->interval->high, mean.interval->high, kScatter * width(*mean.interval));
+  expect_near(ratio->interval, *mean.interval);
 }
 
 TEST(BootstrapRatio, TakesWholePairsSoThatWhatTheyShareIsNoSpread) {

@@ -3,9 +3,9 @@
 #include "launch/children.hpp"
 #include "record/files.hpp"
 #include "support/support.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -45,18 +45,12 @@ TEST(InChildren, HasNothingToDoForNothing) {
 }
 
 TEST(InChildren, TellsWhatWentWrong) {
-  try {
-    in_children(
-        4, 2,
-        [](std::size_t i) {
-          if (i == 2) throw Error("jobs/x", "is damaged", "remove it");
-        },
-        nullptr, nullptr);
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "jobs/x: is damaged, remove it");
-    EXPECT_EQ(error.kind(), Error::Kind::run);
-  }
+  const auto damaged = [](std::size_t i) {
+    if (i == 2) throw Error("jobs/x", "is damaged", "remove it");
+  };
+  const auto share = [&] { in_children(4, 2, damaged, nullptr, nullptr); };
+  EXPECT_EQ(test::error_of(share), "jobs/x: is damaged, remove it");
+  EXPECT_THAT(share, testing::Throws<Error>(testing::Property(&Error::kind, Error::Kind::run)));
 }
 
 TEST(InChildren, NoticesAProcessThatWasKilled) {

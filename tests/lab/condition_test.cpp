@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/condition.hpp"
 
-#include <palpate/error.hpp>
+#include "support/testing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
+#include <string>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -32,66 +34,49 @@ bool holds(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    holds(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_of([&] { holds(text); });
+}
+
+using Texts = std::vector<std::string>;
+
+void all_hold(const Texts& texts) {
+  for (const std::string& text : texts) EXPECT_TRUE(holds(text)) << text;
+}
+void none_holds(const Texts& texts) {
+  for (const std::string& text : texts) EXPECT_FALSE(holds(text)) << text;
 }
 
 TEST(Condition, ComparesNumbersAsNumbers) {
-  EXPECT_TRUE(holds("taps == 17"));
-  EXPECT_TRUE(holds("taps == 17.0"));
-  EXPECT_TRUE(holds("taps == 1.7e1"));
-  EXPECT_FALSE(holds("taps != 17.0"));
-  EXPECT_TRUE(holds("taps > 9")) << "as text, 9 comes after 17";
-  EXPECT_FALSE(holds("taps < 9"));
-  EXPECT_TRUE(holds("taps >= 17"));
-  EXPECT_TRUE(holds("taps <= 17"));
-  EXPECT_FALSE(holds("taps > 17"));
-  EXPECT_FALSE(holds("taps < 17"));
-  EXPECT_TRUE(holds("taps > -17"));
+  // As text, 9 comes after 17.
+  all_hold({"taps == 17", "taps == 17.0", "taps == 1.7e1", "taps > 9", "taps >= 17", "taps <= 17", "taps > -17"});
+  none_holds({"taps != 17.0", "taps < 9", "taps > 17", "taps < 17"});
 }
 
 TEST(Condition, ComparesQuantitiesWithTheirUnits) {
-  EXPECT_TRUE(holds("reach == 1 cm"));
-  EXPECT_TRUE(holds("reach == 1cm"));
-  EXPECT_TRUE(holds("reach==0.01m"));
-  EXPECT_TRUE(holds("reach < 11 mm and reach > 0.9 cm"));
-  EXPECT_TRUE(holds("height.noise <= 100 um"));
+  all_hold(
+      {"reach == 1 cm", "reach == 1cm", "reach==0.01m", "reach < 11 mm and reach > 0.9 cm", "height.noise <= 100 um"});
 }
 
 TEST(Condition, ComparesTextsAsTheyStand) {
-  EXPECT_TRUE(holds("surface == two_part"));
-  EXPECT_FALSE(holds("surface == single"));
-  EXPECT_TRUE(holds("surface != single"));
-  EXPECT_TRUE(holds("name == object i"));
-  EXPECT_TRUE(holds("name == 'object i'"));
-  EXPECT_TRUE(holds("surface != 17"));
-  EXPECT_FALSE(holds("taps == many"));
+  all_hold({"surface == two_part", "surface != single", "name == object i", "name == 'object i'", "surface != 17"});
+  none_holds({"surface == single", "taps == many"});
 }
 
 TEST(Condition, TakesTheRightForANameWhereOneIsKnown) {
-  EXPECT_TRUE(holds("reach == clearance"));
-  EXPECT_TRUE(holds("seed < taps"));
-  EXPECT_TRUE(holds("kernel != surface"));
+  all_hold({"reach == clearance", "seed < taps", "kernel != surface"});
 }
 
 TEST(Condition, TakesWhatIsInQuotesForAText) {
-  EXPECT_FALSE(holds("kernel == 'kernel'"));
-  EXPECT_TRUE(holds("taps == \"17\""));
-  EXPECT_FALSE(holds("taps == '17.0'"));
-  EXPECT_TRUE(holds("name != ') and ('"));
+  all_hold({"taps == \"17\"", "name != ') and ('"});
+  none_holds({"kernel == 'kernel'", "taps == '17.0'"});
 }
 
 TEST(Condition, BindsNotBeforeAndBeforeOr) {
-  EXPECT_TRUE(holds("taps == 17 or taps == 17 and taps == 1")) << "not (a or a) and b";
-  EXPECT_FALSE(holds("(taps == 17 or taps == 17) and taps == 1"));
-  EXPECT_FALSE(holds("not taps == 17 and taps == 1")) << "(not a) and b, not not (a and b)";
-  EXPECT_TRUE(holds("not (taps == 17 and taps == 1)"));
-  EXPECT_TRUE(holds("not not taps == 17"));
-  EXPECT_TRUE(holds("taps >= 12 and (surface == single or not kernel == matern52)"));
+  all_hold({"taps == 17 or taps == 17 and taps == 1",  // not (a or a) and b
+            "not (taps == 17 and taps == 1)", "not not taps == 17",
+            "taps >= 12 and (surface == single or not kernel == matern52)"});
+  none_holds({"(taps == 17 or taps == 17) and taps == 1",
+              "not taps == 17 and taps == 1"});  // (not a) and b, not not (a and b)
 }
 
 TEST(Condition, AgreesWithATruthTable) {
@@ -193,13 +178,8 @@ TEST(Condition, RefusesWhatIsNestedTooDeeply) {
 TEST(Condition, RefusesWhatIsNoText) {
   Tree list = Tree::list();
   list.place = text_at("").place;
-  try {
-    const Condition condition(list);
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "c.yaml:3:5: a condition is a text, write it like taps >= 12 and not surface == two_part");
-  }
+  EXPECT_EQ(test::error_of([&] { const Condition condition(list); }),
+            "c.yaml:3:5: a condition is a text, write it like taps >= 12 and not surface == two_part");
 }
 
 }  // namespace

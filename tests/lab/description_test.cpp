@@ -2,9 +2,8 @@
 #include "sweep/description.hpp"
 
 #include "config/yaml.hpp"
+#include "support/testing.hpp"
 #include "sweep/sobol.hpp"
-
-#include <palpate/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -39,18 +38,8 @@ std::string shown(const SweepDescription& description, const std::map<std::strin
   return out;
 }
 
-template <class Action>
-std::string refusal(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 std::string refused(const std::string& sweep, const std::vector<std::string>& words = {}) {
-  return refusal([&] { shown(described(sweep, words), {{"taps", "17"}}); });
+  return test::error_of([&] { shown(described(sweep, words), {{"taps", "17"}}); });
 }
 
 TEST(Grid, MultipliesItsKeysTheLastRunningFastest) {
@@ -106,24 +95,6 @@ TEST(Blocks, CountWithoutBeingMade) {
     different.insert(text);
   }
   EXPECT_EQ(different.size(), description.size());
-}
-
-TEST(Blocks, TellHowFarTheNextValueOfAKeyIs) {
-  const SweepDescription description =
-      described(" {grid: {seed: [1, 2, 3], a: [x, y]}, list: [{b: [1, 2], c: [1, 2]}, {d: 1}], zip: {e: [1], f: [1]}}");
-  for (std::size_t i = 0; i < description.size(); ++i) {
-    const Combination here = description.at(i);
-    for (std::size_t k = 0; k < here.size(); ++k) {
-      if (here[k].axis->key == "e" || here[k].axis->key == "f") {
-        EXPECT_EQ(here[k].stride, 0U) << "they move together";
-        continue;
-      }
-      if (here[k].digit + 1 == here[k].axis->values.size()) continue;
-      const Combination there = description.at(i + here[k].stride);
-      ASSERT_EQ(there.size(), here.size());
-      for (std::size_t j = 0; j < here.size(); ++j) EXPECT_EQ(there[j].digit, here[j].digit + (j == k ? 1 : 0)) << i;
-    }
-  }
 }
 
 TEST(Where, KeepsTheCombinationsForWhichItHolds) {
@@ -333,7 +304,7 @@ TEST(Words, KeepWhatIsExpectedApart) {
   ASSERT_EQ(words.expectations.size(), 1U);
   EXPECT_EQ(words.expectations[0].path, "expect.rmse_m");
   ASSERT_EQ(words.axes.size(), 1U);
-  EXPECT_EQ(refusal([] { parse_sweep_words({"expect.rmse_m=1,2"}); }),
+  EXPECT_EQ(test::error_of([] { parse_sweep_words({"expect.rmse_m=1,2"}); }),
             "command line: expect.rmse_m: what is expected cannot be swept, give it one value");
 }
 

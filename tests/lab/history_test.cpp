@@ -91,7 +91,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   EXPECT_EQ(compared_footprint > 10, options.footprint.type != "regression");
   RunResult last = history.moments.back().result;
   last.stop_reason = cell(*recording.summary, "stop_reason");
-  for (const auto& [name, value] : summary_list().row({recording.config, last, "", {}, {}, {}, {}}).fields) {
+  for (const auto& [name, value] : summary_list().row({last, recording.config, "", {}, {}, {}, {}}).fields) {
     if (!depends_on_machine(name)) {
       EXPECT_EQ(csv_cell(value), cell(*recording.summary, name.c_str())) << name;
     }
@@ -173,23 +173,26 @@ TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
   }
 }
 
+std::vector<std::string> warnings(const std::string& base, const std::vector<std::string>& words) {
+  const Recorded run(base, words);
+  return warnings_of(run.recording(), run.history());
+}
+
 TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
-  const Recorded run("paper/object_i.yaml", {});
-  const std::vector<std::string> said = warnings_of(run.recording(), run.history());
+  const std::vector<std::string> said = warnings("paper/object_i.yaml", {});
   EXPECT_THAT(said, Contains(HasSubstr("5 of 17 taps were chosen by the fallback")));
   EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("weight.clip=true"))));
+  EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("elsewhere"))));
 }
 
 TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
-  const Recorded run("default.yaml", {"footprint.contradictions=0.01"});
-  const std::vector<std::string> said = warnings_of(run.recording(), run.history());
+  const std::vector<std::string> said = warnings("default.yaml", {"footprint.contradictions=0.01"});
   EXPECT_THAT(said, Contains(AllOf(HasSubstr("The footprint, shape, says: "), HasSubstr("has taken over at touch"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("weight"))));
 }
 
 TEST(Warnings, TellOfARuleThatStalls) {
-  const Recorded run("paper/object_i.yaml", {"fallback=none", "repeat=allow"});
-  EXPECT_THAT(warnings_of(run.recording(), run.history()),
+  EXPECT_THAT(warnings("paper/object_i.yaml", {"fallback=none", "repeat=allow"}),
               Contains(HasSubstr("14 taps were chosen by the acquisition although no candidate had a positive score")));
 }
 
@@ -202,6 +205,14 @@ TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
   ASSERT_GT(last.interventions.at("jitter"), 0);
   EXPECT_THAT(said, Contains(HasSubstr(std::to_string(last.failed_taps) + " tap")));
   EXPECT_THAT(said, Contains(HasSubstr("Jitter up to ")));
+}
+
+TEST(Warnings, TellOfTheFirstTapThatThisBuildWouldHaveMadeElsewhere) {
+  const Recorded run("paper/object_i.yaml", {});
+  Recording recording = run.recording();
+  for (const std::size_t tap : {11U, 14U}) recording.taps[tap].target.x = 0.5 * 0.23 / 47;  // the first of its row
+  const History history = make_history(run.workshop, recording, [](int, int) {});
+  EXPECT_THAT(warnings_of(recording, history), Contains(HasSubstr("this build would have made tap 12 elsewhere")));
 }
 
 TEST(Warnings, AreNoneOfARunWithoutTrouble) {

@@ -12,6 +12,7 @@ namespace {
 
 TEST(LocalLauncher, AJobThatIsKilledBeforeItsAttemptIsNotedIsNotBegunForEver) {
   const test::TemporaryFolder folder;
+  folder.write("jobs/000000000000/config.yaml", "");
   const Sweep sweep{folder.path(), {}, {Job{0, "000000000000", {}}}};
   const Installation installation;
   const PluginHost host({});

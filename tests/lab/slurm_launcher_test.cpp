@@ -2,8 +2,7 @@
 // What the launcher of clusters says to Slurm and makes of its answers, without Slurm.
 #include "launch/slurm_launcher.hpp"
 #include "support/support.hpp"
-
-#include <palpate/error.hpp>
+#include "support/testing.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,11 +14,19 @@
 namespace palpate {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 namespace fs = std::filesystem;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) out.push_back(line);
+  return out;
+}
 
 TEST(ShellWord, IsReadByAShellAsItWas) {
   const test::TemporaryFolder folder;
@@ -38,32 +45,24 @@ TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
                            "--cpus-per-task=4", "--output=x", "--wrap=ls", "script.sh", "", "-", "--", "mem=4G"}) {
     EXPECT_THROW(check_sbatch_words({"--mem=4G", word}), Error) << word;
   }
-  try {
-    check_sbatch_words({"--time=5"});
-    ADD_FAILURE();
-  } catch (const Error& trouble) {
-    EXPECT_STREQ(trouble.what(),
-                 "command line: --sbatch: --time cannot be said there, palpate has an option of that name");
-  }
+  EXPECT_EQ(test::error_of([] { check_sbatch_words({"--time=5"}); }),
+            "command line: --sbatch: --time cannot be said there, palpate has an option of that name");
 }
 
-/// Runs the script of a sweep of `count` jobs as Slurm would and returns the words that its program was called with.
+/// Runs the script as Slurm would and returns the words that its program was called with.
 class Script : public ::testing::Test {
  protected:
-  std::vector<std::string> words_of(std::size_t count, const SlurmOptions& options, const std::string& index,
+  std::vector<std::string> words_of(const SlurmOptions& options, const std::string& index,
                                     const std::vector<std::string>& arguments = {},
-                                    const std::vector<std::string>& environment = {}) {
-    const fs::path script = folder_.write("task.sh", task_script(program_, directory_, count, options, plugin_path_));
+                                    std::vector<std::string> environment = {}) {
+    const fs::path jobs = folder_.write("it's a list/jobs", "0-3\n4-7\n8-9\n");
+    const fs::path script = folder_.write("task.sh", task_script(program_, directory_, jobs, options, plugin_path_));
     std::vector<std::string> words{"sh", script.string()};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<std::string> all{"SLURM_ARRAY_TASK_ID=" + index};
-    all.insert(all.end(), environment.begin(), environment.end());
-    const test::Ended ended = test::run_program(words, folder_.path(), all);
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    std::vector<std::string> out;
-    std::istringstream lines(ended.out);
-    for (std::string line; std::getline(lines, line);) out.push_back(line);
-    return out;
+    environment.push_back("SLURM_ARRAY_TASK_ID=" + index);
+    const test::Ended ended = test::run_program(words, folder_.path(), environment);
+    EXPECT_EQ(ended.err, "");
+    return lines_of(ended.out);
   }
 
   test::TemporaryFolder folder_;
@@ -82,34 +81,39 @@ class Script : public ::testing::Test {
   }
 };
 
-TEST_F(Script, CarriesOnOneJobATask) {
-  EXPECT_THAT(words_of(8, {}, "3"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "3-3", "-j", "1",
-                                                "--attempts", "3", "--quiet"));
-}
-
-TEST_F(Script, CarriesOnAChunkClippedToTheSweepFromItsOffset) {
+TEST_F(Script, CarriesOnTheJobsOfItsLine) {
+  EXPECT_THAT(words_of({}, "0"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "0-3", "-j", "1",
+                                             "--attempts", "3", "--quiet"));
   SlurmOptions options;
-  options.jobs_per_task = 4;
   options.workers = 2;
   options.most_attempts = 5;
   options.resume = {true, true};
-  EXPECT_THAT(words_of(10, options, "1"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "4-7", "-j",
-                                                      "2", "--attempts", "5", "--quiet", "--retry-failed", "--force"));
-  EXPECT_EQ(words_of(10, options, "2")[4], "8-9");
-  EXPECT_EQ(words_of(100000, options, "24", {"1000"})[4], "4096-4099");
+  EXPECT_THAT(words_of(options, "1"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "4-7", "-j", "2",
+                                                  "--attempts", "5", "--quiet", "--retry-failed", "--force"));
+}
+
+TEST_F(Script, CountsLinesFromItsArgumentOn) { EXPECT_EQ(words_of({}, "1", {"1"})[4], "8-9"); }
+
+TEST_F(Script, RunsNothingWithoutALineOfItsOwn) {
+  const fs::path jobs = folder_.write("jobs", "0-3\n");
+  const fs::path script = folder_.write("task.sh", task_script(program_, directory_, jobs, {}, {}));
+  const test::Ended ended = test::run_program({"sh", script.string()}, folder_.path(), {"SLURM_ARRAY_TASK_ID=1"});
+  EXPECT_NE(ended.status, 0);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_THAT(ended.err, HasSubstr("there is no such task"));
 }
 
 TEST_F(Script, SetsTheSearchPathOfPluginsWhateverTheEnvironmentSays) {
-  EXPECT_EQ(words_of(1, {}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "unset");
+  EXPECT_EQ(words_of({}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "unset");
   plugin_path_ = "/a b:/it's";
-  EXPECT_EQ(words_of(1, {}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "/a b:/it's");
+  EXPECT_EQ(words_of({}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "/a b:/it's");
 }
 
 /// Programs by the names of Slurm's, which note how they were called and answer what the test says.
 class FakeSlurm : public ::testing::Test {
  protected:
   FakeSlurm() {
-    answer("scontrol", "echo 'MaxArraySize = 10'");
+    answer("scontrol", "echo 'MaxArraySize = 2'");
     answer("sinfo", "echo 'main*|4'");
     answer("sbatch", "echo $(($(wc -l <calls.sbatch) * 100))");
     answer("squeue", "cat queue 2>/dev/null");
@@ -127,10 +131,7 @@ class FakeSlurm : public ::testing::Test {
     fs::permissions(file, fs::perms::owner_all);
   }
   std::vector<std::string> calls(const std::string& name) const {
-    std::vector<std::string> out;
-    std::istringstream lines(test::text_of(folder_.path() / ("calls." + name)));
-    for (std::string line; std::getline(lines, line);) out.push_back(line);
-    return out;
+    return lines_of(test::text_of(folder_.path() / ("calls." + name)));
   }
   SlurmLauncher launcher(const SlurmOptions& options = {}) {
     return SlurmLauncher("/bin/palpate", sweep_, options, [this](const SlurmArray& array) { heard_.push_back(array); });
@@ -161,19 +162,40 @@ TEST_F(FakeSlurm, HearsOptionsOnlyIfTheyAreGivenAndUsersWordsBeforeThem) {
   options.more = {"--mem=4G", "--nice"};
   answer("sinfo", "echo 'long|4'");
   launcher(options).submit({3, 4, 12});
-  const std::string logs = (sweep_.directory / "slurm").string();
-  EXPECT_THAT(calls("sbatch"),
-              ElementsAre(fmt::format("--parsable --array=3 --job-name=name --output={0}/1/%A_%a.log --cpus-per-task=1 "
-                                      "{0}/1/task.sh 0",
-                                      logs),
-                          fmt::format("--parsable --mem=4G --nice --array=3-4 --job-name=name "
-                                      "--output={0}/2/%A_%a.log --cpus-per-task=2 --partition=long --time=1:00 "
-                                      "--account=me {0}/2/task.sh 0",
-                                      logs),
-                          fmt::format("--parsable --mem=4G --nice --array=2 --job-name=name "
-                                      "--output={0}/2/%A_%a.log --cpus-per-task=2 --partition=long --time=1:00 "
-                                      "--account=me {0}/2/task.sh 10",
-                                      logs)));
+  const auto words = [&](int submission, const char* user, const char* array, const char* more, int first) {
+    const std::string folder = (sweep_.directory / "slurm" / std::to_string(submission)).string();
+    return fmt::format("--parsable {}--array={} --job-name=name --output={}/%A_%a.log --cpus-per-task={} {}/task.sh {}",
+                       user, array, folder, more, folder, first);
+  };
+  const char* const more = "2 --partition=long --time=1:00 --account=me";
+  EXPECT_THAT(calls("sbatch"), ElementsAre(words(1, "", "0-0", "1", 0), words(2, "--mem=4G --nice ", "0-1", more, 0),
+                                           words(2, "--mem=4G --nice ", "0-0", more, 2)));
+  EXPECT_EQ(test::text_of(sweep_.directory / "slurm/2/jobs"), "3-3\n4-4\n12-12\n");
+}
+
+TEST_F(FakeSlurm, GivesEveryJobToOneTaskWithinTheLimits) {
+  SlurmOptions options;
+  options.jobs_per_task = 3;
+  for (const int limit : {2, 3, 100}) {
+    answer("scontrol", fmt::format("echo 'MaxArraySize = {}'", limit));
+    heard_.clear();
+    SlurmLauncher one = launcher(options);
+    one.submit({0, 1, 2, 3, 5, 6, 7, 8, 9, 20, 21, 22, 24});
+    ASSERT_EQ(heard_.size(), static_cast<std::size_t>((5 + limit - 1) / limit)) << "no more arrays than it needs";
+    EXPECT_EQ(test::text_of(heard_.front().logs / "jobs"), "0-2\n3-6\n7-9\n20-22\n24-24\n");
+    int tasks = 0;
+    int jobs = 0;
+    for (const SlurmArray& array : heard_) {
+      EXPECT_THAT(calls("sbatch")[static_cast<std::size_t>(array.id / 100) - 1],
+                  AllOf(HasSubstr(fmt::format("--array=0-{} ", array.tasks - 1)),
+                        ::testing::EndsWith(fmt::format("task.sh {}", tasks))));
+      EXPECT_LE(array.tasks, limit);
+      tasks += array.tasks;
+      jobs += array.jobs;
+    }
+    EXPECT_EQ(tasks, 5);
+    EXPECT_EQ(jobs, 13);
+  }
 }
 
 TEST_F(FakeSlurm, SeesNoSettingsOfTheUsersThatWouldChangeWhatItPrints) {
@@ -191,24 +213,16 @@ TEST_F(FakeSlurm, LetsTasksRunOneAtATimeThoughTheArrayIsSplit) {
   SlurmOptions options;
   options.tasks_at_once = 1;
   launcher(options).submit({8, 9, 10, 11, 24});
-  const std::vector<std::string> words = calls("sbatch");
-  ASSERT_EQ(words.size(), 3U);
-  EXPECT_THAT(words[0], HasSubstr("--array=8-9%1 "));
-  EXPECT_THAT(words[0], ::testing::Not(HasSubstr("--dependency")));
-  EXPECT_THAT(words[1], HasSubstr("--array=0-1%1 "));
-  EXPECT_THAT(words[1], HasSubstr("--dependency=afterany:100 "));
-  EXPECT_THAT(words[2], HasSubstr("--dependency=afterany:200 "));
+  EXPECT_THAT(calls("sbatch"),
+              ElementsAre(AllOf(HasSubstr("--array=0-1%1 "), ::testing::Not(HasSubstr("--dependency"))),
+                          AllOf(HasSubstr("--array=0-1%1 "), HasSubstr("--dependency=afterany:100 ")),
+                          AllOf(HasSubstr("--array=0-0%1 "), HasSubstr("--dependency=afterany:200 "))));
 }
 
 TEST_F(FakeSlurm, TellsOfArraysThatWereTakenBeforeOneIsRefused) {
   answer("sbatch", "[ $(wc -l <calls.sbatch) = 1 ] && echo 7 || { echo 'sbatch: error: too many jobs' >&2; exit 1; }");
   SlurmLauncher one = launcher();
-  try {
-    one.submit({1, 2, 11});
-    ADD_FAILURE();
-  } catch (const Error& trouble) {
-    EXPECT_THAT(trouble.what(), ::testing::StartsWith("sbatch: too many jobs, "));
-  }
+  EXPECT_THAT(test::error_of([&] { one.submit({1, 2, 11}); }), ::testing::StartsWith("sbatch: too many jobs, "));
   ASSERT_EQ(heard_.size(), 1U);
   EXPECT_EQ(heard_[0].id, 7);
   EXPECT_EQ(heard_[0].tasks, 2);
@@ -229,9 +243,10 @@ TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
   options.jobs_per_task = 4;
   options.workers = 2;
   SlurmLauncher one = launcher(options);
-  one.submit({0, 1, 2, 3, 4, 5, 8});
+  answer("scontrol", "echo 'MaxArraySize = 10'");
+  one.submit({0, 1, 2, 3, 4, 5, 6, 7, 8});
   EXPECT_EQ(heard_[0].tasks, 3);
-  EXPECT_EQ(heard_[0].jobs, 7);
+  EXPECT_EQ(heard_[0].jobs, 9);
   folder_.write("runs/name/id/jobs/job1/summary.json", "{}");
   folder_.write("runs/name/id/jobs/job4/summary.json", "{}");
   // Task 2 is gone; 1 waits, and what it will find is not looked at; somebody else's task has the same index.
@@ -240,9 +255,9 @@ TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
   while (state.returned.empty()) state = one.poll(0.1);
   EXPECT_THAT(state.returned, ElementsAre(1, 8));
   EXPECT_EQ(state.running, 2);
-  EXPECT_EQ(state.waiting, 3);
+  EXPECT_EQ(state.waiting, 5);
   folder_.write("queue", "");
-  EXPECT_THAT(returned(one), ElementsAre(0, 2, 3, 4, 5));
+  EXPECT_THAT(returned(one), ElementsAre(0, 2, 3, 4, 5, 6, 7));
   EXPECT_TRUE(one.poll(0.1).empty_handed());
 }
 
@@ -261,22 +276,15 @@ TEST_F(FakeSlurm, ASilentQueueReturnsNothing) {
 
 TEST_F(FakeSlurm, CancelsTheArraysThatHaveTasksLeft) {
   SlurmLauncher one = launcher();
-  one.submit({0, 10, 20});
+  one.submit({0, 1, 2, 3, 4});
   folder_.write("queue", "100|0|R\n300|0|PD\n");
-  EXPECT_THAT(returned(one), ElementsAre(10));
+  EXPECT_THAT(returned(one), ElementsAre(1, 2, 3));
   one.cancel();
   EXPECT_THAT(calls("scancel"), ElementsAre("100 300"));
 }
 
 TEST_F(FakeSlurm, ThatSaysNothingUsefulIsRefused) {
-  const auto refusal = [&] {
-    try {
-      launcher().submit({0});
-    } catch (const Error& trouble) {
-      return std::string(trouble.what());
-    }
-    return std::string();
-  };
+  const auto refusal = [&] { return test::error_of([&] { launcher().submit({0}); }); };
   answer("sbatch", "echo hello");
   EXPECT_THAT(refusal(), HasSubstr("sbatch: hello"));
   answer("scontrol", "echo hello");

@@ -1,126 +1,33 @@
 // SPDX-License-Identifier: MIT
-// What Slurm prints and how arrays are described, without Slurm.
+// What Slurm prints, without Slurm.
 #include "launch/slurm.hpp"
 
-#include <palpate/error.hpp>
-#include <palpate/random.hpp>
+#include "support/testing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 namespace palpate {
 namespace {
 
-using slurm::Limits;
-using slurm::Part;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// The indices in a list, read as the manual of sbatch says.
-std::vector<int> listed(const std::string& list) {
-  std::vector<int> out;
-  std::istringstream parts(list);
-  for (std::string part; std::getline(parts, part, ',');) {
-    const std::size_t dash = part.find('-');
-    const int first = std::stoi(part);
-    const int last = dash == std::string::npos ? first : std::stoi(part.substr(dash + 1));
-    for (int index = first; index <= last; ++index) out.push_back(index);
-  }
-  return out;
-}
-
-TEST(SlurmIndexList, WritesRunsOfIndicesAsRanges) {
-  EXPECT_EQ(slurm::index_list({}), "");
-  EXPECT_EQ(slurm::index_list({5}), "5");
-  EXPECT_EQ(slurm::index_list({0, 1}), "0-1");
-  EXPECT_EQ(slurm::index_list({0, 1, 2, 3, 7, 9, 10, 11, 12}), "0-3,7,9-12");
-}
-
-TEST(SlurmIndexList, ReadsBackAsWhatItWasMadeOf) {
-  Random random(1, "test/slurm");
-  for (int round = 0; round < 200; ++round) {
-    std::vector<int> indices;
-    const double share = random.uniform();
-    for (int index = 0; index < 300; ++index) {
-      if (random.uniform() < share) indices.push_back(index);
-    }
-    EXPECT_EQ(listed(slurm::index_list(indices)), indices);
-  }
-}
-
-TEST(SlurmSplit, GivesEveryTaskOnceWithinTheLimits) {
-  Random random(2, "test/slurm");
-  for (const Limits limits : {Limits{2, 2}, Limits{7, 3}, Limits{1001, 1001}, Limits{4000001, 50}}) {
-    for (int round = 0; round < 50; ++round) {
-      std::vector<int> tasks;
-      for (int task = 0; task < 3000; ++task) {
-        if (random.uniform() < 0.3) tasks.push_back(task);
-      }
-      std::vector<int> given;
-      for (const Part& part : slurm::split(tasks, limits)) {
-        ASSERT_FALSE(part.indices.empty());
-        EXPECT_LE(static_cast<int>(part.indices.size()), limits.tasks);
-        for (const int index : part.indices) {
-          EXPECT_GE(index, 0);
-          EXPECT_LT(index, limits.indices);
-          given.push_back(part.offset + index);
-        }
-      }
-      EXPECT_EQ(given, tasks);
-    }
-  }
-}
-
-TEST(SlurmSplit, TakesNoMoreArraysThanItNeeds) {
-  EXPECT_THAT(slurm::split({}, {10, 10}), IsEmpty());
-  EXPECT_EQ(slurm::split({0, 5, 9}, {10, 10}).size(), 1U);
-  EXPECT_EQ(slurm::split({9, 10}, {10, 10}).size(), 2U);
-  const std::vector<Part> far = slurm::split({25, 27}, {10, 10});
-  ASSERT_EQ(far.size(), 1U);
-  EXPECT_EQ(far[0].offset, 20);
-  EXPECT_THAT(far[0].indices, ElementsAre(5, 7));
-}
-
-TEST(SlurmSplit, KeepsListsShortEnoughForACommandLine) {
-  std::vector<int> tasks;
-  for (int task = 0; task < 200000; task += 2) tasks.push_back(task);
-  std::vector<int> given;
-  for (const Part& part : slurm::split(tasks, {4000001, 4000001})) {
-    EXPECT_LT(slurm::index_list(part.indices).size(), 20000U);
-    for (const int index : part.indices) given.push_back(part.offset + index);
-  }
-  EXPECT_EQ(given, tasks);
-  std::vector<int> run;
-  for (int task = 0; task < 200000; ++task) run.push_back(task);
-  EXPECT_EQ(slurm::split(run, {4000001, 4000001}).size(), 1U) << "one range, however long";
-}
-
 TEST(SlurmLimits, AreReadFromTheConfigOfTheController) {
-  const Limits plain = slurm::parse_limits("Configuration data\nMaxArraySize            = 1001\nMaxJobCount = 10000\n");
-  EXPECT_EQ(plain.indices, 1001);
-  EXPECT_EQ(plain.tasks, 1001);
-  const Limits fewer = slurm::parse_limits(
-      "MaxArraySize            = 100001\nSchedulerParameters     = bf_interval=1,max_array_tasks=500,defer\n");
-  EXPECT_EQ(fewer.indices, 100001);
-  EXPECT_EQ(fewer.tasks, 500);
-  EXPECT_EQ(slurm::parse_limits("max_array_tasks=5000\nMaxArraySize=100").tasks, 100);
+  EXPECT_EQ(slurm::parse_most_tasks("Configuration data\nMaxArraySize            = 1001\nMaxJobCount = 10000\n"), 1001);
+  EXPECT_EQ(slurm::parse_most_tasks("MaxArraySize            = 100001\n"
+                                    "SchedulerParameters     = bf_interval=1,max_array_tasks=500,defer\n"),
+            500);
+  EXPECT_EQ(slurm::parse_most_tasks("max_array_tasks=5000\nMaxArraySize=100"), 100);
 }
 
 TEST(SlurmLimits, RefuseWhatSaysNothingOfThem) {
   for (const char* text : {"", "\n\n", "MaxArraySize", "MaxArraySize =", "MaxArraySize = many", "MaxArraySize = -1",
                            "MaxArraySize = 99999999999999", "MaxArraySize: 5"}) {
-    EXPECT_THROW(slurm::parse_limits(text), Error) << text;
+    EXPECT_THROW(slurm::parse_most_tasks(text), Error) << text;
   }
   for (const char* text : {"MaxArraySize = 0", "MaxArraySize = 1"}) {
-    try {
-      slurm::parse_limits(text);
-      ADD_FAILURE() << text;
-    } catch (const Error& trouble) {
-      EXPECT_THAT(trouble.what(), HasSubstr("this cluster takes no arrays"));
-    }
+    EXPECT_THAT(test::error_of([&] { slurm::parse_most_tasks(text); }), HasSubstr("this cluster takes no arrays"));
   }
 }
 

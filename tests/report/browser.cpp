@@ -2,7 +2,8 @@
 #include "report/browser.hpp"
 
 #include "support/sanitizers.hpp"
-#include "support/support.hpp"
+
+#include <fmt/format.h>
 
 #include <sstream>
 
@@ -28,6 +29,9 @@ Browsed browse(const std::filesystem::path& page, const std::vector<std::string>
   return out;
 }
 
+namespace {
+
+/// Why nothing is tested with a browser here, "" if it is.
 std::string browser_missing() {
   if (kSanitized) return "what a browser makes of a page is the same in every build";
   for (const char* file : {"/usr/bin/chromium", "/usr/bin/chromedriver"}) {
@@ -37,5 +41,28 @@ std::string browser_missing() {
   const Ended ended = run_program({"/usr/bin/python3", "-c", "import selenium"}, folder.path());
   return ended.status == 0 ? "" : "python3-selenium is not installed";
 }
+
+}  // namespace
+
+std::string drawn(int what) { return fmt::format("await document.body.dataset.drawn == '{}'", what); }
+
+void Reports::SetUp() {
+  if (const std::string missing = browser_missing(); !missing.empty()) GTEST_SKIP() << missing;
+}
+
+void Reports::report(const std::filesystem::path& directory) const {
+  const Ended ended = palpate({"report", directory.string()}, folder_.path());
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  ASSERT_EQ(ended.out, (directory / "report.html").string() + "\n");
+}
+
+Browsed ReportsInBoth::browse(const std::filesystem::path& directory, const std::vector<std::string>& steps) const {
+  Browsed seen = test::browse(directory / "report.html", steps, GetParam());
+  EXPECT_EQ(seen.trouble, "");  // a dialog of the page would be one
+  EXPECT_THAT(seen.severe, ::testing::IsEmpty());
+  return seen;
+}
+
+std::string webgl_name(const ::testing::TestParamInfo<bool>& info) { return info.param ? "WithWebGL" : "WithoutWebGL"; }
 
 }  // namespace palpate::test

@@ -2,6 +2,10 @@
 // A page in a real browser: headless Chromium, driven by tests/report/browse.py.
 #pragma once
 
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -20,7 +24,39 @@ struct Browsed {
 /// Opens `page` and does the steps, each as browse.py describes it.
 Browsed browse(const std::filesystem::path& page, const std::vector<std::string>& steps, bool webgl);
 
-/// Why nothing is tested with a browser here, "" if it is.
-std::string browser_missing();
+/// Waits until the page says that it has drawn this: the tap of a run, or how often for a sweep.
+std::string drawn(int what);
+
+/// Tests of pages, skipped where there is no browser.
+class Reports : public ::testing::Test {
+ protected:
+  void SetUp() override;
+  /// Writes the page of a run or a sweep.
+  void report(const std::filesystem::path& directory) const;
+
+  const std::string paper_ = (source_folder() / "configs/paper/object_i.yaml").string();
+  const TemporaryFolder folder_;
+};
+
+/// The same with WebGL and without.
+class ReportsInBoth : public Reports, public ::testing::WithParamInterface<bool> {
+ protected:
+  Browsed browse(const std::filesystem::path& directory, const std::vector<std::string>& steps) const;
+};
+
+std::string webgl_name(const ::testing::TestParamInfo<bool>& info);
 
 }  // namespace palpate::test
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+using nlohmann::json;
+using test::Browsed;
+using test::Cells;
+using test::csv_rows;
+using test::drawn;
+using test::text_of;
+
+}  // namespace palpate

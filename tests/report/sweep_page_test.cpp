@@ -7,23 +7,7 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-
-using nlohmann::json;
-using test::Browsed;
-using test::Cells;
-using test::choose;
-using test::column;
-using test::csv_rows;
-using test::data_of;
-using test::drawn;
-using test::expect_near;
-using test::kCells;
-using test::sorted;
-using test::text_of;
-using ::testing::AllOf;
 using ::testing::EndsWith;
-using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
 class SweepNumbers : public test::SweepPages {};

@@ -4,10 +4,6 @@
 #pragma once
 
 #include "report/browser.hpp"
-#include "support/support.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
@@ -18,9 +14,6 @@
 #include <vector>
 
 namespace palpate::test {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
 
 /// The sorted numbers of a column, times `factor`, over the rows of which `wanted` holds.
 inline std::vector<double> column(const std::vector<Cells>& rows, const std::string& name, double factor,
@@ -52,8 +45,6 @@ inline std::string choose(const std::string& id, const std::string& value) {
       id, value);
 }
 
-inline std::string drawn(int times) { return fmt::format("await document.body.dataset.drawn == '{}'", times); }
-
 inline std::string data_of(const std::string& id, const std::string& expression) {
   return fmt::format("const e = document.getElementById('{}'); const d = e.data; const l = e.layout; return {};", id,
                      expression);
@@ -64,13 +55,8 @@ inline const std::string kCells =
     "m.layout.yaxis.ticktext, mean: m.data[0].z, spread: c('cells_spread').data[0].z, hover: m.data[0].customdata, "
     "title: m.data[0].colorbar.title.text}";
 
-/// With WebGL or without.
-class SweepPages : public ::testing::TestWithParam<bool> {
+class SweepPages : public ReportsInBoth {
  protected:
-  void SetUp() override {
-    if (const std::string missing = test::browser_missing(); !missing.empty()) GTEST_SKIP() << missing;
-  }
-
   /// Runs the sweep and returns its directory.
   fs::path swept(std::vector<std::string> words, const std::vector<std::string>& environment = {}) const {
     words.insert(words.begin(), "sweep");
@@ -79,26 +65,19 @@ class SweepPages : public ::testing::TestWithParam<bool> {
     EXPECT_TRUE(ended.status == 0 || ended.status == 1) << ended.err;
     return test::only_run(folder_.path() / "runs");
   }
-
-  void report(const fs::path& directory) const {
-    const Ended ended = test::palpate({"report", directory.string()}, folder_.path());
-    ASSERT_EQ(ended.status, 0) << ended.err;
-    ASSERT_EQ(ended.out, (directory / "report.html").string() + "\n");
-  }
-
-  Browsed browse(const fs::path& directory, const std::vector<std::string>& steps) const {
-    Browsed seen = test::browse(directory / "report.html", steps, GetParam());
-    EXPECT_EQ(seen.trouble, "");  // a dialog of the page would be one
-    EXPECT_THAT(seen.severe, ::testing::IsEmpty());
-    return seen;
-  }
-
-  const std::string paper_ = (test::source_folder() / "configs/paper/object_i.yaml").string();
-  const TemporaryFolder folder_;
 };
 
-inline std::string webgl_name(const ::testing::TestParamInfo<bool>& info) {
-  return info.param ? "WithWebGL" : "WithoutWebGL";
-}
-
 }  // namespace palpate::test
+
+namespace palpate {
+
+using test::choose;
+using test::column;
+using test::data_of;
+using test::expect_near;
+using test::kCells;
+using test::sorted;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+}  // namespace palpate

@@ -8,23 +8,7 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-
-using nlohmann::json;
-using test::Browsed;
-using test::Cells;
-using test::choose;
-using test::column;
-using test::csv_rows;
-using test::data_of;
-using test::drawn;
-using test::expect_near;
-using test::kCells;
-using test::sorted;
-using test::text_of;
-using ::testing::AllOf;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 class SweepTrouble : public test::SweepPages {};

@@ -31,27 +31,18 @@ std::vector<int> attempts_in(const Sweep& sweep) {
   return out;
 }
 
-std::int64_t number_at(const Row& row, const char* name) {
-  const Scalar* value = row.find(name);
-  return value != nullptr && std::holds_alternative<std::int64_t>(*value) ? std::get<std::int64_t>(*value) : -1;
-}
+int number_at(const Row& row, const char* name) { return static_cast<int>(row.number(name).value_or(-1.0)); }
 
 /// The numbers of the recorded taps, in their order.
-std::vector<std::int64_t> taps_of(const fs::path& job) {
-  std::vector<std::int64_t> out;
+std::vector<int> taps_of(const fs::path& job) {
+  std::vector<int> out;
   for (const Row& row : read_json_lines(job / "taps.jsonl").rows) out.push_back(number_at(row, "tap"));
   return out;
 }
 
-std::vector<std::int64_t> one_to(int last) {
-  std::vector<std::int64_t> out(static_cast<std::size_t>(last));
-  std::iota(out.begin(), out.end(), 1);
-  return out;
-}
-
-std::vector<int> zero_to(int last) {
-  std::vector<int> out(static_cast<std::size_t>(last) + 1);
-  std::iota(out.begin(), out.end(), 0);
+std::vector<int> range(int first, int last) {
+  std::vector<int> out(static_cast<std::size_t>(last - first) + 1);
+  std::iota(out.begin(), out.end(), first);
   return out;
 }
 
@@ -88,9 +79,9 @@ TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
   ASSERT_TRUE(eventually([&] { return recorded(victim) >= 3; })) << text_of(sweep.directory / "slurm/1/1_2.log");
   const auto begun = read_json_lines(victim / "attempts.jsonl").rows;
   ASSERT_EQ(begun.size(), 1U);
-  ASSERT_EQ(::kill(parent_of(static_cast<int>(number_at(begun.front(), "pid"))), SIGKILL), 0);
+  ASSERT_EQ(::kill(parent_of(number_at(begun.front(), "pid")), SIGKILL), 0);
   ASSERT_TRUE(lab.becomes_idle());
-  EXPECT_EQ(lab.indices(1), zero_to(7));
+  EXPECT_EQ(lab.indices(1), range(0, 7));
   EXPECT_THAT(lab.palpate({"status", directory}).out,
               AllOf(StartsWith("8 jobs, 6 done, 0 running, 1 failed, 1 unfinished, 0 missing\n"),
                     HasSubstr("failed: job 7"), HasSubstr("does not fit into the area")));
@@ -108,10 +99,11 @@ TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
   const Ended twin = lab.run({"sbatch", "--parsable", "--array=0-7", "--output=/dev/null", script});
   ASSERT_EQ(twin.status, 0) << twin.err;
   ASSERT_TRUE(lab.becomes_idle());
-  EXPECT_THAT(lab.indices(arrays_in(resumed.out).front()), ElementsAre(static_cast<int>(kVictim)));
-  EXPECT_EQ(lab.indices(std::stoi(twin.out)), zero_to(7));
+  EXPECT_THAT(lab.indices(arrays_in(resumed.out).front()), ElementsAre(0));
+  EXPECT_EQ(text_of(sweep.directory / "slurm/2/jobs"), fmt::format("{0}-{0}\n", kVictim));
+  EXPECT_EQ(lab.indices(std::stoi(twin.out)), range(0, 7));
   EXPECT_EQ(attempts_in(sweep), (std::vector<int>{1, 1, 2, 1, 1, 1, 1, 1}));
-  for (std::size_t job = 0; job < 7; ++job) EXPECT_EQ(taps_of(job_at(sweep, job)), one_to(17)) << job;
+  for (std::size_t job = 0; job < 7; ++job) EXPECT_EQ(taps_of(job_at(sweep, job)), range(1, 17)) << job;
   EXPECT_EQ(text_of(victim / "taps.jsonl").substr(0, before.size()), before);
   const auto attempts = read_json_lines(victim / "attempts.jsonl").rows;
   ASSERT_EQ(attempts.size(), 3U);  // begun, begun, ended
@@ -122,7 +114,8 @@ TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
   const Ended retried = lab.palpate(on_slurm({"resume", directory, "--retry-failed"}));
   ASSERT_EQ(arrays_in(retried.out).size(), 1U) << retried.err;
   ASSERT_TRUE(lab.becomes_idle());
-  EXPECT_THAT(lab.indices(arrays_in(retried.out).front()), ElementsAre(7));
+  EXPECT_THAT(lab.indices(arrays_in(retried.out).front()), ElementsAre(0));
+  EXPECT_EQ(text_of(sweep.directory / "slurm/3/jobs"), "7-7\n");
   EXPECT_EQ(attempts_in(sweep), (std::vector<int>{1, 1, 2, 1, 1, 1, 1, 2}));
   const Ended nothing = lab.palpate(on_slurm({"resume", directory}));
   EXPECT_EQ(nothing.status, 1) << "the failed job stays failed";
@@ -146,9 +139,9 @@ TEST_F(Slurm, TasksRunSeveralJobsEachAndAnArrayIsSplitWhereTheClusterTakesNoMore
   EXPECT_THAT(lab.run({"scontrol", "show", "job", std::to_string(arrays[2]), "-o"}).out,
               AllOf(HasSubstr("CPUs/Task=2"), HasSubstr("Nice=3"), HasSubstr("JobName=object_i ")));
   ASSERT_TRUE(lab.becomes_idle());
-  EXPECT_EQ(lab.indices(arrays[0]), zero_to(3));
-  EXPECT_EQ(lab.indices(arrays[1]), zero_to(3));
-  EXPECT_EQ(lab.indices(arrays[2]), zero_to(2));
+  EXPECT_EQ(lab.indices(arrays[0]), range(0, 3));
+  EXPECT_EQ(lab.indices(arrays[1]), range(0, 3));
+  EXPECT_EQ(lab.indices(arrays[2]), range(0, 2));
   for (const SlurmLab::Task& task : lab.tasks()) EXPECT_EQ(task.state, "COMPLETED") << task.array << "_" << task.index;
   const Sweep sweep = sweep_in(lab.folder());
   EXPECT_EQ(attempts_in(sweep), std::vector<int>(41, 1));
@@ -200,8 +193,8 @@ TEST_F(Slurm, AJobThatFailedBeforeIsAwaitedUntilItHasBeenTriedAgain) {
   std::ofstream(job_at(sweep, 1) / "taps.jsonl") << taps.substr(0, taps.find('\n') + 1);
   const Ended ended = lab.palpate(on_slurm({"resume", sweep.directory.string(), "--retry-failed"}, {"--wait"}));
   EXPECT_EQ(ended.status, 0) << ended.out;
-  EXPECT_THAT(lab.indices(1), ElementsAre(1));
-  EXPECT_EQ(taps_of(job_at(sweep, 1)), one_to(17));
+  EXPECT_THAT(lab.indices(1), ElementsAre(0));
+  EXPECT_EQ(taps_of(job_at(sweep, 1)), range(1, 17));
 }
 
 TEST_F(Slurm, CtrlCCancelsWhatIsWaitedFor) {

@@ -11,16 +11,19 @@
 namespace palpate::stability {
 namespace {
 
-/// Starts a case whose name says what makes it extreme.
+constexpr double kUsualNoise = 1e-8;
+
 class Matrix {
  public:
   std::vector<Case> rows;
 
+  /// Starts a case with this variance of its noise and a name that says what makes it extreme.
   template <class... Args>
-  Case& add(fmt::format_string<Args...> name, Args&&... args) {
+  Case& add(double noise_variance, fmt::format_string<Args...> name, Args&&... args) {
     rows.emplace_back();
     rows.back().name = fmt::format(name, std::forward<Args>(args)...);
     std::replace(rows.back().name.begin(), rows.back().name.end(), ' ', '_');
+    rows.back().noise_variance = noise_variance;
     return rows.back();
   }
 };
@@ -29,18 +32,16 @@ void add_length_scales(Matrix& matrix) {
   for (const char* kernel : {"rbf", "matern52"}) {
     for (const double length : {1e-6, 1e-4, 1e-2, 0.07, 0.3, 1.0, 10.0, 1e3, 1e6}) {
       for (const double noise : {0.0, 1e-16, 1e-8, 1e-4, 1.0}) {
-        Case& one = matrix.add("{} length {} noise {}", kernel, length, noise);
+        Case& one = matrix.add(noise, "{} length {} noise {}", kernel, length, noise);
         one.kernel = kernel;
         one.length = length;
-        one.noise_variance = noise;
       }
     }
     for (const double length : {0.07, 1.0, 1e3}) {
       for (const double noise : {0.0, 1e-8}) {
-        Case& one = matrix.add("{} rough data length {} noise {}", kernel, length, noise);
+        Case& one = matrix.add(noise, "{} rough data length {} noise {}", kernel, length, noise);
         one.kernel = kernel;
         one.length = length;
-        one.noise_variance = noise;
         one.data = Data::rough;
       }
     }
@@ -50,23 +51,18 @@ void add_length_scales(Matrix& matrix) {
 void add_units(Matrix& matrix) {
   for (const double signal : {1e-12, 1e-6, 1e6, 1e12}) {
     for (const double noise : {0.0, 1e-16, 1e-4, 1.0}) {
-      Case& one = matrix.add("signal {} noise {}", signal, noise);
-      one.signal = signal;
-      one.noise_variance = noise;
+      matrix.add(noise, "signal {} noise {}", signal, noise).signal = signal;
     }
   }
   for (const double height : {1e-9, 1e-6, 1e-3, 1e3, 1e6}) {
     for (const double noise : {0.0, 1e-8}) {
-      Case& one = matrix.add("heights {} noise {}", height, noise);
-      one.height = height;
-      one.noise_variance = noise;
+      matrix.add(noise, "heights {} noise {}", height, noise).height = height;
     }
   }
   for (const auto& [signal, height] : {std::pair(1e-12, 1e6), std::pair(1e12, 1e-9), std::pair(1e12, 1e6)}) {
-    Case& one = matrix.add("signal {} heights {}", signal, height);
+    Case& one = matrix.add(1e-8 * signal * signal, "signal {} heights {}", signal, height);
     one.signal = signal;
     one.height = height;
-    one.noise_variance = 1e-8 * signal * signal;
   }
 }
 
@@ -79,30 +75,26 @@ void add_layouts(Matrix& matrix) {
   for (const auto& [name, layout] : layouts) {
     for (const double noise : {0.0, 1e-16, 1e-12, 1e-8, 1e-4}) {
       for (const auto& [text, data] : {std::pair("", Data::smooth), std::pair(" rough data", Data::rough)}) {
-        Case& one = matrix.add("{}{} noise {}", name, text, noise);
+        Case& one = matrix.add(noise, "{}{} noise {}", name, text, noise);
         one.layout = layout;
-        one.noise_variance = noise;
         one.data = data;
       }
     }
-    Case& rough = matrix.add("{} matern52", name);
+    Case& rough = matrix.add(0.0, "{} matern52", name);
     rough.layout = layout;
     rough.kernel = "matern52";
-    rough.noise_variance = 0.0;
-    Case& moved = matrix.add("{} offset 1e6 m", name);
+    Case& moved = matrix.add(0.0, "{} offset 1e6 m", name);
     moved.layout = layout;
     moved.offset = 1e6;
     moved.gap = 1.2e-10;  // the next number after 1e6
-    moved.noise_variance = 0.0;
   }
   for (const double gap : {1e-9, 1e-7, 1e-5, 1e-3}) {
-    Case& one = matrix.add("pairs {} m apart", gap);
+    Case& one = matrix.add(0.0, "pairs {} m apart", gap);
     one.layout = Layout::pairs;
     one.gap = gap;
-    one.noise_variance = 0.0;
   }
   for (const double length : {0.07, 1.0, 1e6}) {
-    Case& one = matrix.add("offset 1e6 m length {}", length);
+    Case& one = matrix.add(kUsualNoise, "offset 1e6 m length {}", length);
     one.offset = 1e6;
     one.length = length;
   }
@@ -112,13 +104,12 @@ void add_data(Matrix& matrix) {
   for (const auto& [name, data] :
        {std::pair("constant", Data::constant), std::pair("zero", Data::zero), std::pair("labels", Data::labels)}) {
     for (const double noise : {0.0, 1e-8}) {
-      Case& one = matrix.add("{} data noise {}", name, noise);
+      Case& one = matrix.add(noise, "{} data noise {}", name, noise);
       one.data = data;
-      one.noise_variance = noise;
       one.mean = data == Data::labels ? 0.5 : 0.0;
     }
   }
-  Case& equal = matrix.add("all labels equal to the prior mean");
+  Case& equal = matrix.add(kUsualNoise, "all labels equal to the prior mean");
   equal.data = Data::constant;
   equal.mean = 1.0;
 }
@@ -126,55 +117,47 @@ void add_data(Matrix& matrix) {
 void add_unknown_mean(Matrix& matrix) {
   for (const double ratio : {1e-3, 10.0, 1e4}) {
     for (const double length : {0.01, 0.1, 10.0}) {
-      Case& one = matrix.add("unknown mean {} length {}", ratio, length);
+      Case& one = matrix.add(kUsualNoise, "unknown mean {} length {}", ratio, length);
       one.mean_ratio = ratio;
       one.length = length;
     }
   }
-  Case& one = matrix.add("unknown mean duplicates noise 0");
+  Case& one = matrix.add(0.0, "unknown mean duplicates noise 0");
   one.mean_ratio = 10.0;
   one.layout = Layout::duplicates;
-  one.noise_variance = 0.0;
 }
 
 void add_refits(Matrix& matrix) {
   for (const double length : {0.01, 0.1, 1.0, 1e3}) {
-    Case& one = matrix.add("after a fit length {}", length);
+    Case& one = matrix.add(kUsualNoise, "after a fit length {}", length);
     one.refit = true;
     one.length = length;
   }
-  Case& one = matrix.add("after a fit duplicates noise 0");
+  Case& one = matrix.add(0.0, "after a fit duplicates noise 0");
   one.refit = true;
   one.layout = Layout::duplicates;
-  one.noise_variance = 0.0;
 }
 
 void add_sizes(Matrix& matrix) {
   for (const int points : {1, 2, 3, 5, 10, 17, 100, 200}) {
     for (const double noise : {0.0, 1e-8}) {
-      Case& one = matrix.add("{} points noise {}", points, noise);
-      one.points = points;
-      one.noise_variance = noise;
+      matrix.add(noise, "{} points noise {}", points, noise).points = points;
     }
   }
   for (const int points : {1, 2, 3, 17}) {
-    Case& one = matrix.add("{} points length 1e6", points);
+    Case& one = matrix.add(kUsualNoise, "{} points length 1e6", points);
     one.points = points;
     one.length = 1e6;
   }
   for (const int points : {500, 1000, 2000}) {
-    Case& firm = matrix.add("{} points noise 0.0001", points);
-    firm.points = points;
-    firm.noise_variance = 1e-4;
-    Case& jittered = matrix.add("{} points duplicates noise 0", points);
+    matrix.add(1e-4, "{} points noise 0.0001", points).points = points;
+    Case& jittered = matrix.add(0.0, "{} points duplicates noise 0", points);
     jittered.points = points;
     jittered.layout = Layout::duplicates;
-    jittered.noise_variance = 0.0;
   }
-  Case& alike = matrix.add("1000 points length 1 noise 0");
+  Case& alike = matrix.add(0.0, "1000 points length 1 noise 0");
   alike.points = 1000;
   alike.length = 1.0;
-  alike.noise_variance = 0.0;
 }
 
 void spread(Points& out, Random& random) {

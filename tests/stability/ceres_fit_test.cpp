@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The fitting plugin `ceres` on data whose optimum several independent optimisers agree on (tests/data/fit_N.csv).
 #include "support/fit_data.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
+#include "support/testing.hpp"
 
 namespace palpate::test {
 namespace {
@@ -146,19 +140,23 @@ TEST(CeresFit, KeepsTheMeanOfAPlateauThatItHasFound) {
   }
 }
 
-TEST(CeresFit, LeavesOutAnOutputWhoseTargetsAreAllAlike) {
-  const FitData data = fit_data(50);
-  FitState state;
-  double signal = 1.0;
+/// A fit of two outputs without priors: `others` at the places of `data`, whose signal goes to `signal`, and `data`.
+FitSummary fit_with_another(FitState& state, const FitData& data, const Eigen::VectorXd& others, double& signal) {
   double mean = 0.0;
-  const Eigen::VectorXd zeros = Eigen::VectorXd::Zero(50);
   FitProblem problem{data.points,
                      *state.kernel,
                      state.noise_ratio,
                      0.0,
-                     {{zeros, signal, mean}, {data.targets, state.signal, state.mean}}};
+                     {{others, signal, mean}, {data.targets, state.signal, state.mean}}};
   Random random(1, "fit");
-  const FitSummary summary = ceres("{priors: none}")->fit(problem, random);
+  return ceres("{priors: none}")->fit(problem, random);
+}
+
+TEST(CeresFit, LeavesOutAnOutputWhoseTargetsAreAllAlike) {
+  const FitData data = fit_data(50);
+  FitState state;
+  double signal = 1.0;
+  const FitSummary summary = fit_with_another(state, data, Eigen::VectorXd::Zero(50), signal);
   EXPECT_TRUE(summary.changed);
   EXPECT_NEAR(summary.objective, 45.7165, 1e-4);
   EXPECT_NE(summary.reason.find("outputs that tell nothing were left out"), std::string::npos) << summary.reason;
@@ -202,15 +200,7 @@ TEST(CeresFit, SharesOneKernelAmongOutputsAndGivesEachItsSignal) {
   // The same targets ten times as large: kernel and noise ratio are those of one output, the signal ten times.
   FitState both;
   double signal = 1.0;
-  double mean = 0.0;
-  const Eigen::VectorXd large = 10.0 * data.targets;
-  FitProblem problem{data.points,
-                     *both.kernel,
-                     both.noise_ratio,
-                     0.0,
-                     {{data.targets, both.signal, both.mean}, {large, signal, mean}}};
-  Random random(1, "fit");
-  ASSERT_TRUE(ceres("{priors: none}")->fit(problem, random).changed);
+  ASSERT_TRUE(fit_with_another(both, data, 10.0 * data.targets, signal).changed);
   EXPECT_NEAR(both.length_scale(), alone.length_scale(), 1e-3 * alone.length_scale());
   EXPECT_NEAR(both.noise_ratio, alone.noise_ratio, 1e-2 * alone.noise_ratio);
   EXPECT_NEAR(both.signal, alone.signal, 1e-2 * alone.signal);

@@ -2,16 +2,10 @@
 // The objective of fits, values and gradients, against the definitions: whole matrices in extended precision, points
 // really left out, and differences of values.
 #include "objective.hpp"
-#include "support/plugins.hpp"
+#include "support/testing.hpp"
 #include "symmetric.hpp"
 
 #include <Eigen/Dense>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
 
 namespace palpate::fitting {
 namespace {

@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The extremes of the footprints: labels all alike, labels that contradict each other at one place, labels without any
 // order, a thousand of each; alone, and in whole runs.
-#include "support/plugins.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
+#include "support/testing.hpp"
 #include "support/touches.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <chrono>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-using test::all_probabilities;
-
-constexpr int kMany = test::kSanitized ? 200 : 1000;
+const int kMany = brief() ? 200 : 1000;
 
 const std::vector<std::pair<std::string, std::string>>& footprints() {
   static const std::vector<std::pair<std::string, std::string>> all{
@@ -39,31 +29,20 @@ std::vector<Touch> touches_of(const std::string& labels, int count) {
 
 class FootprintExtremes : public ::testing::TestWithParam<const char*> {};
 
-/// Seconds that a piece of work takes, for the record; how long is nobody's failure.
-template <class Work>
-double seconds_of(const Work& work) {
-  const auto begun = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
 TEST_P(FootprintExtremes, AloneGiveProbabilitiesFromOneTouchToAThousand) {
   const std::vector<Touch> touches = touches_of(GetParam(), kMany);
   for (const auto& [name, options] : footprints()) {
     const auto footprint = test::make<Footprint>(test::shared_host(), name, options);
     int taken = 0;
-    const double adding = seconds_of([&] {
-      for (const Touch& touch : touches) {
-        footprint->add(touch);
-        ++taken;
-        if (taken != 1 && taken != 10 && taken != 100 && taken != kMany) continue;
-        EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, test::lattice(47, 47)))) << name << taken;
-        const Points touched{{touch.place.x, touch.place.y}};
-        EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, touched))) << name << taken;
-        for (const FootprintNumber& one : footprint->numbers()) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
-      }
-    });
-    RecordProperty(name + "_seconds", fmt::format("{:.2f}", adding));
+    for (const Touch& touch : touches) {
+      footprint->add(touch);
+      ++taken;
+      if (taken != 1 && taken != 10 && taken != 100 && taken != kMany) continue;
+      EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, test::lattice(47, 47)))) << name << taken;
+      const Points touched{{touch.place.x, touch.place.y}};
+      EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, touched))) << name << taken;
+      for (const FootprintNumber& one : footprint->numbers()) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
+    }
     const Eigen::VectorXd last = test::probability_of(*footprint, test::lattice(47, 47));
     const std::string labels = GetParam();
     if (labels == "all on an object") {
@@ -87,32 +66,22 @@ INSTANTIATE_TEST_SUITE_P(OfLabels, FootprintExtremes,
                            return name;
                          });
 
-/// What a backend answers that reports such labels.
-std::vector<Contact> answers(const std::string& labels, int count) {
-  std::vector<Contact> out;
-  for (const Touch& touch : touches_of(labels, count))
-    out.push_back({Outcome::contact, touch.on ? 0.05 : 0.0, 8.0, 1.0, {}});
-  return out;
-}
-
-/// A run of the loop over such answers, every number of the footprint that it recorded checked.
+/// A run of the loop over such touches, every number of the footprint that it recorded checked.
 void expect_sound_run(const std::string& labels, int taps, std::vector<std::string> words) {
   words.insert(words.end(), {fmt::format("taps={}", taps), "repeat=allow"});
-  const ResolvedConfig config = test::shipped_config("default.yaml", words);
-  Experiment experiment(config.options, test::shared_host(), nullptr,
-                        std::make_shared<test::ScriptedBackend>(answers(labels, taps)));
-  test::Collector collector;
-  experiment.run(collector);
-  ASSERT_EQ(collector.taps.size(), static_cast<std::size_t>(taps));
-  for (const TapRecord& tap : collector.taps) {
+  std::vector<Contact> answers;
+  for (const Touch& touch : touches_of(labels, taps)) answers.push_back(contact_at(touch.on ? 0.05 : 0.0));
+  Finished run("default.yaml", words, scripted(answers));
+  ASSERT_EQ(run.taps.size(), static_cast<std::size_t>(taps));
+  for (const TapRecord& tap : run.taps) {
     EXPECT_TRUE(std::isfinite(tap.score.value_or(0.0))) << tap.number;
     if (!tap.footprint) continue;
     EXPECT_TRUE(*tap.probability >= 0.0 && *tap.probability <= 1.0) << tap.number;
     for (const FootprintNumber& one : tap.footprint->numbers) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
   }
-  experiment.ask(Quantity::probability | Quantity::height);
-  EXPECT_TRUE(all_probabilities(experiment.belief().probability()));
-  EXPECT_TRUE(experiment.belief().height_mean().allFinite());
+  run.experiment.ask(Quantity::probability | Quantity::height);
+  EXPECT_TRUE(all_probabilities(run.experiment.belief().probability()));
+  EXPECT_TRUE(run.experiment.belief().height_mean().allFinite());
 }
 
 // All taps go to one place where there is only one candidate.
@@ -126,7 +95,7 @@ class FootprintRuns : public ::testing::TestWithParam<const char*> {};
 TEST_P(FootprintRuns, ThatReadItAtEveryTapRecordProbabilities) {
   for (const auto& [labels, candidates] : kRuns) {
     SCOPED_TRACE(labels);
-    expect_sound_run(labels, test::kSanitized ? 15 : 80, {std::string("footprint=") + GetParam(), candidates});
+    expect_sound_run(labels, test::brief() ? 15 : 80, {std::string("footprint=") + GetParam(), candidates});
   }
 }
 
@@ -134,10 +103,7 @@ TEST_P(FootprintRuns, ThatReadItAtEveryTapRecordProbabilities) {
 // thousand rows: minutes, for what one at the end shows as well.
 void expect_sound_long_run(const std::string& footprint, std::size_t which) {
   const auto& [labels, candidates] = kRuns.at(which);
-  const double seconds = seconds_of([&, &labels = labels, &candidates = candidates] {
-    expect_sound_run(labels, kMany, {"footprint=" + footprint, candidates, "acquisition=uncertainty"});
-  });
-  testing::Test::RecordProperty("seconds", fmt::format("{:.2f}", seconds));
+  expect_sound_run(labels, kMany, {"footprint=" + footprint, candidates, "acquisition=uncertainty"});
 }
 
 TEST_P(FootprintRuns, OfAThousandTapsOnTheDeskEndWithProbabilities) { expect_sound_long_run(GetParam(), 1); }
@@ -150,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Of, FootprintRuns, ::testing::Values("classifier", "sha
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

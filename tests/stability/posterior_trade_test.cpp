@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The recorded table of what engines, spacing and refits cost and are worth.
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <set>
-#include <string>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 TEST(PosteriorTrade, StandsInItsPageAsItWasRecorded) {
@@ -44,4 +42,4 @@ TEST(PosteriorTrade, NoEngineChangesATapOrLosesMoreThanTheAccuracy) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -4,13 +4,7 @@
 #include "gp/process.hpp"
 #include "stability/oracle.hpp"
 #include "stability/reference.hpp"
-#include "support/plugins.hpp"
-#include "support/support.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
+#include "support/testing.hpp"
 
 namespace palpate::stability {
 namespace {

@@ -3,9 +3,11 @@
 
 #include "record/fields.hpp"
 #include "record/json.hpp"
+#include "support/sanitizers.hpp"
 #include "support/support.hpp"
 
 #include <csignal>
+#include <cstdlib>
 #include <sstream>
 
 #include <unistd.h>
@@ -50,6 +52,8 @@ std::string identity(const std::string& text, bool of_job) {
   return text.substr(0, words) + text.substr(origins, text.find("\"resumed\"") - origins);
 }
 
+}  // namespace
+
 std::string lasting(const fs::path& file) {
   const std::string text = text_of(file);
   const std::string name = file.filename().string();
@@ -61,8 +65,6 @@ std::string lasting(const fs::path& file) {
   return name == "attempts.jsonl" ? "there" : text;
 }
 
-}  // namespace
-
 void run_and_kill(const std::vector<std::string>& words, const fs::path& folder, int microseconds) {
   std::vector<std::string> all{program_file().string()};
   all.insert(all.end(), words.begin(), words.end());
@@ -71,6 +73,11 @@ void run_and_kill(const std::vector<std::string>& words, const fs::path& folder,
   ::usleep(static_cast<useconds_t>(microseconds));
   child.signal(SIGKILL);
   child.wait();
+}
+
+int wanted_kills(int usual, int few) {
+  const char* wanted = std::getenv("PALPATE_KILLS");
+  return wanted != nullptr ? std::atoi(wanted) : brief() ? few : usual;
 }
 
 fs::path run_in(const fs::path& runs) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Experiments inside a test: configs from the shipped ones, journals that collect, factories that count.
+// Experiments inside a test: configs from the shipped ones, journals that collect, backends and plugins of the test's
+// own, and whole runs.
 #pragma once
 
 #include "config/compose.hpp"
@@ -8,6 +9,8 @@
 #include "support/support.hpp"
 
 #include <functional>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,13 +24,26 @@ inline ResolvedConfig shipped_config(const std::string& file, const std::vector<
   return load_experiment(composer, shared_host(), source_folder() / "configs" / file, parsed);
 }
 
-/// Keeps every record.
+/// Keeps every record, and does what the test wants done meanwhile.
 class Collector : public Journal {
  public:
   std::vector<TapRecord> taps;
-  void announce(const TapRecord&) override {}
-  void record(const TapRecord& tap, const std::array<double, kPhases>&) override { taps.push_back(tap); }
+  std::function<bool(const TapRecord&)> permitting;
+  std::function<void(const TapRecord&)> announcing;
+  std::function<void(const TapRecord&)> recording;
+
+  bool permits(const TapRecord& tap) override { return !permitting || permitting(tap); }
+  void announce(const TapRecord& tap) override {
+    if (announcing) announcing(tap);
+  }
+  void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
+    taps.push_back(tap);
+    if (recording) recording(tap);
+  }
 };
+
+/// What a tap brings that meets something at `height`, in one second.
+inline Contact contact_at(double height) { return {Outcome::contact, height, 8.0, 1.0, {}}; }
 
 /// Answers with what the test scripts; a plain desk at 0 once the script has ended. Reads of the belief what `reading`
 /// reads when it is shown.
@@ -42,7 +58,7 @@ class ScriptedBackend final : public Backend {
   Contact tap(const TapRequest& request) override {
     requests.push_back(request);
     const auto index = static_cast<std::size_t>(request.number - 1);
-    return index < answers_.size() ? answers_[index] : Contact{Outcome::contact, 0.0, 8.0, 1.0, {}};
+    return index < answers_.size() ? answers_[index] : contact_at(0.0);
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_; }
@@ -54,6 +70,50 @@ class ScriptedBackend final : public Backend {
  private:
   std::vector<Contact> answers_;
   bool truth_;
+};
+
+inline std::shared_ptr<ScriptedBackend> scripted(std::vector<Contact> answers = {}) {
+  return std::make_shared<ScriptedBackend>(std::move(answers));
+}
+
+/// Gives out one plugin wherever its kind is asked for; every other comes from the host.
+template <class Interface>
+class Instead final : public PluginFactory {
+ public:
+  explicit Instead(std::shared_ptr<Interface> made) : made_(std::move(made)) {}
+  std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
+    return choice.kind == Interface::kKind ? std::shared_ptr<void>(made_) : shared_host().create(choice, context);
+  }
+
+ private:
+  std::shared_ptr<Interface> made_;
+};
+
+/// The experiment of a shipped config, not yet begun, and the journal of its taps.
+struct Prepared {
+  explicit Prepared(const std::string& file, const std::vector<std::string>& overrides = {},
+                    std::shared_ptr<Backend> backend = nullptr, const PluginFactory& plugins = shared_host())
+      : config(shipped_config(file, overrides)), experiment(config.options, plugins, nullptr, std::move(backend)) {}
+
+  void run() { experiment.run(journal); }
+  /// The first `count` of its taps, as a later process takes them over.
+  std::vector<PastTap> past(std::size_t count) const {
+    return {taps.begin(), std::next(taps.begin(), static_cast<std::ptrdiff_t>(count))};
+  }
+
+  ResolvedConfig config;
+  Experiment experiment;
+  Collector journal;
+  const std::vector<TapRecord>& taps = journal.taps;
+};
+
+/// The same, run to its end.
+struct Finished : Prepared {
+  explicit Finished(const std::string& file, const std::vector<std::string>& overrides = {},
+                    std::shared_ptr<Backend> backend = nullptr, const PluginFactory& plugins = shared_host())
+      : Prepared(file, overrides, std::move(backend), plugins) {
+    run();
+  }
 };
 
 }  // namespace palpate::test

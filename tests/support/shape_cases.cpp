@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/shape_cases.hpp"
 
-#include "config/resolve.hpp"
-#include "config/yaml.hpp"
-#include "support/support.hpp"
-
-#include <fmt/format.h>
+#include "support/filled.hpp"
 
 #include <cmath>
 #include <map>
@@ -33,24 +29,15 @@ Profile arc(double radius, double centre, double from, double to, int steps) {
   return out;
 }
 
-ShapeCase wave() {
-  const auto top = [](double s) { return 0.03 + 0.008 * std::cos(2 * kPi * s / 0.025); };
-  return {"wave", "{type: wave, length: 9 cm, width: 5 cm, height: 3 cm, amplitude: 8 mm, period: 25 mm}",
-          [top](const Vector3d& p, double slack) {
-            return within(p.x(), -0.045, 0.045, slack) && within(p.y(), -0.025, 0.025, slack) &&
-                   within(p.z(), 0, top(p.x()), 3 * slack);
+/// A top that is a function of the place along the length, of so many steps; `steep` bounds its slope.
+ShapeCase prism(const std::string& name, const std::string& options, double length, double width,
+                const std::function<double(double)>& top, double steep, int steps) {
+  return {name, options,
+          [=](const Vector3d& p, double slack) {
+            return within(p.x(), -length / 2, length / 2, slack) && within(p.y(), -width / 2, width / 2, slack) &&
+                   within(p.z(), 0, top(p.x()), steep * slack);
           },
-          [top] { return extruded(top, 0.09, 0.05, 4000); }};
-}
-
-ShapeCase slope() {
-  const auto top = [](double s) { return 0.03 + 0.02 * s / 0.04; };
-  return {"slope", "{type: slope, length: 8 cm, width: 4 cm, low: 1 cm, high: 5 cm}",
-          [top](const Vector3d& p, double slack) {
-            return within(p.x(), -0.04, 0.04, slack) && within(p.y(), -0.02, 0.02, slack) &&
-                   within(p.z(), 0, top(p.x()), 2 * slack);
-          },
-          [top] { return extruded(top, 0.08, 0.04, 1); }};
+          [=] { return extruded(top, length, width, steps); }};
 }
 
 ShapeCase dome() {
@@ -140,7 +127,13 @@ constexpr std::array<double, 4> kNoHole{1, -1, 1, -1};
 
 const std::vector<ShapeCase>& shape_cases() {
   static const std::vector<ShapeCase> cases{
-      wave(), slope(), dome(), cylinder(), cone(), ellipsoid(), ring(),
+      prism(
+          "wave", "{type: wave, length: 9 cm, width: 5 cm, height: 3 cm, amplitude: 8 mm, period: 25 mm}", 0.09, 0.05,
+          [](double s) { return 0.03 + 0.008 * std::cos(2 * kPi * s / 0.025); }, 3, 4000),
+      prism(
+          "slope", "{type: slope, length: 8 cm, width: 4 cm, low: 1 cm, high: 5 cm}", 0.08, 0.04,
+          [](double s) { return 0.03 + 0.02 * s / 0.04; }, 2, 1),
+      dome(), cylinder(), cone(), ellipsoid(), ring(),
       bars("block", "{type: block, length: 8 cm, width: 5 cm, height: 3 cm}", {{-0.04, 0.04, -0.025, 0.025}}, kNoHole,
            {-0.04, 0.04}, {-0.025, 0.025}, 0.03),
       bars("l", "{type: l, length: 10 cm, width: 8 cm, thickness: 3 cm, height: 4 cm}",
@@ -165,19 +158,12 @@ const Surface& ShapeCase::surface() const {
   return found != built.end() ? found->second : built.emplace(name, build()).first->second;
 }
 
-SceneOptions scene_options(const std::string& yaml) {
-  SceneOptions options;
-  ResolveNotes notes;
-  resolve(options, parse_yaml(yaml, "scene.yaml"), shared_host(), notes);
-  return options;
-}
-
 std::unique_ptr<const Scene> scene_of(const std::vector<std::string>& objects, std::uint64_t seed,
                                       const std::string& more) {
   std::string yaml = "{area: {width: 40 cm, depth: 40 cm}, objects: [";
   for (const std::string& object : objects) yaml += object + ", ";
   yaml += "]" + more + "}";
-  return build_scene(scene_options(yaml), seed, shared_host());
+  return build_scene(filled<SceneOptions>(yaml), seed, shared_host());
 }
 
 std::string with_fields(const std::string& options, const std::string& more) {

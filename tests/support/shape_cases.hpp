@@ -28,9 +28,6 @@ inline void PrintTo(const ShapeCase& one, std::ostream* out) { *out << one.optio
 
 const std::vector<ShapeCase>& shape_cases();
 
-/// Options of a scene from the text of its group, checked as a run would. Throws Error.
-SceneOptions scene_options(const std::string& yaml);
-
 /// A scene of 40 by 40 cm with these objects, each a YAML map.
 std::unique_ptr<const Scene> scene_of(const std::vector<std::string>& objects, std::uint64_t seed = 1,
                                       const std::string& more = "");

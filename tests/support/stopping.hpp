@@ -33,14 +33,10 @@ inline Forecasts forecasts(const std::string& scene, int seed, const std::vector
   std::vector<std::string> overrides{"scene=" + scene, "scene.placement=random", "taps=60",
                                      "seed=" + std::to_string(seed), "stop.expected_rmse=1e-6 mm"};
   overrides.insert(overrides.end(), more.begin(), more.end());
-  const ResolvedConfig config = shipped_config("default.yaml", overrides);
-  Experiment experiment(config.options, shared_host(), nullptr);
-  Collector collector;
-  experiment.run(collector);
+  Finished run("default.yaml", overrides);
   Forecasts out;
-  for (const TapRecord& tap : collector.taps)
-    out.push_back({tap.number - 1, *tap.forecast, tap.errors.rmse.value_or(0)});
-  const RunResult last = experiment.result();
+  for (const TapRecord& tap : run.taps) out.push_back({tap.number - 1, *tap.forecast, tap.errors.rmse.value_or(0)});
+  const RunResult last = run.experiment.result();
   out.push_back({last.taps, *last.forecast, *last.errors.rmse});
   return out;
 }

@@ -39,26 +39,36 @@ fs::path TemporaryFolder::write(const std::string& name, const std::string& text
   return file;
 }
 
+std::vector<char*> arguments_of(const std::vector<std::string>& words) {
+  std::vector<char*> out;
+  for (const std::string& word : words) out.push_back(const_cast<char*>(word.c_str()));
+  out.push_back(nullptr);
+  return out;
+}
+
+// Only calls that are safe after a fork, up to setenv, which no other thread can disturb here.
+void become(const std::vector<char*>& arguments, const fs::path& folder, const std::vector<std::string>& environment,
+            int parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);  // the test was gone before the line above
+  for (const std::string& one : environment) ::putenv(const_cast<char*>(one.c_str()));
+  if (::chdir(folder.c_str()) == 0) ::execvp(arguments.front(), arguments.data());
+  ::_exit(127);
+}
+
 Child::Child(const std::vector<std::string>& words, const fs::path& folder,
              const std::vector<std::string>& environment) {
   const std::string out = (scratch_.path() / "out").string();
   const std::string err = (scratch_.path() / "err").string();
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = arguments_of(words);
   const pid_t parent = ::getpid();
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("cannot fork");
   if (pid_ > 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);  // the test was gone before the line above
-  // In the child only calls that are safe after a fork, up to setenv, which no other thread can disturb here.
   ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
   ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
   ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
-  for (const std::string& one : environment) ::putenv(const_cast<char*>(one.c_str()));
-  if (::chdir(folder.c_str()) == 0) ::execvp(arguments.front(), arguments.data());
-  ::_exit(127);
+  become(arguments, folder, environment, parent);
 }
 
 Child::~Child() {

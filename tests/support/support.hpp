@@ -34,6 +34,12 @@ struct Ended {
   std::string err;
 };
 
+/// The words as execvp() takes them, which must outlive it; for a child just forked by `parent`, what becomes of it:
+/// that program in `folder`, killed when the thread that forked it ends.
+std::vector<char*> arguments_of(const std::vector<std::string>& words);
+[[noreturn]] void become(const std::vector<char*>& arguments, const std::filesystem::path& folder,
+                         const std::vector<std::string>& environment, int parent);
+
 /// A program under way, started without a shell.
 class Child {
  public:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/terminal.hpp"
 
+#include "support/support.hpp"
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -8,7 +10,6 @@
 
 #include <poll.h>
 #include <pty.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,18 +26,12 @@ int count_of(const std::string& text, const std::string& piece) {
 
 Terminal::Terminal(const std::vector<std::string>& words, const std::filesystem::path& folder,
                    const std::vector<std::string>& environment) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = arguments_of(words);
   const pid_t parent = ::getpid();
   pid_ = ::forkpty(&master_, nullptr, nullptr, nullptr);
   if (pid_ < 0) throw std::runtime_error("no terminal can be opened");
   if (pid_ > 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);  // the test was gone before the line above
-  for (const std::string& one : environment) ::putenv(const_cast<char*>(one.c_str()));
-  if (::chdir(folder.c_str()) == 0) ::execvp(arguments.front(), arguments.data());
-  ::_exit(127);
+  become(arguments, folder, environment, parent);
 }
 
 Terminal::~Terminal() {

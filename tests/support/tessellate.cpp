@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kFullTurn = 6.28318530717958647692;
 
 /// Two triangles; those that a side of length 0 leaves without area are dropped.
 void add_quad(Surface& out, std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
@@ -43,7 +43,7 @@ Surface turned(const std::vector<std::array<double, 2>>& profile, int sides) {
   for (const auto& [radius, height] : profile) {
     begin.push_back(out.points.size());
     for (int i = 0; i < (radius > 0.0 ? sides : 1); ++i) {
-      const double angle = 2.0 * kPi * i / sides;
+      const double angle = kFullTurn * i / sides;
       out.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), height);
     }
   }

@@ -2,6 +2,8 @@
 // Touches that try a footprint, and places to ask it about: what the contract and the extremes share.
 #pragma once
 
+#include "support/arrays.hpp"
+
 #include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
 
@@ -10,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,11 +114,6 @@ inline void take(Footprint& footprint, const std::vector<Touch>& touches) {
 /// Finite and in [0, 1].
 inline bool all_probabilities(const Eigen::VectorXd& values) {
   return values.allFinite() && (values.array() >= 0.0).all() && (values.array() <= 1.0).all();
-}
-
-inline bool same_bytes(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 }  // namespace palpate::test

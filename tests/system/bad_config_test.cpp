@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bad configs as people write them, sent through the program: one line on stderr with place, reason and remedy, exit
 // status 2, and nothing left behind.
-#include "support/support.hpp"
+#include "system/shell.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,6 @@
 
 namespace palpate {
 namespace {
-
-namespace fs = std::filesystem;
-using test::Ended;
-using test::TemporaryFolder;
 
 /// Nine good lines; what a case adds begins at line 10.
 const std::string kGood =
@@ -30,33 +26,30 @@ const std::string kGood =
 
 struct Case {
   const char* name;
-  std::string config;              ///< of bad.yaml
-  std::vector<std::string> words;  ///< the command line behind `palpate`
+  std::string config;  ///< of bad.yaml
+  Words words;         ///< the command line behind `palpate`
   std::string message;
   std::vector<std::pair<std::string, std::string>> files = {};  ///< beside bad.yaml: name and text
 };
 
 void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
-Case line(const char* name, const std::string& added, const std::string& message) {
-  return {name, kGood + added + "\n", {"run", "bad.yaml"}, message};
-}
+// Messages are told from the place on: behind "bad.yaml:", and of what is typed behind "command line: ".
 
 Case whole(const char* name, const std::string& config, const std::string& message) {
-  return {name, config, {"run", "bad.yaml"}, message};
+  return {name, config, {"run", "bad.yaml"}, "bad.yaml:" + message};
 }
 
-Case typed(const char* name, const std::vector<std::string>& overrides, const std::string& message) {
-  std::vector<std::string> words{"run", "bad.yaml"};
-  words.insert(words.end(), overrides.begin(), overrides.end());
-  return {name, kGood, words, message};
+Case line(const char* name, const std::string& added, const std::string& message) {
+  return whole(name, kGood + added + "\n", message);
 }
 
-Case sweep(const char* name, const std::string& added, const std::vector<std::string>& axes,
-           const std::string& message) {
-  std::vector<std::string> words{"sweep", "bad.yaml"};
-  words.insert(words.end(), axes.begin(), axes.end());
-  return {name, kGood + added, words, message};
+Case typed(const char* name, const Words& overrides, const std::string& message) {
+  return {name, kGood, Words{"run", "bad.yaml"} + overrides, "command line: " + message};
+}
+
+Case sweep(const char* name, const std::string& added, const Words& axes, const std::string& message) {
+  return {name, kGood + added, Words{"sweep", "bad.yaml"} + axes, message};
 }
 
 Case group(const char* name, const std::string& file, const std::string& text, const std::string& message) {
@@ -75,95 +68,84 @@ const char* const kRangeHint = ", write range(0,10), range(0,10,2) or log(1cm,5c
 std::vector<Case> cases() {
   return {
       // Names
-      line("TypoInAKey", "sed: 1", "bad.yaml:10:1: unknown option 'sed', did you mean 'seed'?"),
-      line("TypoInANestedKey", "initial: {desing: grid}",
-           "bad.yaml:10:11: unknown option 'desing', did you mean 'design'?"),
+      line("TypoInAKey", "sed: 1", "10:1: unknown option 'sed', did you mean 'seed'?"),
+      line("TypoInANestedKey", "initial: {desing: grid}", "10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
-           "bad.yaml:10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, "
-           "weight, surface, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, tie_tolerance, "
-           "accuracy, "
-           "threads, "
-           "instruction_set, stop, scene, backend, log, format, defaults, strategy, sweep, expect"),
-      line("DottedKeyInAFile", "weight.clip: yes",
-           "bad.yaml:10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
+           "10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, weight, "
+           "surface, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, tie_tolerance, accuracy, "
+           "threads, instruction_set, stop, scene, backend, log, format, defaults, strategy, sweep, expect"),
+      line("DottedKeyInAFile", "weight.clip: yes", "10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
-           "bad.yaml:10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),
+           "10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),
       whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",
-            "bad.yaml:9:1: unknown option 'backend.type', write backend: {type: simulator}"),
-      line("TypoInAKeyThatOthersRead", "expct: {}", "bad.yaml:10:1: unknown option 'expct', did you mean 'expect'?"),
+            "9:1: unknown option 'backend.type', write backend: {type: simulator}"),
+      line("TypoInAKeyThatOthersRead", "expct: {}", "10:1: unknown option 'expct', did you mean 'expect'?"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",
             "configs/kernel/rbf.yaml:3:3: unknown option 'length_scal', did you mean 'length_scale'?"),
       typed("TypoInAnOverride", {"kernel.length_scal=2cm"},
-            "command line: unknown option 'length_scal', did you mean 'length_scale'?"),
-      whole("TypoInDefaults", "defalts:\n  - kernel: rbf\n",
-            "bad.yaml:1:1: unknown option 'defalts', did you mean 'defaults'?"),
+            "unknown option 'length_scal', did you mean 'length_scale'?"),
+      whole("TypoInDefaults", "defalts:\n  - kernel: rbf\n", "1:1: unknown option 'defalts', did you mean 'defaults'?"),
       whole("TypoInAGroupThatIsNeeded", without("  - backend") + "backnd: {type: simulator}\n",
-            "bad.yaml:9:1: unknown option 'backnd', did you mean 'backend'?"),
+            "9:1: unknown option 'backnd', did you mean 'backend'?"),
       line("OptionOfAnotherPlugin", "acquisition: {type: weighted, count: 4}",
-           "bad.yaml:10:31: unknown option 'count' of acquisition/weighted, known: type"),
-      line("UnknownNameOfAChoice", "posterior: dens",
-           "bad.yaml:10:12: posterior: unknown value 'dens', did you mean 'dense'?"),
+           "10:31: unknown option 'count' of acquisition/weighted, known: type"),
+      line("UnknownNameOfAChoice", "posterior: dens", "10:12: posterior: unknown value 'dens', did you mean 'dense'?"),
 
       // Quantities
       line("MissingUnit", "kernel: {length_scale: 0.017}",
-           "bad.yaml:10:24: kernel.length_scale: '0.017' lacks its unit, write a length like '1.7 cm'"),
+           "10:24: kernel.length_scale: '0.017' lacks its unit, write a length like '1.7 cm'"),
       line("WrongUnit", "kernel: {length_scale: 3 s}",
-           "bad.yaml:10:24: kernel.length_scale: '3 s' is a time, not a length, write a length like '1.7 cm'"),
-      line("UnknownUnit", "height: {noise: 1 nmm}",
-           "bad.yaml:10:17: height.noise: unknown unit 'nmm', did you mean 'mm'?"),
+           "10:24: kernel.length_scale: '3 s' is a time, not a length, write a length like '1.7 cm'"),
+      line("UnknownUnit", "height: {noise: 1 nmm}", "10:17: height.noise: unknown unit 'nmm', did you mean 'mm'?"),
       line("UnitWhereNoneBelongs", "weight: {noise: 1 mm}",
-           "bad.yaml:10:17: weight.noise: '1 mm' is not a plain number, this one has no unit"),
+           "10:17: weight.noise: '1 mm' is not a plain number, this one has no unit"),
       line("DecimalComma", "kernel:\n  length_scale: 1,7 cm",
-           "bad.yaml:11:17: kernel.length_scale: '1,7 cm' has a decimal comma, write a point"),
+           "11:17: kernel.length_scale: '1,7 cm' has a decimal comma, write a point"),
       line("NegativeLength", "kernel: {length_scale: -1.7 cm}",
-           "bad.yaml:10:24: kernel.length_scale: -1.7 cm is out of range, it must be above 0 m"),
+           "10:24: kernel.length_scale: -1.7 cm is out of range, it must be above 0 m"),
       line("NotANumber", "kernel: {length_scale: .nan}",
-           "bad.yaml:10:24: kernel.length_scale: '.nan' is not a number, write a length like '1.7 cm'"),
+           "10:24: kernel.length_scale: '.nan' is not a number, write a length like '1.7 cm'"),
       line("Infinity", "height: {signal: .inf m}",
-           "bad.yaml:10:18: height.signal: '.inf m' is not a number, write a length like '1.7 cm'"),
+           "10:18: height.signal: '.inf m' is not a number, write a length like '1.7 cm'"),
       line("NumberBeyondAnyDouble", "height: {signal: 1e400 m}",
-           "bad.yaml:10:18: height.signal: '1e400 m' is out of range, write a length like '1.7 cm'"),
+           "10:18: height.signal: '1e400 m' is out of range, write a length like '1.7 cm'"),
       line("OctalNumber", "seed: 010",
-           "bad.yaml:10:7: seed: '010' has a leading zero, octal numbers are not read: write it without the zero"),
-      line("NegativeSeed", "seed: -1", "bad.yaml:10:7: seed: -1 is out of range, it must be at least 0"),
-      line("SeedThatIsNotWhole", "seed: 1.5", "bad.yaml:10:7: seed: '1.5' is not a whole number, write digits alone"),
-      line("YesForTrue", "weight: {clip: yes}",
-           "bad.yaml:10:16: weight.clip: 'yes' is not a truth value, write true or false"),
+           "10:7: seed: '010' has a leading zero, octal numbers are not read: write it without the zero"),
+      line("NegativeSeed", "seed: -1", "10:7: seed: -1 is out of range, it must be at least 0"),
+      line("SeedThatIsNotWhole", "seed: 1.5", "10:7: seed: '1.5' is not a whole number, write digits alone"),
+      line("YesForTrue", "weight: {clip: yes}", "10:16: weight.clip: 'yes' is not a truth value, write true or false"),
 
       // Shapes
       line("ListWhereAValueBelongs", "seed: [1, 2]",
-           "bad.yaml:10:7: seed: is a list or a map, not a number, write a plain number"),
+           "10:7: seed: is a list or a map, not a number, write a plain number"),
       line("MapWhereAValueBelongs", "seed: {value: 1}",
-           "bad.yaml:10:7: seed: is a list or a map, not a number, write a plain number"),
+           "10:7: seed: is a list or a map, not a number, write a plain number"),
       line("ValueWhereAMapBelongs", "initial: 3",
-           "bad.yaml:10:10: initial is not a group of options, write {key: value, ...} or initial.KEY=VALUE"),
+           "10:10: initial is not a group of options, write {key: value, ...} or initial.KEY=VALUE"),
       line("MapWhereAListBelongs", "scene: {objects: {type: wave}}",
-           "bad.yaml:10:18: scene.objects: expects a list, write [{...}, {...}]"),
+           "10:18: scene.objects: expects a list, write [{...}, {...}]"),
       line("ListOfTheWrongLength", "scene: {objects: [{type: wave, at: [1 cm]}]}",
-           "bad.yaml:10:36: scene.objects.0.at: expects a list of 2 values, write them in brackets, with commas "
-           "between them"),
-      line("KeyWithoutValue", "seed:", "bad.yaml:10:1: seed: has no value, write a plain number"),
-      whole("EmptyFile", "",
-            "bad.yaml: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
-      whole("ListInsteadOfAConfig", "- seed: 1\n", "bad.yaml:1:1: a config is a map, write key: value"),
+           "10:36: scene.objects.0.at: expects a list of 2 values, write them in brackets, with commas between them"),
+      line("KeyWithoutValue", "seed:", "10:1: seed: has no value, write a plain number"),
+      whole("EmptyFile", "", " no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
+      whole("ListInsteadOfAConfig", "- seed: 1\n", "1:1: a config is a map, write key: value"),
 
       // YAML
-      line("DuplicateKey", "taps: 6", "bad.yaml:10:1: duplicate key 'taps', it is already at line 8, column 1"),
+      line("DuplicateKey", "taps: 6", "10:1: duplicate key 'taps', it is already at line 8, column 1"),
       line("MergeKey", "height: {<<: {noise: 1 mm}}",
-           "bad.yaml:10:10: merge keys ('<<') are not read, repeat the options, or put them into a group file and name "
-           "it under "
+           "10:10: merge keys ('<<') are not read, repeat the options, or put them into a group file and name it under "
            "'defaults'"),
-      line("Tag", "seed: !!str 1", "bad.yaml:10:7: tags ('tag:yaml.org,2002:str') are not read, remove it"),
+      line("Tag", "seed: !!str 1", "10:7: tags ('tag:yaml.org,2002:str') are not read, remove it"),
       line("BadSyntax", "initial: {design: random",
-           "bad.yaml:11:1: not valid YAML: end of map flow not found, look here or above for a missing bracket or "
-           "quote, a wrong indent or a tab"),
-      line("TabForIndent", "initial:\n\tcount: 3",
-           "bad.yaml:11:7: not valid YAML: illegal map value, look here or above for a missing bracket or quote, a "
+           "11:1: not valid YAML: end of map flow not found, look here or above for a missing bracket or quote, a "
            "wrong indent or a tab"),
+      line("TabForIndent", "initial:\n\tcount: 3",
+           "11:7: not valid YAML: illegal map value, look here or above for a missing bracket or quote, a wrong indent "
+           "or a tab"),
       line("TwoDocuments", "---\nseed: 1",
-           "bad.yaml:11:1: a second document begins here, remove a '---' or a stray sign here or before"),
+           "11:1: a second document begins here, remove a '---' or a stray sign here or before"),
       line("DeepNesting", "name2: " + std::string(200, '[') + std::string(200, ']'),
-           "bad.yaml:10:108: nested too deeply, at most 100 levels"),
+           "10:108: nested too deeply, at most 100 levels"),
 
       // Files, groups and plugins
       {"MissingFile", kGood, {"run", "bat.yaml"}, "bat.yaml: no such file, did you mean 'bad.yaml'?"},
@@ -174,140 +156,127 @@ std::vector<Case> cases() {
        {{"configs/x", ""}}},
       {"EmptyFileName", kGood, {"run", ""}, "command line: the name of the config is empty, name a YAML file"},
       whole("MissingGroupFile", without("  - scene") + "scene: object_j\n",
-            "bad.yaml:9:8: no file scene/object_j.yaml, did you mean 'object_i'?"),
-      whole("UnknownGroup", "defaults:\n  - kernl: rbf\n",
-            "bad.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?"),
+            "9:8: no file scene/object_j.yaml, did you mean 'object_i'?"),
+      whole("UnknownGroup", "defaults:\n  - kernl: rbf\n", "2:5: unknown group 'kernl', did you mean 'kernel'?"),
       whole("DefaultsThatAreNoList", "defaults: rbf\n",
-            "bad.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group a line"),
+            "1:11: defaults: expects a list, write '- kernel: rbf', one group a line"),
       {"CyclicDefaults",
        "defaults:\n  - kernel: a\n",
        {"run", "bad.yaml"},
        "kernel/b.yaml:2:13: defaults form a cycle, kernel/a -> kernel/b -> kernel/a",
        {{"kernel/a.yaml", "defaults:\n  - kernel: b\n"}, {"kernel/b.yaml", "defaults:\n  - kernel: a\n"}}},
-      whole(
-          "GroupNameWithAPath", "defaults:\n  - kernel: ../rbf\n",
-          "bad.yaml:2:13: '../rbf' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path"),
+      whole("GroupNameWithAPath", "defaults:\n  - kernel: ../rbf\n",
+            "2:13: '../rbf' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path"),
       line("PluginNameWithAPath", "kernel: {type: ../kernel/rbf}",
-           "bad.yaml:10:16: '../kernel/rbf' is not the name of a plugin, a name has letters, digits, '_' and '-', and "
-           "no path"),
-      line("UnknownPlugin", "kernel: {type: matern53}",
-           "bad.yaml:10:16: no plugin kernel/matern53, did you mean 'matern52'?"),
+           "10:16: '../kernel/rbf' is not the name of a plugin, a name has letters, digits, '_' and '-', and no path"),
+      line("UnknownPlugin", "kernel: {type: matern53}", "10:16: no plugin kernel/matern53, did you mean 'matern52'?"),
       typed("UnknownPluginOnTheCommandLine", {"kernel=periodic"},
-            "command line: no plugin kernel/periodic, known: matern12, matern32, matern52, product, "
-            "rational_quadratic, rbf, scale, sum"),
+            "no plugin kernel/periodic, known: matern12, matern32, matern52, product, rational_quadratic, rbf, scale, "
+            "sum"),
       whole("NoBackend", without("  - backend"),
-            "bad.yaml:1:1: no backend is chosen, write backend: {type: ...} or name a group under 'defaults'"),
+            "1:1: no backend is chosen, write backend: {type: ...} or name a group under 'defaults'"),
       line("PluginWithoutType", "height: {kernel: }",
-           "bad.yaml:10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
+           "10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
       whole("NoScene", without("  - scene"),
-            "bad.yaml:1:1: 'scene.area' is missing, the rectangle of the desk in which taps may fall"),
+            "1:1: 'scene.area' is missing, the rectangle of the desk in which taps may fall"),
       line("ObjectWithoutType", "scene: {objects: [{height: 5 cm}]}",
-           "bad.yaml:10:19: 'scene.objects.0.type' is missing, shape of the object"),
+           "10:19: 'scene.objects.0.type' is missing, shape of the object"),
 
       // Laws between options
       whole("BothCountAndSpacing", without("candidates") + "candidates: {count: 8, spacing: 5 mm}\n",
-            "bad.yaml:9:33: candidates.spacing: give either count or spacing; the word none takes the other away"),
+            "9:33: candidates.spacing: give either count or spacing; the word none takes the other away"),
       whole("TooFineASpacing", without("candidates") + "candidates: {spacing: 1 um}\n",
-            "bad.yaml:9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are "
-            "possible"),
+            "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are possible"),
       line("FewerTapsThanInitialOnes", "initial: {count: 6}",
-           "bad.yaml:8:7: taps: the budget is smaller than the 6 initial taps, raise it or lower initial.count"),
+           "8:7: taps: the budget is smaller than the 6 initial taps, raise it or lower initial.count"),
       whole("MoreInitialTapsThanCandidates", without("candidates") + "candidates: {count: 1}\ninitial: {count: 2}\n",
-            "bad.yaml:10:18: initial.count: 2 taps, but there are only 1 candidates, take fewer first taps or more "
-            "candidates"),
+            "10:18: initial.count: 2 taps, but there are only 1 candidates, take fewer first taps or more candidates"),
       line("ASearchOfSomeTaps", "initial: {design: search, count: 3}",
-           "bad.yaml:10:27: unknown option 'count' of initial, known: design, smallest"),
+           "10:27: unknown option 'count' of initial, known: design, smallest"),
       line("ASearchForWhatIsTooLarge", "initial: {design: search, smallest: 23 cm}",
-           "bad.yaml:10:37: initial.smallest: is not below the sides of the area, name the least width of the object"),
+           "10:37: initial.smallest: is not below the sides of the area, name the least width of the object"),
       line("ASearchForNothing", "initial: {design: search, smallest: 0 cm}",
-           "bad.yaml:10:37: initial.smallest: 0 cm is out of range, it must be above 0 m"),
+           "10:37: initial.smallest: 0 cm is out of range, it must be above 0 m"),
       line("WaveBelowTheDesk", "scene: {objects: [{type: wave, height: 1 cm, amplitude: 2 cm}]}",
-           "bad.yaml:10:57: scene.objects.0.amplitude: is larger than the mean height, the top would dip below the "
-           "desk"),
+           "10:57: scene.objects.0.amplitude: is larger than the mean height, the top would dip below the desk"),
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
-           "bad.yaml:10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
+           "10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
       line("HoverBelowTheObject", "backend: {motion: {hover: 5 cm}}",
-           "bad.yaml:10:27: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, "
-           "raise "
-           "it or lower the object"),
+           "10:27: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, raise it or "
+           "lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "weight: {hyperparameters: shared, kernel: {type: rbf}}",
-           "bad.yaml:10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared; "
-           "take it away, or choose own"),
+           "10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared; take it away, "
+           "or choose own"),
       line("LabelsOfTheirOwnFittingThatShare", "weight: {hyperparameters: shared, fitting: {type: fixed}}",
-           "bad.yaml:10:44: weight.fitting: the labels are fitted with the heights when hyperparameters are shared; "
-           "take it away, or choose own"),
+           "10:44: weight.fitting: the labels are fitted with the heights when hyperparameters are shared; take it "
+           "away, or choose own"),
 
       // Plugins inside plugins, and how the surface is made
       line("UnknownSurface", "surface: two_parts",
-           "bad.yaml:10:10: surface: unknown value 'two_parts', did you mean 'two_part'?"),
+           "10:10: surface: unknown value 'two_parts', did you mean 'two_part'?"),
       line("UnknownHyperparameters", "weight: {hyperparameters: both}",
-           "bad.yaml:10:27: weight.hyperparameters: unknown value 'both', known: own, shared"),
-      line("NoKernelInASum", "kernel: {type: sum, kernels: []}",
-           "bad.yaml:10:30: kernel.kernels: needs at least one kernel"),
+           "10:27: weight.hyperparameters: unknown value 'both', known: own, shared"),
+      line("NoKernelInASum", "kernel: {type: sum, kernels: []}", "10:30: kernel.kernels: needs at least one kernel"),
       line("SumWithoutKernels", "kernel: {type: sum}",
-           "bad.yaml:10:16: 'kernel.kernels' is missing, the parts, each "
-           "{type: ..., ...}"),
+           "10:16: 'kernel.kernels' is missing, the parts, each {type: ..., ...}"),
       line("SumOfSomethingElse", "kernel: {type: sum, kernels: rbf}",
-           "bad.yaml:10:30: kernel.kernels: expects a list, write [{type: ...}, {type: ...}]"),
+           "10:30: kernel.kernels: expects a list, write [{type: ...}, {type: ...}]"),
       line("NameWhereAKernelBelongs", "kernel: {type: sum, kernels: [rbf, matern32]}",
-           "bad.yaml:10:31: kernel.kernels.0 is not a group of options, write {type: ...}"),
+           "10:31: kernel.kernels.0 is not a group of options, write {type: ...}"),
       line("KernelWithoutTypeInASum", "kernel: {type: sum, kernels: [{length_scale: 2 cm}]}",
-           "bad.yaml:10:31: kernel.kernels.0 has no type, 'palpate plugins kernel' lists the types"),
+           "10:31: kernel.kernels.0 has no type, 'palpate plugins kernel' lists the types"),
       line("UnknownKernelInASum", "kernel: {type: sum, kernels: [{type: rbf}, {type: matern53}]}",
-           "bad.yaml:10:51: no plugin kernel/matern53, did you mean 'matern52'?"),
+           "10:51: no plugin kernel/matern53, did you mean 'matern52'?"),
       line("TypoInAKernelOfAProduct",
            "kernel: {type: product, kernels: [{type: scale, kernel: {type: rbf, lenght_scale: 2 cm}}]}",
-           "bad.yaml:10:69: unknown option 'lenght_scale', did you mean 'length_scale'?"),
+           "10:69: unknown option 'lenght_scale', did you mean 'length_scale'?"),
       line("FactorOfZero", "kernel: {type: scale, factor: 0, kernel: {type: rbf}}",
-           "bad.yaml:10:31: kernel.factor: 0 is out of range, it must be at least 1e-12"),
+           "10:31: kernel.factor: 0 is out of range, it must be at least 1e-12"),
       line("ScaleOfNothing", "kernel: {type: scale}",
-           "bad.yaml:10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
+           "10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
-           "bad.yaml:10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
+           "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
-      line(
-          "GridPosteriorWithANonSeparableKernel", "posterior: grid\nkernel: {type: matern32}",
-          "bad.yaml:10:12: posterior: grid cannot be used with the kernel matern32, which is not separable: no product "
-          "of a factor along x and one along y, posterior: dense serves every kernel"),
+      line("GridPosteriorWithANonSeparableKernel", "posterior: grid\nkernel: {type: matern32}",
+           "10:12: posterior: grid cannot be used with the kernel matern32, which is not separable: no product of a "
+           "factor along x and one along y, posterior: dense serves every kernel"),
       line("LowrankPosteriorWithASum", "posterior: lowrank\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
-           "bad.yaml:10:12: posterior: lowrank cannot be used with the kernel sum, which is not separable: no product "
-           "of "
-           "a factor along x and one along y, posterior: dense serves every kernel"),
-      line("NoThreads", "threads: 0", "bad.yaml:10:10: threads: 0 is out of range, it must be at least 1"),
+           "10:12: posterior: lowrank cannot be used with the kernel sum, which is not separable: no product of a "
+           "factor along x and one along y, posterior: dense serves every kernel"),
+      line("NoThreads", "threads: 0", "10:10: threads: 0 is out of range, it must be at least 1"),
       line("UnknownInstructionSet", "instruction_set: avx",
-           "bad.yaml:10:18: instruction_set: unknown value 'avx', known: auto, baseline"),
+           "10:18: instruction_set: unknown value 'avx', known: auto, baseline"),
       line("LowrankInSinglePrecisionAsOnce", "lowrank: {precision: single}",
-           "bad.yaml:10:22: lowrank.precision: unknown value 'single', known: double"),
+           "10:22: lowrank.precision: unknown value 'single', known: double"),
       line("LowrankThatKeepsNothing", "lowrank: {tolerance: 0}",
-           "bad.yaml:10:22: lowrank.tolerance: 0 is out of range, it must be above 0"),
+           "10:22: lowrank.tolerance: 0 is out of range, it must be above 0"),
 
       // The command line
       typed("OverrideOfAKernelThatIsNotThere",
             {"kernel={type: sum, kernels: [{type: rbf}]}", "kernel.kernels.1.factor=2"},
-            "command line: 'kernel.kernels.1.factor': the list has no item '1', its items are 0 to 0"),
-      typed("OverrideWithoutEqualsSign", {"seed"},
-            "command line: 'seed' is not KEY=VALUE, for example kernel.length_scale=2cm"),
-      typed("OverrideWithoutKey", {"=1"}, "command line: '=1' is not KEY=VALUE, for example kernel.length_scale=2cm"),
+            "'kernel.kernels.1.factor': the list has no item '1', its items are 0 to 0"),
+      typed("OverrideWithoutEqualsSign", {"seed"}, "'seed' is not KEY=VALUE, for example kernel.length_scale=2cm"),
+      typed("OverrideWithoutKey", {"=1"}, "'=1' is not KEY=VALUE, for example kernel.length_scale=2cm"),
       typed("OverrideIntoAScalar", {"kernel.length_scale.x=1"},
-            "command line: 'kernel.length_scale.x': there is no 'x' below a value, the path ends at "
-            "'kernel.length_scale'"),
+            "'kernel.length_scale.x': there is no 'x' below a value, the path ends at 'kernel.length_scale'"),
       typed("OverrideOfAnItemThatIsNotThere", {"scene.objects.1.height=5cm"},
-            "command line: 'scene.objects.1.height': the list has no item '1', its items are 0 to 0"),
-      typed("OverrideWithABadValue", {"seed=none"}, "command line: seed: 'none' is not a number, write a plain number"),
+            "'scene.objects.1.height': the list has no item '1', its items are 0 to 0"),
+      typed("OverrideWithABadValue", {"seed=none"}, "seed: 'none' is not a number, write a plain number"),
       typed("GroupNameWithAPathOnTheCommandLine", {"kernel=../rbf"},
-            "command line: '../rbf' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path"),
+            "'../rbf' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path"),
 
+      typed("NameThatIsNotUtf8SoThatNoRecordCouldHoldIt", {"name=a\xff"}, "not UTF-8, write it in UTF-8"),
       typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
-            "command line: acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ManyValues", {"posterior=dense,grid"},
-            "command line: posterior has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "posterior has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ManyWholeNumbers", {"seed=1,2"},
-            "command line: seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ARange", {"seed=range(0,5)"},
-            "command line: seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ListThatIsOneValue", {"scene.objects.0.at=[3,4]"},
-            "command line: scene.objects.0.at: '3' lacks its unit, write a length like '1.7 cm'"),
+            "scene.objects.0.at: '3' lacks its unit, write a length like '1.7 cm'"),
 
       // Sweeps
       sweep("BadSweepRange", "sweep:\n  grid:\n    seed: range(0)\n", {},
@@ -328,52 +297,32 @@ std::vector<Case> cases() {
   };
 }
 
-class BadConfig : public ::testing::TestWithParam<Case> {};
+class BadConfig : public Shell, public testing::WithParamInterface<Case> {};
 
 TEST_P(BadConfig, IsRefusedInOneLineAndLeavesNothing) {
   const Case& bad = GetParam();
-  const TemporaryFolder folder;
-  folder.write("bad.yaml", bad.config);
-  for (const auto& [name, text] : bad.files) folder.write(name, text);
-  const Ended ended = test::palpate(bad.words, folder.path());
-  EXPECT_EQ(ended.err, bad.message + "\n");
-  EXPECT_EQ(ended.out, "");
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+  write("bad.yaml", bad.config);
+  for (const auto& [name, text] : bad.files) write(name, text);
+  EXPECT_EQ(refused(bad.words), bad.message + "\n");
+  EXPECT_TRUE(left_nothing());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BadConfig, ::testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(All, BadConfig, testing::ValuesIn(cases()),
                          [](const auto& one) { return std::string(one.param.name); });
 
-TEST(GoodConfig, OfTheseTestsRuns) {
-  const TemporaryFolder folder;
-  folder.write("bad.yaml", kGood);
-  const Ended ended = test::palpate({"run", "bad.yaml", "--quiet"}, folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(ended.err, "");
-}
+using GoodConfig = Shell;
 
-TEST(Validate, NamesEveryBadConfigInALineAndMovesNothing) {
-  const TemporaryFolder folder;
-  folder.write("good.yaml", kGood);
-  folder.write("one.yaml", kGood + "sed: 1\n");
-  folder.write("two.yaml", kGood + "seed: -1\n");
-  const Ended ended = test::palpate({"validate", "one.yaml", "good.yaml", "two.yaml"}, folder.path());
+TEST_F(GoodConfig, OfTheseTestsRunsAndAmongBadOnesIsToldToBeValid) {
+  write("good.yaml", kGood);
+  ran({}, "good.yaml");
+  write("one.yaml", kGood + "sed: 1\n");
+  write("two.yaml", kGood + "seed: -1\n");
+  const Ended ended = palpate("validate one.yaml good.yaml two.yaml");
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(ended.err,
             "one.yaml:10:1: unknown option 'sed', did you mean 'seed'?\ntwo.yaml:10:7: seed: -1 is out of range, it "
             "must be at least 0\n");
-  EXPECT_EQ(ended.out.substr(0, 21), "good.yaml: valid, id ");
-  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
-}
-
-TEST(Run, OfANameThatIsNotUtf8IsRefusedBecauseNoRecordCouldHoldIt) {
-  const TemporaryFolder folder;
-  folder.write("good.yaml", kGood);
-  const Ended ended = test::palpate({"run", "good.yaml", "name=a\xff", "--quiet"}, folder.path());
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_EQ(ended.err, "command line: not UTF-8, write it in UTF-8\n");
-  EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+  EXPECT_THAT(ended.out, StartsWith("good.yaml: valid, id "));
 }
 
 }  // namespace

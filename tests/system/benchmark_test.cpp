@@ -1,48 +1,40 @@
 // SPDX-License-Identifier: MIT
 // configs/benchmark in its short form, two objects and two seeds: the sweep, its rows after fewer taps, the table.
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 namespace palpate {
 namespace {
 
-/// The sweep with fewer taps and some of its keys narrowed.
-fs::path swept(const TemporaryFolder& folder, const std::vector<std::string>& narrowed, int taps = 20) {
-  const Ended ended = test::palpate(test::plus({"sweep", test::config("benchmark/strategies.yaml"),
-                                                "taps=" + std::to_string(taps), "--quiet", "seed=1000,1001"},
-                                               narrowed),
-                                    folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  return only_run(folder.path() / "runs");
+const std::string kStrategies = config("benchmark/strategies.yaml");
+
+class Benchmark : public Shell {
+ protected:
+  /// The sweep with fewer taps and some of its keys narrowed.
+  fs::path narrowed(const Words& keys, int taps = 20) const {
+    return swept(Words("seed=1000,1001 taps=" + std::to_string(taps)) + keys, kStrategies);
+  }
+  /// One object, and strategies that cost little.
+  fs::path cubes(int taps) const { return narrowed("scene=cube strategy=random,grid scene.effects=none", taps); }
+  Ended compare(const fs::path& sweep, const Words& more) const { return palpate(Words{"compare", sweep} + more); }
+};
+
+TEST_F(Benchmark, ComparesSixStrategiesOnTwelveObjectsWithAndWithoutEffects) {
+  EXPECT_EQ(lines(sweep("--list seed=1000", kStrategies).out), 6 * 12 * 2);
 }
 
-TEST(Benchmark, ComparesSixStrategiesOnTwelveObjectsWithAndWithoutEffects) {
-  const TemporaryFolder folder;
-  const Ended list =
-      test::palpate({"sweep", test::config("benchmark/strategies.yaml"), "--list", "seed=1000"}, folder.path());
-  EXPECT_EQ(list.status, 0) << list.err;
-  EXPECT_EQ(test::lines(list.out), 6 * 12 * 2);
+TEST_F(Benchmark, RunsTheDefaultAsItIsShipped) {
+  const Words print = "name=x --print-config";
+  const std::string in_sweep = run(print + "strategy=default scene=object_i", kStrategies).out;
+  const std::string shipped = run(print + "scene.placement=random taps=60", config("default.yaml")).out;
+  ASSERT_THAT(in_sweep, HasSubstr("\ntaps:"));
+  EXPECT_EQ(in_sweep.substr(in_sweep.find("\ntaps:")), shipped.substr(shipped.find("\ntaps:")));
 }
 
-TEST(Benchmark, RunsTheDefaultAsItIsShipped) {
-  const TemporaryFolder folder;
-  const Ended in_sweep = test::palpate({"run", test::config("benchmark/strategies.yaml"), "strategy=default",
-                                        "scene=object_i", "name=x", "--print-config"},
-                                       folder.path());
-  const Ended shipped = test::palpate(
-      {"run", test::config("default.yaml"), "scene.placement=random", "taps=60", "name=x", "--print-config"},
-      folder.path());
-  EXPECT_EQ(in_sweep.status, 0) << in_sweep.err;
-  EXPECT_EQ(in_sweep.out.substr(in_sweep.out.find("\ntaps:")), shipped.out.substr(shipped.out.find("\ntaps:")));
-}
-
-TEST(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"strategy=default", "scene=object_i,tall_cone"}, 60);
+TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
+  const fs::path directory = narrowed("strategy=default scene=object_i,tall_cone", 60);
   const std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
   ASSERT_EQ(rows.size(), 8U);
   double covered = 0.0;
@@ -61,12 +53,10 @@ TEST(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
   EXPECT_GT(covered, 0.75);
 }
 
-TEST(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"scene=object_i,ring"});
-  const std::vector<std::string> words{
-      "--by", "strategy,scene.effects", "--metric", "found,rmse_m,first_hit_tap", "--at", "8,20", "--table"};
-  const Ended ended = compare(folder, directory, words);
+TEST_F(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
+  const fs::path directory = narrowed("scene=object_i,ring");
+  const Words words = "--by strategy,scene.effects --metric found,rmse_m,first_hit_tap --at 8,20 --table";
+  const Ended ended = compare(directory, words);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("| strategy | scene.effects | taps | found | rmse_m [mm] | first_hit_tap |\n"
                                    "|---|---|---:|---:|---:|---:|\n"
@@ -91,22 +81,18 @@ TEST(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
   }
   EXPECT_EQ(text_of(directory / "results_at_20.csv"), text_of(directory / "results.csv")) << "all taps are the run";
 
-  const Ended again = compare(folder, directory, words);
+  const Ended again = compare(directory, words);
   EXPECT_EQ(again.out, ended.out);
   EXPECT_EQ(again.err, "") << "nothing is computed twice";
 }
 
-TEST(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
-  const TemporaryFolder folder;
-  const TemporaryFolder shorter;
-  const std::vector<std::string> narrowed{"scene=two_blocks", "strategy=weighted_two_part,default"};
-  const fs::path directory = swept(folder, narrowed);
-  const std::vector<std::string> words{"--by", "strategy", "--metric", "rmse_m,on_surface_taps,robot_seconds"};
-  std::vector<std::string> at = words;
-  at.insert(at.end(), {"--at", "8"});
-  EXPECT_EQ(compare(folder, directory, at).status, 0);
-  EXPECT_EQ(compare(shorter, swept(shorter, narrowed, 8), words).status, 0);
-  const fs::path there = only_run(shorter.path() / "runs");
+TEST_F(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
+  const Words two_blocks = "scene=two_blocks strategy=weighted_two_part,default";
+  const fs::path directory = narrowed(two_blocks);
+  const fs::path there = narrowed(two_blocks, 8);
+  const Words words = "--by strategy --metric rmse_m,on_surface_taps,robot_seconds";
+  EXPECT_EQ(compare(directory, words + "--at 8").status, 0);
+  EXPECT_EQ(compare(there, words).status, 0);
   const std::vector<Cells> earlier = csv_rows(text_of(directory / "results_at_8.csv"));
   const std::vector<Cells> budgeted = csv_rows(text_of(there / "results.csv"));
   ASSERT_EQ(earlier.size(), budgeted.size());
@@ -130,56 +116,44 @@ TEST(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
   }
 }
 
-TEST(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"});
-  const std::vector<std::string> words{"--by", "strategy", "--metric", "rmse_m", "--at", "8"};
-  const Ended before = compare(folder, directory, words);
+TEST_F(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
+  const fs::path directory = cubes(20);
+  const Words words = "--by strategy --metric rmse_m --at 8";
+  const Ended before = compare(directory, words);
   EXPECT_THAT(before.err, HasSubstr("4 of 4 jobs done"));
   // As after a job that was run again: its summary is another.
-  const fs::path job = directory / "jobs" / csv_rows(text_of(directory / "results.csv")).front().at("id");
+  const fs::path job = job_of(directory, 0);
   const std::string kept = text_of(job / "summary_at_8.json");
-  std::string summary = text_of(job / "summary.json");
-  const auto at = summary.find("\"wall_seconds\": ") + 16;
-  summary.replace(at, summary.find(',', at) - at, "123.5");
-  std::ofstream(job / "summary.json") << summary;
-  const Ended after = compare(folder, directory, words);
+  replace(job / "summary.json", "\"wall_seconds\": ", "\"wall_seconds\": 123");
+  const Ended after = compare(directory, words);
   EXPECT_THAT(after.err, HasSubstr("1 of 1 jobs done"));
   EXPECT_EQ(after.out, before.out);
   EXPECT_NE(text_of(job / "summary_at_8.json"), kept);
 }
 
-TEST(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"}, 8);
-  const std::vector<std::string> words{
-      "--by", "strategy", "--metric", "rmse_m,found", "--table", "--where", "off_surface_taps <= 3"};
-  std::vector<std::string> once = words;
-  once.insert(once.end(), {"--at", "3"});
-  std::vector<std::string> twice = words;
-  twice.insert(twice.end(), {"--at", "3,3", "-j", "1"});
-  const Ended expected = compare(folder, directory, once);
-  EXPECT_EQ(expected.status, 0) << expected.err;
-  EXPECT_EQ(test::lines(expected.out), 4) << expected.out;
-  EXPECT_EQ(compare(folder, directory, twice).out, expected.out);
+TEST_F(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
+  const fs::path directory = cubes(8);
+  const Words words =
+      Words("--by strategy --metric rmse_m,found --table --where") + Words{"off_surface_taps <= 3", "--at"};
+  const Ended once = compare(directory, words + "3");
+  EXPECT_EQ(once.status, 0) << once.err;
+  EXPECT_EQ(lines(once.out), 4) << once.out;
+  EXPECT_EQ(compare(directory, words + "3,3 -j 1").out, once.out);
 }
 
-TEST(Benchmark, NamesAJobWhoseRecordIsCutShort) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"scene=cube", "strategy=grid", "scene.effects=none"}, 8);
-  const fs::path job = directory / "jobs" / csv_rows(text_of(directory / "results.csv")).front().at("id");
-  const std::string taps = text_of(job / "taps.jsonl");
-  std::ofstream(job / "taps.jsonl") << taps.substr(0, taps.size() / 2);
-  const Ended ended = compare(folder, directory, {"--by", "strategy", "--metric", "rmse_m", "--at", "8,7"});
+TEST_F(Benchmark, NamesAJobWhoseRecordIsCutShort) {
+  const fs::path directory = cubes(8);
+  const fs::path job = job_of(directory, 0);
+  fs::resize_file(job / "taps.jsonl", fs::file_size(job / "taps.jsonl") / 2);
+  const Ended ended = compare(directory, "--by strategy --metric rmse_m --at 8,7");
   EXPECT_NE(ended.status, 0);
-  EXPECT_THAT(ended.err, HasSubstr(job.filename().string()));
-  EXPECT_THAT(ended.err, HasSubstr("holds 4 of the 8 taps that were made, the file was cut"));
+  EXPECT_THAT(ended.err, AllOf(HasSubstr(job.filename().string()),
+                               HasSubstr("holds 4 of the 8 taps that were made, the file was cut")));
 }
 
-TEST(Benchmark, ShowsRatiosOfPairsIfAskedFor) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"strategy=weighted,default", "scene=object_i,dome,ring"}, 12);
-  const Ended ended = compare(folder, directory, {"--by", "strategy", "--metric", "rmse_m,nlpd", "--ratio"});
+TEST_F(Benchmark, ShowsRatiosOfPairsIfAskedFor) {
+  const fs::path directory = narrowed("strategy=weighted,default scene=object_i,dome,ring", 12);
+  const Ended ended = compare(directory, "--by strategy --metric rmse_m,nlpd --ratio");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("  ratio [95 % interval]  "));
   EXPECT_THAT(ended.out, HasSubstr("\nratio: the mean of the first over that of the second, "));
@@ -191,21 +165,17 @@ TEST(Benchmark, ShowsRatiosOfPairsIfAskedFor) {
   EXPECT_GT(std::stod(rows[2].at("ratio_high_95")), ratio);
 }
 
-TEST(Benchmark, RefusesWhatCannotBeShown) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder, {"scene=cube", "strategy=random,grid", "scene.effects=none"}, 8);
-  const auto refusal = [&](const std::vector<std::string>& more) {
-    const Ended ended = compare(folder, directory, test::plus({"--by", "strategy", "--metric", "rmse_m"}, more));
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_EQ(ended.out, "");
-    return ended.err;
+TEST_F(Benchmark, RefusesWhatCannotBeShown) {
+  const fs::path directory = cubes(8);
+  const auto refusal = [&](const Words& more) {
+    return refused(Words{"compare", directory} + "--by strategy --metric rmse_m" + more);
   };
-  EXPECT_THAT(refusal({"-j", "2"}), HasSubstr("-j requires --at"));
-  EXPECT_EQ(refusal({"--at", "4,9"}), "command line: --at: no job made 9 taps, the most are 8\n");
-  EXPECT_THAT(refusal({"--at", "0"}), HasSubstr("--at"));
-  EXPECT_THAT(refusal({"--table", "--ratio"}), HasSubstr("--ratio excludes --table"));
-  EXPECT_THAT(refusal({"--table", "--baseline", "grid"}), HasSubstr("--baseline excludes --table"));
-  EXPECT_THAT(refusal({"--at", "4", "--metric", "rmse"}), HasSubstr("results.csv has no column 'rmse'"));
+  EXPECT_THAT(refusal("-j 2"), HasSubstr("-j requires --at"));
+  EXPECT_EQ(refusal("--at 4,9"), "command line: --at: no job made 9 taps, the most are 8\n");
+  EXPECT_THAT(refusal("--at 0"), HasSubstr("--at"));
+  EXPECT_THAT(refusal("--table --ratio"), HasSubstr("--ratio excludes --table"));
+  EXPECT_THAT(refusal("--table --baseline grid"), HasSubstr("--baseline excludes --table"));
+  EXPECT_THAT(refusal("--at 4 --metric rmse"), HasSubstr("results.csv has no column 'rmse'"));
   EXPECT_FALSE(fs::exists(directory / "results_at_4.csv")) << "found out before anything is computed";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `palpate compare` as a user calls it: tables, the CSV beside results.csv, and what it refuses.
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,20 +8,22 @@
 namespace palpate {
 namespace {
 
-/// A sweep of two strategies, two budgets and six seeds.
-fs::path swept(const TemporaryFolder& folder) {
-  const Ended ended = test::palpate({"sweep", paper(), "acquisition=uncertainty,weighted", "taps=8,12",
-                                     "candidates.count=16", "seed=range(0,6)", "--quiet"},
-                                    folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  return only_run(folder.path() / "runs");
-}
+class Compare : public Shell {
+ protected:
+  /// A sweep of two strategies, two budgets and six seeds.
+  fs::path strategies() const {
+    return swept("acquisition=uncertainty,weighted taps=8,12 candidates.count=16 seed=range(0,6)");
+  }
+  Ended compare(const fs::path& sweep, const Words& more) const {
+    const Ended ended = palpate(Words{"compare", sweep} + more);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return ended;
+  }
+};
 
-TEST(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder);
-  const Ended ended = compare(folder, directory, {"--by", "acquisition", "--metric", "on_surface_taps"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
+TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
+  const fs::path directory = strategies();
+  const Ended ended = compare(directory, "--by acquisition --metric on_surface_taps");
   EXPECT_THAT(ended.out, StartsWith("on_surface_taps by acquisition; more is better\nacquisition  jobs "));
   EXPECT_THAT(ended.out, HasSubstr("\nweighted - uncertainty     12 "));
   EXPECT_THAT(ended.out, HasSubstr("\npair: two jobs that are equal in taps, seed.\nPairs that share "));
@@ -54,110 +56,79 @@ TEST(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   EXPECT_EQ(pair.at("p_exact"), "true");
 }
 
-TEST(Compare, SaysTheSameEveryTime) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder);
-  const std::vector<std::string> words{"--by", "acquisition,taps", "--metric", "rmse_m"};
-  const Ended once = compare(folder, directory, words);
-  EXPECT_EQ(once.status, 0) << once.err;
+TEST_F(Compare, SaysTheSameEveryTimeAndEvenWhereTheTableCannotBeLeft) {
+  const fs::path directory = strategies();
+  const Words words = "--by acquisition,taps --metric rmse_m";
+  const Ended once = compare(directory, words);
   EXPECT_THAT(once.out, HasSubstr("p (Holm)"));
-  EXPECT_EQ(once.out, compare(folder, directory, words).out);
+  EXPECT_EQ(once.out, compare(directory, words).out);
+  // A folder in its place keeps out even root, who may write where nobody may.
+  EXPECT_TRUE(fs::remove(directory / "compare_acquisition_taps_rmse_m.csv"));
+  write(directory / "compare_acquisition_taps_rmse_m.csv" / "x", "");
+  const Ended ended = compare(directory, words);
+  EXPECT_EQ(ended.out, once.out);
+  EXPECT_THAT(ended.err, StartsWith("no table was left: "));
+  EXPECT_EQ(lines(ended.err), 1);
 }
 
-TEST(Compare, ShowsATableForEachMetricNamedInAListOrOneByOne) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder);
-  const Ended list = compare(folder, directory, {"--by", "acquisition", "--metric", "rmse_m,found"});
-  const Ended each = compare(folder, directory, {"--metric", "rmse_m", "--metric", "found", "--by", "acquisition"});
-  EXPECT_EQ(list.status, 0) << list.err;
-  EXPECT_EQ(list.out, each.out);
+TEST_F(Compare, ShowsATableForEachMetricNamedInAListOrOneByOne) {
+  const fs::path directory = strategies();
+  const Ended list = compare(directory, "--by acquisition --metric rmse_m,found");
+  EXPECT_EQ(list.out, compare(directory, "--metric rmse_m --metric found --by acquisition").out);
   EXPECT_THAT(list.out, StartsWith("rmse_m [mm] by acquisition; less is better\n"));
   EXPECT_THAT(list.out, HasSubstr("\nfound by acquisition; more is better\n"));
   EXPECT_TRUE(fs::exists(directory / "compare_acquisition_rmse_m.csv"));
   EXPECT_TRUE(fs::exists(directory / "compare_acquisition_found.csv"));
 }
 
-TEST(Compare, WithAConditionHasAFileOfItsOwnThatNamesIt) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder);
-  ASSERT_EQ(compare(folder, directory, {"--by", "acquisition", "--metric", "rmse_m"}).status, 0);
+TEST_F(Compare, WithAConditionHasAFileOfItsOwnThatNamesIt) {
+  const fs::path directory = strategies();
+  const Words words = "--by acquisition --metric rmse_m";
+  compare(directory, words);
   const std::string whole = text_of(directory / "compare_acquisition_rmse_m.csv");
-  const Ended ended =
-      compare(folder, directory,
-              {"--by", "acquisition", "--metric", "rmse_m", "--where", "taps == 12 and robot_seconds > 1 s"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
+  const std::string condition = "taps == 12 and robot_seconds > 1 s";
+  const Ended ended = compare(directory, words + Words{"--where", condition});
   EXPECT_THAT(ended.out, HasSubstr("--where leaves out 12 of 24 jobs\n"));
   EXPECT_EQ(text_of(directory / "compare_acquisition_rmse_m.csv"), whole);
   const std::string file = ended.err.substr(7, ended.err.size() - 8);
   ASSERT_THAT(file, HasSubstr("compare_acquisition_rmse_m_where_"));
   for (const Cells& row : csv_rows(text_of(file))) {
-    EXPECT_EQ(row.at("where"), "taps == 12 and robot_seconds > 1 s");
+    EXPECT_EQ(row.at("where"), condition);
     EXPECT_EQ(row.at("n"), "6");
   }
 }
 
-TEST(Compare, WhereTheTableCannotBeLeftStdoutIsWholeAllTheSame) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder);
-  const std::vector<std::string> words{"--by", "acquisition", "--metric", "rmse_m"};
-  const Ended before = compare(folder, directory, words);
-  // A folder in its place keeps out even root, who may write where nobody may.
-  fs::remove(directory / "compare_acquisition_rmse_m.csv");
-  folder.write((directory / "compare_acquisition_rmse_m.csv" / "x").string(), "");
-  const Ended ended = compare(folder, directory, words);
-  EXPECT_EQ(ended.status, 0);
-  EXPECT_EQ(ended.out, before.out);
-  EXPECT_THAT(ended.err, StartsWith("no table was left: "));
-  EXPECT_EQ(lines(ended.err), 1);
-}
-
-TEST(Compare, CountsWhatFailedAndWhatHasNotEnded) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(test::palpate({"sweep", paper(), "scene.placement=random", "scene.objects.0.length=10cm,40cm",
-                           "acquisition=random,grid", "seed=range(0,3)", "--quiet"},
-                          folder.path())
-                .status,
-            1);
-  const fs::path directory = only_run(folder.path() / "runs");
+TEST_F(Compare, CountsWhatFailedAndWhatHasNotEnded) {
+  const fs::path directory = swept(
+      "scene.placement=random scene.objects.0.length=10cm,40cm acquisition=random,grid seed=range(0,3)", paper(), 1);
   for (const Cells& job : csv_rows(text_of(directory / "results.csv"))) {
     if (job.at("scene.objects.0.length") == "10cm" && job.at("acquisition") == "random" && job.at("seed") == "1")
       fs::remove(directory / "jobs" / job.at("id") / "summary.json");
   }
-  const Ended ended = compare(folder, directory, {"--by", "acquisition", "--metric", "rmse_m"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("grid - random: pairs lost: 1 unfinished, 3 failed\n"));
-  const std::vector<Cells> rows = csv_rows(text_of(directory / "compare_acquisition_rmse_m.csv"));
-  EXPECT_EQ(rows[0].at("group"), "random");
-  EXPECT_EQ(rows[0].at("jobs"), "6");
-  EXPECT_EQ(rows[0].at("failed"), "3");
-  EXPECT_EQ(rows[0].at("unfinished"), "1");
-  EXPECT_EQ(rows[0].at("n"), "2");
-  EXPECT_EQ(rows[0].at("low_95"), "") << "two values have no interval";
+  EXPECT_THAT(compare(directory, "--by acquisition --metric rmse_m").out,
+              HasSubstr("grid - random: pairs lost: 1 unfinished, 3 failed\n"));
+  const Cells first = csv_rows(text_of(directory / "compare_acquisition_rmse_m.csv")).at(0);
+  EXPECT_EQ(first.at("group"), "random");
+  EXPECT_EQ(first.at("jobs"), "6");
+  EXPECT_EQ(first.at("failed"), "3");
+  EXPECT_EQ(first.at("unfinished"), "1");
+  EXPECT_EQ(first.at("n"), "2");
+  EXPECT_EQ(first.at("low_95"), "") << "two values have no interval";
 }
 
-TEST(Compare, RefusesInOneLineWhatCannotBeCompared) {
-  const TemporaryFolder folder;
-  const fs::path directory = swept(folder);
-  const auto refused = [&](const std::vector<std::string>& words) {
-    const Ended ended = compare(folder, directory, words);
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_EQ(ended.out, "");
-    EXPECT_EQ(lines(ended.err), 1);
-    return ended.err;
-  };
-  EXPECT_EQ(refused({"--by", "aquisition", "--metric", "rmse_m"}),
+TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
+  const Words compare{"compare", strategies()};
+  EXPECT_EQ(refused(compare + "--by aquisition --metric rmse_m"),
             "command line: --by: this sweep does not vary 'aquisition', did you mean 'acquisition'?\n");
-  EXPECT_EQ(refused({"--by", "acquisition", "--metric", "rmse_m,rsme_m"}),
+  EXPECT_EQ(refused(compare + "--by acquisition --metric rmse_m,rsme_m"),
             "command line: --metric: results.csv has no column 'rsme_m', did you mean 'rmse_m'?\n");
-  EXPECT_THAT(refused({"--by", "acquisition", "--metric", "taps"}), HasSubstr("'taps' is swept"));
-  EXPECT_THAT(refused({"--by", "acquisition"}), StartsWith("--metric is required"));
-  EXPECT_THAT(refused({"--by", "acquisition", "--metric", "rmse_m", "--where", "taps >"}),
-              StartsWith("command line: --where: the condition 'taps >'"));
-  EXPECT_THAT(refused({"--by", "acquisition", "--metric", "rmse_m", "--where", "taps > 100"}),
-              StartsWith("command line: --where: leaves none of the 24 jobs"));
-  const Ended run = compare(folder, folder.path(), {"--by", "acquisition", "--metric", "rmse_m"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_THAT(run.err, EndsWith("is not the directory of a sweep, it has no manifest.jsonl\n"));
+  EXPECT_THAT(refused(compare + "--by acquisition --metric taps"), HasSubstr("'taps' is swept"));
+  EXPECT_THAT(refused(compare + "--by acquisition"), StartsWith("--metric is required"));
+  const Words where = compare + "--by acquisition --metric rmse_m --where";
+  EXPECT_THAT(refused(where + Words{"taps >"}), StartsWith("command line: --where: the condition 'taps >'"));
+  EXPECT_THAT(refused(where + Words{"taps > 100"}), StartsWith("command line: --where: leaves none of the 24 jobs"));
+  EXPECT_THAT(refused(Words{"compare", here()} + "--by acquisition --metric rmse_m"),
+              EndsWith("is not the directory of a sweep, it has no manifest.jsonl\n"));
 }
 
 }  // namespace

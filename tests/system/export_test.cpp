@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `palpate export`: what other programs read of it.
-#include "support/support.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <assimp/scene.h>
 #include <gmock/gmock.h>
@@ -10,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -18,19 +16,10 @@
 namespace palpate {
 namespace {
 
-class Export : public ::testing::Test {
+class Export : public Shell {
  protected:
-  fs::path run(const std::vector<std::string>& words = {}) {
-    const std::vector<std::string> all = test::plus({"run", paper(), "--quiet"}, words);
-    EXPECT_EQ(palpate(all).err, "");
-    return only_run(folder_.path() / "runs");
-  }
-  Ended palpate(const std::vector<std::string>& words) const {
-    return test::palpate(words, folder_.path(),
-                         {"PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("cannot_go_on").string()});
-  }
-  Ended exported(const fs::path& directory, const std::vector<std::string>& more = {}) const {
-    return palpate(test::plus({"export", directory.string()}, more));
+  Ended exported(const fs::path& directory, const Words& more = {}) const {
+    return palpate(Words{"export", directory} + more);
   }
 
   /// The surface that is exported is that of the record: to the last bit, where it is not in single precision.
@@ -54,8 +43,6 @@ class Export : public ::testing::Test {
     const std::string ply = text_of(file);
     return ply.substr(ply.find("end_header\n") + 11);
   }
-
-  TemporaryFolder folder_;
 };
 
 float single(const std::string& cell) { return static_cast<float>(std::stod(cell)); }
@@ -68,7 +55,7 @@ const aiMesh& only_mesh(Assimp::Importer& importer, const fs::path& file) {
 }
 
 TEST_F(Export, WritesASurfaceThatAssimpReadsVertexByVertex) {
-  const fs::path directory = run();
+  const fs::path directory = ran();
   const Ended ended = exported(directory);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
@@ -99,17 +86,17 @@ TEST_F(Export, WritesASurfaceThatAssimpReadsVertexByVertex) {
   }
 }
 
-TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) { expect_numbers_of_record(run({"surface=two_part"})); }
+TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) { expect_numbers_of_record(ran("surface=two_part")); }
 
 TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
-  const fs::path directory = run({"surface=two_part", "footprint=shape"});
+  const fs::path directory = ran({"surface=two_part", "footprint=shape"});
   expect_numbers_of_record(directory);
   EXPECT_THAT(text_of(directory / "summary.json"), HasSubstr("\"mistakes\": ")) << "it is not the weight";
 }
 
 TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {
-  const fs::path directory = run({"scene.effects={missed_contacts: {probability: 0.3}}"});
-  ASSERT_EQ(exported(directory, {"--format", "ply", "--to", "elsewhere/deep"}).status, 0);
+  const fs::path directory = ran({"scene.effects={missed_contacts: {probability: 0.3}}"});
+  ASSERT_EQ(exported(directory, "--format ply --to elsewhere/deep").status, 0);
   std::vector<Cells> contacts = csv_rows(text_of(directory / "taps.csv"));
   ASSERT_EQ(contacts.size(), 17U);
   contacts.erase(
@@ -117,7 +104,7 @@ TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {
       contacts.end());
   ASSERT_LT(contacts.size(), 17U) << "some taps failed";
 
-  const fs::path file = folder_.path() / "elsewhere" / "deep" / "taps.ply";
+  const fs::path file = here() / "elsewhere" / "deep" / "taps.ply";
   EXPECT_THAT(text_of(file), HasSubstr("element vertex " + std::to_string(contacts.size()) + "\n"));
   std::string points;
   for (const Cells& tap : contacts) {
@@ -136,7 +123,7 @@ TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {
 
 TEST_F(Export, OfARunWithAnyNameIsReadByPythonAndByAssimp) {
   const fs::path directory =
-      run({"name=\"a \\\"quoted\\\" name, with commas\\nelement vertex 3\\nend_header\\n1 2 3\\ttail \\u00f6\""});
+      ran({"name=\"a \\\"quoted\\\" name, with commas\\nelement vertex 3\\nend_header\\n1 2 3\\ttail \\u00f6\""});
   ASSERT_EQ(exported(directory).status, 0);
   const char* const reader = R"(
 import json, sys
@@ -145,19 +132,19 @@ assert len(name.splitlines()) == 4
 header = open(sys.argv[1] + '/export/surface.ply', 'rb').read().split(b'end_header')[0].decode('ascii').splitlines()
 print([line for line in header if line.startswith('element')])
 )";
-  const Ended ended = test::run_program({"python3", "-SEc", reader, directory.string()}, folder_.path());
+  const Ended ended = test::run_program({"python3", "-SEc", reader, directory.string()}, here());
   EXPECT_EQ(ended.out, "['element vertex 2209', 'element face 4232']\n") << ended.err;
   Assimp::Importer importer;
   EXPECT_EQ(only_mesh(importer, directory / "export" / "surface.ply").mNumVertices, 2209U);
 }
 
 TEST_F(Export, OfARunThatIsNotDoneSaysWhatItStandsOn) {
-  const fs::path directory = run();
+  const fs::path directory = ran();
   ASSERT_EQ(exported(directory).status, 0);
   const std::string whole = text_of(directory / "export" / "surface.ply");
   std::string cut = text_of(directory / "taps.jsonl");
   for (int i = 0; i < 6; ++i) cut = cut.substr(0, cut.rfind('\n', cut.size() - 2) + 1);
-  std::ofstream(directory / "taps.jsonl") << cut;
+  write(directory / "taps.jsonl", cut);
   fs::remove(directory / "summary.json");
   const Ended ended = exported(directory);
   EXPECT_EQ(ended.status, 0);
@@ -167,47 +154,40 @@ TEST_F(Export, OfARunThatIsNotDoneSaysWhatItStandsOn) {
 }
 
 TEST_F(Export, OfARunThatFailedSaysSoAndLeavesOutATruthThatNobodyKnows) {
-  ASSERT_EQ(palpate({"run", paper(), "backend.type=cannot_go_on", "--quiet"}).status, 1);
-  const fs::path directory = only_run(folder_.path() / "runs");
-  const Ended ended = exported(directory);
+  environment_ = {test::with_plugin("cannot_go_on")};
+  ASSERT_EQ(run("backend.type=cannot_go_on --quiet").status, 1);
+  const Ended ended = exported(directory());
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err,
             "this run failed: backend/cannot_go_on: the e-stop is pressed; what is written is what its "
             "first 5 taps tell\n");
-  EXPECT_THAT(text_of(directory / "export" / "surface.ply").substr(0, 600), Not(HasSubstr("true_height")));
+  EXPECT_THAT(text_of(directory() / "export" / "surface.ply").substr(0, 600), Not(HasSubstr("true_height")));
 }
 
 TEST_F(Export, WritesOverItsOwnFilesAndOverNoRecord) {
-  const fs::path directory = run();
+  const fs::path directory = ran();
   ASSERT_EQ(exported(directory).status, 0);
   const std::string first = text_of(directory / "export" / "taps.ply");
   ASSERT_EQ(exported(directory).status, 0);
   EXPECT_TRUE(text_of(directory / "export" / "taps.ply") == first);
   const std::string record = text_of(directory / "surface.csv");
-  EXPECT_EQ(exported(directory, {"--to", directory.string()}).status, 0);
+  EXPECT_EQ(exported(directory, {"--to", directory}).status, 0);
   EXPECT_TRUE(text_of(directory / "surface.csv") == record);
-  EXPECT_EQ(palpate({"replay", directory.string()}).status, 0);
-  EXPECT_THAT(palpate({"status", directory.string()}).out, HasSubstr("done after 17 of 17 taps"));
+  EXPECT_EQ(palpate({"replay", directory}).status, 0);
+  EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps"));
 }
 
 TEST_F(Export, RefusesInOneLineWhatItCannotExport) {
-  const fs::path directory = run();
-  const auto refused = [&](const fs::path& from, const std::vector<std::string>& more = {}) {
-    const Ended ended = exported(from, more);
-    EXPECT_NE(ended.status, 0);
-    EXPECT_EQ(ended.out, "");
-    EXPECT_EQ(test::lines(ended.err), 1) << ended.err;
-    return ended.err;
-  };
-  EXPECT_THAT(refused(directory, {"--format", "obj"}), HasSubstr("--format: obj is not known, write ply"));
-  EXPECT_THAT(refused(directory, {"--format", "csv"}),
+  const fs::path directory = ran();
+  const Words words{"export", directory};
+  EXPECT_THAT(refused(words + "--format obj"), HasSubstr("--format: obj is not known, write ply"));
+  EXPECT_THAT(refused(words + "--format csv"),
               HasSubstr("--format: the tables are surface.csv (log.surface=true) and taps.csv of the run itself"));
-  EXPECT_THAT(refused("nowhere"), HasSubstr("nowhere: is not a run directory"));
-  EXPECT_FALSE(fs::exists(folder_.path() / "nowhere"));
-  EXPECT_THAT(refused(directory, {"--to", (directory / "summary.json").string()}), HasSubstr("cannot be made"));
-  ASSERT_EQ(palpate({"sweep", paper(), "seed=1,2", "taps=4", "--runs", "many", "--quiet"}).status, 0);
-  const fs::path sweep = only_run(folder_.path() / "many");
-  EXPECT_THAT(refused(sweep),
+  EXPECT_THAT(refused("export nowhere"), HasSubstr("nowhere: is not a run directory"));
+  EXPECT_FALSE(fs::exists(here() / "nowhere"));
+  EXPECT_THAT(refused(words + Words{"--to", directory / "summary.json"}, 1), HasSubstr("cannot be made"));
+  const fs::path sweep = swept("seed=1,2 taps=4");
+  EXPECT_THAT(refused({"export", sweep}),
               HasSubstr("is a sweep of many runs, give one of them: " + (sweep / "jobs" / "<id>").string()));
 }
 

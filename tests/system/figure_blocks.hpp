@@ -2,7 +2,7 @@
 // The data that a picture's script holds, and the record that it is compared with.
 #pragma once
 
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,9 +17,8 @@ using Lines = std::vector<std::vector<double>>;
 /// The data blocks of a script by their names; blank lines are left out.
 inline std::map<std::string, Lines> blocks_of(const fs::path& script) {
   std::map<std::string, Lines> out;
-  std::istringstream text(text_of(script));
   Lines* block = nullptr;
-  for (std::string line; std::getline(text, line);) {
+  for (const std::string& line : lines_of(text_of(script))) {
     if (block == nullptr && line.rfind('$', 0) == 0 && line.find(" << END") != std::string::npos) {
       block = &out[line.substr(1, line.find(' ') - 1)];
     } else if (line == "END") {

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `expect:` and `--junit` as continuous integration uses them: exit status, lines on stderr, files.
 #include "config/yaml.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <set>
-
 namespace palpate {
 namespace {
-
-/// A short experiment whose expectations begin at line 10.
-std::string gate(const std::string& expect, const std::string& more = "") {
-  return "name: gate\ndefaults:\n  - kernel: rbf\n  - acquisition: weighted\n  - fitting: fixed\n  - backend: "
-         "simulator\n"
-         "  - scene: object_i\ntaps: 8\nexpect:\n" +
-         expect + "candidates: {count: 12}\n" + more;
-}
 
 /// What an XML reader that is not ours finds: a line a test case, "group|name|seconds >= 0|failure".
 std::vector<std::string> junit_cases(const fs::path& file) {
@@ -37,38 +27,40 @@ std::vector<std::string> junit_cases(const fs::path& file) {
   const Ended ended = test::run_program({"/usr/bin/python3", "-c", reader, fs::absolute(file).string()}, folder.path(),
                                         {"PYTHONIOENCODING=utf-8"});
   EXPECT_EQ(ended.status, 0) << ended.err << text_of(file);
-  std::vector<std::string> out(1);
-  for (const char c : ended.out) {
-    if (c == '\n') {
-      out.emplace_back();
-    } else {
-      out.back() += c;
-    }
-  }
-  out.pop_back();
-  return out;
+  return lines_of(ended.out);
 }
 
-TEST(Expect, WhatIsFulfilledIsCountedAndEndsWith0) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  found: true\n  rmse_m: <= 9 cm\n  mean(on_surface_taps): '>= 1'\n"));
-  const Ended ended = test::palpate({"run", "gate.yaml"}, folder.path());
+class Expect : public Shell {
+ protected:
+  /// Writes a short experiment whose expectations begin at line 10.
+  void gate(const std::string& expect, const std::string& more = "") const {
+    write("gate.yaml",
+          "name: gate\ndefaults:\n  - kernel: rbf\n  - acquisition: weighted\n  - fitting: fixed\n"
+          "  - backend: simulator\n  - scene: object_i\ntaps: 8\n" +
+              expect + "candidates: {count: 12}\n" + more);
+  }
+  Ended run_gate(const Words& more = "--quiet") const { return run(more, "gate.yaml"); }
+  fs::path out() const { return here() / "out.xml"; }
+};
+
+TEST_F(Expect, WhatIsFulfilledIsCountedAndEndsWith0) {
+  gate("expect:\n  found: true\n  rmse_m: <= 9 cm\n  mean(on_surface_taps): '>= 1'\n");
+  const Ended ended = run_gate({});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
   EXPECT_THAT(ended.out, EndsWith("expected: 3 of 3\n"));
-  const Ended json = test::palpate({"run", "gate.yaml", "--json"}, folder.path());
+  const Ended json = run_gate("--json");
   EXPECT_EQ(json.status, 0);
-  EXPECT_EQ(json.out, text_of(only_run(folder.path() / "runs") / "summary.json")) << "the summary and nothing else";
-  const Ended quiet = test::palpate({"run", "gate.yaml", "--quiet"}, folder.path());
+  EXPECT_EQ(json.out, text_of(directory() / "summary.json")) << "the summary and nothing else";
+  const Ended quiet = run_gate();
   EXPECT_EQ(quiet.status, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
-TEST(Expect, WhatFailsIsALineWithItsPlaceAndEndsWith1) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  found: false\n  rmse_m: <= 9 cm\n  median(taps): '>= 12'\n"));
+TEST_F(Expect, WhatFailsIsALineWithItsPlaceAndEndsWith1) {
+  gate("expect:\n  found: false\n  rmse_m: <= 9 cm\n  median(taps): '>= 12'\n");
   for (const char* way : {"--quiet", "--json"}) {
-    const Ended ended = test::palpate({"run", "gate.yaml", way}, folder.path());
+    const Ended ended = run_gate(way);
     EXPECT_EQ(ended.status, 1);
     EXPECT_EQ(ended.err,
               "gate.yaml:10:3: expected found == false, got true\n"
@@ -76,171 +68,120 @@ TEST(Expect, WhatFailsIsALineWithItsPlaceAndEndsWith1) {
   }
 }
 
-TEST(Expect, OfARunThatIsDoneIsJudgedAgainByItsSummary) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  taps: == 8\n"));
-  EXPECT_EQ(test::palpate({"run", "gate.yaml", "--quiet"}, folder.path()).status, 0);
-  const fs::path directory = only_run(folder.path() / "runs");
-  const Ended tighter = test::palpate({"run", "gate.yaml", "--quiet", "expect.taps=> 8"}, folder.path());
-  EXPECT_EQ(tighter.status, 1);
-  EXPECT_EQ(tighter.err, "command line: expected taps > 8, got 8\n");
-  EXPECT_EQ(only_run(folder.path() / "runs"), directory) << "what is expected does not enter the id";
-  EXPECT_EQ(test::palpate({"resume", directory.string(), "--quiet"}, folder.path()).status, 0);
+TEST_F(Expect, OfARunThatIsDoneIsJudgedAgainByItsSummary) {
+  gate("expect:\n  taps: == 8\n");
+  EXPECT_EQ(run_gate().status, 0);
+  const fs::path before = directory();
+  EXPECT_EQ(refused({"run", "gate.yaml", "--quiet", "expect.taps=> 8"}, 1), "command line: expected taps > 8, got 8\n");
+  EXPECT_EQ(directory(), before) << "what is expected does not enter the id";
+  EXPECT_EQ(resume(before).status, 0);
 }
 
-TEST(Expect, StaysInTheRecordedConfigSoThatItGatesAgain) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  taps: '>= 12'\n"));
-  EXPECT_EQ(test::palpate({"run", "gate.yaml", "--quiet"}, folder.path()).status, 1);
-  const fs::path directory = only_run(folder.path() / "runs");
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"run", (directory / "config.yaml").string(), "--quiet"},
-        std::vector<std::string>{"resume", directory.string(), "--quiet"}}) {
-    const Ended ended = test::palpate(words, folder.path());
+TEST_F(Expect, StaysInTheRecordedConfigSoThatItGatesAgainAlsoWhenARunIsCarriedOn) {
+  gate("expect:\n  taps: '>= 12'\n");
+  EXPECT_EQ(run_gate().status, 1);
+  for (const Ended& ended : {run("--quiet", directory() / "config.yaml"), resume(directory())}) {
     EXPECT_EQ(ended.status, 1) << ended.err;
-    EXPECT_THAT(ended.err, HasSubstr("config.yaml:"));
-    EXPECT_THAT(ended.err, HasSubstr(": expected taps >= 12, got 8\n"));
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("config.yaml:"), HasSubstr(": expected taps >= 12, got 8\n")));
   }
+  break_off(directory());
+  const Ended carried_on = palpate({"resume", directory(), "--junit", "out.xml"});
+  EXPECT_EQ(carried_on.status, 1);
+  EXPECT_THAT(carried_on.err, HasSubstr("expected taps >= 12, got 8\n"));
+  EXPECT_THAT(carried_on.out, EndsWith("expected: 0 of 1\n"));
+  EXPECT_EQ(junit_cases(out()).size(), 2U);
 }
 
-TEST(Expect, OfARunThatWasBrokenOffIsJudgedWhenItIsCarriedOn) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  taps: '>= 12'\n"));
-  EXPECT_EQ(test::palpate({"run", "gate.yaml", "--quiet"}, folder.path()).status, 1);
-  const fs::path directory = only_run(folder.path() / "runs");
-  fs::remove(directory / "summary.json");
-  fs::resize_file(directory / "taps.jsonl", fs::file_size(directory / "taps.jsonl") / 2);
-  const Ended ended = test::palpate({"resume", directory.string(), "--junit", "out.xml"}, folder.path());
-  EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, HasSubstr("expected taps >= 12, got 8\n"));
-  EXPECT_THAT(ended.out, EndsWith("expected: 0 of 1\n"));
-  EXPECT_EQ(junit_cases(folder.path() / "out.xml").size(), 2U);
+TEST_F(Expect, IsAGroupToo) {
+  write("configs/expect/strict.yaml", "expect:\n  taps: '>= 12'\n  rmse_m: <= 9 cm\n");
+  gate("expect: strict\n");
+  EXPECT_EQ(refused({"run", "gate.yaml", "--quiet"}, 1),
+            "configs/expect/strict.yaml:2:3: expected taps >= 12, got 8\n");
+  EXPECT_EQ(run_gate({"--quiet", "expect.taps=<= 12"}).status, 0);
 }
 
-TEST(Expect, IsAGroupToo) {
-  const TemporaryFolder folder;
-  folder.write("configs/expect/strict.yaml", "expect:\n  taps: '>= 12'\n  rmse_m: <= 9 cm\n");
-  std::string config = gate("");
-  config.replace(config.find("expect:\n"), 8, "expect: strict\n");
-  folder.write("gate.yaml", config);
-  const Ended ended = test::palpate({"run", "gate.yaml", "--quiet"}, folder.path());
-  EXPECT_EQ(ended.status, 1);
-  EXPECT_EQ(ended.err, "configs/expect/strict.yaml:2:3: expected taps >= 12, got 8\n");
-  EXPECT_EQ(test::palpate({"run", "gate.yaml", "--quiet", "expect.taps=<= 12"}, folder.path()).status, 0);
-}
-
-TEST(Expect, IsShownWithItsOrigins) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  rmse_m: <= 9 cm\n  compute.infer: < 1 s\n"));
-  const Ended ended =
-      test::palpate({"run", "gate.yaml", "expect.rmse_m=<= 1 cm", "--print-config", "--origins"}, folder.path());
+TEST_F(Expect, IsShownWithItsOrigins) {
+  gate("expect:\n  rmse_m: <= 9 cm\n  compute.infer: < 1 s\n");
+  const Ended ended = run_gate({"expect.rmse_m=<= 1 cm", "--print-config", "--origins"});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, ::testing::ContainsRegex("expect.rmse_m: \"<= 1 cm\" +# command line\n"));
-  EXPECT_THAT(ended.out, ::testing::ContainsRegex("expect.compute.infer: \"< 1 s\" +# gate.yaml:11:3\n"));
+  EXPECT_THAT(ended.out, ContainsRegex("expect.rmse_m: \"<= 1 cm\" +# command line\n"));
+  EXPECT_THAT(ended.out, ContainsRegex("expect.compute.infer: \"< 1 s\" +# gate.yaml:11:3\n"));
 }
 
-TEST(Expect, ThatIsBadIsRefusedBeforeAnythingMoves) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  rmse: <= 9 cm\n"));
-  const std::string message = "gate.yaml:10:3: expect: the summary has no field 'rmse', did you mean 'rmse_m'?\n";
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"run", "gate.yaml"}, std::vector<std::string>{"validate", "gate.yaml"},
-        std::vector<std::string>{"sweep", "gate.yaml", "seed=1,2"}}) {
-    const Ended ended = test::palpate(words, folder.path());
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_EQ(ended.err, message);
-    EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+TEST_F(Expect, ThatIsBadIsRefusedBeforeAnythingMoves) {
+  gate("expect:\n  rmse: <= 9 cm\n");
+  for (const char* words : {"run gate.yaml", "validate gate.yaml", "sweep gate.yaml seed=1,2"}) {
+    EXPECT_EQ(refused(words), "gate.yaml:10:3: expect: the summary has no field 'rmse', did you mean 'rmse_m'?\n");
   }
-  const Ended swept = test::palpate({"sweep", paper(), "seed=1,2", "expect.taps=>1,>2"}, folder.path());
-  EXPECT_EQ(swept.status, 2);
-  EXPECT_EQ(swept.err, "command line: expect.taps: what is expected cannot be swept, give it one value\n");
+  EXPECT_EQ(refused({"sweep", paper(), "seed=1,2", "expect.taps=>1,>2"}),
+            "command line: expect.taps: what is expected cannot be swept, give it one value\n");
+  EXPECT_TRUE(left_nothing());
 }
 
-TEST(Expect, OnASweepTakesStatisticsOverItsRuns) {
-  const TemporaryFolder folder;
-  folder.write("gate.yaml", gate("  failed_runs: == 0\n  mean(found): '>= 0.5'\n  median(taps): '> 8'\n",
-                                 "sweep: {grid: {seed: \"range(0,6)\"}}\n"));
-  const Ended ended = test::palpate({"sweep", "gate.yaml", "--quiet", "--junit", "out.xml"}, folder.path());
+TEST_F(Expect, OnASweepTakesStatisticsOverItsRuns) {
+  gate("expect:\n  failed_runs: == 0\n  mean(found): '>= 0.5'\n  median(taps): '> 8'\n",
+       "sweep: {grid: {seed: \"range(0,6)\"}}\n");
+  const Ended ended = sweep("--quiet --junit out.xml", "gate.yaml");
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.err, "gate.yaml:12:3: expected median(taps) > 8, got 8\n");
   EXPECT_THAT(ended.out, EndsWith("expected: 2 of 3\n"));
-  const std::vector<std::string> cases = junit_cases(folder.path() / "out.xml");
+  const std::vector<std::string> cases = junit_cases(out());
   ASSERT_EQ(cases.size(), 6U + 3U);
   EXPECT_EQ(cases[2], "gate|job 2: seed=2|True|");
   EXPECT_EQ(cases[7], "gate.expect|mean(found) >= 0.5|True|");
   EXPECT_EQ(cases[8], "gate.expect|median(taps) > 8|True|gate.yaml:12:3: expected median(taps) > 8, got 8");
 
-  const fs::path directory = only_run(folder.path() / "runs");
-  const Ended resumed = test::palpate({"resume", directory.string(), "--quiet"}, folder.path());
+  const Ended resumed = resume(directory());
   EXPECT_EQ(resumed.status, 1) << "carried on, it is judged again";
   EXPECT_THAT(resumed.err, EndsWith(": expected median(taps) > 8, got 8\n"));
-  const Ended other =
-      test::palpate({"sweep", "gate.yaml", "--quiet", "--runs", "other", "expect.median(taps)=== 8"}, folder.path());
-  EXPECT_EQ(other.status, 0) << other.err;
-  EXPECT_EQ(only_run(folder.path() / "other").filename(), directory.filename()) << "nor the id of a sweep";
+  EXPECT_EQ(swept({"--runs", "other", "expect.median(taps)=== 8"}, "gate.yaml").filename(), directory().filename())
+      << "nor does it enter the id of a sweep";
 }
 
-TEST(Expect, CountsRunsThatFailAgainstASweep) {
-  const TemporaryFolder folder;
-  const std::vector<std::string> words{
-      "sweep",   paper(),  "scene.placement=random", "scene.objects.0.length=10cm,16cm,40cm", "--quiet",
-      "--junit", "out.xml"};
-  const auto with = [&](const std::string& runs, const std::vector<std::string>& more) {
-    std::vector<std::string> all = words;
-    all.insert(all.end(), {"--runs", runs});
-    all.insert(all.end(), more.begin(), more.end());
-    return test::palpate(all, folder.path());
+TEST_F(Expect, CountsRunsThatFailAgainstASweep) {
+  const auto with = [&](const Words& more) {
+    return sweep(Words("scene.placement=random scene.objects.0.length=10cm,16cm,40cm --quiet --junit out.xml") + more);
   };
-  EXPECT_EQ(with("a", {}).status, 1) << "a run that fails makes a sweep fail";
-  const std::vector<std::string> cases = junit_cases(folder.path() / "out.xml");
+  EXPECT_EQ(with({}).status, 1) << "a run that fails makes a sweep fail";
+  const std::vector<std::string> cases = junit_cases(out());
   ASSERT_EQ(cases.size(), 3U);
   EXPECT_THAT(cases[2], HasSubstr("does not fit into the area"));
-  EXPECT_EQ(with("b", {"expect.failed_runs=<= 1"}).status, 0) << "unless the config says how many may";
-  EXPECT_EQ(with("c", {"expect.failed_runs=<= 1", "expect.median(taps)=== 17"}).status, 0);
-  const Ended worst = with("d", {"expect.failed_runs=<= 1", "expect.max(rmse_m)=<= 9 m"});
+  const Words may_fail = {"--runs", "others", "expect.failed_runs=<= 1"};
+  EXPECT_EQ(with(may_fail).status, 0) << "unless the config says how many may";
+  EXPECT_EQ(with(may_fail + Words{"expect.median(taps)=== 17"}).status, 0);
+  const Ended worst = with(may_fail + Words{"expect.max(rmse_m)=<= 9 m"});
   EXPECT_EQ(worst.status, 1);
   EXPECT_EQ(worst.err,
             "command line: expected max(rmse_m) <= 9 m, got no value: 1 of 3 runs have none and count as the worst "
             "(job 2: the run failed)\n");
 }
 
-TEST(JUnit, IsWrittenWithoutExpectations) {
-  const TemporaryFolder folder;
-  const Ended ended = test::palpate({"run", paper(), "--quiet", "--junit", "out.xml"}, folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  const std::vector<std::string> cases = junit_cases(folder.path() / "out.xml");
-  ASSERT_EQ(cases.size(), 1U);
-  EXPECT_THAT(cases[0], ::testing::MatchesRegex("object_i\\|run [0-9a-f]+\\|True\\|"));
+using JUnit = Expect;
+
+TEST_F(JUnit, IsWrittenWithoutExpectations) {
+  ran("--junit out.xml");
+  EXPECT_THAT(junit_cases(out()), ElementsAre(MatchesRegex("object_i\\|run [0-9a-f]+\\|True\\|")));
 }
 
-TEST(JUnit, TakesAnyName) {
-  const TemporaryFolder folder;
-  const Ended ended =
-      test::palpate({"run", paper(), "--quiet", "--junit", "out.xml", "name=<&\"\xef\xbf\xbe\xc3\xbc"}, folder.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
+TEST_F(JUnit, TakesAnyName) {
+  ran({"--junit", "out.xml", "name=<&\"\xef\xbf\xbe\xc3\xbc"});
   // U+FFFE is UTF-8, and no character of XML.
-  EXPECT_THAT(junit_cases(folder.path() / "out.xml").at(0), HasSubstr("<&\"\xef\xbf\xbd\xc3\xbc|"));
+  EXPECT_THAT(junit_cases(out()).at(0), HasSubstr("<&\"\xef\xbf\xbd\xc3\xbc|"));
 }
 
-TEST(JUnit, TellsOfARunThatFailedAndOfWhatWasExpectedOfIt) {
-  const TemporaryFolder folder;
-  const Ended ended = test::palpate(
-      {"run", paper(), "--quiet", "--junit", "out.xml", "expect.found=true", "acquisition=throws_in_score"},
-      folder.path(), {"PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("throws_in_score").string()});
+TEST_F(JUnit, TellsOfARunThatFailedAndOfWhatWasExpectedOfIt) {
+  environment_ = {test::with_plugin("throws_in_score")};
+  const Ended ended = run("--quiet --junit out.xml expect.found=true acquisition=throws_in_score");
   EXPECT_EQ(ended.status, 1) << ended.err;
-  const std::vector<std::string> cases = junit_cases(folder.path() / "out.xml");
-  ASSERT_EQ(cases.size(), 2U);
-  for (const std::string& one : cases) EXPECT_THAT(one, Not(EndsWith("|True|")));
+  EXPECT_THAT(junit_cases(out()), ElementsAre(Not(EndsWith("|True|")), Not(EndsWith("|True|"))));
 }
 
-TEST(JUnit, IsRefusedBeforeTheRunWhereItCannotBeWritten) {
-  const TemporaryFolder folder;
+TEST_F(JUnit, IsRefusedBeforeTheRunWhereItCannotBeWritten) {
   for (const char* command : {"run", "sweep"}) {
-    const Ended ended = test::palpate({command, paper(), "seed=3", "--junit", "no/such/out.xml"}, folder.path());
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_EQ(ended.err, "no/such/out.xml: its folder does not exist, make it first\n");
-    EXPECT_FALSE(fs::exists(folder.path() / "runs"));
+    EXPECT_EQ(refused({command, paper(), "seed=3", "--junit", "no/such/out.xml"}),
+              "no/such/out.xml: its folder does not exist, make it first\n");
   }
+  EXPECT_TRUE(left_nothing());
 }
 
 /// The gates that are shipped, and whether each is a sweep.
@@ -253,10 +194,11 @@ std::vector<std::pair<fs::path, bool>> gates() {
   return out;
 }
 
-TEST(Gates, ThatAreShippedAreOpen) {
-  const TemporaryFolder folder;
+using Gates = Shell;
+
+TEST_F(Gates, ThatAreShippedAreOpen) {
   for (const auto& [file, is_sweep] : gates()) {
-    const Ended ended = test::palpate({is_sweep ? "sweep" : "run", file.string(), "--quiet"}, folder.path());
+    const Ended ended = palpate({is_sweep ? "sweep" : "run", file, "--quiet"});
     EXPECT_EQ(ended.status, 0) << file << "\n" << ended.err;
   }
   EXPECT_GE(gates().size(), 4U);
@@ -271,16 +213,15 @@ std::string tightened(const std::string& written) {
   return written.substr(0, number) + (more ? "1e9" : "-1e9") + written.substr(unit);
 }
 
-TEST(Gates, ThatAreShippedCloseWhenAnyOfTheirBoundsIsTightened) {
-  const TemporaryFolder folder;
+TEST_F(Gates, ThatAreShippedCloseWhenAnyOfTheirBoundsIsTightened) {
   for (const auto& [file, is_sweep] : gates()) {
     const Tree config = read_yaml(file);
-    std::vector<std::string> words{is_sweep ? "sweep" : "run", file.string(), "--quiet"};
+    Words words{is_sweep ? "sweep" : "run", file, "--quiet"};
     for (const Tree::Entry& entry : config.find("expect")->entries) {
       const Tree& first = entry.value.items.empty() ? entry.value : entry.value.items.front();
       words.push_back("expect." + entry.key + "=" + tightened(first.text));
     }
-    const Ended ended = test::palpate(words, folder.path());
+    const Ended ended = palpate(words);
     EXPECT_EQ(ended.status, 1) << file << "\n" << ended.err;
     EXPECT_EQ(lines(ended.err), static_cast<int>(config.find("expect")->entries.size())) << ended.err;
   }

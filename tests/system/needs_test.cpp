@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What ./palpate asks the program to build for a command, with `--needs`, and what the program says where that was not
 // built: it never compiles anything itself.
-#include "support/support.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <iterator>
 #include <set>
-#include <sstream>
 #include <string>
-#include <vector>
 
 namespace palpate::test {
 namespace {
@@ -29,34 +25,26 @@ const Targets kPaper{"palpate_kernel_rbf", "palpate_acquisition_weighted", "palp
                      "palpate_footprint_regression", "palpate_backend_simulator"};
 
 /// A build folder with nothing in it but the program and the list of plugins, as the first ./palpate finds it.
-class FirstCommand : public testing::Test {
+class FirstCommand : public Shell {
  protected:
   FirstCommand() {
     fs::create_directories(build() / "lib" / "palpate");
     fs::copy_file(program_file(), build() / "palpate");
     fs::copy_file(plugin_folder() / "plugins.txt", build() / "lib" / "palpate" / "plugins.txt");
-    fs::create_directory_symlink(source_folder() / "configs", folder_.path() / "configs");
+    fs::create_directory_symlink(source_folder() / "configs", here() / "configs");
   }
 
-  fs::path build() const { return folder_.path() / "build" / "release"; }
-  Ended call(std::vector<std::string> words) const {
-    words.insert(words.begin(), (build() / "palpate").string());
-    return run_program(words, folder_.path());
+  fs::path build() const { return here() / "build" / "release"; }
+  Ended call(const Words& words) const { return run_program(Words{build() / "palpate"} + words, here()); }
+  Targets needs(const Words& words) const {
+    const Words said = call(Words{"--needs"} + words).out;
+    return {said.begin(), said.end()};
   }
-  Targets needs(std::vector<std::string> words) const {
-    words.insert(words.begin(), "--needs");
-    std::istringstream out(call(words).out);
-    return {std::istream_iterator<std::string>(out), {}};
-  }
-  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   /// Puts plugins of this build where they belong.
   void built(const std::string& kind, const std::string& name) const {
     fs::create_directories(build() / "lib" / "palpate" / kind);
     fs::copy_file(plugin_folder() / kind / (name + ".so"), build() / "lib" / "palpate" / kind / (name + ".so"));
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(FirstCommand, ARunTakesThePluginsThatItsConfigNamesAndNothingElse) {
@@ -111,7 +99,7 @@ TEST_F(FirstCommand, SweepsTakeEverythingAndTheirTablesNoPlugin) {
 TEST_F(FirstCommand, LookingAtARunTakesItsPluginsAndListingThemThoseThatAreListed) {
   write("run/config.yaml", text_of(paper()));
   EXPECT_EQ(needs({"status", "run"}), Targets{});
-  write("one/config.yaml", palpate({"run", paper(), "--print-config"}, build()).out);
+  write("one/config.yaml", test::palpate({"run", paper(), "--print-config"}, build()).out);
   EXPECT_THAT(kPaper, IsSubsetOf(needs({"replay", "one"})));
   EXPECT_THAT(needs({"replay", "one"}), Not(Contains("palpate_whole")));
   EXPECT_THAT(needs({"explain", "one", "3"}), Contains("palpate_whole"));
@@ -139,37 +127,34 @@ TEST_F(FirstCommand, AMisspeltPluginIsLookedForAmongThoseThatAreNotBuilt) {
   EXPECT_THAT(run.err, HasSubstr("no plugin kernel/matern25, did you mean 'matern52'?"));
 }
 
-TEST(Builds, AJobOfASweepIsOfTheBuildOfARun) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(palpate({"run", paper(), "taps=3", "--quiet", "--runs", "one"}, folder.path()).status, 0);
-  ASSERT_EQ(palpate({"sweep", paper(), "taps=3", "seed=1,2", "--quiet", "--runs", "many"}, folder.path()).status, 0);
+using Builds = Shell;
+
+TEST_F(Builds, AJobOfASweepIsOfTheBuildOfARun) {
   const auto build = [](const fs::path& run) {
     const std::string manifest = text_of(run / "manifest.json");
     return manifest.substr(manifest.find("\"build\": \""), 30);
   };
-  const fs::path job = fs::directory_iterator(only_run(folder.path() / "many") / "jobs")->path();
-  EXPECT_EQ(build(only_run(folder.path() / "one")), build(job));
+  EXPECT_EQ(build(ran("taps=3")), build(jobs_of(swept("taps=3 seed=1,2")).front()));
 }
 
-TEST(Builds, CoreIsNamedByWhatWasCompiledAndByNothingElse) {
-  const TemporaryFolder folder;
+TEST_F(Builds, CoreIsNamedByWhatWasCompiledAndByNothingElse) {
   const auto hash = [&] {
     const std::string script = (source_folder() / "framework/cmake/CoreHash.cmake").string();
-    const std::string out = (folder.path() / "hash.cpp").string();
-    const std::string files = "-DFILES=" + (folder.path() / "a.o").string() + ";" + (folder.path() / "b.o").string();
-    const Ended ended = run_program({"cmake", files, "-DFLAGS=-O2", "-DOUTPUT=" + out, "-P", script}, folder.path());
+    const std::string out = (here() / "hash.cpp").string();
+    const std::string files = "-DFILES=" + (here() / "a.o").string() + ";" + (here() / "b.o").string();
+    const Ended ended = run_program({"cmake", files, "-DFLAGS=-O2", "-DOUTPUT=" + out, "-P", script}, here());
     EXPECT_EQ(ended.status, 0) << ended.err;
     return text_of(out);
   };
-  folder.write("a.o", "one");
-  folder.write("b.o", "two");
+  write("a.o", "one");
+  write("b.o", "two");
   const std::string first = hash();
   EXPECT_THAT(first, testing::ContainsRegex("kCoreHash = \"[0-9a-f]{64}\""));
-  const auto made = fs::last_write_time(folder.path() / "hash.cpp");
-  folder.write("a.o", "one");
+  const auto made = fs::last_write_time(here() / "hash.cpp");
+  write("a.o", "one");
   EXPECT_EQ(hash(), first);
-  EXPECT_EQ(fs::last_write_time(folder.path() / "hash.cpp"), made) << "or every program would be linked again";
-  folder.write("b.o", "twi");
+  EXPECT_EQ(fs::last_write_time(here() / "hash.cpp"), made) << "or every program would be linked again";
+  write("b.o", "twi");
   EXPECT_NE(hash(), first);
 }
 

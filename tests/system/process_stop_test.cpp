@@ -3,8 +3,9 @@
 // PALPATE_KILLS says how many kills (tests/stress.sh: a hundred).
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
+#include "support/lasting.hpp"
 #include "support/programs.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <palpate/random.hpp>
 
@@ -12,9 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <map>
-#include <sstream>
 #include <thread>
 
 namespace palpate {
@@ -33,44 +32,32 @@ parent = os.getppid()
 note("begin")
 )";
 
-class ARobotsRun : public testing::Test {
+class ARobotsRun : public Shell {
  protected:
   /// The words of a run on a program of this body, behind kNotes, whose taps cannot be repeated.
-  std::vector<std::string> run(const std::string& body, const std::vector<std::string>& more = {}) const {
-    const std::string program = folder_.write("program.py", test::python(kNotes + body)).string();
-    return test::plus({"run", test::config("process.yaml"), "backend.command=python3 -SE '" + program + "'",
-                       "backend.repeatable=false", "--quiet"},
-                      more);
+  Words robots(const std::string& body, const Words& more = {}) const {
+    const std::string program = write("program.py", test::python(kNotes + body)).string();
+    return Words{"run", config("process.yaml"), "backend.command=python3 -SE '" + program + "'",
+                 "backend.repeatable=false", "--quiet"} +
+           more;
   }
-
-  Ended palpate(const std::vector<std::string>& words) const { return test::palpate(words, folder_.path()); }
-  Ended resume() const { return palpate({"resume", directory().string(), "--retry-failed", "--quiet"}); }
-  fs::path directory() const { return test::only_run(folder_.path() / "runs"); }
+  Ended retry() const { return resume(directory(), "--retry-failed"); }
 
   std::string notes() const {
-    const fs::path file = folder_.path() / "notes.txt";
+    const fs::path file = here() / "notes.txt";
     return fs::exists(file) ? text_of(file) : "";
   }
 
   /// How often each line is in the notes.
   std::map<std::string, int> noted() const {
     std::map<std::string, int> out;
-    std::istringstream in(notes());
-    for (std::string line; std::getline(in, line);) ++out[line];
+    for (const std::string& line : lines_of(notes())) ++out[line];
     return out;
   }
-
-  std::vector<std::string> outcomes() const {
-    std::vector<std::string> out;
-    for (const test::Cells& row : test::csv_rows(text_of(directory() / "taps.csv"))) out.push_back(row.at("outcome"));
-    return out;
-  }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(ARobotsRun, EndsWithTheProgramsReasonAndGoesOnBehindTheRecordedTaps) {
-  const Ended ended = palpate(run(R"(
+  const Ended ended = palpate(robots(R"(
 for ask in asks():
     note(f"tap {ask['tap']}")
     if ask["tap"] == 4 and not os.path.exists("cleared"):
@@ -78,7 +65,7 @@ for ask in asks():
     else:
         contact(ask)
 )",
-                                  {"taps=7"}));
+                                     "taps=7"));
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.err, "backend/process: protective stop: free the arm\n");
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\ntap 4\n") << "it is asked for no other tap";
@@ -86,14 +73,14 @@ for ask in asks():
   EXPECT_THAT(before, HasSubstr(R"("outcome": "aborted", "reason": "protective stop: free the arm")"));
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
 
-  EXPECT_EQ(palpate({"resume", directory().string()}).status, 1) << "somebody has to say so";
-  folder_.write("cleared", "");
-  const Ended resumed = resume();
+  EXPECT_EQ(palpate({"resume", directory()}).status, 1) << "somebody has to say so";
+  write("cleared", "");
+  const Ended resumed = retry();
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_THAT(text_of(directory() / "taps.jsonl"), StartsWith(before));
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\ntap 4\nbegin\ntap 5\ntap 6\ntap 7\n");
   const std::vector<std::string> expected{"contact", "contact", "contact", "aborted", "contact", "contact", "contact"};
-  EXPECT_EQ(outcomes(), expected);
+  EXPECT_EQ(outcomes(directory()), expected);
 }
 
 TEST_F(ARobotsRun, EndsWhenItsProgramIsKilledWithoutStartingAnother) {
@@ -103,12 +90,12 @@ for ask in asks():
     if ask["tap"] == 3 and not os.path.exists("cleared"): os.kill(os.getpid(), 9)
     contact(ask)
 )";
-  const Ended ended = palpate(run(body, {"taps=5"}));
+  const Ended ended = palpate(robots(body, "taps=5"));
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, StartsWith("backend/process: the program was ended by signal 9 (Killed); see to the robot"));
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\n");
-  folder_.write("cleared", "");
-  EXPECT_EQ(resume().status, 0);
+  write("cleared", "");
+  EXPECT_EQ(retry().status, 0);
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\nbegin\ntap 4\ntap 5\n");
 }
 
@@ -122,33 +109,33 @@ for ask in asks():
 )";
 
 TEST_F(ARobotsRun, FailsAfterThreeTapsInARowThatCameToNothingAndIsCarriedOnOnceSomebodyHasLooked) {
-  folder_.write("fate", "ncnnununn");
-  const Ended ended = palpate(run(kFated, {"taps=17"}));
+  write("fate", "ncnnununn");
+  const Ended ended = palpate(robots(kFated, "taps=17"));
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(
       ended.err,
       "backend/process: 3 taps in a row failed, the last so: the gripper is open, see to it, then 'palpate resume "
       "--retry-failed' carries on; stop.failed_in_a_row sets how many\n");
-  EXPECT_EQ(outcomes().size(), 6U) << "what cannot be reached neither counts nor makes up for anything";
+  EXPECT_EQ(outcomes(directory()).size(), 6U) << "what cannot be reached neither counts nor makes up for anything";
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
-  EXPECT_EQ(resume().status, 0) << "it counts anew, or the tap that failed next would have ended it";
-  EXPECT_EQ(outcomes().size(), 17U);
+  EXPECT_EQ(retry().status, 0) << "it counts anew, or the tap that failed next would have ended it";
+  EXPECT_EQ(outcomes(directory()).size(), 17U);
 }
 
 TEST_F(ARobotsRun, IsGivenUpAsLateAsTheConfigSays) {
-  folder_.write("fate", "ncnnnnncc");
-  EXPECT_EQ(palpate(run(kFated, {"taps=9", "stop.failed_in_a_row=6"})).status, 0);
-  EXPECT_EQ(palpate(run(kFated, {"taps=9", "stop.failed_in_a_row=5", "--runs", "others"})).status, 1);
+  write("fate", "ncnnnnncc");
+  EXPECT_EQ(palpate(robots(kFated, {"taps=9", "stop.failed_in_a_row=6"})).status, 0);
+  EXPECT_EQ(palpate(robots(kFated, {"taps=9", "stop.failed_in_a_row=5", "--runs", "others"})).status, 1);
 }
 
 TEST_F(ARobotsRun, OfTapsThatCanBeRepeatedIsNotGivenUpUnlessTheConfigSaysSo) {
-  folder_.write("fate", "nnnnnnnnn");
-  EXPECT_EQ(palpate(run(kFated, {"taps=9", "backend.repeatable=true"})).status, 0);
-  EXPECT_EQ(palpate(run(kFated, {"taps=9", "backend.repeatable=true", "stop.failed_in_a_row=9"})).status, 1);
+  write("fate", "nnnnnnnnn");
+  EXPECT_EQ(palpate(robots(kFated, {"taps=9", "backend.repeatable=true"})).status, 0);
+  EXPECT_EQ(palpate(robots(kFated, {"taps=9", "backend.repeatable=true", "stop.failed_in_a_row=9"})).status, 1);
 }
 
 TEST_F(ARobotsRun, StartsNoSecondProgramBesideOneThatOutlivedItsRun) {
-  std::vector<std::string> words = run(R"(
+  const Words words = robots(R"(
 note(str(os.getpid()))
 try:
     for ask in asks(): contact(ask)
@@ -156,28 +143,20 @@ except BrokenPipeError:
     pass
 time.sleep(60)  # and does not care that its run is gone
 )",
-                                       {"taps=100000", "backend.start=300ms", "acquisition=random"});
-  words.insert(words.begin(), test::program_file().string());
-  {
-    test::Child child(words, folder_.path());
-    ASSERT_TRUE(eventually([&] { return test::lines(notes()) == 2; })) << child.err();
-    ASSERT_TRUE(eventually([&] { return test::lines(text_of(directory() / "taps.jsonl")) > 4; }));
-    child.signal(SIGKILL);
-    child.wait();
-  }
+                             "taps=100000 backend.start=2s acquisition=random");
+  const auto child = begin(words);
+  ASSERT_TRUE(eventually([&] { return lines(notes()) == 2; })) << child->err();
+  ASSERT_TRUE(eventually([&] { return lines(text_of(directory() / "taps.jsonl")) > 4; }));
+  child->signal(SIGKILL);
+  child->wait();
   const std::string pid = notes().substr(6, notes().size() - 7);
   ASSERT_TRUE(test::running(std::stol(pid)));
-  const Ended refused = resume();
+  const Ended refused = retry();
   EXPECT_EQ(refused.status, 1);
   EXPECT_THAT(refused.err, HasSubstr("the program of an earlier attempt, process " + pid + ", still runs: end it"));
   EXPECT_EQ(noted()["begin"], 1);
   EXPECT_TRUE(test::running(std::stol(pid)));
   ::kill(static_cast<pid_t>(std::stol(pid)), SIGKILL);
-}
-
-int wanted_kills() {
-  const char* text = std::getenv("PALPATE_KILLS");
-  return text != nullptr ? std::atoi(text) : 8;
 }
 
 /// A run that is killed again and again, begun or carried on.
@@ -204,8 +183,8 @@ note("end")
 )";
 
   void allow(std::size_t taps) const {
-    const fs::path file = folder_.path() / "allowed";
-    if (!fs::exists(file)) folder_.write("allowed", "");
+    const fs::path file = here() / "allowed";
+    if (!fs::exists(file)) write(file, "");
     if (taps > fs::file_size(file)) fs::resize_file(file, taps);
   }
 
@@ -216,43 +195,40 @@ note("end")
   }
 
   /// The run as it is to be begun, or to be carried on if there is something to carry on.
-  std::vector<std::string> next_words(const std::vector<std::string>& begin) const {
-    const fs::path runs = folder_.path() / "runs";
-    if (!fs::exists(runs) || !fs::exists(directory() / "config.yaml")) return begin;
-    return {"resume", directory().string(), "--quiet"};
+  Words next_words(const Words& first) const {
+    if (left_nothing() || !fs::exists(directory() / "config.yaml")) return first;
+    return {"resume", directory(), "--quiet"};
   }
 };
 
 TEST_F(AKilledRun, AsksForNoTapTwiceAndLosesNone) {
-  const int kills = wanted_kills();
+  const int kills = test::wanted_kills(8, 8);
   constexpr int kMost = 3;  // taps that are allowed before the next kill; one more is asked for
   const int taps = (kMost + 1) * (kills + 1);
-  const std::vector<std::string> begin = run(kBody, {"taps=" + std::to_string(taps), "acquisition=random"});
+  const Words first = robots(kBody, {"taps=" + std::to_string(taps), "acquisition=random"});
   Random random(11, "process_stop_test");
   allow(0);
   for (int i = 0; i < kills; ++i) {
-    std::vector<std::string> words = next_words(begin);
-    words.insert(words.begin(), test::program_file().string());
     const int begun = noted()["begin"];
     const std::size_t asked = last_asked();
-    test::Child child(words, folder_.path());
+    const auto child = begin(next_words(first));
     // A quarter of the kills comes while it starts, a quarter once its program has begun, the others once it taps.
     const double when = random.uniform();
     if (when > 0.25) {
-      ASSERT_TRUE(eventually([&] { return noted()["begin"] > begun; })) << child.err();
+      ASSERT_TRUE(eventually([&] { return noted()["begin"] > begun; })) << child->err();
     }
     if (when > 0.5) {
-      ASSERT_TRUE(eventually([&] { return last_asked() > asked; })) << child.err();
+      ASSERT_TRUE(eventually([&] { return last_asked() > asked; })) << child->err();
     }
     allow(last_asked() + static_cast<std::size_t>(random.uniform() * (kMost + 1)));
     // The very subject is a kill at a moment that nothing announces.
     std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(random.uniform() * 30'000)));
-    ASSERT_TRUE(child.running()) << "it was to be killed, not to end: " << child.err();
-    child.signal(SIGKILL);
-    EXPECT_EQ(child.wait().status, 128 + SIGKILL);
+    ASSERT_TRUE(child->running()) << "it was to be killed, not to end: " << child->err();
+    child->signal(SIGKILL);
+    EXPECT_EQ(child->wait().status, 128 + SIGKILL);
   }
   allow(static_cast<std::size_t>(taps));
-  const Ended last = palpate(next_words(begin));
+  const Ended last = palpate(next_words(first));
   ASSERT_EQ(last.status, 0) << last.err;
 
   std::map<std::string, int> made = noted();

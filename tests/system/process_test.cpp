@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Whole runs on another program: the shipped example, programs that misbehave, kills and interrupts.
-#include "record/json.hpp"
 #include "support/programs.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,45 +17,33 @@ namespace {
 
 using test::eventually;
 
-class ProcessRun : public testing::Test {
+class ProcessRun : public Shell {
  protected:
   /// What runs `body` instead of the example.
   std::string command(const std::string& body) const {
-    return "backend.command=python3 -SE '" + folder_.write("program.py", test::python(body)).string() + "'";
+    return "backend.command=python3 -SE '" + write("program.py", test::python(body)).string() + "'";
   }
+  static Words process(const Words& more) { return Words{"run", config("process.yaml"), "--quiet"} + more; }
 
-  std::vector<std::string> run(const std::vector<std::string>& more) const {
-    return test::plus({"run", config("process.yaml"), "--quiet"}, more);
-  }
-
-  fs::path directory() const { return only_run(folder_.path() / "runs"); }
   std::string diary() const {
     std::string text;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
+    for (const auto& entry : fs::recursive_directory_iterator(here())) {
       if (entry.path().filename() == "process.stderr.txt") text += text_of(entry.path());
     }
     return text;
   }
-
-  TemporaryFolder folder_;
 };
-
-std::vector<std::string> outcomes(const fs::path& directory) {
-  std::vector<std::string> out;
-  for (const Cells& row : csv_rows(text_of(directory / "taps.csv"))) out.push_back(row.at("outcome"));
-  return out;
-}
 
 TEST_F(ProcessRun, TheExampleTapsItsDomeFromTheProjectsFolder) {
   std::string first;
   for (const char* runs : {"one", "two"}) {
-    const fs::path where = folder_.path() / runs;
-    const Ended ended = test::palpate(run({"--runs", where.string()}), test::source_folder());
+    const fs::path where = here() / runs;
+    const Ended ended = test::palpate(process({"--runs", where}), test::source_folder());
     ASSERT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(ended.err, "");
     const std::string taps = text_of(only_run(where) / "taps.csv");
     EXPECT_EQ(text_of(only_run(where) / "process.stderr.txt"), "");
-    EXPECT_EQ(text_of(only_run(where) / "taps.jsonl").find("intent"), std::string::npos) << "it is repeatable";
+    EXPECT_THAT(text_of(only_run(where) / "taps.jsonl"), Not(HasSubstr("intent"))) << "it is repeatable";
     if (first.empty()) first = taps;
     EXPECT_EQ(taps, first);
   }
@@ -70,10 +57,7 @@ TEST_F(ProcessRun, TheExampleTapsItsDomeFromTheProjectsFolder) {
     on += dome > 0.01 ? 1 : 0;
   }
   EXPECT_GE(on, 5);
-}
-
-TEST_F(ProcessRun, TheExampleIsTwentyLinesLong) {
-  EXPECT_LE(test::lines(text_of(test::source_folder() / "plugins/backends/process/example.py")), 20);
+  EXPECT_LE(lines(text_of(test::source_folder() / "plugins/backends/process/example.py")), 20);
 }
 
 TEST_F(ProcessRun, WhatGoesWrongIsInTheRecordAndTheRunGoesOn) {
@@ -90,8 +74,7 @@ for ask in asks():
 )");
   // Only of the fifth tap, in a program under way, the deadline is to be missed: other taps have time on a busy
   // machine.
-  const Ended ended =
-      test::palpate(run({program, "taps=10", "backend.deadline=3s", "backend.start=60s"}), folder_.path());
+  const Ended ended = palpate(process({program, "taps=10", "backend.deadline=3s", "backend.start=60s"}));
   ASSERT_EQ(ended.status, 0) << ended.err;
   const std::vector<std::string> expected{"contact", "aborted",    "aborted", "contact", "timeout",
                                           "aborted", "no_contact", "aborted", "contact", "contact"};
@@ -101,7 +84,7 @@ for ask in asks():
   EXPECT_THAT(taps, HasSubstr(R"(its last words: 'no arm, \"not\" today')"));
   EXPECT_THAT(taps, HasSubstr(R"("reason": "an \"end\",  of way")"));
   EXPECT_EQ(diary(), "no arm, \"not\" today\n");
-  const Ended replayed = test::palpate({"replay", directory().string()}, folder_.path());
+  const Ended replayed = palpate({"replay", directory()});
   EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 6"));
 }
@@ -115,17 +98,13 @@ for ask in asks():
         time.sleep(0.2)
     contact(ask)
 )");
-  std::vector<std::string> words = run({program, "taps=5", "backend.repeatable=false"});
-  words.insert(words.begin(), test::program_file().string());
-  {
-    test::Child child(words, folder_.path());
-    EXPECT_TRUE(eventually([&] { return fs::exists(folder_.path() / "seen"); }));
-    child.signal(SIGKILL);
-    child.wait();
-  }
+  const auto child = begin(process({program, "taps=5", "backend.repeatable=false"}));
+  EXPECT_TRUE(eventually([&] { return fs::exists(here() / "seen"); }));
+  child->signal(SIGKILL);
+  child->wait();
   const long pid = std::stol(diary().substr(6));
   EXPECT_TRUE(eventually([&] { return !test::running(pid); })) << "its stdin ended, and with that the program";
-  const Ended ended = test::palpate({"resume", directory().string(), "--quiet"}, folder_.path());
+  const Ended ended = resume(directory());
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "contact", "unknown", "contact", "contact"}));
   EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"intent\": true"));
@@ -141,16 +120,13 @@ TEST_F(ProcessRun, InterruptedWhileItWaitsTheRunEndsAtOnceAndLeavesNoProgram) {
   const std::string program = command(
       "print(os.getpid(), file=sys.stderr, flush=True)\n"
       "for ask in asks():\n    if ask['tap'] == 2: time.sleep(60)\n    contact(ask)");
-  std::vector<std::string> words = run({program, "backend.repeatable=false"});
-  words.insert(words.begin(), test::program_file().string());
-  test::Child child(words, folder_.path());
+  const auto child = begin(process({program, "backend.repeatable=false"}));
   EXPECT_TRUE(eventually([&] {
-    const std::string runs = (folder_.path() / "runs").string();
-    return fs::exists(runs) && !diary().empty() &&
+    return !left_nothing() && !diary().empty() &&
            text_of(directory() / "taps.jsonl").find("\"tap\": 2") != std::string::npos;
   }));
-  child.signal(SIGINT);
-  EXPECT_EQ(child.wait().status, 130);
+  child->signal(SIGINT);
+  EXPECT_EQ(child->wait().status, 130);
   EXPECT_FALSE(test::running(std::stol(diary())));
   EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "aborted"}));
   EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"reason\": \"interrupted\""));
@@ -160,15 +136,13 @@ TEST_F(ProcessRun, ASweepInThreadsHasAProgramForEachRun) {
   const std::string program = command(
       "print(os.getpid(), file=sys.stderr, flush=True)\n"
       "for ask in asks(): tell(ask, outcome='contact', height=0.01 * ask['seed'], seconds=ask['x'])");
-  const Ended ended = test::palpate(
-      {"sweep", config("process.yaml"), program, "seed=range(0,8)", "taps=5", "-j", "4", "--quiet"}, folder_.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
   std::set<std::string> pids;
-  for (const auto& job : fs::directory_iterator(directory() / "jobs")) {
-    const std::string pid = text_of(job.path() / "process.stderr.txt");
+  for (const fs::path& job :
+       jobs_of(swept({program, "seed=range(0,8)", "taps=5", "-j", "4"}, config("process.yaml")))) {
+    const std::string pid = text_of(job / "process.stderr.txt");
     EXPECT_FALSE(test::running(std::stol(pid)));
     pids.insert(pid);
-    for (const Cells& row : csv_rows(text_of(job.path() / "taps.csv"))) {
+    for (const Cells& row : csv_rows(text_of(job / "taps.csv"))) {
       EXPECT_EQ(row.at("outcome"), "contact");
       EXPECT_EQ(row.at("robot_seconds"), row.at("x")) << "the answer to this very ask";
     }
@@ -177,27 +151,19 @@ TEST_F(ProcessRun, ASweepInThreadsHasAProgramForEachRun) {
 }
 
 TEST_F(ProcessRun, AMissingProgramIsOneLineAndLeavesNoRun) {
-  const Ended ended = test::palpate(run({"backend.command=pyhton3 x.py"}), folder_.path());
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_THAT(ended.err, HasSubstr("there is no program 'pyhton3'"));
-  EXPECT_EQ(test::lines(ended.err), 1);
-  EXPECT_FALSE(fs::exists(folder_.path() / "runs"));
-}
-
-TEST_F(ProcessRun, TheShippedConfigsAreValid) {
-  EXPECT_EQ(test::palpate({"validate", config("process.yaml")}, folder_.path()).status, 0);
+  EXPECT_EQ(palpate({"validate", config("process.yaml")}).status, 0);
+  EXPECT_THAT(refused(process({"backend.command=pyhton3 x.py"})), HasSubstr("there is no program 'pyhton3'"));
+  EXPECT_TRUE(left_nothing());
 }
 
 TEST_F(ProcessRun, AProgramThatSaysTooMuchHasItsFirstAndLastWordsKept) {
-  const Ended ended =
-      test::palpate(run({"taps=4", "initial.count=4",
-                         command("print('the first word', file=sys.stderr)\n"
-                                 "for ask in asks():\n"
-                                 "    for i in range(40000): print('%010d, %020d' % (ask['tap'], i), file=sys.stderr)\n"
-                                 "    contact(ask)\n"
-                                 "print('the last word', file=sys.stderr)\n")}),
-                    folder_.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
+  ran({"taps=4", "initial.count=4",
+       command("print('the first word', file=sys.stderr)\n"
+               "for ask in asks():\n"
+               "    for i in range(40000): print('%010d, %020d' % (ask['tap'], i), file=sys.stderr)\n"
+               "    contact(ask)\n"
+               "print('the last word', file=sys.stderr)\n")},
+      config("process.yaml"));
   const std::string text = diary();
   const std::size_t said = 4 * 40000 * 33 + std::string("the first word\nthe last word\n").size();
   EXPECT_LT(text.size(), 800'000U);
@@ -212,10 +178,8 @@ TEST_F(ProcessRun, AProgramThatSaysTooMuchHasItsFirstAndLastWordsKept) {
 }
 
 TEST_F(ProcessRun, WhatAProgramStartedIsEndedWithItWhereverItWent) {
-  const Ended ended = test::palpate(
-      run({"taps=2", "initial.count=2",
-           command(
-               "import subprocess\n"
+  ran({"taps=2", "initial.count=2",
+       command("import subprocess\n"
                "def start(words, **more):\n"
                "    return subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, **more).pid\n"
                "pids = [start(['sleep', '600'], start_new_session=True)]\n"
@@ -228,9 +192,8 @@ TEST_F(ProcessRun, WhatAProgramStartedIsEndedWithItWhereverItWent) {
                "stdout=subprocess.PIPE)\n"
                "pids += [chain.pid, int(chain.stdout.readline())]\n"
                "print(' '.join(map(str, pids)), file=sys.stderr, flush=True)\n"
-               "for ask in asks(): contact(ask)\n")}),
-      folder_.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
+               "for ask in asks(): contact(ask)\n")},
+      config("process.yaml"));
   std::istringstream pids(diary());
   int count = 0;
   for (long pid = 0; pids >> pid; ++count) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // README and the pages of framework/docs tell the truth: their commands run, and what they quote is what comes out.
-#include "support/support.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,18 +14,11 @@
 namespace palpate {
 namespace {
 
-using test::TemporaryFolder;
-using test::text_of;
-using ::testing::HasSubstr;
-
-namespace fs = std::filesystem;
-
 /// The lines of all code blocks marked `sh`, which may be indented.
 std::vector<std::string> shown_commands(const std::string& text) {
   std::vector<std::string> out;
-  std::istringstream lines(text);
   bool inside = false;
-  for (std::string line; std::getline(lines, line);) {
+  for (std::string line : lines_of(text)) {
     line.erase(0, std::min(line.find_first_not_of(' '), line.size()));
     if (line.rfind("```", 0) == 0) {
       inside = line == "```sh";
@@ -47,9 +40,8 @@ void imitate_checkout(const fs::path& folder) {
 void expect_table(const std::string& page, const std::string& printed) {
   std::string plain = page;
   plain.erase(std::remove(plain.begin(), plain.end(), '*'), plain.end());
-  std::istringstream lines(printed);
   int compared = 0;
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : lines_of(printed)) {
     std::istringstream words(line);
     std::string name, runs, dead, found, failed, live, live_spread, all, all_spread, error, error_spread;
     words >> name >> runs >> dead >> found >> failed >> live >> live_spread >> all >> all_spread >> error >>
@@ -66,17 +58,14 @@ void expect_table(const std::string& page, const std::string& printed) {
 
 /// The rows of the table that `printed` is stand in the page, letter by letter.
 void expect_rows(const std::string& page, const std::string& printed) {
-  std::istringstream lines(printed);
-  int rows = 0;
-  for (std::string line; std::getline(lines, line); ++rows) EXPECT_THAT(page, HasSubstr(line + "\n"));
-  EXPECT_GT(rows, 2 + 5);
+  for (const std::string& row : lines_of(printed)) EXPECT_THAT(page, HasSubstr(row + "\n"));
+  EXPECT_GT(lines(printed), 2 + 5);
 }
 
 /// The numbered lines of the front in the page are those that `palpate pareto` printed, in its order.
 void expect_front(const std::string& page, const std::string& printed) {
-  std::istringstream lines(printed);
   std::string front;
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : lines_of(printed)) {
     if (front.empty() || std::isdigit(static_cast<unsigned char>(line[4])) != 0) front += line + "\n";
   }
   EXPECT_THAT(page, HasSubstr("```\n" + front + "```\n"));
@@ -113,7 +102,7 @@ struct Page {
   int tables;
 };
 
-class Document : public ::testing::TestWithParam<Page> {};
+class Document : public testing::TestWithParam<Page> {};
 
 TEST_P(Document, ShowsCommandsThatRunAndTablesThatTheyPrint) {
   const TemporaryFolder folder;
@@ -152,7 +141,6 @@ INSTANTIATE_TEST_SUITE_P(Every, Document,
                          [](const auto& one) { return fs::path(one.param.name).stem().string(); });
 
 TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
-  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
   const std::string readme = text_of(test::source_folder() / "README.md");
   EXPECT_LE(lines(readme), 200);
   int pages = 0;
@@ -197,38 +185,30 @@ TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {
   EXPECT_THAT(text_of(test::source_folder() / "README.md"), HasSubstr("```\n" + ended.out + "```\n"));
 }
 
-TEST(Reference, RecordedRunsComeOutTheSameWithinRounding) {
-  const fs::path reference = test::source_folder() / "runs" / "reference";
+using Reference = Shell;
+
+TEST_F(Reference, RunsComeOutTheSameWithinRounding) {
   int runs = 0;
-  for (const auto& entry : fs::directory_iterator(reference)) {
+  for (const auto& entry : fs::directory_iterator(test::source_folder() / "runs" / "reference")) {
     if (!entry.is_directory()) continue;
-    ++runs;
-    const TemporaryFolder folder;
-    const test::Ended ended = test::palpate({"run", (entry.path() / "config.yaml").string(), "--quiet"}, folder.path());
-    ASSERT_EQ(ended.status, 0) << ended.err;
-    std::istringstream before(text_of(entry.path() / "taps.csv"));
-    std::istringstream now(text_of(test::only_run(folder.path() / "runs") / "taps.csv"));
-    std::string a;
-    std::string b;
-    while (std::getline(before, a)) {
-      ASSERT_TRUE(std::getline(now, b));
-      std::istringstream cells_a(a);
-      std::istringstream cells_b(b);
-      std::string x;
-      std::string y;
-      while (std::getline(cells_a, x, ',')) {
-        ASSERT_TRUE(std::getline(cells_b, y, ','));
+    const std::vector<Cells> before = csv_rows(text_of(entry.path() / "taps.csv"));
+    const std::vector<Cells> now =
+        csv_rows(text_of(ran("--runs " + std::to_string(++runs), entry.path() / "config.yaml") / "taps.csv"));
+    ASSERT_EQ(now.size(), before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      ASSERT_EQ(now[i].size(), before[i].size());
+      for (const auto& [name, cell] : before[i]) {
+        const std::string& again = now[i].at(name);
         char* end = nullptr;
-        const double value = std::strtod(x.c_str(), &end);
-        if (x.empty() || *end != '\0') {
-          EXPECT_EQ(x, y);
+        const double value = std::strtod(cell.c_str(), &end);
+        if (cell.empty() || *end != '\0') {
+          EXPECT_EQ(again, cell);
         } else {
           // Where a number is 0 but for rounding, 1e-9 relative would demand more than double precision holds.
-          EXPECT_NEAR(std::strtod(y.c_str(), nullptr), value, 1e-9 * std::abs(value) + 1e-12);
+          EXPECT_NEAR(std::strtod(again.c_str(), nullptr), value, 1e-9 * std::abs(value) + 1e-12);
         }
       }
     }
-    EXPECT_FALSE(std::getline(now, b));
   }
   EXPECT_GE(runs, 2);
 }

@@ -1,45 +1,43 @@
 // SPDX-License-Identifier: MIT
 // `palpate report` as a user calls it; what a browser makes of its pages is looked at in tests/report.
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace palpate {
 namespace {
 
 using nlohmann::json;
 
-/// The data of a page, unpacked by other hands.
-json data_of(const fs::path& page, const TemporaryFolder& folder) {
-  const Ended ended = test::run_program(
-      {"python3", "-c",
-       "import base64, gzip, re, sys\n"
-       "packed = re.search(r'id=\"data\">([^<]*)<', open(sys.argv[1], encoding='utf-8').read()).group(1)\n"
-       "sys.stdout.write(gzip.decompress(base64.b64decode(packed)).decode())",
-       page.string()},
-      folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  return json::parse(ended.out);
-}
+class Report : public Shell {
+ protected:
+  /// The data of the page of a run or a sweep, unpacked by other hands.
+  json reported(const fs::path& directory) const {
+    const Ended ended = palpate({"report", directory});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(ended.out, (directory / "report.html").string() + "\n");
+    const Ended unpacked = test::run_program(
+        {"python3", "-c",
+         "import base64, gzip, re, sys\n"
+         "packed = re.search(r'id=\"data\">([^<]*)<', open(sys.argv[1], encoding='utf-8').read()).group(1)\n"
+         "sys.stdout.write(gzip.decompress(base64.b64decode(packed)).decode())",
+         (directory / "report.html").string()},
+        here());
+    EXPECT_EQ(unpacked.status, 0) << unpacked.err;
+    return json::parse(unpacked.out);
+  }
+};
 
-TEST(Report, OfASweepHoldsEveryJobItsStateAndItsNumbers) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(
-      test::palpate({"sweep", paper(), "acquisition=weighted,uncertainty", "seed=range(0,3)", "taps=6", "--quiet"},
-                    folder.path())
-          .status,
-      0);
-  const fs::path directory = only_run(folder.path() / "runs");
-  const auto results = test::csv_rows(text_of(directory / "results.csv"));
+TEST_F(Report, OfASweepHoldsEveryJobItsStateAndItsNumbersAndTheNameOfTheCommandLine) {
+  const fs::path directory = swept("acquisition=weighted,uncertainty seed=range(0,3) taps=6 name=other");
+  const auto results = csv_rows(text_of(directory / "results.csv"));
   fs::remove(directory / "jobs" / results.at(4).at("id") / "summary.json");  // as if killed before its end
-  const Ended ended = test::palpate({"report", directory.string()}, folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(ended.out, (directory / "report.html").string() + "\n");
-  const json data = data_of(directory / "report.html", folder);
-  EXPECT_EQ(data.at("name"), "object_i");
+  const json data = reported(directory);
+  EXPECT_EQ(data.at("name"), "other");
   EXPECT_EQ(data.at("id"), directory.filename().string());
   ASSERT_EQ(data.at("jobs").size(), 6U);
   for (std::size_t job = 0; job < 6; ++job) {
@@ -61,17 +59,13 @@ TEST(Report, OfASweepHoldsEveryJobItsStateAndItsNumbers) {
   EXPECT_EQ(compared, 6);
 }
 
-TEST(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(test::palpate({"run", paper(), "--quiet"}, folder.path()).status, 0);
-  const fs::path directory = only_run(folder.path() / "runs");
+TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
+  const fs::path directory = ran();
   fs::remove(directory / "summary.json");
   std::string taps = text_of(directory / "taps.jsonl");
   taps.resize(taps.find("{\"tap\": 6") + 20);  // the sixth line is being written
-  folder.write(fs::relative(directory / "taps.jsonl", folder.path()).string(), taps);
-  const Ended ended = test::palpate({"report", directory.string()}, folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  const json data = data_of(directory / "report.html", folder);
+  write(directory / "taps.jsonl", taps);
+  const json data = reported(directory);
   EXPECT_EQ(data.at("taps").size(), 5U);
   EXPECT_EQ(data.at("moments").size(), 6U);
   EXPECT_TRUE(data.at("summary").is_null());
@@ -80,78 +74,44 @@ TEST(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   EXPECT_TRUE(text_of(directory / "taps.jsonl") == taps);
 }
 
-TEST(Report, OfAFootprintNamesItAndShowsWhatItTells) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(
-      test::palpate({"run", test::config("default.yaml"), "footprint.contradictions=0.01", "log.maps=true", "--quiet"},
-                    folder.path())
-          .status,
-      0);
-  const fs::path directory = only_run(folder.path() / "runs");
-  ASSERT_EQ(test::palpate({"report", directory.string()}, folder.path()).status, 0);
-  const json data = data_of(directory / "report.html", folder);
+TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
+  const fs::path directory = ran("footprint.contradictions=0.01 log.maps=true", config("default.yaml"));
+  const json data = reported(directory);
   EXPECT_EQ(data.at("run").at("footprint"), "shape");
   std::vector<std::string> names;
   for (const json& map : data.at("maps")) names.push_back(map.at("name"));
-  EXPECT_THAT(names, ::testing::ElementsAre("height", "deviation", "u", "p", "score", "truth"));
+  EXPECT_THAT(names, ElementsAre("height", "deviation", "u", "p", "score", "truth"));
   const json summary = json::parse(text_of(directory / "summary.json"));
-  EXPECT_EQ(data.at("moments").back().at("footprint"), summary.at("footprint"));
+  const auto& panels = data.at("curves");
+  const auto told = std::find_if(panels.begin(), panels.end(),
+                                 [](const json& panel) { return panel.at("title") == "What footprint/shape tells"; });
+  ASSERT_NE(told, panels.end());
+  json last{{"remark", data.at("moments").back().at("remark")}};
+  for (const json& curve : told->at("curves")) {
+    std::string name = curve.at("name");
+    std::replace(name.begin(), name.end(), ' ', '_');
+    last[name] = curve.at("values").back();
+  }
+  EXPECT_EQ(last, summary.at("footprint"));
   EXPECT_TRUE(data.at("moments").back().at("least_weight").is_null());
   const std::string remark = summary.at("footprint").at("remark");
   EXPECT_THAT(data.at("warnings").dump(), HasSubstr("The footprint, shape, says: " + remark + "."));
-  const auto maps = test::csv_rows(text_of(directory / "maps/tap_030.csv"));
+  const auto maps = csv_rows(text_of(directory / "maps/tap_030.csv"));
   EXPECT_EQ(maps.at(0).count("p"), 1U) << "the maps that log.maps keeps have it, too";
   EXPECT_EQ(maps.at(0).count("w"), 0U);
 }
 
-TEST(Report, OfASweepNamedOnTheCommandLineHasThatName) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(
-      test::palpate({"sweep", paper(), "name=other", "seed=range(0,2)", "taps=4", "--quiet"}, folder.path()).status, 0);
-  const fs::path directory = only_run(folder.path() / "runs");
-  ASSERT_EQ(test::palpate({"report", directory.string()}, folder.path()).status, 0);
-  EXPECT_EQ(data_of(directory / "report.html", folder).at("name"), "other");
+TEST_F(Report, OfARunThatFailedWithoutAReasonSaysSo) {
+  const fs::path directory = ran("taps=4");
+  replace(directory / "summary.json", "\"done\"", "\"failed\"");
+  replace(directory / "summary.json", "\"tap budget\"", "null");
+  EXPECT_EQ(reported(directory).at("warnings").at(0), "The run failed and does not say why.");
 }
 
-TEST(Report, OfASweepWhoseListOfJobsIsCutOffIsRefused) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(test::palpate({"sweep", paper(), "seed=range(0,3)", "taps=4", "--quiet"}, folder.path()).status, 0);
-  const fs::path directory = only_run(folder.path() / "runs");
-  fs::resize_file(directory / "manifest.jsonl", fs::file_size(directory / "manifest.jsonl") - 20);
-  for (const char* command : {"report", "status"}) {
-    const Ended ended = test::palpate({command, directory.string() + "/"}, folder.path());
-    EXPECT_EQ(ended.status, 2) << command;
-    EXPECT_THAT(ended.err, HasSubstr("manifest.jsonl: ends in the middle of a line, the file is damaged"));
-  }
-}
-
-TEST(Report, OfARunThatFailedWithoutAReasonSaysSo) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(test::palpate({"run", paper(), "taps=4", "--quiet"}, folder.path()).status, 0);
-  const fs::path directory = only_run(folder.path() / "runs");
-  std::string summary = text_of(directory / "summary.json");
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    summary.replace(summary.find(from), from.size(), to);
-  };
-  replace("\"done\"", "\"failed\"");
-  replace("\"tap budget\"", "null");
-  folder.write(fs::relative(directory / "summary.json", folder.path()).string(), summary);
-  const Ended ended = test::palpate({"report", directory.string()}, folder.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(data_of(directory / "report.html", folder).at("warnings").at(0), "The run failed and does not say why.");
-}
-
-TEST(Report, OfWhatIsNoRunOrHasNoTapIsRefusedInOneLine) {
-  const TemporaryFolder folder;
-  fs::create_directory(folder.path() / "empty");
-  for (const std::string& words : {std::string("nowhere"), std::string("empty")}) {
-    const Ended ended = test::palpate({"report", words}, folder.path());
-    EXPECT_NE(ended.status, 0);
-    EXPECT_EQ(test::lines(ended.err), 1) << ended.err;
-    EXPECT_THAT(ended.err, HasSubstr(words));
-    EXPECT_EQ(ended.out, "");
-  }
-  EXPECT_FALSE(fs::exists(folder.path() / "nowhere"));
+TEST_F(Report, OfWhatIsNoRunOrHasNoTapIsRefusedInOneLine) {
+  fs::create_directory(here() / "empty");
+  for (const char* place : {"nowhere", "empty"}) EXPECT_THAT(refused({"report", place}), HasSubstr(place));
+  EXPECT_FALSE(fs::exists(here() / "nowhere"));
 }
 
 }  // namespace

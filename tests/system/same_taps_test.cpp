@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kSeeds = test::kSanitized ? 10 : 200;
+const int kSeeds = test::brief() ? 10 : 200;
 
 std::vector<int> taps_of(const ExperimentOptions& options) {
   Experiment experiment(options, test::shared_host(), nullptr);

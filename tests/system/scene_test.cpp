@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The shipped scenes and meshes as a user meets them: on the command line.
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,54 +8,43 @@
 namespace palpate {
 namespace {
 
-TEST(Scenes, ThatAreShippedRunWithinThePapersBudget) {
-  const test::TemporaryFolder folder;
-  for (const auto& entry : fs::directory_iterator(test::source_folder() / "configs/scene")) {
+using Scenes = Shell;
+
+TEST_F(Scenes, ThatAreShippedRunWithinThePapersBudget) {
+  for (const auto& entry : fs::directory_iterator(config("scene"))) {
     if (entry.path().extension() != ".yaml") continue;
     // From the folder of the sources, where the path of the shipped mesh starts.
-    const test::Ended ended = test::palpate(
-        {"run", test::paper(), "scene=" + entry.path().stem().string(), "--quiet", "--runs", folder.path().string()},
-        test::source_folder());
+    const Ended ended =
+        test::palpate({"run", paper(), "scene=" + entry.path().stem().string(), "--quiet", "--runs", here().string()},
+                      test::source_folder());
     EXPECT_EQ(ended.status, 0) << entry.path() << ended.err;
   }
 }
 
-TEST(Scenes, WithAMeshThatIsBrokenAreRefusedInOneLineByEveryCommand) {
-  const test::TemporaryFolder folder;
-  folder.write("broken.stl", "solid broken\n facet normal 0 0 1\n");
-  const fs::path config = folder.write(
-      "e.yaml",
-      "name: e\ndefaults: [{kernel: rbf}, {acquisition: weighted}, {backend: simulator}]\n"
-      "scene:\n  area: {width: 23 cm, depth: 23 cm}\n  objects: [{type: mesh, file: broken.stl, unit: 1 mm}]\n");
+TEST_F(Scenes, WithAMeshThatIsBrokenAreRefusedInOneLineByEveryCommand) {
+  write("broken.stl", "solid broken\n facet normal 0 0 1\n");
+  write("e.yaml",
+        "name: e\ndefaults: [{kernel: rbf}, {acquisition: weighted}, {backend: simulator}]\n"
+        "scene:\n  area: {width: 23 cm, depth: 23 cm}\n  objects: [{type: mesh, file: broken.stl, unit: 1 mm}]\n");
   for (const char* command : {"validate", "run"}) {
-    const test::Ended ended = test::palpate({command, "e.yaml"}, folder.path());
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_EQ(ended.err, "broken.stl: is cut short: the word 'endsolid' is missing, export it again\n");
+    EXPECT_EQ(refused({command, "e.yaml"}),
+              "broken.stl: is cut short: the word 'endsolid' is missing, export it again\n");
   }
-  EXPECT_FALSE(fs::exists(folder.path() / "runs")) << "nothing was begun";
-  fs::remove(folder.path() / "broken.stl");
-  const test::Ended missing = test::palpate({"run", "e.yaml"}, folder.path());
-  EXPECT_EQ(missing.status, 2);
-  EXPECT_THAT(missing.err, StartsWith("broken.stl: no such file, a relative path starts in the current folder, "));
-  EXPECT_EQ(test::lines(missing.err), 1);
+  EXPECT_TRUE(left_nothing()) << "nothing was begun";
+  fs::remove(here() / "broken.stl");
+  EXPECT_THAT(refused("run e.yaml"),
+              StartsWith("broken.stl: no such file, a relative path starts in the current folder, "));
 }
 
-TEST(Scenes, NameTheLibraryOfAMeshInTheManifest) {
-  const test::TemporaryFolder folder;
-  const std::string file = (test::source_folder() / "configs/scene/meshes/cup.stl").string();
-  const test::Ended ended =
-      test::palpate({"run", test::paper(), "scene=cup", "scene.objects.0.file=" + file, "--quiet"}, folder.path());
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  const fs::path run = test::only_run(folder.path() / "runs");
-  EXPECT_THAT(test::text_of(run / "manifest.json"), HasSubstr("shape/mesh.so"));
-  EXPECT_THAT(test::text_of(run / "config.yaml"), HasSubstr("checksum: "));
+TEST_F(Scenes, NameTheLibraryOfAMeshInTheManifest) {
+  const fs::path run = ran({"scene=cup", "scene.objects.0.file=" + config("scene/meshes/cup.stl")});
+  EXPECT_THAT(text_of(run / "manifest.json"), HasSubstr("shape/mesh.so"));
+  EXPECT_THAT(text_of(run / "config.yaml"), HasSubstr("checksum: "));
 }
 
-TEST(Scenes, HaveTheOptionsOfMeshesInPluginsAndSchema) {
-  const test::TemporaryFolder folder;
-  EXPECT_THAT(test::palpate({"plugins", "shape/mesh"}, folder.path()).out, HasSubstr("  unit      length > 0 m"));
-  const std::string schema = test::palpate({"schema"}, folder.path()).out;
-  for (const char* field : {"\"checksum\"", "\"outline\"", "\"tilt\""}) EXPECT_THAT(schema, HasSubstr(field));
+TEST_F(Scenes, HaveTheOptionsOfMeshesInPluginsAndSchema) {
+  EXPECT_THAT(palpate("plugins shape/mesh").out, HasSubstr("  unit      length > 0 m"));
+  EXPECT_THAT(palpate("schema").out, AllOf(HasSubstr("\"checksum\""), HasSubstr("\"outline\""), HasSubstr("\"tilt\"")));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The JSON Schema that editors get, judged by a validator that is not ours.
 #include "config/yaml.hpp"
-#include "support/support.hpp"
+#include "system/shell.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,6 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 /// A config as an editor's YAML server sees it: plain scalars typed by YAML's core schema.
@@ -39,11 +38,10 @@ Json as_json(const Tree& tree) {
   return nullptr;
 }
 
-class Schema : public ::testing::Test {
+class Schema : public Shell {
  protected:
   void SetUp() override {
-    const test::TemporaryFolder folder;
-    const test::Ended ended = test::palpate({"schema"}, folder.path());
+    const Ended ended = palpate("schema");
     ASSERT_EQ(ended.status, 0) << ended.err;
     const Json text = Json::parse(ended.out);
     valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema_);

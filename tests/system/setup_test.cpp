@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: MIT
 // What ./palpate does before it hands over, with programs in the place of dpkg, CMake and ninja that only tell.
-#include "support/support.hpp"
+#include "support/programs.hpp"
 #include "support/terminal.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <string>
-#include <thread>
 
 namespace palpate {
 namespace {
 
 using test::Child;
+using test::eventually;
 using test::Terminal;
 
 /// A source tree of nothing but the scripts, and a PATH of nothing but what they use.
-class SetUp : public ::testing::Test {
+class SetUp : public Shell {
  protected:
   SetUp() {
     const fs::path tree = test::source_folder();
@@ -28,7 +26,8 @@ class SetUp : public ::testing::Test {
     fs::create_directories(here() / "bin");
     for (const char* script : {"palpate", "check"}) fs::copy(tree / script, here() / script);
     fs::copy(tree / ".ci" / "setup.sh", here() / ".ci" / "setup.sh");
-    folder_.write("packages.txt", "# a list\n\n[core]\none   # a word on it\n\n[ros]\ntwo\nthree\n");
+    write("tests/habits.sh", "exit 0\n");
+    write("packages.txt", "# a list\n\n[core]\none   # a word on it\n\n[ros]\ntwo\nthree\n");
     for (const char* tool : {"sh", "sed", "grep", "tr", "cat", "mkdir", "flock", "readlink", "dirname", "id", "tail",
                              "chmod", "sleep", "awk"}) {
       for (const char* place : {"/usr/bin", "/bin"}) {
@@ -44,35 +43,29 @@ class SetUp : public ::testing::Test {
     installed("one");
   }
 
-  fs::path here() const { return folder_.path(); }
   void program(const std::string& name, const std::string& text) const {
     fs::remove(here() / "bin" / name);  // may be a link to the real one, which must not be written to
-    fs::permissions(folder_.write("bin/" + name, "#!/bin/sh\n" + text + "\n"), fs::perms::owner_all);
+    fs::permissions(write("bin/" + name, "#!/bin/sh\n" + text + "\n"), fs::perms::owner_all);
   }
-  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
-  void installed(const std::string& packages) const { folder_.write("installed", packages + "\n"); }
-  std::vector<std::string> script(const std::string& name) const { return {"/bin/sh", (here() / name).string()}; }
+  void installed(const std::string& packages) const { write("installed", packages + "\n"); }
+  Words script(const std::string& name, const Words& more = {}) const { return Words{"/bin/sh", here() / name} + more; }
   std::vector<std::string> environment() const { return {"PATH=" + (here() / "bin").string()}; }
+  Ended script_ended(const std::string& name, const Words& more = {}) const {
+    return test::run_program(script(name, more), here(), environment());
+  }
   Ended call() const {
-    const Ended ended =
-        test::run_program({"/bin/sh", (here() / "palpate").string(), "--no-install", "status"}, here(), environment());
+    const Ended ended = script_ended("palpate", "--no-install status");
     EXPECT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(ended.out, "handed over to status\n");
     return ended;
   }
-  /// A program that tells that it began, and goes on when a file `go` is there; it waits for that ten seconds at most.
+  /// A program that tells that it began, and goes on when a file `go` is there, or after ten minutes, which only what
+  /// hangs takes.
   void waiting_program(const std::string& name, const std::string& says) const {
     program(name, says + "\n: >'" + here().string() + "/began'\nn=0\nuntil [ -e '" + here().string() +
-                      "/go' ] || [ $n = 1000 ]; do n=$((n + 1)); /bin/sleep 0.01; done");
+                      "/go' ] || [ $n = 60000 ]; do n=$((n + 1)); /bin/sleep 0.01; done");
   }
-  static bool comes(const std::function<bool()>& what) {
-    for (int i = 0; i < 1000 && !what(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return what();
-  }
-  int configured() const { return fs::exists(here() / "told") ? test::lines(text_of(here() / "told")) : 0; }
-
- private:
-  test::TemporaryFolder folder_;
+  int configured() const { return fs::exists(here() / "told") ? lines(text_of(here() / "told")) : 0; }
 };
 
 TEST_F(SetUp, ConfiguresOnceAndNotAgain) {
@@ -95,7 +88,7 @@ TEST_F(SetUp, ConfiguresAgainWhenThatFailedTheLastTime) {
   installed("one two three");
   const std::string sound = text_of(here() / "bin" / "cmake");
   program("cmake", "exit 1");
-  const Ended ended = test::run_program({"/bin/sh", (here() / "palpate").string(), "status"}, here(), environment());
+  const Ended ended = script_ended("palpate", "status");
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.err, "configuring failed, the whole story is in build/release.log\n");
   program("cmake", sound);
@@ -109,50 +102,42 @@ TEST_F(SetUp, BuildsWhatTheCommandTakesAndThenWhatThatNames) {
                             "/built' && echo palpate_kernel_rbf; echo palpate_kernel_sum";
   write("build/release/palpate", "#!/bin/sh\n" + asked + "\n");
   fs::permissions(here() / "build/release/palpate", fs::perms::owner_all);
-  const Ended ended =
-      test::run_program({"/bin/sh", (here() / "palpate").string(), "run", "a.yaml"}, here(), environment());
+  const Ended ended = script_ended("palpate", "run a.yaml");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(text_of(here() / "built"),
             "palpate palpate_build_stamp \npalpate_kernel_sum  \npalpate_kernel_rbf "
             "palpate_kernel_sum \n");
 }
 
-TEST_F(SetUp, SaysWhatIsMissing) {
+TEST_F(SetUp, SaysWhatIsMissingAndGoesOnAlsoWhereThereIsNoDpkg) {
   installed("three");
   EXPECT_THAT(call().err, HasSubstr("missing packages: one \n"));
-}
-
-TEST_F(SetUp, GoesOnWhereThereIsNoDpkg) {
   fs::remove(here() / "bin" / "dpkg-query");
   EXPECT_THAT(call().err, HasSubstr("missing packages: one \n"));
+  const int before = configured();
   call();
-  EXPECT_EQ(configured(), 1);
+  EXPECT_EQ(configured(), before);
 }
 
-TEST(BuildStamp, TakesForAChangeOnlyWhatGitWasToldOf) {
-  const test::TemporaryFolder folder;
-  folder.write("tree/main.cpp", "int main() {}\n");
-  const fs::path tree = folder.path() / "tree";
-  const auto git = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"git", "-C", tree.string(), "-c", "user.name=a", "-c", "user.email=a@b"});
-    const Ended ended = test::run_program(words, folder.path());
+using BuildStamp = Shell;
+
+TEST_F(BuildStamp, TakesForAChangeOnlyWhatGitWasToldOf) {
+  write("tree/main.cpp", "int main() {}\n");
+  const auto done = [&](const Words& words) {
+    const Ended ended = test::run_program(words, here());
     EXPECT_EQ(ended.status, 0) << ended.err;
   };
   const auto stamp = [&] {
-    const std::string script = (test::source_folder() / "framework/cmake/BuildStamp.cmake").string();
-    const std::string out = (folder.path() / "build.json").string();
-    const Ended ended =
-        test::run_program({"cmake", "-DSOURCE=" + tree.string(), "-DOUTPUT=" + out, "-P", script}, folder.path());
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    return text_of(out);
+    done({"cmake", "-DSOURCE=" + (here() / "tree").string(), "-DOUTPUT=build.json", "-P",
+          test::source_folder() / "framework/cmake/BuildStamp.cmake"});
+    return text_of(here() / "build.json");
   };
-  git({"init", "--quiet"});
-  git({"add", "main.cpp"});
-  git({"commit", "--quiet", "-m", "first"});
+  for (const char* words : {"init --quiet", "add main.cpp", "commit --quiet -m first"})
+    done(Words("git -C tree -c user.name=a -c user.email=a@b") + words);
   EXPECT_THAT(stamp(), HasSubstr("\"dirty\": false"));
-  folder.write("tree/notes.txt", "to do\n");
+  write("tree/notes.txt", "to do\n");
   EXPECT_THAT(stamp(), HasSubstr("\"dirty\": false"));
-  folder.write("tree/main.cpp", "int main() { return 1; }\n");
+  write("tree/main.cpp", "int main() { return 1; }\n");
   EXPECT_THAT(stamp(), HasSubstr("\"dirty\": true"));
 }
 
@@ -160,21 +145,30 @@ TEST_F(SetUp, SaysForWhichProcessItWaits) {
   const std::string ninja = text_of(here() / "bin" / "ninja");
   waiting_program("ninja", ninja);
   const Child first(script("palpate"), here(), environment());
-  ASSERT_TRUE(comes([&] { return fs::exists(here() / "began"); }));
+  ASSERT_TRUE(eventually([&] { return fs::exists(here() / "began"); }));
   Child second(script("palpate"), here(), environment());
   const std::string told = "waiting for another set-up of this folder: process " + std::to_string(first.pid()) + "\n";
-  EXPECT_TRUE(comes([&] { return second.err() == told; })) << second.err();
+  EXPECT_TRUE(eventually([&] { return second.err() == told; })) << second.err();
   EXPECT_TRUE(second.running());
   write("go", "");
   EXPECT_EQ(second.wait().status, 0);
+}
+
+TEST_F(SetUp, TestsNothingWhereHabitsAreBroken) {
+  program("nproc", "echo 2");
+  program("ctest", ": >'" + here().string() + "/tested'");
+  write("tests/habits.sh", "echo 'a.cpp: is not as it should be' >&2\nexit 1\n");
+  const Ended ended = script_ended("check", "--no-install");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, HasSubstr("\na.cpp: is not as it should be\nthese habits are broken"));
+  EXPECT_FALSE(fs::exists(here() / "tested"));
 }
 
 TEST_F(SetUp, IsNotHeldUpByTestsThatRun) {
   program("nproc", "echo 2");
   program("ctest", "PATH=/usr/bin:/bin flock -n '" + here().string() + "/build/setup.lock' echo free >>'" +
                        here().string() + "/lock'");
-  const Ended ended =
-      test::run_program({"/bin/sh", (here() / "check").string(), "--no-install"}, here(), environment());
+  const Ended ended = script_ended("check", "--no-install");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(text_of(here() / "lock"), "free\nfree\n");
 }
@@ -182,9 +176,7 @@ TEST_F(SetUp, IsNotHeldUpByTestsThatRun) {
 TEST_F(SetUp, TestsShowTheirProgressAtATerminal) {
   program("nproc", "echo 2");
   program("ctest", "if [ -t 1 ]; then echo \"seen: $*\"; fi");
-  auto words = script("check");
-  words.emplace_back("--no-install");
-  Terminal terminal(words, here(), environment());
+  Terminal terminal(script("check", "--no-install"), here(), environment());
   EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
   EXPECT_THAT(terminal.screen(), HasSubstr("seen: --test-dir"));
   EXPECT_THAT(terminal.screen(), HasSubstr("--progress"));
@@ -194,11 +186,12 @@ TEST_F(SetUp, SaysHowFarItIsEachHalfMinute) {
   program("sleep", "echo slept >>'" + here().string() + "/slept'; exec /bin/sleep 0.001");
   waiting_program("ninja", "echo '[120/528] Building some.cpp.o'\n" + text_of(here() / "bin" / "ninja"));
   Child child(script("palpate"), here(), environment());
-  EXPECT_TRUE(comes([&] { return child.err().find("\nbuilding preset release: 120 of 528\n") != std::string::npos; }));
+  EXPECT_TRUE(
+      eventually([&] { return child.err().find("\nbuilding preset release: 120 of 528\n") != std::string::npos; }));
   EXPECT_THAT(child.err(), Not(HasSubstr("\r")));
   write("go", "");
   EXPECT_EQ(child.wait().status, 0);
-  EXPECT_GE(test::lines(text_of(here() / "slept")), 30) << "each is a second";
+  EXPECT_GE(lines(text_of(here() / "slept")), 30) << "each is a second";
 }
 
 TEST_F(SetUp, AtATerminalItSaysHowFarItIsInOneLine) {
@@ -215,7 +208,7 @@ TEST_F(SetUp, WithoutSudoItSaysWhatToPaste) {
   installed("three");
   program("id", "echo 1000");
   program("apt-get", "echo apt-get >>'" + here().string() + "/apt'");
-  const Ended ended = test::run_program(script("palpate"), here(), environment());
+  const Ended ended = script_ended("palpate");
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.err, HasSubstr("  apt-get update && apt-get install --no-install-recommends one \n"));
   EXPECT_FALSE(fs::exists(here() / "apt")) << "it may not";
@@ -223,7 +216,7 @@ TEST_F(SetUp, WithoutSudoItSaysWhatToPaste) {
 
 TEST_F(SetUp, AFileThatIsNamedAfterErrorsIsNoErrorOfTheBuild) {
   program("ninja", "echo '[1/9] Building error.cpp.o'; echo 'a.cpp:1:1: error: no'; exit 1");
-  const Ended ended = test::run_program(script("palpate"), here(), environment());
+  const Ended ended = script_ended("palpate");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, HasSubstr("\na.cpp:1:1: error: no\nbuilding failed"));
   EXPECT_THAT(ended.err, Not(HasSubstr("Building error.cpp.o")));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the tests of the commands share: shipped configs by name, lines counted, sweeps compared, and the short names of
-// what nearly every one of them says.
+// What the tests of the commands share: shipped configs by name, lines counted, and the short names of what nearly
+// every one of them says.
 #pragma once
 
 #include "support/support.hpp"
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,11 @@ inline std::string paper() { return config("paper/object_i.yaml"); }
 
 inline int lines(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-/// `words` and `more` behind them.
-inline std::vector<std::string> plus(std::vector<std::string> words, const std::vector<std::string>& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
-/// `palpate compare` of a sweep, with these words behind it.
-inline Ended compare(const TemporaryFolder& folder, const std::filesystem::path& directory,
-                     const std::vector<std::string>& more) {
-  return palpate(plus({"compare", directory.string()}, more), folder.path());
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> out;
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
 }
 
 }  // namespace palpate::test
@@ -39,11 +35,11 @@ namespace palpate {
 
 namespace fs = std::filesystem;
 using test::Cells;
-using test::compare;
 using test::config;
 using test::csv_rows;
 using test::Ended;
 using test::lines;
+using test::lines_of;
 using test::only_run;
 using test::paper;
 using test::TemporaryFolder;

@@ -2,7 +2,7 @@
 // `--step`: a person at a terminal is asked before every tap, and the program of the backend is asked after that.
 #include "support/programs.hpp"
 #include "support/terminal.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,43 +18,39 @@ using test::Terminal;
 
 constexpr const char* kQuestion = "Enter taps, q ends: ";
 
-class StepRun : public testing::Test {
+class StepRun : public Shell {
  protected:
   StepRun() {
-    folder_.write("program.py",
-                  test::python("open('asked', 'w')\nfor ask in asks():\n"
-                               "    tell(ask, outcome='contact', height=ask['x'] / 2, force=8, seconds=1)"));
+    write("program.py", test::python("open('asked', 'w')\nfor ask in asks():\n"
+                                     "    tell(ask, outcome='contact', height=ask['x'] / 2, force=8, seconds=1)"));
   }
 
   /// Four taps of a program that is taken for a robot, two of them of the initial design.
-  std::vector<std::string> run(const std::vector<std::string>& more = {}) const {
-    return test::plus({"run", config("process.yaml"), "backend.command=python3 -SE program.py",
-                       "backend.repeatable=false", "taps=4", "initial.count=2"},
-                      more);
-  }
-  std::vector<std::string> resume() const { return {"resume", directory().string()}; }
-
-  std::unique_ptr<Terminal> at_terminal(std::vector<std::string> words) const {
-    words.insert(words.begin(), test::program_file().string());
-    words.emplace_back("--step");
-    return std::make_unique<Terminal>(words, folder_.path());
+  static Words robot(const Words& more = {}) {
+    return Words{"run",    config("process.yaml"), "backend.command=python3 -SE program.py", "backend.repeatable=false",
+                 "taps=4", "initial.count=2"} +
+           more;
   }
 
-  fs::path directory() const { return only_run(folder_.path() / "runs"); }
+  std::unique_ptr<Terminal> at_terminal(const Words& words) const {
+    return std::make_unique<Terminal>(Words{test::program_file()} + words + "--step", here());
+  }
+  /// Types at each of the next questions.
+  static void answer(Terminal& terminal, const std::vector<std::string>& keys) {
+    int asked = 0;
+    for (const std::string& key : keys) {
+      ASSERT_TRUE(terminal.shows(kQuestion, ++asked)) << terminal.screen();
+      terminal.type(key);
+    }
+  }
+
   /// Announcements and results.
-  int logged() const { return test::lines(text_of(directory() / "taps.jsonl")); }
-  std::vector<std::string> outcomes() const {
-    std::vector<std::string> out;
-    for (const Cells& row : csv_rows(text_of(directory() / "taps.csv"))) out.push_back(row.at("outcome"));
-    return out;
-  }
-  bool program_asked() const { return fs::exists(folder_.path() / "asked"); }
-
-  test::TemporaryFolder folder_;
+  int logged() const { return lines(text_of(directory() / "taps.jsonl")); }
+  bool program_asked() const { return fs::exists(here() / "asked"); }
 };
 
-TEST_F(StepRun, ShowsEveryTapBeforeItIsAnnouncedAndMakesItAtEnter) {
-  const std::unique_ptr<Terminal> terminal = at_terminal(run());
+TEST_F(StepRun, ShowsEveryTapBeforeItIsAnnouncedMakesItAtEnterAndLeavesTheRecordAsItIs) {
+  const std::unique_ptr<Terminal> terminal = at_terminal(robot());
   for (int tap = 1; tap <= 4; ++tap) {
     ASSERT_TRUE(terminal->shows(kQuestion, tap)) << terminal->screen();
     EXPECT_EQ(logged(), 2 * (tap - 1)) << "nothing of this tap is in the log";
@@ -62,52 +58,36 @@ TEST_F(StepRun, ShowsEveryTapBeforeItIsAnnouncedAndMakesItAtEnter) {
     terminal->type("\n");
   }
   EXPECT_EQ(terminal->wait(), 0);
-  const std::string& screen = terminal->screen();
-  EXPECT_THAT(screen, HasSubstr("tap 1 of 4 at ("));
-  EXPECT_THAT(screen, HasSubstr(") cm, one of the initial taps\r\n"
-                                "      start 'python3 -SE program.py', which has 120 s, for this motion:\r\n"
-                                "      travel to ("));
-  EXPECT_THAT(screen, HasSubstr("      ask 'python3 -SE program.py', which has 90 s, for this motion:\r\n"
-                                "      travel from ("));
-  EXPECT_THAT(screen, HasSubstr(") cm at 13.5 cm above the desk, 30.0 cm/s\r\n"
-                                "      descend at 2.4 cm/s in steps of 3.0 cm to at most 3.0 cm below the desk\r\n"
-                                "      stop at 10.0 N above the tare: a contact\r\n"
-                                "      Enter taps, q ends: "));
-  EXPECT_THAT(screen, HasSubstr("tap 4 of 4 at ("));
-  EXPECT_THAT(screen, HasSubstr(") cm, chosen by the acquisition; expected height "));
-}
-
-TEST_F(StepRun, LeavesTheTapsAndTheirRecordAsTheyAre) {
-  const std::unique_ptr<Terminal> terminal = at_terminal(run());
-  for (int tap = 1; tap <= 4; ++tap) {
-    ASSERT_TRUE(terminal->shows(kQuestion, tap));
-    terminal->type("\n");
-  }
-  EXPECT_EQ(terminal->wait(), 0);
-  const std::string stepped = text_of(directory() / "taps.jsonl");
-  ASSERT_EQ(test::palpate(run({"--force", "--quiet", "--runs", "others"}), folder_.path()).status, 0);
-  EXPECT_EQ(stepped, text_of(only_run(folder_.path() / "others") / "taps.jsonl"));
+  EXPECT_THAT(terminal->screen(),
+              AllOf(HasSubstr("tap 1 of 4 at ("),
+                    HasSubstr(") cm, one of the initial taps\r\n"
+                              "      start 'python3 -SE program.py', which has 120 s, for this motion:\r\n"
+                              "      travel to ("),
+                    HasSubstr("      ask 'python3 -SE program.py', which has 90 s, for this motion:\r\n"
+                              "      travel from ("),
+                    HasSubstr(") cm at 13.5 cm above the desk, 30.0 cm/s\r\n"
+                              "      descend at 2.4 cm/s in steps of 3.0 cm to at most 3.0 cm below the desk\r\n"
+                              "      stop at 10.0 N above the tare: a contact\r\n"
+                              "      Enter taps, q ends: "),
+                    HasSubstr("tap 4 of 4 at ("), HasSubstr(") cm, chosen by the acquisition; expected height ")));
+  const fs::path stepped = directory();
+  ASSERT_EQ(palpate(robot("--force --quiet --runs others")).status, 0);
+  EXPECT_EQ(text_of(stepped / "taps.jsonl"), text_of(directory("others") / "taps.jsonl"));
 }
 
 TEST_F(StepRun, EndsAtQWithoutATraceOfTheTapAndResumeCarriesOn) {
-  std::unique_ptr<Terminal> terminal = at_terminal(run());
-  ASSERT_TRUE(terminal->shows(kQuestion));
-  terminal->type("\n");
-  ASSERT_TRUE(terminal->shows(kQuestion, 2));
-  terminal->type("q\n");
+  std::unique_ptr<Terminal> terminal = at_terminal(robot());
+  answer(*terminal, {"\n", "q\n"});
   EXPECT_EQ(terminal->wait(), 130);
   EXPECT_THAT(terminal->screen(), HasSubstr("interrupted after 1 taps"));
   EXPECT_EQ(logged(), 2);
-  EXPECT_THAT(test::palpate({"status", directory().string()}, folder_.path()).out, HasSubstr("unfinished"));
+  EXPECT_THAT(status_of(directory()).out, HasSubstr("unfinished"));
 
-  terminal = at_terminal(resume());
-  for (int question = 1; question <= 3; ++question) {
-    ASSERT_TRUE(terminal->shows(kQuestion, question)) << terminal->screen();
-    terminal->type("\n");
-  }
+  terminal = at_terminal({"resume", directory()});
+  answer(*terminal, {"\n", "\n", "\n"});
   EXPECT_EQ(terminal->wait(), 0);
   EXPECT_THAT(terminal->screen(), HasSubstr("tap 2 of 4 at ("));
-  EXPECT_EQ(outcomes(), std::vector<std::string>(4, "contact"));
+  EXPECT_EQ(outcomes(directory()), std::vector<std::string>(4, "contact"));
 }
 
 TEST_F(StepRun, EndsInTheSameWayAtControlCControlDSigtermAndAClosedTerminal) {
@@ -118,85 +98,68 @@ TEST_F(StepRun, EndsInTheSameWayAtControlCControlDSigtermAndAClosedTerminal) {
       {"SIGTERM", [](Terminal& terminal) { terminal.signal(SIGTERM); }},
       {"closed", [](Terminal& terminal) { terminal.close(); }}};
   for (const auto& [name, way] : ways) {
-    const std::unique_ptr<Terminal> terminal = at_terminal(run());
+    const std::unique_ptr<Terminal> terminal = at_terminal(robot());
     ASSERT_TRUE(terminal->shows(kQuestion));
     way(*terminal);
     EXPECT_EQ(terminal->wait(), 130) << name;
     EXPECT_EQ(logged(), 0) << name;
     EXPECT_FALSE(program_asked()) << name;
-    fs::remove_all(folder_.path() / "runs");
+    fs::remove_all(here() / "runs");
   }
 }
 
 TEST_F(StepRun, KilledAtTheQuestionLeavesNoTapInDoubt) {
-  const std::unique_ptr<Terminal> terminal = at_terminal(run());
-  ASSERT_TRUE(terminal->shows(kQuestion));
-  terminal->type("\n");
+  const std::unique_ptr<Terminal> terminal = at_terminal(robot());
+  answer(*terminal, {"\n"});
   ASSERT_TRUE(terminal->shows(kQuestion, 2));
   terminal->signal(SIGKILL);
   EXPECT_EQ(terminal->wait(), 128 + SIGKILL);
-  const Ended resumed = test::palpate({"resume", directory().string(), "--quiet"}, folder_.path());
+  const Ended resumed = resume(directory());
   ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_EQ(outcomes(), std::vector<std::string>(4, "contact"));
+  EXPECT_EQ(outcomes(directory()), std::vector<std::string>(4, "contact"));
 }
 
 TEST_F(StepRun, TakesNothingForAnAnswerThatWasTypedBeforeTheQuestion) {
-  const std::unique_ptr<Terminal> terminal = at_terminal(run());
-  ASSERT_TRUE(terminal->shows(kQuestion));
-  terminal->type("\n\n");
-  ASSERT_TRUE(terminal->shows(kQuestion, 2));
-  terminal->type("q\n");
+  const std::unique_ptr<Terminal> terminal = at_terminal(robot());
+  answer(*terminal, {"\n\n", "q\n"});
   EXPECT_EQ(terminal->wait(), 130);
-  EXPECT_EQ(outcomes(), std::vector<std::string>{"contact"}) << "the second Enter came while the first tap was made";
+  EXPECT_EQ(outcomes(directory()), std::vector<std::string>{"contact"})
+      << "the second Enter came while the first tap was made";
 }
 
 TEST_F(StepRun, AsksAgainAfterAnythingElse) {
-  const std::unique_ptr<Terminal> terminal = at_terminal(run());
-  ASSERT_TRUE(terminal->shows(kQuestion));
-  terminal->type("yes\n");
-  ASSERT_TRUE(terminal->shows(kQuestion, 2));
-  EXPECT_EQ(logged(), 0);
-  terminal->type("q\n");
+  const std::unique_ptr<Terminal> terminal = at_terminal(robot());
+  answer(*terminal, {"yes\n", "q\n"});
   EXPECT_EQ(terminal->wait(), 130);
+  EXPECT_EQ(logged(), 0);
 }
 
 TEST_F(StepRun, IsRefusedWithoutATerminalBeforeAnythingStarts) {
-  const Ended ended = test::palpate(run({"--step"}), folder_.path());
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_EQ(ended.err,
+  EXPECT_EQ(refused(robot("--step")),
             "command line: --step: there is no terminal to show a tap and to ask whether it may be made, stdin and "
             "stderr must be one\n");
   EXPECT_FALSE(program_asked());
-  EXPECT_FALSE(fs::exists(folder_.path() / "runs"));
-}
-
-TEST_F(StepRun, IsRefusedForResumeWithoutATerminal) {
-  ASSERT_EQ(test::palpate(run({"--quiet"}), folder_.path()).status, 0);
-  const Ended ended = test::palpate({"resume", directory().string(), "--step"}, folder_.path());
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_THAT(ended.err, HasSubstr("there is no terminal"));
+  EXPECT_TRUE(left_nothing());
+  ASSERT_EQ(palpate(robot("--quiet")).status, 0);
+  EXPECT_THAT(refused({"resume", directory(), "--step"}), HasSubstr("there is no terminal"));
 }
 
 TEST_F(StepRun, IsRefusedWhereTapsCanBeRepeated) {
-  for (const std::vector<std::string>& words :
-       {run({"backend.repeatable=true"}), std::vector<std::string>{"run", test::paper()}}) {
+  for (const Words& words : {robot("backend.repeatable=true"), Words{"run", paper()}}) {
     const std::unique_ptr<Terminal> terminal = at_terminal(words);
     EXPECT_EQ(terminal->wait(), 2);
     EXPECT_THAT(terminal->screen(), HasSubstr("can be repeated, there is nothing to confirm, leave it out\r\n"));
-    EXPECT_EQ(test::lines(terminal->screen()), 1);
-    EXPECT_FALSE(fs::exists(folder_.path() / "runs"));
+    EXPECT_EQ(lines(terminal->screen()), 1);
+    EXPECT_TRUE(left_nothing());
   }
   EXPECT_FALSE(program_asked());
 }
 
 TEST_F(StepRun, IsRefusedForASweepAndWhereNothingIsShown) {
-  const Ended swept = test::palpate({"sweep", test::paper(), "seed=range(0,2)", "taps=3", "initial.count=3", "--quiet"},
-                                    folder_.path());
-  ASSERT_EQ(swept.status, 0) << swept.err;
-  const std::unique_ptr<Terminal> terminal = at_terminal(resume());
+  const std::unique_ptr<Terminal> terminal = at_terminal({"resume", swept("seed=range(0,2) taps=3 initial.count=3")});
   EXPECT_EQ(terminal->wait(), 2);
   EXPECT_THAT(terminal->screen(), EndsWith("is a sweep of many runs, leave it out\r\n"));
-  EXPECT_EQ(test::palpate(run({"--quiet", "--step"}), folder_.path()).status, 2);
+  EXPECT_EQ(palpate(robot("--quiet --step")).status, 2);
 }
 
 }  // namespace

@@ -1,55 +1,42 @@
 // SPDX-License-Identifier: MIT
 // `stop.expected_rmse` as a user meets it.
-#include "support/support.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <sstream>
 #include <string>
 
 namespace palpate {
 namespace {
 
-TEST(Stop, AtTheExpectedErrorIsInTheRecordAndReplayed) {
-  const TemporaryFolder folder;
-  const Ended run = test::palpate(
-      {"run", config("default.yaml"), "scene=dome", "taps=60", "stop.expected_rmse=1.5 cm", "--quiet"}, folder.path());
-  ASSERT_EQ(run.status, 0) << run.err;
-  const fs::path directory = only_run(folder.path() / "runs");
+using Stops = Shell;
+
+TEST_F(Stops, AtTheExpectedErrorAreInTheRecordAndReplayed) {
+  const fs::path directory = ran({"scene=dome", "taps=60", "stop.expected_rmse=1.5 cm"}, config("default.yaml"));
   const nlohmann::json summary = nlohmann::json::parse(text_of(directory / "summary.json"));
   EXPECT_EQ(summary["stop_reason"], "expected_rmse");
   EXPECT_LT(summary["taps"], 60);
   EXPECT_LT(summary["expected_rmse_m"], 0.015);
 
-  std::istringstream taps(text_of(directory / "taps.jsonl"));
-  for (std::string line; std::getline(taps, line);) {
+  for (const std::string& line : lines_of(text_of(directory / "taps.jsonl"))) {
     const nlohmann::json tap = nlohmann::json::parse(line);
     ASSERT_TRUE(tap.contains("expected_rmse_m"));
     EXPECT_EQ(tap["expected_rmse_m"].is_null(), tap["tap"] <= summary["first_hit_tap"]);
   }
-
-  const Ended replay = test::palpate({"replay", directory.string()}, folder.path());
+  const Ended replay = palpate({"replay", directory});
   EXPECT_THAT(replay.out, MatchesRegex("[0-9]+ taps, [0-9]+ numbers, all equal\n")) << replay.err;
 }
 
-TEST(Stop, AddsNothingToTheRecordOfOtherRuns) {
-  const TemporaryFolder folder;
-  test::palpate({"run", config("default.yaml"), "taps=5", "--quiet"}, folder.path());
-  const fs::path directory = only_run(folder.path() / "runs");
+TEST_F(Stops, AddNothingToTheRecordOfOtherRuns) {
+  const fs::path directory = ran("taps=5", config("default.yaml"));
   for (const char* file : {"taps.jsonl", "taps.csv", "summary.json"})
     EXPECT_THAT(text_of(directory / file), Not(HasSubstr("expected_rmse_m"))) << file;
 }
 
-TEST(Stop, RefusesBoundsThatMeanNothing) {
-  const TemporaryFolder folder;
-  const auto refusal = [&](const std::string& word) {
-    const Ended ended = test::palpate({"run", config("default.yaml"), word}, folder.path());
-    EXPECT_EQ(ended.status, 2) << word;
-    return ended.err;
-  };
+TEST_F(Stops, AtBoundsThatMeanNothingAreRefused) {
+  const auto refusal = [&](const std::string& word) { return refused({"run", config("default.yaml"), word}); };
   EXPECT_EQ(refusal("stop.expected_rmse=0 cm"),
             "command line: stop.expected_rmse: 0 cm is out of range, it must be above 0 m\n");
   EXPECT_EQ(refusal("stop.expected_rmse=1"),

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What a sweep survives: jobs that crash, are killed or fail, launchers that are killed, several at once, changed
 // files.
+#include "record/json.hpp"
 #include "support/programs.hpp"
-#include "system/one_sweep.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <memory>
+#include <ostream>
 #include <set>
 
 namespace palpate {
@@ -15,12 +18,13 @@ namespace {
 
 using test::eventually;
 
-class Recovery : public test::OneSweep {
+class Recovery : public Shell {
  protected:
-  Recovery() { has_plugins_of("dies"); }
-  void has_plugins_of(const char* name) {
-    environment_ = {"PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder(name).string()};
-  }
+  Recovery() { environment_ = {test::with_plugin("dies")}; }
+
+  fs::path job(int index) const { return job_of(directory(), index); }
+  std::string status() const { return status_of(directory()).out; }
+  Ended resume(const Words& more = {}) const { return Shell::resume(directory(), more); }
 
   /// How often a job was begun.
   int attempts(int index) const {
@@ -31,19 +35,14 @@ class Recovery : public test::OneSweep {
   }
 
   /// A sweep over ways in which the process of a job ends in its fifth tap.
-  std::vector<std::string> dying(const std::string& ways) const {
-    return {"sweep", paper(), "backend=dies", "backend.way=" + ways, "--quiet"};
-  }
+  Ended dying(const std::string& ways) const { return sweep("backend=dies --quiet backend.way=" + ways); }
 
+  static std::string seeds(int jobs) { return "seed=range(0," + std::to_string(jobs) + ")"; }
   /// Jobs that take about a second each.
-  static std::vector<std::string> slow(int jobs) {
-    return {"sweep", paper(), "seed=range(0," + std::to_string(jobs) + ")", "backend.pace=0.006", "-j", "2", "--quiet"};
-  }
+  static Words slow(int jobs) { return {"sweep", paper(), seeds(jobs), "backend.pace=0.006", "-j", "2", "--quiet"}; }
   /// Begins such a sweep and waits until its first job has a tap.
   std::unique_ptr<test::Child> begun(int jobs) const {
-    std::vector<std::string> words = slow(jobs);
-    words.insert(words.begin(), test::program_file().string());
-    auto child = std::make_unique<test::Child>(words, folder_.path());
+    auto child = begin(slow(jobs));
     EXPECT_TRUE(eventually([&] { return pids().size() == 2 && fs::exists(job(0) / "taps.jsonl"); })) << child->err();
     return child;
   }
@@ -52,7 +51,7 @@ class Recovery : public test::OneSweep {
     std::set<long> out;
     std::error_code none;
     // Step by step, because folders get other names meanwhile.
-    for (fs::recursive_directory_iterator at(folder_.path(), none), end; at != end; at.increment(none)) {
+    for (fs::recursive_directory_iterator at(here(), none), end; at != end; at.increment(none)) {
       if (at->path().filename() != "attempts.jsonl") continue;
       for (const Row& row : read_json_lines(at->path()).rows) {
         if (const Scalar* pid = row.find("pid")) out.insert(static_cast<long>(std::get<std::int64_t>(*pid)));
@@ -69,17 +68,9 @@ class Recovery : public test::OneSweep {
   /// The same, with the bytes of an unbroken sweep.
   void expect_whole(int jobs) const {
     expect_done(jobs);
-    const TemporaryFolder unbroken;
-    ASSERT_EQ(
-        test::palpate({"sweep", paper(), "seed=range(0," + std::to_string(jobs) + ")", "--quiet"}, unbroken.path())
-            .status,
-        0);
-    const std::vector<Row> rows = read_json_lines(only_run(unbroken.path() / "runs") / "manifest.jsonl").rows;
-    for (int i = 0; i < jobs; ++i) {
-      const std::string id = std::get<std::string>(*rows.at(static_cast<std::size_t>(i)).find("id"));
-      const fs::path other = only_run(unbroken.path() / "runs") / "jobs" / id;
-      EXPECT_TRUE(text_of(job(i) / "taps.csv") == text_of(other / "taps.csv")) << "job " << i;
-    }
+    const fs::path unbroken = swept({seeds(jobs), "--runs", "unbroken"});
+    for (int i = 0; i < jobs; ++i)
+      EXPECT_TRUE(text_of(job(i) / "taps.csv") == text_of(job_of(unbroken, i) / "taps.csv")) << "job " << i;
   }
 };
 
@@ -87,68 +78,62 @@ TEST_F(Recovery, ASweepWhoseDirectoryIsMovedOrRemovedStopsAndSaysWhatToDo) {
   for (const bool moved : {true, false}) {
     const auto child = begun(40);
     const fs::path before = directory();
-    fs::rename(before, folder_.path() / "moved");
-    if (!moved) fs::remove_all(folder_.path() / "moved");
-    const Ended ended = child->wait(120.0);
+    fs::rename(before, here() / "moved");
+    if (!moved) fs::remove_all(here() / "moved");
+    const Ended ended = child->wait();
     EXPECT_EQ(ended.status, 1);
-    EXPECT_EQ(ended.err, fs::relative(before, folder_.path()).string() +
+    EXPECT_EQ(ended.err, fs::relative(before, here()).string() +
                              ": was moved or removed while its jobs were under way, where it was moved to, 'palpate "
                              "resume' carries on; otherwise begin it again with 'palpate sweep'\n");
     EXPECT_FALSE(fs::exists(before)) << "nothing grows in its place";
     if (moved) {
-      EXPECT_EQ(palpate({"resume", "moved", "--quiet"}).status, 0);
-      EXPECT_EQ(lines(text_of(folder_.path() / "moved" / "results.csv")), 41);
-      fs::remove_all(folder_.path() / "moved");
+      EXPECT_EQ(palpate("resume moved --quiet").status, 0);
+      EXPECT_EQ(lines(text_of(here() / "moved" / "results.csv")), 41);
+      fs::remove_all(here() / "moved");
     }
   }
 }
 
-TEST_F(Recovery, AJobThatCrashesCostsItselfAlone) {
-  const Ended ended = palpate(dying("none,crash,exit,fail"));
+TEST_F(Recovery, AJobThatCrashesOrLeavesNoResultCostsItselfAlone) {
+  const Ended ended = dying("none,crash,exit,fail,leave");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.out,
               AllOf(HasSubstr("failed: job 1"), HasSubstr("crashed: signal 11 (Segmentation fault)"),
                     HasSubstr("failed: job 2"), HasSubstr("its process ended with status 3"),
-                    HasSubstr("failed: job 3"), HasSubstr("backend.way=fail"), HasSubstr("its arm has fallen off")));
+                    HasSubstr("failed: job 3"), HasSubstr("backend.way=fail"), HasSubstr("its arm has fallen off"),
+                    HasSubstr("failed: job 4"), HasSubstr("its process ended with status 0")));
   EXPECT_THAT(ended.out, HasSubstr("palpate resume --retry-failed"));
-  EXPECT_THAT(status(), StartsWith("4 jobs, 1 done, 0 running, 3 failed"));
-  EXPECT_EQ(lines(text_of(directory() / "results.csv")), 5) << "failed jobs are in the table, too";
+  EXPECT_THAT(status(), StartsWith("5 jobs, 1 done, 0 running, 4 failed"));
+  EXPECT_EQ(lines(text_of(directory() / "results.csv")), 6) << "failed jobs are in the table, too";
   EXPECT_EQ(attempts(1), 1) << "it would crash again";
 }
 
-TEST_F(Recovery, AJobWhoseProcessSaysThatAllIsWellButLeavesNoResultHasFailed) {
-  const Ended ended = palpate(dying("none,leave"));
-  EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr("its process ended with status 0")));
-  EXPECT_THAT(status(), StartsWith("2 jobs, 1 done, 0 running, 1 failed"));
-}
-
 TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
-  const Ended ended = palpate(dying("none,kill"));
+  const Ended ended = dying("none,kill");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.out, HasSubstr("was killed by signal 9 (Killed), as is done when memory runs out, in attempt 3"));
   EXPECT_EQ(attempts(0), 1);
   EXPECT_EQ(attempts(1), 3);
   EXPECT_EQ(lines(text_of(job(1) / "taps.jsonl")), 4) << "what was tapped before is kept, and not tapped again";
-  EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(1), 3) << "the limit holds for retries, too";
-  EXPECT_EQ(resume({"--retry-failed", "--attempts", "5"}).status, 1);
+  EXPECT_EQ(resume("--retry-failed --attempts 5").status, 1);
   EXPECT_EQ(attempts(1), 5);
 }
 
 TEST_F(Recovery, WhatFailedKeepsItsReasonAndIsTriedAgainOnRequestOnly) {
-  ASSERT_EQ(palpate(dying("none,fail")).status, 1);
+  ASSERT_EQ(dying("none,fail").status, 1);
   const Ended again = resume();
   EXPECT_EQ(again.status, 1) << "a failure is not forgotten";
   EXPECT_THAT(again.out, HasSubstr("its arm has fallen off"));
   EXPECT_EQ(attempts(1), 1);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(0), 1);
   EXPECT_EQ(attempts(1), 3) << "not more often than --attempts says";
 }
 
 TEST_F(Recovery, AKilledLauncherTakesItsJobsAlongAndResumeDoesTheRest) {
-  const std::unique_ptr<test::Child> child = begun(5);
+  const auto child = begun(5);
   child->signal(SIGKILL);
   child->wait();
   for (const long pid : pids()) EXPECT_TRUE(eventually([&] { return !test::running(pid); })) << pid;
@@ -161,7 +146,7 @@ TEST_F(Recovery, AKilledLauncherTakesItsJobsAlongAndResumeDoesTheRest) {
 }
 
 TEST_F(Recovery, AKilledJobIsCarriedOnAtOnce) {
-  const std::unique_ptr<test::Child> child = begun(3);
+  const auto child = begun(3);
   for (const long pid : pids()) ::kill(static_cast<pid_t>(pid), SIGKILL);
   EXPECT_EQ(child->wait().status, 0);
   expect_whole(3);
@@ -169,7 +154,7 @@ TEST_F(Recovery, AKilledJobIsCarriedOnAtOnce) {
 }
 
 TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
-  const std::unique_ptr<test::Child> child = begun(5);
+  const auto child = begun(5);
   child->signal(SIGINT);
   const Ended ended = child->wait();
   EXPECT_EQ(ended.status, 130);
@@ -181,146 +166,128 @@ TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
 }
 
 TEST_F(Recovery, TwoLaunchersShareTheWorkAndRunNoJobTwice) {
-  const std::unique_ptr<test::Child> first = begun(6);
-  std::vector<std::string> words = slow(6);
-  words.insert(words.begin(), test::program_file().string());
-  test::Child second(words, folder_.path());
-  EXPECT_EQ(second.wait().status, 0) << "it waits for the jobs of the other";
+  const auto first = begun(6);
+  EXPECT_EQ(palpate(slow(6)).status, 0) << "it waits for the jobs of the other";
   EXPECT_EQ(first->wait().status, 0);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(attempts(i), 1);
   expect_whole(6);
 }
 
 TEST_F(Recovery, AChangedConfigOfAJobFailsThatJobAndOneOfTheSweepRefusesItAll) {
-  ASSERT_EQ(palpate(dying("none,fail")).status, 1);
+  ASSERT_EQ(dying("none,fail").status, 1);
   fs::remove(job(0) / "summary.json");
   for (const char* name : {"summary.json", "attempts.jsonl", "taps.jsonl"}) fs::remove(job(1) / name);
-  const std::string config = text_of(job(1) / "config.yaml");
-  std::string changed = config;
-  changed.replace(changed.find("taps: 17"), 8, "taps: 18");
-  const auto write = [&](const fs::path& file, const std::string& text) {
-    folder_.write(fs::relative(file, folder_.path()).string(), text);
-  };
-  write(job(1) / "config.yaml", changed);
+  replace(job(1) / "config.yaml", "taps: 17", "taps: 18");
   const Ended of_job = resume();
   EXPECT_EQ(of_job.status, 1);
   EXPECT_THAT(of_job.out, AllOf(HasSubstr("failed: job 1"), HasSubstr("config.yaml was changed")));
   EXPECT_EQ(attempts(0), 2) << "the other has run";
   EXPECT_EQ(attempts(1), 0);
-  write(job(1) / "config.yaml", config);
+  replace(job(1) / "config.yaml", "taps: 18", "taps: 17");
 
-  const fs::path file = directory() / "config.yaml";
-  std::string of_all = text_of(file);
-  of_all.replace(of_all.find("taps: 17"), 8, "taps: 18");
-  write(file, of_all);
-  const Ended of_sweep = resume();
-  EXPECT_EQ(of_sweep.status, 2);
-  EXPECT_THAT(of_sweep.err, HasSubstr("was changed since this sweep began"));
-  EXPECT_EQ(lines(of_sweep.err), 1);
+  replace(directory() / "config.yaml", "taps: 17", "taps: 18");
+  EXPECT_THAT(refused({"resume", directory(), "--quiet"}), HasSubstr("was changed since this sweep began"));
   EXPECT_EQ(attempts(0), 2);
 }
 
 TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
-  const std::unique_ptr<test::Child> child = begun(4);
-  EXPECT_EQ(resume({"--jobs", "0"}).status, 75) << "another has it in hand, and nobody waits for it";
+  const auto child = begun(4);
+  EXPECT_EQ(resume("--jobs 0").status, 75) << "another has it in hand, and nobody waits for it";
   child->signal(SIGKILL);
   child->wait();
-  const Ended ended = resume({"--jobs", "1,3-3"});
+  const Ended ended = resume("--jobs 1,3-3");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(attempts(2), 0);
   EXPECT_EQ(attempts(3), 1);
   EXPECT_THAT(status(), HasSubstr("2 done"));
   EXPECT_FALSE(fs::exists(directory() / "results.csv")) << "some are still missing";
-  EXPECT_EQ(resume({"--jobs", "0-2"}).status, 0);
+  EXPECT_EQ(resume("--jobs 0-2").status, 0);
   expect_whole(4);
   for (const char* wrong : {"4", "1-", "2-1", "a", "1,,2", "-1", "1 2"}) {
     const Ended refused = resume({std::string("--jobs=") + wrong});
     EXPECT_EQ(refused.status, 2) << wrong;
     EXPECT_THAT(refused.err, HasSubstr("--jobs: ")) << wrong;
   }
-  const Ended judged = resume({"--jobs", "0", "--junit", "part.xml"});
+  const Ended judged = resume("--jobs 0 --junit part.xml");
   EXPECT_EQ(judged.status, 2);
   EXPECT_THAT(judged.err, HasSubstr("--jobs and --junit do not go together"));
 }
 
 TEST_F(Recovery, HalfALineInTheListOfAttemptsDoesNoHarm) {
-  ASSERT_EQ(palpate(dying("none,fail")).status, 1);
-  const std::string whole = text_of(job(1) / "attempts.jsonl");
-  folder_.write(fs::relative(job(1) / "attempts.jsonl", folder_.path()).string(), whole + "{\"attem");
-  EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  ASSERT_EQ(dying("none,fail").status, 1);
+  const fs::path file = job(1) / "attempts.jsonl";
+  const std::string whole = text_of(file);
+  write(file, whole + "{\"attem");
+  EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(1), 2);
-  EXPECT_THAT(text_of(job(1) / "attempts.jsonl"), AllOf(StartsWith(whole), Not(HasSubstr("{\"attem{"))));
+  EXPECT_THAT(text_of(file), AllOf(StartsWith(whole), Not(HasSubstr("{\"attem{"))));
 
-  folder_.write(fs::relative(job(1) / "attempts.jsonl", folder_.path()).string(), "{\"attem");
-  EXPECT_EQ(resume({"--retry-failed"}).status, 1);
+  write(file, "{\"attem");
+  EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(1), 1) << "half a line is no attempt, and the next begins a line of its own";
 }
 
 TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
-  has_plugins_of("cannot_go_on");
-  const Ended ended = palpate({"sweep", paper(), "backend=cannot_go_on", "taps=4", "seed=range(0,3)", "-j", "2"});
+  environment_ = {test::with_plugin("cannot_go_on")};
+  const Ended ended = sweep("backend=cannot_go_on taps=4 seed=range(0,3) -j 2");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, AllOf(HasSubstr("one job at a time"), Not(HasSubstr("2 running"))));
 }
 
-TEST_F(Recovery, AMessageThatNobodyCanReadEndsNothing) {
-  // As on a terminal that was closed, every byte to stderr is an error.
-  const std::string words = test::program_file().string() + " sweep " + paper() + " taps=3 -j 2 'seed=range(0,20)'";
-  const Ended ended = test::run_program({"/bin/sh", "-c", "exec " + words + " 2> /dev/full"}, folder_.path());
-  EXPECT_EQ(ended.status, 0);
-  EXPECT_THAT(status(), StartsWith("20 jobs, 20 done"));
-}
+/// How a sweep is begun: by a shell, or by whatever program this line of a shell names, in the place of $0.
+struct Odd {
+  const char* name;
+  const char* shell;
+  Words sweep;
+  const char* done;
+};
 
-TEST_F(Recovery, JobsAreReapedWhereTheEndsOfChildrenWereIgnored) {
-  const char* ignoring =
-      "import os, signal, sys; signal.signal(signal.SIGCHLD, signal.SIG_IGN); os.execv(sys.argv[1], sys.argv[1:])";
-  const Ended ended = test::run_program({"python3", "-SEc", ignoring, test::program_file().string(), "sweep", paper(),
-                                         "taps=3", "seed=range(0,4)", "--quiet"},
-                                        folder_.path());
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(status(), StartsWith("4 jobs, 4 done"));
-}
+void PrintTo(const Odd& one, std::ostream* out) { *out << one.name; }
 
-TEST_F(Recovery, WhereFilesRunShortFewerJobsGoOnTogetherAndNoneFails) {
-  const std::string words = test::program_file().string() + " sweep " + paper() +
-                            " taps=3 backend.pace=0.02 -j 200 'seed=range(0,100)' --quiet";
-  const Ended ended = test::run_program({"/bin/sh", "-c", "ulimit -n 40; exec " + words}, folder_.path());
+class OddSurroundings : public Recovery, public testing::WithParamInterface<Odd> {};
+
+TEST_P(OddSurroundings, CostASweepNoJob) {
+  const Words words{"/bin/sh", "-c", GetParam().shell, test::program_file(), "sweep", paper(), "taps=3"};
+  const Ended ended = test::run_program(words + GetParam().sweep, here());
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
-  EXPECT_THAT(status(), StartsWith("100 jobs, 100 done"));
+  EXPECT_THAT(status(), StartsWith(GetParam().done));
 }
 
+INSTANTIATE_TEST_SUITE_P(
+    Of, OddSurroundings,
+    testing::Values(
+        // As on a terminal that was closed, every byte to stderr is an error.
+        Odd{"NobodyReadsStderr", "exec \"$0\" \"$@\" 2>/dev/full", "-j 2 seed=range(0,20)", "20 jobs, 20 done"},
+        Odd{"TheEndsOfChildrenAreIgnored",
+            "exec python3 -SEc 'import os, signal, sys; signal.signal(signal.SIGCHLD, signal.SIG_IGN); "
+            "os.execv(sys.argv[1], sys.argv[1:])' \"$0\" \"$@\"",
+            "seed=range(0,4) --quiet", "4 jobs, 4 done"},
+        Odd{"FilesRunShort", "ulimit -n 40; exec \"$0\" \"$@\"", "backend.pace=0.02 -j 200 seed=range(0,100) --quiet",
+            "100 jobs, 100 done"}),
+    [](const auto& one) { return std::string(one.param.name); });
+
 TEST_F(Recovery, AJobWhoseFolderWasDeletedIsRunAgainByTheSweepWithItsConfig) {
-  ASSERT_EQ(palpate(dying("none,exit")).status, 1);
+  ASSERT_EQ(dying("none,exit").status, 1);
   const std::string config = text_of(job(0) / "config.yaml");
   fs::remove_all(job(0));
   EXPECT_THAT(resume().err, HasSubstr("it has no config.yaml"));
-  EXPECT_EQ(palpate(dying("none,exit")).status, 1);
+  EXPECT_EQ(dying("none,exit").status, 1);
   EXPECT_EQ(text_of(job(0) / "config.yaml"), config);
-  EXPECT_EQ(palpate({"replay", job(0).string()}).status, 0);
+  EXPECT_EQ(palpate({"replay", job(0)}).status, 0);
 }
 
 TEST_F(Recovery, OfADamagedResultItIsSaidHowToMakeItAnew) {
-  ASSERT_EQ(palpate({"sweep", paper(), "taps=4", "seed=1,2", "--quiet"}).status, 0);
-  const std::string summary = fs::relative(job(1) / "summary.json", folder_.path()).string();
-  folder_.write(summary, "");
-  for (const Ended& ended : {palpate({"status", directory().string()}), resume()}) {
+  swept("taps=4 seed=1,2");
+  write(job(1) / "summary.json", "");
+  for (const Ended& ended : {status_of(directory()), resume()}) {
     EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr(job(1).string()),
                                  HasSubstr("remove it, and 'palpate resume'")));
   }
   EXPECT_EQ(resume().status, 1);
-  fs::remove(folder_.path() / summary);
+  fs::remove(job(1) / "summary.json");
   EXPECT_EQ(resume().status, 0);
   EXPECT_EQ(lines(text_of(job(1) / "taps.jsonl")), 4);
-}
-
-TEST_F(Recovery, ASweepThatIsRefusedLeavesNothing) {
-  EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
-  EXPECT_TRUE(fs::is_empty(folder_.path()));
-  folder_.write("runs/mine.txt", "kept");
-  EXPECT_EQ(palpate({"sweep", paper(), "taps=5,17,0"}).status, 2);
-  EXPECT_EQ(fs::directory_iterator(folder_.path() / "runs")->path().filename(), "mine.txt");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path() / "runs"), {}), 1);
 }
 
 }  // namespace

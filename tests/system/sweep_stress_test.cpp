@@ -3,8 +3,9 @@
 // its end twice, no tap is made twice. PALPATE_KILLS says how many kills (tests/stress.sh: a thousand).
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
+#include "support/lasting.hpp"
 #include "support/programs.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <palpate/random.hpp>
 
@@ -13,10 +14,8 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <memory>
 #include <set>
-#include <sstream>
 #include <thread>
 
 namespace palpate {
@@ -32,11 +31,6 @@ std::vector<int> children_of(int pid) {
   return out;
 }
 
-int wanted_kills() {
-  const char* text = std::getenv("PALPATE_KILLS");
-  return text != nullptr ? std::atoi(text) : 60;
-}
-
 std::vector<Row> rows_of(const fs::path& file) {
   return fs::exists(file) ? read_json_lines(file).rows : std::vector<Row>();
 }
@@ -44,32 +38,31 @@ std::vector<Row> rows_of(const fs::path& file) {
 std::int64_t whole(const Row& row, const char* name) { return std::get<std::int64_t>(*row.find(name)); }
 
 /// A sweep that two launchers work at, each begun again when it is killed.
-class Stress : public testing::TestWithParam<const char*> {
+class Stress : public Shell, public testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {
-    kills_ = wanted_kills();
+    kills_ = test::wanted_kills(60, 24);
     jobs_ = std::max(8, kills_ / 4);
-    words_ = {test::program_file().string(), "sweep", test::config("process.yaml"), "--quiet", "-j", "2"};
-    words_.insert(words_.end(), {"--attempts", "1000000", "taps=" + std::to_string(kTaps),
-                                 "seed=range(0," + std::to_string(jobs_) + ")"});
+    words_ = Words{"sweep", config("process.yaml")} + "--quiet -j 2 --attempts 1000000" +
+             ("taps=" + std::to_string(kTaps)) + ("seed=range(0," + std::to_string(jobs_) + ")");
     if (on_a_program()) {
       // It notes every tap that it makes, whatever becomes of the answer.
-      const fs::path program = folder_.write("program.py", test::python(R"(
+      const fs::path program = write("program.py", test::python(R"(
 for ask in asks():
     with open("made.txt", "a") as made:
         made.write(f"{ask['seed']} {ask['tap']}\n")
     time.sleep(0.004)
     contact(ask)
 )"));
-      words_.push_back("backend.command=python3 -SE '" + program.string() + "'");
-      words_.push_back("backend.repeatable=false");
+      words_ = words_ + Words{"backend.command=python3 -SE '" + program.string() + "'", "backend.repeatable=false"};
     } else {
-      words_.insert(words_.end(), {"backend=simulator", "scene=object_i", "backend.pace=0.001"});
+      // So slow that killing, not the sweep, comes to its end first, on a busy machine, too.
+      words_ = words_ + "backend=simulator scene=object_i backend.pace=0.01";
     }
   }
 
   bool on_a_program() const { return std::string(GetParam()) == "program"; }
-  std::unique_ptr<test::Child> launcher() const { return std::make_unique<test::Child>(words_, folder_.path()); }
+  std::unique_ptr<test::Child> launcher() const { return begin(words_); }
 
   /// Kills launchers and jobs as often as wished, or until all is done.
   int kill_at_random(std::vector<std::unique_ptr<test::Child>>& launchers) const {
@@ -96,19 +89,16 @@ for ask in asks():
     return killed;
   }
 
+  /// The one that was published: launchers that are killed early leave others, which have no name.
   fs::path directory() const {
-    fs::path found;
-    for (const auto& entry : fs::directory_iterator(folder_.path() / "runs" / "process")) {
-      EXPECT_TRUE(found.empty());
-      found = entry.path();
-    }
-    return found;
+    const std::vector<fs::path> found{fs::directory_iterator(here() / "runs" / "process"), fs::directory_iterator()};
+    EXPECT_EQ(found.size(), 1U);
+    return found.at(0);
   }
 
   int kills_ = 0;
   int jobs_ = 0;
-  std::vector<std::string> words_;
-  TemporaryFolder folder_;
+  Words words_;
 };
 
 TEST_P(Stress, EveryJobIsDoneNoneTwiceAndNoTapTwice) {
@@ -125,37 +115,35 @@ TEST_P(Stress, EveryJobIsDoneNoneTwiceAndNoTapTwice) {
 
   EXPECT_EQ(lines(text_of(directory() / "results.csv")), jobs_ + 1);
   int begun = 0;
-  for (const auto& job : fs::directory_iterator(directory() / "jobs")) {
-    EXPECT_THAT(text_of(job.path() / "summary.json"), testing::HasSubstr("\"status\": \"done\""));
+  for (const fs::path& job : jobs_of(directory())) {
+    EXPECT_THAT(text_of(job / "summary.json"), testing::HasSubstr("\"status\": \"done\""));
     int ends = 0;
-    for (const Row& row : rows_of(job.path() / "attempts.jsonl")) {
+    for (const Row& row : rows_of(job / "attempts.jsonl")) {
       begun += row.find("pid") != nullptr ? 1 : 0;
       ends += row.find("end") != nullptr ? 1 : 0;
     }
-    EXPECT_LE(ends, 1) << job.path() << " ran to its end more than once";
+    EXPECT_LE(ends, 1) << job << " ran to its end more than once";
     std::int64_t next = 1;
-    for (const Row& row : rows_of(job.path() / "taps.jsonl")) {
+    for (const Row& row : rows_of(job / "taps.jsonl")) {
       if (is_intent(row)) continue;
-      EXPECT_EQ(whole(row, "tap"), next++) << job.path();
+      EXPECT_EQ(whole(row, "tap"), next++) << job;
     }
-    EXPECT_EQ(next, kTaps + 1) << job.path();
+    EXPECT_EQ(next, kTaps + 1) << job;
   }
   RecordProperty("begun", begun);
   EXPECT_GE(begun, jobs_);
 
   if (on_a_program()) {
-    std::istringstream made(text_of(folder_.path() / "made.txt"));
     std::set<std::string> taps;
-    for (std::string tap; std::getline(made, tap);) EXPECT_TRUE(taps.insert(tap).second) << tap << " was made twice";
+    for (const std::string& tap : lines_of(text_of(here() / "made.txt")))
+      EXPECT_TRUE(taps.insert(tap).second) << tap << " was made twice";
     EXPECT_GE(static_cast<int>(taps.size()), jobs_ * kTaps - killed);
   } else {
-    const TemporaryFolder unbroken;
-    std::vector<std::string> words(words_.begin() + 1, words_.end());
-    ASSERT_EQ(test::palpate(words, unbroken.path()).status, 0);
-    const fs::path other = test::only_run(unbroken.path() / "runs");
-    for (const auto& job : fs::directory_iterator(directory() / "jobs")) {
-      EXPECT_TRUE(text_of(job.path() / "taps.csv") == text_of(other / "jobs" / job.path().filename() / "taps.csv"))
-          << job.path() << " differs from the unbroken run";
+    ASSERT_EQ(palpate(words_ + "--runs unbroken").status, 0);
+    const fs::path other = only_run(here() / "unbroken");
+    for (const fs::path& job : jobs_of(directory())) {
+      EXPECT_TRUE(text_of(job / "taps.csv") == text_of(other / "jobs" / job.filename() / "taps.csv"))
+          << job << " differs from the unbroken run";
     }
   }
 }

@@ -2,11 +2,12 @@
 // Whole runs on plugins/backends/process/ur.py over a stand-in for ur_rtde (tests/ur_rtde), whose arm moves over a dome
 // of 6 cm in the middle of the area.
 #include "support/programs.hpp"
-#include "system/shipped.hpp"
+#include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 
@@ -15,40 +16,32 @@ namespace {
 
 using test::eventually;
 
-class UrArm : public testing::Test {
+class UrArm : public Shell {
  protected:
-  std::vector<std::string> words() const {
+  UrArm() { fault(""); }
+
+  static Words words(const std::string& python = "python3") {
     const std::string program = (test::source_folder() / "plugins/backends/process/ur.py").string();
-    return {"run",
-            test::config("process.yaml"),
-            "backend=ur",
-            "backend.command=python3 '" + program + "' stub --corner 0.4 -0.1 0.05",
-            "initial.count=4",
-            "taps=8",
-            "--quiet"};
+    return Words{"run", config("process.yaml")} + "backend=ur initial.count=4 taps=8 --quiet" +
+           Words{"backend.command=" + python + " '" + program + "' stub --corner 0.4 -0.1 0.05"};
+  }
+  void fault(const std::string& what) {
+    environment_ = {"PYTHONPATH=" + (test::source_folder() / "tests/ur_rtde").string(), "PYTHONDONTWRITEBYTECODE=1",
+                    "UR_LOG=" + log_file().string(), "UR_FAULT=" + what};
+  }
+  Ended run_with(const std::string& what) {
+    fault(what);
+    return palpate(words());
   }
 
-  std::vector<std::string> environment(const std::string& fault) const {
-    return {"PYTHONPATH=" + (test::source_folder() / "tests/ur_rtde").string(), "PYTHONDONTWRITEBYTECODE=1",
-            "UR_LOG=" + log_file().string(), "UR_FAULT=" + fault};
-  }
-
-  Ended run(const std::string& fault) const { return test::palpate(words(), folder_.path(), environment(fault)); }
-  Ended resume() const {
-    return test::palpate({"resume", directory().string(), "--retry-failed", "--quiet"}, folder_.path(),
-                         environment(""));
-  }
-
-  fs::path directory() const { return test::only_run(folder_.path() / "runs"); }
-  fs::path log_file() const { return folder_.path() / "arm.txt"; }
+  fs::path log_file() const { return here() / "arm.txt"; }
   std::string log() const { return fs::exists(log_file()) ? text_of(log_file()) : ""; }
+  std::string record() const { return text_of(directory() / "taps.jsonl"); }
   std::vector<Cells> taps() const { return csv_rows(text_of(directory() / "taps.csv")); }
 
   int noted(const std::string& what) const {
-    int count = 0;
-    std::istringstream in(log());
-    for (std::string line; std::getline(in, line);) count += line == what ? 1 : 0;
-    return count;
+    const std::vector<std::string> all = lines_of(log());
+    return static_cast<int>(std::count(all.begin(), all.end(), what));
   }
 
   /// That a tap is what the dome gives it, within what the step of the stand-in, 40 um, makes of its stiffness.
@@ -63,12 +56,10 @@ class UrArm : public testing::Test {
     EXPECT_NEAR(std::stod(tap.at("height")), std::sqrt(std::max(0.0, 0.0036 - away * away)), 1e-4);
     EXPECT_NEAR(std::stod(tap.at("force")), 8.0, 0.3);
   }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(UrArm, TapsTheDomeAndLeavesTheRobotInOrder) {
-  const Ended ended = run("");
+  const Ended ended = run_with("");
   ASSERT_EQ(ended.status, 0) << ended.err;
   ASSERT_EQ(taps().size(), 8U);
   for (const Cells& tap : taps()) expect_on_the_dome(tap);
@@ -78,37 +69,33 @@ TEST_F(UrArm, TapsTheDomeAndLeavesTheRobotInOrder) {
 }
 
 TEST_F(UrArm, OneReadingThatSpikesIsNoContact) {
-  const Ended ended = run("spike@2");
-  ASSERT_EQ(ended.status, 0) << ended.err;
+  ASSERT_EQ(run_with("spike@2").status, 0);
   for (const Cells& tap : taps()) expect_on_the_dome(tap);
 }
 
 TEST_F(UrArm, WithoutAContactTheFloorEndsTheWayDown) {
-  ASSERT_EQ(run("missing@2").status, 0);
+  ASSERT_EQ(run_with("missing@2").status, 0);
   EXPECT_EQ(taps()[1].at("outcome"), "no_contact");
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("no contact down to 10 mm below the desk"));
+  EXPECT_THAT(record(), HasSubstr("no contact down to 10 mm below the desk"));
 }
 
 TEST_F(UrArm, AContactAfterWhichTheForceStaysIsNotBelieved) {
-  ASSERT_EQ(run("sticky@2").status, 0);
+  ASSERT_EQ(run_with("sticky@2").status, 0);
   EXPECT_EQ(taps()[1].at("outcome"), "aborted");
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("5.0 N were left after the tap"));
+  EXPECT_THAT(record(), HasSubstr("5.0 N were left after the tap"));
 }
 
 TEST_F(UrArm, ThatIsNotSwitchedOnIsNotMovedNorConnectedTo) {
-  const Ended ended = run("mode");
+  const Ended ended = run_with("mode");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, StartsWith("backend/process: robot mode 3, not running: switch on"));
   EXPECT_EQ(noted("connected"), 0);
 }
 
 TEST_F(UrArm, WithoutUrRtdeSaysSo) {
-  std::vector<std::string> all = words();
-  all[3].replace(all[3].find("python3"), 7, "python3 -SE");  // which knows the standard library alone
-  const Ended ended = test::palpate(all, folder_.path(), environment(""));
-  EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, StartsWith("backend/process: No module named 'rtde_control': install ur_rtde for "));
-  EXPECT_EQ(test::lines(ended.err), 1);
+  // Python that knows the standard library alone.
+  EXPECT_THAT(refused(words("python3 -SE"), 1),
+              StartsWith("backend/process: No module named 'rtde_control': install ur_rtde for "));
 }
 
 struct Trouble {
@@ -119,21 +106,22 @@ struct Trouble {
 class UrArmInTrouble : public UrArm, public testing::WithParamInterface<Trouble> {};
 
 TEST_P(UrArmInTrouble, EndsTheRunWithAReasonAndResumeGoesOnBehindIt) {
-  const Ended ended = run(std::string(GetParam().kind) + "@3");
+  const Ended ended = run_with(std::string(GetParam().kind) + "@3");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, StartsWith("backend/process: "));
   EXPECT_THAT(ended.err, HasSubstr(GetParam().words));
   EXPECT_THAT(ended.err, HasSubstr("then 'palpate resume --retry-failed'"));
-  EXPECT_EQ(test::lines(ended.err), 1);
+  EXPECT_EQ(lines(ended.err), 1);
   EXPECT_EQ(noted("down"), 3);
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
-  const std::string before = text_of(directory() / "taps.jsonl");
+  const std::string before = record();
   const std::size_t failed = taps().size();
   EXPECT_EQ(taps().back().at("outcome"), "aborted");
 
-  const Ended resumed = resume();
+  fault("");
+  const Ended resumed = resume(directory(), "--retry-failed");
   ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), StartsWith(before));
+  EXPECT_THAT(record(), StartsWith(before));
   const std::vector<Cells> all = taps();
   ASSERT_EQ(all.size(), 8U);
   int descents = 0;
@@ -157,12 +145,11 @@ INSTANTIATE_TEST_SUITE_P(By, UrArmInTrouble,
 class UrArmOnItsWayDown : public UrArm, public testing::WithParamInterface<int> {};
 
 TEST_P(UrArmOnItsWayDown, IsStoppedWhenItsRunIsGone) {
-  std::vector<std::string> all = words();
-  all.insert(all.begin(), test::program_file().string());
-  test::Child child(all, folder_.path(), environment("slow@2"));
-  ASSERT_TRUE(eventually([&] { return noted("down") == 2; })) << child.err();
-  child.signal(GetParam());
-  EXPECT_EQ(child.wait().status, GetParam() == SIGINT ? 130 : 128 + GetParam());
+  fault("slow@2");
+  const auto child = begin(words());
+  ASSERT_TRUE(eventually([&] { return noted("down") == 2; })) << child->err();
+  child->signal(GetParam());
+  EXPECT_EQ(child->wait().status, GetParam() == SIGINT ? 130 : 128 + GetParam());
   EXPECT_TRUE(eventually([&] { return noted("receive disconnected") == 1; }));
   EXPECT_THAT(log(), EndsWith("down\nstop\nscript stopped\ndisconnected\nreceive disconnected\n"));
 }

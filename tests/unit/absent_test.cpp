@@ -4,28 +4,17 @@
 #include "config/describe.hpp"
 #include "experiment/experiment.hpp"
 #include "record/resolved.hpp"
-#include "support/plugins.hpp"
 #include "support/runs.hpp"
-#include "support/support.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
 #include <array>
-#include <filesystem>
 #include <sstream>
-#include <string>
-#include <vector>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// The plugins of this build, but of those that need a library the ones that stand in their place without it.
-class WithoutLibraries : public ::testing::Test {
+class WithoutLibraries : public InFolder {
  protected:
   WithoutLibraries() {
     for (const fs::path& tree : {test::bad_plugin_folder("absent"), test::plugin_folder()}) {
@@ -39,11 +28,15 @@ class WithoutLibraries : public ::testing::Test {
       }
     }
   }
-  PluginHost host() const { return PluginHost({folder_.path() / "plugins"}); }
-  const test::TemporaryFolder& folder() const { return folder_; }
 
- private:
-  test::TemporaryFolder folder_;
+  /// The paper's first experiment with overrides, as such a build resolves it.
+  ResolvedConfig resolved(const std::vector<Override>& overrides) const {
+    const fs::path configs = source_folder() / "configs";
+    Composer composer(configs, config_keys());
+    return load_experiment(composer, host_, configs / "paper" / "object_i.yaml", overrides);
+  }
+
+  const PluginHost host_{std::vector<fs::path>{folder_.path() / "plugins"}};
 };
 
 /// The packages under a heading of packages.txt, blanks between them.
@@ -74,44 +67,31 @@ TEST_F(WithoutLibraries, ARunIsToldWhatToInstallAndNotFirstWhatItsConfigLacks) {
   for (const std::string& name : {ceres, mesh.substr(0, mesh.find(' ')), mesh.substr(mesh.find(' ') + 1)}) {
     EXPECT_THAT(" " + packages("core") + " ", ::testing::HasSubstr(" " + name + " "));
   }
-  const fs::path file = folder().write("wedge.stl", "solid wedge\nendsolid wedge\n");
+  const fs::path file = folder_.write("wedge.stl", "solid wedge\nendsolid wedge\n");
   const std::vector<std::array<std::string, 2>> cases{
       {"backend=baxter", "backend/baxter: " + remedy("ROS 1", packages("ros"))},
       {"backend=fake_baxter", "backend/baxter: " + remedy("ROS 1", packages("ros"))},
       {"fitting=ceres", "fitting/ceres: " + remedy("Ceres", ceres)},
       {"scene.objects=[{type: mesh, file: " + file.string() + ", unit: 1mm, at: [11cm, 11cm]}]",
        "shape/mesh: " + remedy("Embree or no assimp", mesh)}};
-  const fs::path configs = test::source_folder() / "configs";
-  const PluginHost plugins = host();
   for (const auto& [override, words] : cases) {
-    try {
-      Composer composer(configs, config_keys());
-      const ResolvedConfig config =
-          load_experiment(composer, plugins, configs / "paper" / "object_i.yaml", {parse_override(override)});
-      Experiment(config.options, plugins, nullptr);
-      ADD_FAILURE() << override << ": what this build has not was accepted";
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), ::testing::EndsWith(words));
-      EXPECT_EQ(error.kind(), Error::Kind::usage);
-    }
+    const auto build = [&, &override = override] {
+      Experiment(resolved({parse_override(override)}).options, host_, nullptr);
+    };
+    EXPECT_THAT(error_of(build, Error::Kind::usage), testing::EndsWith(words)) << override;
   }
 }
 
 TEST_F(WithoutLibraries, WhatWasRecordedElsewhereHasTheSameConfigAndId) {
   // So what a robot recorded can be replayed, compared and drawn at a desk without ROS.
-  const fs::path configs = test::source_folder() / "configs";
-  const PluginHost plugins = host();
-  Composer composer(configs, config_keys());
-  const ResolvedConfig here = load_experiment(composer, plugins, configs / "paper" / "object_i.yaml",
-                                              {parse_override("backend=fake_baxter"), parse_override("fitting=ceres")});
-  EXPECT_EQ(here.id, test::shipped_config("paper/object_i.yaml", {"backend=fake_baxter", "fitting=ceres"}).id);
+  EXPECT_EQ(resolved({parse_override("backend=fake_baxter"), parse_override("fitting=ceres")}).id,
+            test::shipped_config("paper/object_i.yaml", {"backend=fake_baxter", "fitting=ceres"}).id);
 }
 
 TEST_F(WithoutLibraries, AllOptionsAreListedAllTheSame) {
-  const PluginHost plugins = host();
   std::vector<std::string> names;
   for (const FieldDescription& field :
-       describe_fields([&](Fields& list) { plugins.describe("backend", "baxter", list); })) {
+       describe_fields([&](Fields& list) { host_.describe("backend", "baxter", list); })) {
     names.push_back(field.name);
   }
   EXPECT_THAT(names, ::testing::IsSupersetOf({"motion", "tool", "place", "calibration", "force_sign",
@@ -119,4 +99,4 @@ TEST_F(WithoutLibraries, AllOptionsAreListedAllTheSame) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

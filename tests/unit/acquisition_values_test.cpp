@@ -1,50 +1,31 @@
 // SPDX-License-Identifier: MIT
 // What the acquisitions make of maps that are written down, and what those that are made of others make of their parts.
-#include "support/plugins.hpp"
-#include "support/support.hpp"
+#include "support/mocks.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/acquisition.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
 
 namespace palpate::test {
 namespace {
 
 /// Five candidates, of which only what the scores here read is known.
-class Maps final : public Belief {
- public:
-  Maps() : places_(Points::Zero(5, 2)), u_(5), w_(5), p_(5) {
-    u_ << 1.0, 0.5, 0.2, 0.0, 0.8;
-    w_ << 0.1, 1.2, -0.3, 0.5, 0.0;
-    p_ << 0.0, 0.25, 0.5, 1.0, 0.9;
-  }
-  const Points& candidates() const override { return places_; }
-  Area area() const override { return {0.23, 0.23}; }
-  int taps() const override { return 4; }
-  int initial_taps() const override { return 1; }
-  const Eigen::VectorXd& uncertainty() const override { return u_; }
-  const Eigen::VectorXd& weight() const override { return w_; }
-  const Eigen::VectorXd& probability() const override { return p_; }
-  const Eigen::VectorXd& height_mean() const override { return p_; }
-  const Eigen::VectorXd& height_variance() const override { return u_; }
+WrittenBelief maps() {
+  WrittenBelief out;
+  out.count = 4;
+  out.places = Points::Zero(5, 2);
+  out.u = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8}};
+  out.w = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0}};
+  out.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0, 0.9}};
+  out.mean = out.p;
+  out.variance = out.u;
+  return out;
+}
 
- private:
-  Points places_;
-  Eigen::VectorXd u_, w_, p_;
-};
-
-/// The scores of `name`, which leaves what stands beside them alone.
 std::vector<double> scores(const std::string& name, const std::string& options = "{}") {
   const auto acquisition = make<Acquisition>(shared_host(), name, options);
-  Eigen::VectorXd around = Eigen::VectorXd::Constant(7, 7.25);
-  acquisition->score(Maps(), around.segment(1, 5));
-  EXPECT_EQ(around(0), 7.25);
-  EXPECT_EQ(around(6), 7.25);
-  return {around.data() + 1, around.data() + 6};
+  Eigen::VectorXd out(5);
+  acquisition->score(maps(), out);
+  return {out.data(), out.data() + 5};
 }
 
 double scale_of(const std::string& name, const std::string& options) {

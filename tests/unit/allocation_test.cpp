@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What a tap costs in memory: nothing, once the first have made room. Counts every call of malloc in this process.
 #include "experiment/experiment.hpp"
-#include "support/plugins.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <atomic>
-#include <cstdlib>
-#include <memory>
-#include <string>
 
 namespace {
 std::atomic<long> allocations{0};
@@ -61,7 +55,6 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
     PosteriorSettings settings;
     settings.engine = kind;
     settings.taps = 80;
-    settings.scores = true;
     Process process(test::make<Kernel>(test::shared_host(), "rbf"),
                     std::vector<ProcessSettings>(2, {1.0, 1e-2, 0.0, 0.0}), candidates, settings);
     process.show(2);
@@ -72,7 +65,6 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
       if (tap == 2) before = allocations;
       const Target place = candidates.target(static_cast<int>(random.index(3600)));
       process.add(place, Eigen::Vector2d(0.1 * random.uniform(), 1.0));
-      process.best();
       process.read_mean(0, map);
       process.read_relative_variance(map);
     }
@@ -97,12 +89,12 @@ class Watcher final : public Journal {
 TEST(Allocation, NoTapOfTheLoopAllocatesAMap) {
   if (test::kSanitized) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
   for (const char* acquisition : {"acquisition=weighted", "acquisition=uncertainty", "acquisition=random"}) {
-    const ResolvedConfig config = test::shipped_config("paper/object_i.yaml", {acquisition});
-    Experiment experiment(config.options, test::shared_host(), nullptr);
+    test::Prepared prepared("paper/object_i.yaml", {acquisition});
     Watcher watcher;
-    experiment.run(watcher);
+    prepared.experiment.run(watcher);
     EXPECT_GT(watcher.worst(), 0U) << "what a tap leaves behind needs some memory";
-    EXPECT_LT(watcher.worst(), static_cast<std::size_t>(experiment.candidates().size())) << acquisition << ": in bytes";
+    EXPECT_LT(watcher.worst(), static_cast<std::size_t>(prepared.experiment.candidates().size()))
+        << acquisition << ": in bytes";
   }
 }
 

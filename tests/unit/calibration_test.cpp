@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Honest uncertainty: on surfaces drawn from the very model, 95 % intervals hold 95 % of what was not tapped.
 #include "experiment/metrics.hpp"
-#include "support/plugins.hpp"
 #include "support/runs.hpp"
+#include "support/testing.hpp"
 
 #include <Eigen/Cholesky>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 constexpr double kNoise = 0.002;  // m
@@ -68,17 +64,14 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
                                  "taps=25",
                                  "acquisition=random"};
     all.insert(all.end(), overrides.begin(), overrides.end());
-    const ResolvedConfig config = test::shipped_config("paper/object_i.yaml", all);
-    Experiment experiment(config.options, test::shared_host(), nullptr, surface);
-    test::Collector collector;
-    experiment.run(collector);
+    Finished run("paper/object_i.yaml", all, surface);
     Truth truth{Eigen::VectorXd(candidates.size()), Eigen::Array<bool, Eigen::Dynamic, 1>(candidates.size())};
     truth.on.setConstant(true);
     for (int i = 0; i < candidates.size(); ++i) truth.height(i) = surface->observed(i);
     std::vector<bool> tapped(static_cast<std::size_t>(candidates.size()), false);
-    for (const TapRecord& tap : collector.taps) tapped[static_cast<std::size_t>(tap.candidate)] = true;
-    experiment.ask(Quantity::height);
-    sum += *calibration(experiment.belief(), truth, tapped).coverage_95;
+    for (const TapRecord& tap : run.taps) tapped[static_cast<std::size_t>(tap.candidate)] = true;
+    run.experiment.ask(Quantity::height);
+    sum += *calibration(run.experiment.belief(), truth, tapped).coverage_95;
   }
   return sum / kSurfaces;
 }
@@ -99,4 +92,4 @@ TEST(Calibration, HoldsWithFittedHyperparameters) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The room for processes: what is forked and what is started is heard, ends with who began it, and leaves nothing.
 #include "children/child_process.hpp"
-#include "support/support.hpp"
+
+#include "support/testing.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cerrno>
 #include <csignal>
@@ -17,10 +17,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-namespace fs = std::filesystem;
 using Say = ChildProcess::Say;
 
 fs::path folder_of(int pid) { return fs::path("/proc") / std::to_string(pid); }
@@ -200,4 +199,4 @@ TEST(Children, HaveStandardFilesOfTheirOwnThoughThisProcessHasNone) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -5,19 +5,17 @@
 #include "config/compose.hpp"
 #include "config/yaml.hpp"
 #include "experiment/experiment_options.hpp"
-#include "support/support.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
+#include "support/testing.hpp"
 
 namespace palpate::test {
 
-class ComposeFixture : public ::testing::Test {
+class ComposeFixture : public InFolder {
  protected:
+  ComposeFixture() {
+    folder_.write("kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scale: 1.7 cm\n");
+    folder_.write("kernel/rough.yaml", "kernel:\n  type: matern\n  length_scale: 2.5 cm\n  nu: 1.5\n");
+  }
+
   Tree compose(const std::string& text, const std::vector<std::string>& overrides = {}) {
     const auto file = folder_.write("c.yaml", text);
     std::vector<Override> parsed;
@@ -27,18 +25,19 @@ class ComposeFixture : public ::testing::Test {
 
   /// The error with the folder's name left out.
   std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    try {
-      compose(text, overrides);
-    } catch (const Error& error) {
-      std::string what = error.what();
-      const std::string prefix = folder_.path().string() + "/";
-      for (auto at = what.find(prefix); at != std::string::npos; at = what.find(prefix)) what.erase(at, prefix.size());
-      return what;
-    }
-    return "accepted";
+    std::string what = error_of([&] { compose(text, overrides); });
+    const std::string prefix = folder_.path().string() + "/";
+    for (auto at = what.find(prefix); at != std::string::npos; at = what.find(prefix)) what.erase(at, prefix.size());
+    return what;
   }
 
-  TemporaryFolder folder_;
+  /// The value at `path` of what `text` composes to, as it is written; "-" if there is none.
+  std::string value(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {}) {
+    const Tree tree = compose(text, overrides);
+    const Tree* found = tree.find_path(path);
+    if (found == nullptr) return "-";
+    return found->is_scalar() ? found->text : found->canonical();
+  }
 };
 
 }  // namespace palpate::test

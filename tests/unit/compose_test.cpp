@@ -3,37 +3,23 @@
 
 #include <unistd.h>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::TemporaryFolder;
-namespace fs = std::filesystem;
 
 /// Files in a folder of their own, and what composing them gives.
 class Compose : public test::ComposeFixture {
  protected:
   Compose() {
-    folder_.write("kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scale: 1.7 cm\n");
-    folder_.write("kernel/rough.yaml", "kernel:\n  type: matern\n  length_scale: 2.5 cm\n  nu: 1.5\n");
     folder_.write("scene/desk.yaml", "scene:\n  desk: 0 cm\n  objects: [{type: wave, height: 9 cm}, {type: slope}]\n");
     folder_.write("scene/table.yaml", "scene:\n  desk: 70 cm\n");
   }
-
-  /// The value at `path` of what `text` composes to; "-" if there is none.
-  std::string value(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {}) {
-    const Tree tree = compose(text, overrides);
-    const Tree* found = tree.find_path(path);
-    return found == nullptr ? "-" : found->text;
-  }
 };
 
-TEST_F(Compose, ReadsTheGroupsThatDefaultsName) {
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n  - scene: desk\n", "kernel.length_scale"), "1.7 cm");
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n  - scene: desk\n", "scene.desk"), "0 cm");
-}
-
-TEST_F(Compose, LeavesNoTraceOfDefaults) {
-  EXPECT_EQ(compose("defaults:\n  - kernel: rbf\n").find("defaults"), nullptr);
+TEST_F(Compose, ReadsTheGroupsThatDefaultsNameAndLeavesNoTraceOfDefaults) {
+  const std::string text = "defaults:\n  - kernel: rbf\n  - scene: desk\n";
+  EXPECT_EQ(value(text, "kernel.length_scale"), "1.7 cm");
+  EXPECT_EQ(value(text, "scene.desk"), "0 cm");
+  EXPECT_EQ(value(text, "defaults"), "-");
 }
 
 TEST_F(Compose, LetsLaterDefaultsWin) {
@@ -41,17 +27,12 @@ TEST_F(Compose, LetsLaterDefaultsWin) {
   EXPECT_EQ(value("defaults:\n  - scene: table\n  - scene: desk\n", "scene.desk"), "0 cm");
 }
 
-TEST_F(Compose, LetsTheFileWinOverItsDefaultsWhereverTheyStand) {
-  EXPECT_EQ(value("kernel: {length_scale: 3 cm}\ndefaults:\n  - kernel: rbf\n", "kernel.length_scale"), "3 cm");
+TEST_F(Compose, LetsTheFileWinOverItsDefaultsWhereverTheyStandAndTheCommandLineOverTheFile) {
+  const std::string text = "kernel: {length_scale: 3 cm}\ndefaults:\n  - kernel: rbf\n";
+  EXPECT_EQ(value(text, "kernel.length_scale"), "3 cm");
+  EXPECT_EQ(value(text, "kernel.length_scale", {"kernel.length_scale=4cm"}), "4cm");
+  EXPECT_EQ(value("seed: 1\n", "seed", {"seed=2", "seed=3"}), "3") << "the last override wins";
 }
-
-TEST_F(Compose, LetsTheCommandLineWinOverTheFile) {
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nkernel: {length_scale: 3 cm}\n", "kernel.length_scale",
-                  {"kernel.length_scale=4cm"}),
-            "4cm");
-}
-
-TEST_F(Compose, LetsTheLastOverrideWin) { EXPECT_EQ(value("seed: 1\n", "seed", {"seed=2", "seed=3"}), "3"); }
 
 TEST_F(Compose, GivesEveryValueThePlaceThatItCameFrom) {
   const Tree tree = compose("defaults:\n  - kernel: rbf\nseed: 1\n", {"taps=5"});
@@ -66,8 +47,6 @@ TEST_F(Compose, BlamesTheCommandLineForAKeyThatItAdds) {
   EXPECT_EQ(tree.find("kernel")->entries.back().key, "length_scal");
   EXPECT_EQ(tree.find("kernel")->entries.back().place.text(), "command line");
 }
-
-TEST_F(Compose, TakesANameInTheFileForAGroup) { EXPECT_EQ(value("kernel: rough\n", "kernel.length_scale"), "2.5 cm"); }
 
 TEST_F(Compose, ReplacesTheGroupThatAnOverrideNamesButKeepsWhatTheFileSays) {
   const std::string text = "defaults:\n  - kernel: rbf\nkernel: {type: rbf, length_scale: 3 cm}\n";
@@ -87,13 +66,15 @@ TEST_F(Compose, MarksTheChosenTypeAsTheOverridesWord) {
   EXPECT_LT(tree.find_path("kernel.nu")->layer, kCommandLineLayer) << "older than the type, so it may be dropped";
 }
 
-TEST_F(Compose, TakesANameWithoutFileForThePluginItself) {
+TEST_F(Compose, TakesANameForAGroupAndOneWithoutFileForThePluginItself) {
+  EXPECT_EQ(value("kernel: rough\n", "kernel.length_scale"), "2.5 cm");
   EXPECT_EQ(value("kernel: spline\n", "kernel.type"), "spline");
 }
 
 TEST_F(Compose, LaysAMapOverAGroup) {
-  EXPECT_EQ(value("defaults:\n  - kernel: rough\n", "kernel.nu", {"kernel={length_scale: 9 cm}"}), "1.5");
-  EXPECT_EQ(value("defaults:\n  - kernel: rough\n", "kernel.length_scale", {"kernel={length_scale: 9 cm}"}), "9 cm");
+  const Tree tree = compose("kernel: rough\n", {"kernel={length_scale: 9 cm}"});
+  EXPECT_EQ(tree.find_path("kernel.nu")->text, "1.5");
+  EXPECT_EQ(tree.find_path("kernel.length_scale")->text, "9 cm");
 }
 
 TEST_F(Compose, LetsAnOverrideReachAnItemOfAList) {
@@ -148,7 +129,9 @@ TEST_F(Compose, RefusesAnItemBeyondTheEndOfAList) {
             "command line: 'kernel.kernels.0.length_scale': the list has no item '0', it is empty");
 }
 
-TEST_F(Compose, BuildsAGroupOnAnotherOfItsKind) {
+TEST_F(Compose, BuildsAGroupOnAnotherOfItsKindTwiceToo) {
+  folder_.write("kernel/twice.yaml", "defaults:\n  - kernel: rbf\n  - kernel: rbf\n");
+  EXPECT_EQ(value("kernel: twice\n", "kernel.type"), "rbf");
   folder_.write("kernel/wide.yaml", "defaults:\n  - kernel: rough\nkernel:\n  length_scale: 5 cm\n");
   EXPECT_EQ(value("kernel: wide\n", "kernel.length_scale"), "5 cm");
   EXPECT_EQ(value("kernel: wide\n", "kernel.nu"), "1.5");
@@ -166,36 +149,18 @@ TEST_F(Compose, LetsAProcessInheritWhatItDoesNotSayOfTheSharedKernel) {
   EXPECT_EQ(value(text, "height.kernel.nu"), "1.5");
   EXPECT_EQ(value(text, "height.kernel.length_scale"), "4 cm");
   EXPECT_EQ(value(text, "kernel.length_scale"), "2.5 cm");
-}
-
-TEST_F(Compose, LetsAProcessKeepItsWordAgainstAnOverrideOfTheSharedKernel) {
-  const std::string text = "defaults:\n  - kernel: rough\nheight:\n  kernel: {length_scale: 4 cm}\n";
-  EXPECT_EQ(value(text, "height.kernel.length_scale", {"kernel.length_scale=9cm"}), "4 cm");
+  EXPECT_EQ(value(text, "height.kernel.length_scale", {"kernel.length_scale=9cm"}), "4 cm") << "it keeps its word";
   EXPECT_EQ(value(text, "height.kernel.nu", {"kernel.nu=2.5"}), "2.5");
 }
 
-TEST_F(Compose, ReadsAGroupForOneProcess) {
+TEST_F(Compose, ReadsAGroupForOneProcessAndGivesItNoKernelOfItsOwnUnasked) {
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nheight: {signal: 1 m}\n", "height.kernel"), "-");
   EXPECT_EQ(value("defaults:\n  - kernel: rbf\nweight:\n  kernel: rough\n", "weight.kernel.type"), "matern");
   EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "weight.kernel.nu", {"weight.kernel=rough"}), "1.5");
 }
 
-TEST_F(Compose, GivesAProcessNoKernelOfItsOwnUnasked) {
-  EXPECT_EQ(compose("defaults:\n  - kernel: rbf\nheight: {signal: 1 m}\n").find_path("height.kernel"), nullptr);
-}
-
 TEST_F(Compose, LeavesTheNamesOfASweepAlone) {
   EXPECT_EQ(value("sweep:\n  grid:\n    kernel: rbf\n", "sweep.grid.kernel"), "rbf");
-}
-
-TEST_F(Compose, RefusesACycleAndShowsIt) {
-  folder_.write("kernel/a.yaml", "defaults:\n  - kernel: b\n");
-  folder_.write("kernel/b.yaml", "defaults:\n  - kernel: a\n");
-  EXPECT_EQ(refusal("kernel: a\n"), "kernel/b.yaml:2:13: defaults form a cycle, kernel/a -> kernel/b -> kernel/a");
-}
-
-TEST_F(Compose, AllowsOneBaseTwiceWithoutACycle) {
-  folder_.write("kernel/twice.yaml", "defaults:\n  - kernel: rbf\n  - kernel: rbf\n");
-  EXPECT_EQ(value("kernel: twice\n", "kernel.type"), "rbf");
 }
 
 TEST_F(Compose, RefusesANameWithAPathInIt) {
@@ -207,77 +172,47 @@ TEST_F(Compose, RefusesANameWithAPathInIt) {
   }
 }
 
-TEST_F(Compose, RefusesAnUnknownGroup) {
-  EXPECT_EQ(refusal("defaults:\n  - kernl: rbf\n"), "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?");
-  EXPECT_EQ(
-      refusal("defaults:\n  - posterior: dense\n"),
-      "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
-      "backend, strategy, expect");
-}
-
-TEST_F(Compose, RefusesASceneWithoutFileAndNamesANearOne) {
-  EXPECT_EQ(refusal("defaults:\n  - scene: desc\n"), "c.yaml:2:12: no file scene/desc.yaml, did you mean 'desk'?");
-}
-
-TEST_F(Compose, RefusesDefaultsThatAreNotAListOfPairs) {
-  EXPECT_EQ(refusal("defaults: {kernel: rbf}\n"),
-            "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group a line");
-  EXPECT_EQ(refusal("defaults:\n  - rbf\n"),
-            "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'");
-  EXPECT_EQ(refusal("defaults:\n  - kernel: [rbf]\n"),
-            "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'");
-}
-
-TEST_F(Compose, TakesAMisspeltDefaultsForWhatItIs) {
-  EXPECT_EQ(refusal("seed: 1\ndefualts:\n  - kernel: rbf\n"),
-            "c.yaml:2:1: unknown option 'defualts', did you mean 'defaults'?");
-}
-
-TEST_F(Compose, RefusesAGroupFileThatHoldsSomethingElse) {
-  folder_.write("kernel/odd.yaml", "kernel:\n  type: rbf\nseed: 3\n");
-  EXPECT_EQ(refusal("kernel: odd\n"),
-            "kernel/odd.yaml:3:1: unknown key 'seed', a file in kernel/ holds only 'kernel:'");
-}
-
-TEST_F(Compose, RefusesAGroupFileThatHoldsNoOptions) {
-  folder_.write("kernel/flat.yaml", "kernel: rbf\n");
-  EXPECT_EQ(refusal("kernel: flat\n"),
-            "kernel/flat.yaml:1:1: 'kernel' is not a group of options, write key: value below it");
-}
-
-TEST_F(Compose, RefusesAGroupThatBuildsOnAnotherKind) {
-  folder_.write("kernel/mixed.yaml", "defaults:\n  - scene: desk\n");
-  EXPECT_EQ(refusal("kernel: mixed\n"),
-            "kernel/mixed.yaml:2:12: a kernel may build only on another kernel, write '- kernel: name'");
-}
-
-TEST_F(Compose, RefusesAConfigThatIsNotAMap) {
-  EXPECT_EQ(refusal("[1, 2]\n"), "c.yaml:1:1: a config is a map, write key: value");
-  EXPECT_EQ(refusal("text\n"), "c.yaml:1:1: a config is a map, write key: value");
-}
-
-TEST_F(Compose, RefusesAnOverrideIntoAValue) {
+TEST_F(Compose, RefusesWhatIsNoConfigOrNamesNoGroupWithItsPlace) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"defaults:\n  - kernl: rbf\n", "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?"},
+      {"defaults:\n  - posterior: dense\n",
+       "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
+       "backend, strategy, expect"},
+      {"defaults:\n  - scene: desc\n", "c.yaml:2:12: no file scene/desc.yaml, did you mean 'desk'?"},
+      {"defaults: {kernel: rbf}\n", "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group a line"},
+      {"defaults:\n  - rbf\n", "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'"},
+      {"defaults:\n  - kernel: [rbf]\n", "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'"},
+      {"seed: 1\ndefualts:\n  - kernel: rbf\n", "c.yaml:2:1: unknown option 'defualts', did you mean 'defaults'?"},
+      {"[1, 2]\n", "c.yaml:1:1: a config is a map, write key: value"},
+      {"text\n", "c.yaml:1:1: a config is a map, write key: value"}};
+  for (const auto& [text, message] : cases) EXPECT_EQ(refusal(text), message) << text;
   EXPECT_EQ(
       refusal("defaults:\n  - kernel: rbf\n", {"kernel.length_scale.x=1"}),
       "command line: 'kernel.length_scale.x': there is no 'x' below a value, the path ends at 'kernel.length_scale'");
 }
 
-TEST(ComposeFile, RefusesAnEmptyName) {
-  try {
-    Composer("", config_keys()).compose("", {});
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "command line: the name of the config is empty, name a YAML file");
+TEST_F(Compose, RefusesAGroupFileThatHoldsSomethingElseOrLeadsBackToItself) {
+  folder_.write("kernel/b.yaml", "defaults:\n  - kernel: odd\n");
+  const std::pair<const char*, const char*> cases[] = {
+      {"kernel:\n  type: rbf\nseed: 3\n", "3:1: unknown key 'seed', a file in kernel/ holds only 'kernel:'"},
+      {"kernel: rbf\n", "1:1: 'kernel' is not a group of options, write key: value below it"},
+      {"defaults:\n  - scene: desk\n", "2:12: a kernel may build only on another kernel, write '- kernel: name'"}};
+  for (const auto& [text, message] : cases) {
+    folder_.write("kernel/odd.yaml", text);
+    EXPECT_EQ(refusal("kernel: odd\n"), std::string("kernel/odd.yaml:") + message);
   }
+  folder_.write("kernel/odd.yaml", "defaults:\n  - kernel: b\n");
+  EXPECT_EQ(refusal("kernel: odd\n"),
+            "kernel/b.yaml:2:13: defaults form a cycle, kernel/odd -> kernel/b -> kernel/odd");
+}
+
+TEST(ComposeFile, RefusesAnEmptyName) {
+  EXPECT_EQ(error_of([] { Composer("", config_keys()).compose("", {}); }),
+            "command line: the name of the config is empty, name a YAML file");
 }
 
 std::string refused_override(const std::string& text) {
-  try {
-    parse_override(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { parse_override(text); });
 }
 
 TEST(OverrideText, IsSplitAtItsFirstEqualsSign) {
@@ -301,7 +236,7 @@ TEST(OverrideText, IsRefusedWithAnEmptyPartOfItsPath) {
 }
 
 /// Folders in which a group of one name lies, and what a config somewhere among them takes.
-class GroupFolders : public ::testing::Test {
+class GroupFolders : public InFolder {
  protected:
   void kernel(const std::string& folder) {
     folder_.write(folder + "/kernel/mine.yaml", "kernel: {type: rbf, name: " + folder + "}\n");
@@ -313,16 +248,15 @@ class GroupFolders : public ::testing::Test {
   std::string from(const std::string& config) {
     const fs::path file = folder_.write(config, "kernel: mine\n");
     Composer composer(folder_.path() / "shipped", config_keys());
-    try {
+    std::string folder = "none";
+    const std::string error = error_of([&] {
       const Tree tree = composer.compose(file, {});
       const Tree* name = tree.find_path("kernel.name");
       EXPECT_EQ(composer.groups().size(), name == nullptr ? 0U : 1U);
-      return name == nullptr ? "none" : name->text;
-    } catch (const Error& error) {
-      return error.what();
-    }
+      if (name != nullptr) folder = name->text;
+    });
+    return error == "accepted" ? folder : error;
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(GroupFolders, AreTheConfigsOwnThenTheNearestNamedConfigsThenTheShippedOnes) {
@@ -356,11 +290,7 @@ TEST_F(GroupFolders, ThatMayNotBeSearchedAreNotTakenForEmptyOnes) {
     if (::euidaccess(config.c_str(), R_OK) != 0) {
       GTEST_SKIP() << "nobody else may enter the folder for temporary files";
     }
-    try {
-      Composer(folder_.path() / "shipped", config_keys()).compose(config, {});
-    } catch (const Error& error) {
-      said = error.what();
-    }
+    said = error_of([&] { Composer(folder_.path() / "shipped", config_keys()).compose(config, {}); });
   }
   EXPECT_THAT(said,
               ::testing::EndsWith("a/kernel/mine.yaml: cannot be looked for, check the permissions of its folder"));
@@ -392,4 +322,4 @@ TEST_F(GroupFolders, ThatAllUsersShareArePassedOverAndNamed) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

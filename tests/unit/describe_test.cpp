@@ -2,10 +2,9 @@
 #include "config/describe.hpp"
 
 #include "record/json.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 struct Part : Options {
@@ -50,36 +49,17 @@ std::vector<FieldDescription> described() {
   return describe_fields([&](Fields& fields) { sample.list(fields); });
 }
 
-TEST(Describe, ListsFieldsInTheirOrder) {
-  std::string names;
-  for (const FieldDescription& field : described()) names += field.name + " ";
-  EXPECT_EQ(names, "length limit at count clip name design part parts kernel kernels ");
-}
-
-TEST(Describe, NamesTypesInWords) {
-  std::vector<std::string> types;
-  for (const FieldDescription& field : described()) types.push_back(field.type_name());
-  EXPECT_EQ(types, (std::vector<std::string>{"length", "time", "2 lengths", "whole number", "true or false", "text",
-                                             "one of random, grid", "group", "list of groups", "plugin of kind kernel",
-                                             "list of plugins of kind kernel"}));
-}
-
-TEST(Describe, WritesRangesWithTheirUnit) {
-  const auto fields = described();
-  EXPECT_EQ(fields[0].range, "> 0 m");
-  EXPECT_EQ(fields[1].range, "0 .. 10 s");
-  EXPECT_EQ(fields[3].range, "<= 7");
-  EXPECT_EQ(fields[4].range, "");
-}
-
-TEST(Describe, WritesDefaultsAsAConfigWould) {
-  const auto fields = described();
-  EXPECT_EQ(fields[0].default_value, "0.017 m");
-  EXPECT_EQ(fields[1].default_value, "none");
-  EXPECT_EQ(fields[2].default_value, "[0.1 m, 0.2 m]");
-  EXPECT_EQ(fields[4].default_value, "false");
-  EXPECT_EQ(fields[6].default_value, "grid");
-  EXPECT_EQ(fields[9].default_value, "rbf");
+TEST(Describe, ListsFieldsInTheirOrderWithTypesInWordsRangesInTheirUnitAndDefaultsAsAConfigHasThem) {
+  std::vector<std::string> lines;
+  for (const FieldDescription& field : described()) {
+    lines.push_back(field.name + ": " + field.type_name() + " | " + field.range + " | " + field.default_value);
+  }
+  EXPECT_EQ(lines, (std::vector<std::string>{"length: length | > 0 m | 0.017 m", "limit: time | 0 .. 10 s | none",
+                                             "at: 2 lengths |  | [0.1 m, 0.2 m]", "count: whole number | <= 7 | 3",
+                                             "clip: true or false |  | false", "name: text |  | x",
+                                             "design: one of random, grid |  | grid", "part: group |  | ",
+                                             "parts: list of groups |  | ", "kernel: plugin of kind kernel |  | rbf",
+                                             "kernels: list of plugins of kind kernel |  | "}));
 }
 
 TEST(Describe, DescribesCasesAndNestedGroups) {
@@ -133,16 +113,11 @@ TEST(Schema, AllowsExactlyTheFieldsAndThoseOfTheCases) {
   EXPECT_EQ(names, "length limit at count clip name design side part parts kernel kernels ");
 }
 
-TEST(Schema, TakesAQuantityForATextWithAUnit) {
-  const Tree schema = schema_of(described());
-  EXPECT_EQ(schema.find_path("properties.length.type")->text, "string");
-  EXPECT_EQ(schema.find_path("properties.length.pattern")->text,
-            "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *(m|dm|cm|mm|um)$");
-}
-
-TEST(Schema, KnowsTheJsonTypeOfEveryField) {
+TEST(Schema, KnowsTheJsonTypeOfEveryFieldAndTakesAQuantityForATextWithAUnit) {
   const Tree schema = schema_of(described());
   const auto at = [&](const char* path) { return schema.find_path(path)->text; };
+  EXPECT_EQ(at("properties.length.type"), "string");
+  EXPECT_EQ(at("properties.length.pattern"), "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *(m|dm|cm|mm|um)$");
   EXPECT_EQ(at("properties.count.type"), "integer");
   EXPECT_EQ(at("properties.clip.type"), "boolean");
   EXPECT_EQ(at("properties.name.type"), "string");
@@ -193,4 +168,4 @@ TEST(Describe, ListsAdoptedPluginsAsCasesWithTheirOptions) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,31 +1,25 @@
 // SPDX-License-Identifier: MIT
 // What a run had come to after fewer taps is what a run with that budget comes to.
 #include "record/earlier.hpp"
+
 #include "record/fields.hpp"
 #include "record/session.hpp"
-#include "support/support.hpp"
+#include "support/runs.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Runs of configs/default.yaml with overrides, in one folder.
-class Earlier : public ::testing::TestWithParam<std::vector<std::string>> {
+class Earlier : public InFolder, public testing::WithParamInterface<std::vector<std::string>> {
  protected:
   RunReport run(int taps) {
-    Composer composer(test::source_folder() / "configs", config_keys());
-    std::vector<Override> overrides;
-    for (const std::string& word : GetParam()) overrides.push_back(parse_override(word));
-    overrides.push_back(parse_override("taps=" + std::to_string(taps)));
-    const ResolvedConfig config =
-        load_experiment(composer, test::shared_host(), test::source_folder() / "configs/default.yaml", overrides);
-    return start_run(workshop_, config, folder_.path() / std::to_string(taps), false, nullptr);
+    std::vector<std::string> words = GetParam();
+    words.push_back("taps=" + std::to_string(taps));
+    const fs::path directory = folder_.path() / std::to_string(taps);
+    return start_run(workshop_, shipped_config("default.yaml", words), directory, false, nullptr);
   }
 
-  test::TemporaryFolder folder_;
   Installation installation_;
   Workshop workshop_{test::shared_host(), installation_, {}, nullptr};
 };
@@ -38,7 +32,7 @@ std::string cell(const Row& row, const std::string& name) {
 /// Of an engine that was chosen for as many taps as the budget has.
 bool tells_the_budget(const std::string& name) { return name.find("engine_reason") != std::string::npos; }
 
-double number(const Row& row, const std::string& name) { return std::get<double>(*row.find(name)); }
+double number(const Row& row, const std::string& name) { return row.number(name).value(); }
 
 TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
   const RunReport whole = run(14);
@@ -94,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKind, Earlier,
                                            std::vector<std::string>{"strategy=random", "footprint=classifier"}));
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Groups of options that may be absent, by the example that they exist for: the effects of a scene.
 #include "scene/effect_options.hpp"
+
 #include "config/describe.hpp"
 #include "config/resolve.hpp"
 #include "config/yaml.hpp"
 #include "tapping_bench.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 EffectOptions effects(const std::string& yaml) { return test::filled<EffectOptions>(yaml); }
 
-std::string refusal(const std::string& yaml) {
-  try {
-    effects(yaml);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "not refused";
+std::string effect_refusal(const std::string& yaml) {
+  return error_of([&] { effects(yaml); });
 }
 
 std::string resolved(const std::string& yaml) {
@@ -31,7 +22,8 @@ std::string resolved(const std::string& yaml) {
   return to_yaml(resolve(options, parse_yaml(yaml, "options.yaml"), test::shared_host(), notes));
 }
 
-TEST(OptionalGroups, AreAbsentUntilTheyAreWritten) {
+TEST(OptionalGroups, AreAbsentUntilTheyAreWrittenAndTakenAwayByNone) {
+  EXPECT_FALSE(effects("{joint_lag: none}").joint_lag);
   const Effects none = effects("{}").values();
   EXPECT_FALSE(none.joint_lag);
   EXPECT_FALSE(none.reach);
@@ -44,8 +36,6 @@ TEST(OptionalGroups, AreAbsentUntilTheyAreWritten) {
   EXPECT_FALSE(some.force_noise);
 }
 
-TEST(OptionalGroups, AreTakenAwayByNone) { EXPECT_FALSE(effects("{joint_lag: none}").joint_lag); }
-
 TEST(OptionalGroups, WriteNothingWhereTheyAreAbsentAndReadBackWhereNot) {
   EXPECT_EQ(resolved("{}"), "{}\n");
   const std::string text = resolved("{tip_radius: {}}");
@@ -54,11 +44,12 @@ TEST(OptionalGroups, WriteNothingWhereTheyAreAbsentAndReadBackWhereNot) {
 }
 
 TEST(OptionalGroups, RefuseWhatIsNoGroupInOneLine) {
-  EXPECT_EQ(refusal("{joint_lag: }"), "options.yaml:1:2: joint_lag has no value, write {} for its defaults, or none");
-  EXPECT_THAT(refusal("{joint_lag: 350 ms}"), testing::HasSubstr("joint_lag is not a group of options"));
-  EXPECT_THAT(refusal("{joint_lag: {delay: 350}}"), testing::HasSubstr("joint_lag.delay: '350' lacks its unit"));
-  EXPECT_THAT(refusal("{joint_lag: {dely: 350 ms}}"), testing::HasSubstr("did you mean 'delay'?"));
-  EXPECT_THAT(refusal("{joint_lagg: {}}"), testing::HasSubstr("did you mean 'joint_lag'?"));
+  EXPECT_EQ(effect_refusal("{joint_lag: }"),
+            "options.yaml:1:2: joint_lag has no value, write {} for its defaults, or none");
+  EXPECT_THAT(effect_refusal("{joint_lag: 350 ms}"), testing::HasSubstr("joint_lag is not a group of options"));
+  EXPECT_THAT(effect_refusal("{joint_lag: {delay: 350}}"), testing::HasSubstr("joint_lag.delay: '350' lacks its unit"));
+  EXPECT_THAT(effect_refusal("{joint_lag: {dely: 350 ms}}"), testing::HasSubstr("did you mean 'delay'?"));
+  EXPECT_THAT(effect_refusal("{joint_lagg: {}}"), testing::HasSubstr("did you mean 'joint_lag'?"));
 }
 
 TEST(OptionalGroups, AreDescribedAsAbsentAndEveryEffectSaysWhereItsSizeComesFrom) {
@@ -76,4 +67,4 @@ TEST(OptionalGroups, AreDescribedAsAbsentAndEveryEffectSaysWhereItsSizeComesFrom
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -2,21 +2,10 @@
 // What the engine `lowrank` may lose, and which engine `auto` takes.
 #include "unit/engine_data.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using namespace test;
 
 TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   const Data data = draw(60);
@@ -112,16 +101,11 @@ TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
   Process process(rbf(), kOutputs, candidates, settings);
   process.show(2);
   ASSERT_STREQ(process.engine(), "lowrank");
-  for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
-    process.add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
-    EXPECT_LE(process.error_bound(), settings.accuracy);
-  }
+  add_all(process, data, [&] { EXPECT_LE(process.error_bound(), settings.accuracy); });
   EXPECT_STREQ(process.engine(), "grid");
   EXPECT_THAT(process.engine_reason(),
               testing::MatchesRegex("the error bound of lowrank .* is above the accuracy 1.0e-13"));
-  const Process grid_from_the_start = processed(data, candidates, settings_of(Kind::grid));
-  EXPECT_TRUE(same_bytes(process.mean(0), grid_from_the_start.mean(0)));
-  EXPECT_TRUE(same_bytes(process.variance(), grid_from_the_start.variance()));
+  expect_same_maps(process, processed(data, candidates, settings_of(Kind::grid)));
 }
 
 TEST(Engine, ThatCannotServeIsRefusedWithTheReason) {
@@ -138,4 +122,4 @@ TEST(Engine, ThatCannotServeIsRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -3,20 +3,15 @@
 #pragma once
 
 #include "gp/process.hpp"
-#include "support/plugins.hpp"
-#include "support/support.hpp"
+#include "support/arrays.hpp"
+#include "support/testing.hpp"
+#include "support/textbook.hpp"
 
-#include <Eigen/Cholesky>
-
-#include <cstring>
-#include <memory>
-#include <string>
-#include <vector>
+#include <functional>
 
 namespace palpate::test {
 
 using Kind = PosteriorSettings::Kind;
-using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
 struct Data {
   Points places;
@@ -57,51 +52,46 @@ inline const std::vector<ProcessSettings> kOutputs{{2.0, 0.1, 0.25, 0.0}, {0.5, 
 inline PosteriorSettings settings_of(Kind kind) {
   PosteriorSettings out;
   out.engine = kind;
-  out.scores = true;
   return out;
 }
 
-inline Process processed(const Data& data, const Candidates& candidates, const PosteriorSettings& settings,
-                         const std::shared_ptr<Kernel>& kernel = rbf()) {
-  Process process(kernel, kOutputs, candidates, settings);
-  process.show(2);
+/// Adds all taps, and calls `after` after each.
+inline void add_all(
+    Process& process, const Data& data, const std::function<void()>& after = [] {}) {
   for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
     process.add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
+    after();
   }
+}
+
+inline Process processed(const Data& data, const Candidates& candidates, const PosteriorSettings& settings,
+                         const std::shared_ptr<Kernel>& kernel = rbf(),
+                         const std::vector<ProcessSettings>& outputs = kOutputs) {
+  Process process(kernel, outputs, candidates, settings);
+  process.show(2);
+  add_all(process, data);
   return process;
 }
 
-/// Algorithm 2.1 of Rasmussen and Williams in long double, by the whole matrix.
-struct Textbook {
-  Textbook(const Kernel& kernel, const Data& data, const Candidates& candidates, const ProcessSettings& output,
-           int column) {
-    const auto covariance = [&](const Points& a, const Points& b) {
-      Eigen::MatrixXd out(a.rows(), b.rows());
-      kernel.covariance(a, b, out);
-      return LongMatrix(out.cast<long double>() * output.signal * output.signal);
-    };
-    LongMatrix k = covariance(data.places, data.places);
-    k.diagonal().array() += static_cast<long double>(output.noise) * output.noise;
-    const LongMatrix cross = covariance(data.places, candidates.points);
-    const Eigen::LLT<LongMatrix> factor(k);
-    const LongMatrix targets = (data.values.col(column).array() - output.mean).matrix().cast<long double>();
-    mean = ((cross.transpose() * factor.solve(targets)).array() + output.mean).cast<double>();
-    const LongMatrix v = factor.matrixL().solve(cross);
-    Eigen::VectorXd own(candidates.size());
-    kernel.variance(candidates.points, own);
-    variance = (own.cast<long double>().array() * output.signal * output.signal -
-                v.colwise().squaredNorm().transpose().array())
-                   .cast<double>();
+/// Maps of both outputs and their variance are the same to the last bit.
+inline void expect_same_maps(const Process& one, const Process& other) {
+  for (const int output : {0, 1}) EXPECT_TRUE(same_bytes(one.mean(output), other.mean(output))) << output;
+  EXPECT_TRUE(same_bytes(one.variance(), other.variance()));
+}
+
+/// One output in long double, with the framework's kernel.
+inline Textbook<long double> by_the_book(const Kernel& kernel, const Data& data, const Points& probes,
+                                         const ProcessSettings& output, Eigen::Index column) {
+  const auto covariance = [&kernel, output](const Target& a, const Target& b) {
+    Eigen::MatrixXd k(1, 1);
+    kernel.covariance(Points{{a.x, a.y}}, Points{{b.x, b.y}}, k);
+    return static_cast<long double>(k(0)) * output.signal * output.signal;
+  };
+  Textbook<long double> out(covariance, static_cast<long double>(output.noise) * output.noise, probes);
+  for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
+    out.add({data.places(i, 0), data.places(i, 1)}, {static_cast<long double>(data.values(i, column)) - output.mean});
   }
-  Eigen::VectorXd mean;
-  Eigen::VectorXd variance;
-};
-
-inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
-
-inline bool same_bytes(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  return out;
 }
 
 }  // namespace palpate::test

@@ -2,15 +2,11 @@
 #include "config/expand.hpp"
 
 #include "config/yaml.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdlib>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -27,51 +23,28 @@ Texts expanded(const std::string& value) {
 
 Texts typed(const std::string& text) { return texts(parse_axis(text).values); }
 
-template <class Action>
-std::string refusal(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 std::string refused_value(const std::string& value) {
-  return refusal([&] { expanded(value); });
+  return error_of([&] { expanded(value); });
 }
 
 constexpr const char* kHowTo = ", write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
 
-TEST(Expand, TakesAPlainValueAsTheOnlyOne) {
-  EXPECT_EQ(expanded("3 cm"), (Texts{"3 cm"}));
-  EXPECT_EQ(expanded("ranger(1,2)"), (Texts{"ranger(1,2)"}));
-  EXPECT_EQ(expanded("range"), (Texts{"range"}));
-}
-
-TEST(Expand, TakesAListAsItsItems) { EXPECT_EQ(expanded("[a, 2, [1, 2]]"), (Texts{"a", "2", "[1, 2]"})); }
-
-TEST(Expand, CountsARangeWithoutItsEnd) {
-  EXPECT_EQ(expanded("range(0,3)"), (Texts{"0", "1", "2"}));
-  EXPECT_EQ(expanded("range( 2 , 10 , 3 )"), (Texts{"2", "5", "8"}));
-  EXPECT_EQ(expanded("range(-1,1)"), (Texts{"-1", "0"}));
-}
-
-TEST(Expand, CountsBackwards) { EXPECT_EQ(expanded("range(3,0,-1)"), (Texts{"3", "2", "1"})); }
-
-TEST(Expand, CarriesTheUnitOfARange) { EXPECT_EQ(expanded("range(1cm, 4 cm, 1cm)"), (Texts{"1 cm", "2 cm", "3 cm"})); }
-
-TEST(Expand, WritesDecimalStepsAsPeopleDo) {
-  EXPECT_EQ(expanded("range(0,0.5,0.1)"), (Texts{"0", "0.1", "0.2", "0.3", "0.4"}));
-}
-
-TEST(Expand, LeavesOutTheEndOfADecimalRangeDespiteRounding) {
-  EXPECT_EQ(expanded("range(1,1.3,0.1)"), (Texts{"1", "1.1", "1.2"}));
-  EXPECT_EQ(expanded("range(0,0.3,0.1)"), (Texts{"0", "0.1", "0.2"}));
-}
-
-TEST(Expand, WritesLargeWholeNumbersInDigits) {
-  EXPECT_EQ(expanded("range(1000000,1000002)"), (Texts{"1000000", "1000001"}));
+TEST(Expand, TakesAPlainValueAsTheOnlyOneAListAsItsItemsAndCountsARangeWithoutItsEnd) {
+  const std::pair<const char*, Texts> cases[] = {
+      {"3 cm", {"3 cm"}},
+      {"ranger(1,2)", {"ranger(1,2)"}},
+      {"range", {"range"}},
+      {"[a, 2, [1, 2]]", {"a", "2", "[1, 2]"}},
+      {"range(0,3)", {"0", "1", "2"}},
+      {"range( 2 , 10 , 3 )", {"2", "5", "8"}},
+      {"range(-1,1)", {"-1", "0"}},
+      {"range(3,0,-1)", {"3", "2", "1"}},
+      {"range(1cm, 4 cm, 1cm)", {"1 cm", "2 cm", "3 cm"}},
+      {"range(0,0.5,0.1)", {"0", "0.1", "0.2", "0.3", "0.4"}},  // as people write decimals
+      {"range(1,1.3,0.1)", {"1", "1.1", "1.2"}},                // despite rounding
+      {"range(0,0.3,0.1)", {"0", "0.1", "0.2"}},
+      {"range(1000000,1000002)", {"1000000", "1000001"}}};
+  for (const auto& [text, values] : cases) EXPECT_EQ(expanded(text), values) << text;
 }
 
 TEST(Expand, SpacesALogarithmicRangeEvenlyAndKeepsItsEnds) {
@@ -94,7 +67,7 @@ TEST(Expand, RefusesRangesThatAreNotUnderstood) {
 }
 
 TEST(Expand, RefusesARangeThatYamlCutAtItsComma) {
-  EXPECT_EQ(refusal([] { expand_values(*parse_yaml("{k: range(0,3)}", "c.yaml").find("k"), "k"); }),
+  EXPECT_EQ(error_of([] { expand_values(*parse_yaml("{k: range(0,3)}", "c.yaml").find("k"), "k"); }),
             "c.yaml:1:5: k: 'range(0' lacks its ')', within braces, where commas part entries, put it into quotes: "
             "\"range(...)\"");
 }
@@ -142,7 +115,7 @@ TEST(AxisText, DoesNotSplitInBracketsOrQuotes) {
 }
 
 TEST(AxisText, RefusesAGapBetweenCommas) {
-  EXPECT_EQ(refusal([] { parse_axis("seed=1,,2"); }), "command line: seed: has no value, write [value, value]");
+  EXPECT_EQ(error_of([] { parse_axis("seed=1,,2"); }), "command line: seed: has no value, write [value, value]");
 }
 
 TEST(AxisText, IsWrittenAsWhatReadsBackAsTheSame) {
@@ -179,4 +152,4 @@ TEST(ValueText, IsOneLineWhateverItIs) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

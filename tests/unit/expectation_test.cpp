@@ -4,14 +4,10 @@
 
 #include "config/yaml.hpp"
 #include "record/fields.hpp"
-#include "record/json.hpp"
 #include "support/runs.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 using Comparison = Expectation::Comparison;
@@ -23,12 +19,7 @@ std::vector<Expectation> read(const std::string& expect) {
 }
 
 std::string refused(const std::string& expect) {
-  try {
-    read(expect);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { read(expect); });
 }
 
 TEST(Expectation, ComparesAFieldWithAQuantity) {
@@ -150,4 +141,4 @@ TEST(Expectation, StaysOutOfTheIdAndInTheResolvedConfig) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

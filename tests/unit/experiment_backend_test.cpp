@@ -1,112 +1,74 @@
 // SPDX-License-Identifier: MIT
 // What passes between the loop and a backend beside plain taps: one that cannot go on, one that shows what is believed.
-#include "experiment/experiment.hpp"
 #include "record/row.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-using test::Collector;
-using test::ScriptedBackend;
-using test::shipped_config;
-
-Contact touch(double height) { return {Outcome::contact, height, 8.0, 1.0, {}}; }
 Contact stopped(const std::string& reason) { return {Outcome::aborted, 0.0, 0.0, 1.0, reason, true}; }
 
-std::shared_ptr<ScriptedBackend> scripted(std::vector<Contact> answers) {
-  return std::make_shared<ScriptedBackend>(std::move(answers));
+/// A contact that is the last tap of its run.
+Contact last_contact(double height, const std::string& reason = {}) {
+  return {Outcome::contact, height, 8.0, 1.0, reason, true};
 }
 
-/// The line with which a run of these answers fails; its taps go to `collector`.
-std::string failure_of(Experiment& experiment, Collector& collector) {
-  try {
-    experiment.run(collector);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::run);
-    return error.what();
-  }
-  return "none";
+/// The line with which a run fails.
+std::string failure_of(Prepared& prepared) {
+  return error_of([&] { prepared.run(); }, Error::Kind::run);
 }
 
 TEST(LastTap, IsRecordedBeforeTheRunFailsWithItsReason) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  const auto backend = scripted({touch(0.0), touch(0.09), stopped("the e-stop is pressed")});
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  Collector collector;
-  EXPECT_EQ(failure_of(experiment, collector), "backend/simulator: the e-stop is pressed");
-  ASSERT_EQ(collector.taps.size(), 3U);
-  EXPECT_EQ(collector.taps[2].contact.outcome, Outcome::aborted);
-  EXPECT_EQ(collector.taps[2].contact.reason, "the e-stop is pressed");
-  EXPECT_EQ(experiment.counts().failed_taps, 1);
+  const auto backend = scripted({contact_at(0.0), contact_at(0.09), stopped("the e-stop is pressed")});
+  Prepared prepared("paper/object_i.yaml", {}, backend);
+  EXPECT_EQ(failure_of(prepared), "backend/simulator: the e-stop is pressed");
+  ASSERT_EQ(prepared.taps.size(), 3U);
+  EXPECT_EQ(prepared.taps[2].contact.outcome, Outcome::aborted);
+  EXPECT_EQ(prepared.taps[2].contact.reason, "the e-stop is pressed");
+  EXPECT_EQ(prepared.experiment.counts().failed_taps, 1);
   EXPECT_EQ(backend->requests.size(), 3U) << "nothing is asked of it any more";
 }
 
 TEST(LastTap, ThatTouchedSomethingCountsAsAContact) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  Contact last = touch(0.09);
-  last.reason = "the arm stands in a collision";
-  last.ends_run = true;
-  Experiment experiment(config.options, test::shared_host(), nullptr, scripted({touch(0.0), last}));
-  Collector collector;
-  EXPECT_EQ(failure_of(experiment, collector), "backend/simulator: the arm stands in a collision");
-  EXPECT_EQ(experiment.counts().on_surface_taps, 1);
-  EXPECT_EQ(experiment.belief().taps(), 2);
+  const std::string reason = "the arm stands in a collision";
+  Prepared prepared("paper/object_i.yaml", {}, scripted({contact_at(0.0), last_contact(0.09, reason)}));
+  EXPECT_EQ(failure_of(prepared), "backend/simulator: " + reason);
+  EXPECT_EQ(prepared.experiment.counts().on_surface_taps, 1);
+  EXPECT_EQ(prepared.experiment.belief().taps(), 2);
 }
 
 TEST(LastTap, WithoutAReasonOrAHeightIsTheLastAllTheSame) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  Collector collector;
-  Experiment silent(config.options, test::shared_host(), nullptr, scripted({stopped("")}));
-  EXPECT_EQ(failure_of(silent, collector), "backend/simulator: cannot go on, and gives no reason");
-  Contact last = touch(std::nan(""));
-  last.ends_run = true;
-  Experiment wild(config.options, test::shared_host(), nullptr, scripted({last}));
-  EXPECT_EQ(failure_of(wild, collector),
-            "backend/simulator: the backend reported a height that is not a finite number");
+  Prepared silent("paper/object_i.yaml", {}, scripted({stopped("")}));
+  EXPECT_EQ(failure_of(silent), "backend/simulator: cannot go on, and gives no reason");
+  Prepared wild("paper/object_i.yaml", {}, scripted({last_contact(std::nan(""))}));
+  EXPECT_EQ(failure_of(wild), "backend/simulator: the backend reported a height that is not a finite number");
 }
 
 TEST(LastTap, IsAPastTapLikeAnyOtherForARunThatIsCarriedOn) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  Experiment first(config.options, test::shared_host(), nullptr, scripted({touch(0.0), stopped("no messages")}));
-  Collector before;
-  failure_of(first, before);
-  std::vector<PastTap> past;
-  for (const TapRecord& tap : before.taps) past.push_back({tap.target, tap.contact, tap.source});
-  const auto backend = scripted({});
-  Experiment second(config.options, test::shared_host(), nullptr, backend);
-  second.resume(past);
-  Collector after;
-  second.run(after);
+  Prepared first("paper/object_i.yaml", {}, scripted({contact_at(0.0), stopped("no messages")}));
+  failure_of(first);
+  const auto backend = scripted();
+  Prepared second("paper/object_i.yaml", {}, backend);
+  second.experiment.resume(first.past(2));
+  second.run();
   EXPECT_EQ(backend->requests.front().number, 3);
-  EXPECT_EQ(after.taps.size(), 15U);
-  EXPECT_EQ(second.result().stop_reason, "tap budget");
+  EXPECT_EQ(second.taps.size(), 15U);
+  EXPECT_EQ(second.experiment.result().stop_reason, "tap budget");
 }
 
-/// The taps of a run whose backend reads with `reading`.
-std::vector<TapRecord> taps_shown(const ResolvedConfig& config, Quantities read,
-                                  std::function<void(const Belief&)> reading) {
-  const auto backend = scripted({touch(0.0), touch(0.09), touch(0.05), touch(0.07)});
-  backend->reading = std::move(reading);
-  backend->read = read;
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  Collector collector;
-  experiment.run(collector);
-  return collector.taps;
+/// Four taps that meet the desk once.
+std::shared_ptr<ScriptedBackend> four_taps() {
+  return scripted({contact_at(0.0), contact_at(0.09), contact_at(0.05), contact_at(0.07)});
 }
 
 TEST(ShownBelief, HasTheTapThatWasJustMade) {
   const std::vector<double> heights{0.0, 0.09, 0.05, 0.07};
   int shown = 0;
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4"});
-  const auto backend = scripted({touch(0.0), touch(0.09), touch(0.05), touch(0.07)});
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
+  const auto backend = four_taps();
+  Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
+  const Experiment& experiment = prepared.experiment;
   backend->read = Quantity::height;
   backend->reading = [&](const Belief& belief) {
     ++shown;
@@ -117,49 +79,46 @@ TEST(ShownBelief, HasTheTapThatWasJustMade) {
     EXPECT_NEAR(belief.height_mean()(place), heights[static_cast<std::size_t>(shown) - 1], 1e-6);
     EXPECT_LT(belief.height_variance()(place), 1e-7);
   };
-  Collector collector;
-  experiment.run(collector);
+  prepared.run();
   EXPECT_EQ(shown, 4);
 }
 
 TEST(ShownBelief, IsTheRecordedOne) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4"});
-  const auto backend = scripted({});
-  Collector collector;
+  const auto backend = scripted();
+  Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
   std::vector<std::size_t> recorded;
-  backend->reading = [&](const Belief&) { recorded.push_back(collector.taps.size()); };
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  experiment.run(collector);
+  backend->reading = [&](const Belief&) { recorded.push_back(prepared.taps.size()); };
+  prepared.run();
   EXPECT_EQ(recorded, (std::vector<std::size_t>{1, 2, 3, 4})) << "whatever showing does, no tap is lost by it";
 }
 
 TEST(ShownBelief, ThatNobodyReadsBuildsNoModel) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"acquisition=random"});
-  const auto backend = scripted({});
+  const auto backend = scripted();
   backend->reading = [](const Belief& belief) { EXPECT_GT(belief.taps(), 0); };
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  Collector collector;
-  experiment.run(collector);
-  EXPECT_EQ(experiment.belief().height_process().process, nullptr);
-  EXPECT_EQ(experiment.belief().weight_process().process, nullptr);
+  const Finished run("paper/object_i.yaml", {"acquisition=random"}, backend);
+  EXPECT_EQ(run.experiment.belief().height_process().process, nullptr);
+  EXPECT_EQ(run.experiment.belief().weight_process().process, nullptr);
 }
 
 TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
   for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=weighted"}) {
     for (const char* models : {"surface=single", "surface=two_part", "weight.hyperparameters=shared"}) {
-      const ResolvedConfig config = shipped_config(
-          "paper/object_i.yaml", {acquisition, models, "fitting=ceres", "height.signal=5 cm", "candidates.count=12"});
-      const std::vector<TapRecord> quiet = taps_shown(config, {}, {});
-      const Quantities all = Quantity::height | Quantity::weight | Quantity::uncertainty;
-      const std::vector<TapRecord> read = taps_shown(config, all, [](const Belief& belief) {
+      const std::vector<std::string> words{acquisition, models, "fitting=ceres", "height.signal=5 cm",
+                                           "candidates.count=12"};
+      const Finished quiet("paper/object_i.yaml", words, four_taps());
+      const auto backend = four_taps();
+      backend->read = Quantity::height | Quantity::weight | Quantity::uncertainty;
+      backend->reading = [](const Belief& belief) {
         EXPECT_TRUE(belief.height_variance().allFinite() && belief.weight().allFinite());
         EXPECT_TRUE(belief.height_mean().allFinite() && belief.uncertainty().allFinite());
-      });
-      ASSERT_EQ(read.size(), quiet.size());
-      EXPECT_TRUE(read[1].height_process && !quiet[1].height_process) << "what is read is recorded from then on";
-      for (std::size_t i = 0; i < quiet.size(); ++i) {
-        const Row with = tap_row(read[i]);
-        for (const auto& [field, value] : tap_row(quiet[i]).fields) {
+      };
+      const Finished read("paper/object_i.yaml", words, backend);
+      ASSERT_EQ(read.taps.size(), quiet.taps.size());
+      EXPECT_TRUE(read.taps[1].height_process && !quiet.taps[1].height_process)
+          << "what is read is recorded from then on";
+      for (std::size_t i = 0; i < quiet.taps.size(); ++i) {
+        const Row with = tap_row(read.taps[i]);
+        for (const auto& [field, value] : tap_row(quiet.taps[i]).fields) {
           if (std::holds_alternative<std::monostate>(value)) continue;
           ASSERT_NE(with.find(field), nullptr) << field;
           EXPECT_EQ(csv_cell(*with.find(field)), csv_cell(value))
@@ -170,28 +129,27 @@ TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
   }
 }
 
-TEST(ShownBelief, ComesFirstInARunThatIsCarriedOn) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"taps=4"});
-  const auto backend = scripted({});
+/// How many taps the belief had whenever it was shown.
+std::vector<int> shown_in(Prepared& prepared, ScriptedBackend& backend) {
   std::vector<int> shown;
-  backend->reading = [&](const Belief& belief) { shown.push_back(belief.taps()); };
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  experiment.resume({{{0.01, 0.02}, touch(0.09), Source::initial}, {{0.05, 0.02}, touch(0.0), Source::initial}});
-  Collector collector;
-  experiment.run(collector);
-  EXPECT_EQ(shown, (std::vector<int>{2, 3, 4}));
+  backend.reading = [&](const Belief& belief) { shown.push_back(belief.taps()); };
+  failure_of(prepared);
+  return shown;
+}
+
+TEST(ShownBelief, ComesFirstInARunThatIsCarriedOn) {
+  const auto backend = scripted();
+  Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
+  prepared.experiment.resume(
+      {{{0.01, 0.02}, contact_at(0.09), Source::initial}, {{0.05, 0.02}, contact_at(0.0), Source::initial}});
+  EXPECT_EQ(shown_in(prepared, *backend), (std::vector<int>{2, 3, 4}));
 }
 
 TEST(ShownBelief, IsNotShownByABackendThatCannotGoOn) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  const auto backend = scripted({touch(0.0), stopped("the robot is disabled")});
-  std::vector<int> shown;
-  backend->reading = [&](const Belief& belief) { shown.push_back(belief.taps()); };
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  Collector collector;
-  failure_of(experiment, collector);
-  EXPECT_EQ(shown, std::vector<int>{1});
+  const auto backend = scripted({contact_at(0.0), stopped("the robot is disabled")});
+  Prepared prepared("paper/object_i.yaml", {}, backend);
+  EXPECT_EQ(shown_in(prepared, *backend), std::vector<int>{1});
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "record/fields.hpp"
-#include "config/quantity.hpp"
+
 #include "record/json.hpp"
-#include "support/support.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
+#include "support/field_table.hpp"
+#include "support/testing.hpp"
 
 #include <fstream>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 using ::testing::HasSubstr;
 
 TEST(SummaryFields, AreThoseThatARunWrites) {
-  const test::TemporaryFolder folder;
-  ASSERT_EQ(
-      test::palpate({"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"}, folder.path())
-          .status,
-      0);
+  const TemporaryFolder folder;
+  const std::string paper = (source_folder() / "configs/paper/object_i.yaml").string();
+  ASSERT_EQ(palpate({"run", paper, "--quiet"}, folder.path()).status, 0);
   const auto summary = parse_json_row(test::text_of(test::only_run(folder.path() / "runs") / "summary.json"));
   ASSERT_TRUE(summary);
   for (const RecordField& field : summary_fields()) {
@@ -44,31 +38,17 @@ TEST(SummaryFields, HaveTheUnitThatTheirNamesEndIn) {
   EXPECT_EQ(unit_of_column("footprint_iou"), Unit::none);
 }
 
-/// The fields as a table of runs/README.md.
-template <class Record>
-std::string table(const FieldList<Record>& list) {
-  std::string out = "| field | unit | meaning |\n|---|---|---|\n";
-  for (const RecordField& field : list.fields(true)) {
-    const char* const better = field.better == RecordField::Better::less   ? "; less is better"
-                               : field.better == RecordField::Better::more ? "; more is better"
-                                                                           : "";
-    out += fmt::format("| `{}` | {} | {}{}{} |\n", field.name, unit_symbol(field.unit), field.meaning, better,
-                       field.when_null.empty() ? "" : "; null where " + field.when_null);
-  }
-  return out;
-}
-
 TEST(Fields, AreWhatTheTablesOfTheFormatSay) {
   const std::string format = test::text_of(test::source_folder() / "runs/README.md");
-  EXPECT_THAT(format, HasSubstr(table(tap_list())));
-  EXPECT_THAT(format, HasSubstr(table(timing_list())));
-  EXPECT_THAT(format, HasSubstr(table(summary_list())));
+  EXPECT_THAT(format, HasSubstr(test::table_of(tap_list())));
+  EXPECT_THAT(format, HasSubstr(test::table_of(timing_list())));
+  EXPECT_THAT(format, HasSubstr(test::table_of(summary_list())));
 }
 
 TEST(Fields, OfInterventionsAreAllThatARunCounts) {
   RunResult result;
   result.interventions = {{"jitter", 3}};
-  const Row row = summary_list().row({ResolvedConfig{}, result, "", {}, {}, {}, {}});
+  const Row row = summary_list().row({result, ResolvedConfig{}, "", {}, {}, {}, {}});
   EXPECT_EQ(row.number("interventions.jitter"), 3.0);
   EXPECT_EQ(row.number("interventions.fallback"), 0.0);
 }
@@ -102,4 +82,4 @@ TEST(Timings, AreReadUpToTheirEndOrTheirDamage) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -4,18 +4,10 @@
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::Collector;
-using test::shipped_config;
 
 /// What one call of a fit was given.
 struct Call {
@@ -50,28 +42,26 @@ class Stretching final : public Fitting {
   }
 };
 
-/// Gives out one fitting for all; every other plugin comes from the host.
-class Factory final : public PluginFactory {
- public:
-  std::shared_ptr<Stretching> fitting = std::make_shared<Stretching>();
-  std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
-    if (choice.kind == Fitting::kKind) return std::shared_ptr<Fitting>(fitting);
-    return test::shared_host().create(choice, context);
-  }
-};
-
 const std::string kConfig = "paper/object_i_right.yaml";
 
-TEST(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
-  const ResolvedConfig config = shipped_config(kConfig, {"seed=3", "weight.hyperparameters=shared", "weight.signal=3"});
-  const Factory factory;
-  Experiment experiment(config.options, factory, nullptr);
-  Collector collector;
-  experiment.run(collector);
-  experiment.result();
-  ASSERT_EQ(factory.fitting->calls.size(), 3U) << "at 5, 10 and 15 of 17 contacts";
+class Fit : public testing::Test {
+ protected:
+  /// A run of all taps with `fitting_`.
+  std::unique_ptr<Finished> run(std::vector<std::string> overrides = {}) const {
+    overrides.emplace_back("seed=3");
+    return std::make_unique<Finished>(kConfig, overrides, nullptr, plugins_);
+  }
+
+  const std::shared_ptr<Stretching> fitting_ = std::make_shared<Stretching>();
+  const Instead<Fitting> plugins_{fitting_};
+};
+
+TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
+  const auto shared = run({"weight.hyperparameters=shared", "weight.signal=3"});
+  shared->experiment.result();
+  ASSERT_EQ(fitting_->calls.size(), 3U) << "at 5, 10 and 15 of 17 contacts";
   for (std::size_t i = 0; i < 3; ++i) {
-    const Call& call = factory.fitting->calls[i];
+    const Call& call = fitting_->calls[i];
     const auto taps = static_cast<Eigen::Index>(5 * (i + 1));
     EXPECT_EQ(call.points, taps);
     EXPECT_EQ(call.mean_ratio, 0.0);
@@ -79,13 +69,13 @@ TEST(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
     ASSERT_EQ(call.targets[0].size(), taps);
     ASSERT_EQ(call.targets[1].size(), taps);
     for (Eigen::Index tap = 0; tap < taps; ++tap) {
-      const TapRecord& record = collector.taps[static_cast<std::size_t>(tap)];
+      const TapRecord& record = shared->taps[static_cast<std::size_t>(tap)];
       EXPECT_EQ(call.targets[0](tap), record.contact.height);
       EXPECT_EQ(call.targets[1](tap), *record.on_surface ? 1.0 : 0.0);
     }
   }
-  const Process& height = *experiment.belief().height_process().process;
-  const TapBelief::Output label = experiment.belief().weight_process();
+  const Process& height = *shared->experiment.belief().height_process().process;
+  const TapBelief::Output label = shared->experiment.belief().weight_process();
   const ProcessSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);
@@ -96,15 +86,11 @@ TEST(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
   EXPECT_EQ(weight.noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
 }
 
-TEST(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
-  const ResolvedConfig config = shipped_config(kConfig, {"seed=3", "surface=two_part"});
-  const Factory factory;
-  Experiment experiment(config.options, factory, nullptr);
-  Collector collector;
-  experiment.run(collector);
-  const RunResult result = experiment.result();
+TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
+  const auto own = run({"surface=two_part"});
+  const RunResult result = own->experiment.result();
   int of_surface = 0;
-  for (const Call& call : factory.fitting->calls) {
+  for (const Call& call : fitting_->calls) {
     EXPECT_EQ(call.targets.size(), 1U);
     if (call.mean_ratio == 0.0) continue;
     ++of_surface;
@@ -113,31 +99,20 @@ TEST(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
   }
   EXPECT_EQ(of_surface, result.on_surface_taps / 5);
   EXPECT_GT(of_surface, 0);
-  EXPECT_EQ(factory.fitting->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
-  EXPECT_NE(&experiment.belief().height_process().process->kernel(),
-            &experiment.belief().weight_process().process->kernel());
-  EXPECT_NE(&experiment.belief().height_process().process->kernel(),
-            &experiment.belief().surface_process().process->kernel());
+  EXPECT_EQ(fitting_->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
+  const TapBelief& belief = own->experiment.belief();
+  EXPECT_NE(&belief.height_process().process->kernel(), &belief.weight_process().process->kernel());
+  EXPECT_NE(&belief.height_process().process->kernel(), &belief.surface_process().process->kernel());
 }
 
-TEST(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {
-  const ResolvedConfig config =
-      shipped_config(kConfig, {"seed=3", "surface=two_part", "weight.hyperparameters=shared"});
-  const Factory factory;
-  Experiment experiment(config.options, factory, nullptr);
-  Collector collector;
-  experiment.run(collector);
-  experiment.result();
-  for (const Call& call : factory.fitting->calls) EXPECT_EQ(call.targets.size(), call.mean_ratio > 0.0 ? 1U : 2U);
+TEST_F(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {
+  run({"surface=two_part", "weight.hyperparameters=shared"})->experiment.result();
+  for (const Call& call : fitting_->calls) EXPECT_EQ(call.targets.size(), call.mean_ratio > 0.0 ? 1U : 2U);
 }
 
-TEST(Fit, IsInTheRecordOfTheTapAfterIt) {
-  const ResolvedConfig config = shipped_config(kConfig, {"seed=3"});
-  const Factory factory;
-  Experiment experiment(config.options, factory, nullptr);
-  Collector collector;
-  experiment.run(collector);
-  for (const TapRecord& tap : collector.taps) {
+TEST_F(Fit, IsInTheRecordOfTheTapAfterIt) {
+  const auto own = run();
+  for (const TapRecord& tap : own->taps) {
     const bool after_fit = tap.number == 6 || tap.number == 11 || tap.number == 16;
     const Row row = tap_row(tap);
     EXPECT_EQ(row.find("height_process.fit.reason") != nullptr, after_fit) << tap.number;
@@ -150,81 +125,54 @@ TEST(Fit, IsInTheRecordOfTheTapAfterIt) {
   }
 }
 
-TEST(Fit, ThatFailsIsCountedAndChangesNothing) {
-  const ResolvedConfig config = shipped_config(kConfig, {"seed=3"});
-  const Factory failing;
-  failing.fitting->fails = true;
-  Experiment experiment(config.options, failing, nullptr);
-  Experiment unfitted(config.options, test::shared_host(), nullptr);
-  Collector collector;
-  Collector expected;
-  experiment.run(collector);
-  unfitted.run(expected);
-  for (std::size_t i = 0; i < expected.taps.size(); ++i) {
-    EXPECT_EQ(collector.taps[i].candidate, expected.taps[i].candidate);
-    EXPECT_EQ(collector.taps[i].score, expected.taps[i].score);
+TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
+  fitting_->fails = true;
+  const auto failing = run();
+  const Finished unfitted(kConfig, {"seed=3"});
+  for (std::size_t i = 0; i < unfitted.taps.size(); ++i) {
+    EXPECT_EQ(failing->taps[i].candidate, unfitted.taps[i].candidate);
+    EXPECT_EQ(failing->taps[i].score, unfitted.taps[i].score);
   }
-  const RunResult result = experiment.result();
+  const RunResult result = failing->experiment.result();
   EXPECT_EQ(result.interventions.at("fit_failed"), 6) << "heights and labels, at 5, 10 and 15 contacts";
-  const Row summary = summary_list().row({config, result, "", {}, {}, {}, {}});
-  ASSERT_NE(summary.find("interventions.fit_failed"), nullptr);
-  EXPECT_EQ(*summary.find("interventions.fit_failed"), Scalar{std::int64_t{6}});
-  for (const char* kind : {"pivoted", "set_aside"}) {
+  const Row summary = summary_list().row({result, failing->config, "", {}, {}, {}, {}});
+  for (const auto& [kind, count] : {std::pair("fit_failed", 6), {"pivoted", 0}, {"set_aside", 0}}) {
     const Scalar* value = summary.find(std::string("interventions.") + kind);
     ASSERT_NE(value, nullptr) << kind;
-    EXPECT_EQ(*value, Scalar{std::int64_t{0}}) << kind;
+    EXPECT_EQ(*value, Scalar{std::int64_t{count}}) << kind;
   }
 }
 
-TEST(Fit, ThatFailsForHeightsAndLabelsTogetherIsOneFailure) {
-  const ResolvedConfig config = shipped_config(kConfig, {"seed=3", "weight.hyperparameters=shared"});
-  const Factory failing;
-  failing.fitting->fails = true;
-  Experiment experiment(config.options, failing, nullptr);
-  Collector collector;
-  experiment.run(collector);
-  EXPECT_EQ(experiment.result().interventions.at("fit_failed"), 3);
+TEST_F(Fit, ThatFailsForHeightsAndLabelsTogetherIsOneFailure) {
+  fitting_->fails = true;
+  EXPECT_EQ(run({"weight.hyperparameters=shared"})->experiment.result().interventions.at("fit_failed"), 3);
 }
 
-TEST(Fit, OfAResumedRunIsThatOfTheUnbrokenOne) {
+TEST_F(Fit, OfAResumedRunIsThatOfTheUnbrokenOne) {
   for (const std::string how : {"own", "shared"}) {
-    const ResolvedConfig config =
-        shipped_config(kConfig, {"seed=3", "surface=two_part", "weight.hyperparameters=" + how});
-    const Factory factory;
-    Experiment whole(config.options, factory, nullptr);
-    Collector unbroken;
-    whole.run(unbroken);
+    const std::vector<std::string> words{"surface=two_part", "weight.hyperparameters=" + how, "seed=3"};
+    Finished unbroken(kConfig, words, nullptr, plugins_);
     for (const std::size_t cut : {4U, 5U, 12U}) {
-      std::vector<PastTap> past;
-      for (std::size_t i = 0; i < cut; ++i) {
-        past.push_back({unbroken.taps[i].target, unbroken.taps[i].contact, unbroken.taps[i].source});
-      }
-      Experiment second(config.options, factory, nullptr);
-      second.resume(past);
-      Collector rest;
-      second.run(rest);
+      Prepared rest(kConfig, words, nullptr, plugins_);
+      rest.experiment.resume(unbroken.past(cut));
+      rest.run();
       ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
       for (std::size_t i = 0; i < rest.taps.size(); ++i) {
         EXPECT_EQ(rest.taps[i].score, unbroken.taps[cut + i].score) << how << ", cut " << cut << ", tap " << i;
       }
-      EXPECT_EQ(*second.result().errors.rmse, *whole.result().errors.rmse) << how << ", cut " << cut;
+      EXPECT_EQ(*rest.experiment.result().errors.rmse, *unbroken.experiment.result().errors.rmse)
+          << how << ", cut " << cut;
     }
   }
 }
 
-TEST(Fit, ThatCannotWorkWithTheKernelIsRefusedBeforeTheFirstTap) {
-  const ResolvedConfig config = shipped_config(kConfig, {"fitting=fixed"});
-  const Factory objecting;
-  objecting.fitting->complaint = "fitting/stretching: the kernel has no slopes";
-  try {
-    Experiment(config.options, objecting, nullptr);
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "command line: fitting/stretching: the kernel has no slopes");
-  }
+TEST_F(Fit, ThatCannotWorkWithTheKernelIsRefusedBeforeTheFirstTap) {
+  fitting_->complaint = "fitting/stretching: the kernel has no slopes";
+  EXPECT_EQ(error_of([&] { Prepared(kConfig, {"fitting=fixed"}, nullptr, plugins_); }),
+            "command line: fitting/stretching: the kernel has no slopes");
 }
 
-TEST(Fit, OfLabelsThatShareConcernsTheKernelOfTheHeightsAlone) {
+TEST_F(Fit, OfLabelsThatShareConcernsTheKernelOfTheHeightsAlone) {
   // Tells kernels by the number of their parameters.
   class Choosy final : public Fitting {
    public:
@@ -234,20 +182,12 @@ TEST(Fit, OfLabelsThatShareConcernsTheKernelOfTheHeightsAlone) {
     }
     FitSummary fit(FitProblem&, Random&) const override { return {}; }
   };
-  class Choosing final : public PluginFactory {
-   public:
-    std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
-      if (choice.kind == Fitting::kKind) return std::shared_ptr<Fitting>(std::make_shared<Choosy>());
-      return test::shared_host().create(choice, context);
-    }
-  };
-  const Choosing factory;
-  const std::vector<std::string> overrides{"kernel=rational_quadratic", "height.kernel=matern32"};
-  std::vector<std::string> shared = overrides;
-  shared.emplace_back("weight.hyperparameters=shared");
-  EXPECT_THROW(Experiment(shipped_config(kConfig, overrides).options, factory, nullptr), Error);
-  EXPECT_NO_THROW(Experiment(shipped_config(kConfig, shared).options, factory, nullptr));
+  const Instead<Fitting> choosy(std::make_shared<Choosy>());
+  std::vector<std::string> words{"kernel=rational_quadratic", "height.kernel=matern32"};
+  EXPECT_THROW(Prepared(kConfig, words, nullptr, choosy), Error);
+  words.emplace_back("weight.hyperparameters=shared");
+  EXPECT_NO_THROW(Prepared(kConfig, words, nullptr, choosy));
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: MIT
 // What error is expected, and whether a run that stops for it was right to.
 #include "experiment/forecast.hpp"
+
 #include "support/runs.hpp"
 #include "support/stopping.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include <cmath>
 #include <random>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::Collector;
-using test::ScriptedBackend;
-using test::shipped_config;
 
 TEST(ExpectedSquare, IsTheMeanOverScenesDrawnFromTheBelief) {
   const Eigen::VectorXd probability = (Eigen::VectorXd(6) << 0.0, 0.2, 0.499, 0.5, 0.8, 1.0).finished();
@@ -100,53 +96,39 @@ TEST(GoodEnough, WantsAnExpectationAndAMargin) {
 }
 
 TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
-  const ResolvedConfig config = shipped_config("default.yaml", {"taps=25", "stop.expected_rmse=1 m"});
-  std::vector<Contact> answers(20, Contact{Outcome::contact, 0.0, 8.0, 1.0, {}});
-  answers.push_back({Outcome::contact, 0.05, 8.0, 1.0, {}});
-  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
-  Collector collector;
-  experiment.run(collector);
-  EXPECT_EQ(collector.taps.size(), 21U) << "the hit is the 21st";
-  for (const TapRecord& tap : collector.taps) {
+  std::vector<Contact> answers(20, contact_at(0.0));
+  answers.push_back(contact_at(0.05));
+  Finished run("default.yaml", {"taps=25", "stop.expected_rmse=1 m"}, scripted(answers));
+  EXPECT_EQ(run.taps.size(), 21U) << "the hit is the 21st";
+  for (const TapRecord& tap : run.taps) {
     ASSERT_TRUE(tap.forecast.has_value());
     EXPECT_FALSE(tap.forecast->rmse.has_value());
   }
-  const RunResult result = experiment.result();
+  const RunResult result = run.experiment.result();
   EXPECT_EQ(result.stop_reason, "expected_rmse");
   EXPECT_GT(*result.forecast->rmse, 0.0);
 }
 
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
-  const ResolvedConfig config =
-      shipped_config("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"});
-  std::vector<Contact> answers(25, Contact{Outcome::contact, 0.05, 8.0, 1.0, {}});
-  Experiment experiment(config.options, test::shared_host(), nullptr, std::make_shared<ScriptedBackend>(answers));
-  Collector collector;
-  experiment.run(collector);
-  EXPECT_EQ(collector.taps.size(), 12U);
+  const Finished run("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"},
+                     scripted(std::vector<Contact>(25, contact_at(0.05))));
+  EXPECT_EQ(run.taps.size(), 12U);
 }
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
-  const ResolvedConfig config = shipped_config("default.yaml", {"taps=12"});
-  Experiment experiment(config.options, test::shared_host(), nullptr);
-  Collector collector;
-  experiment.run(collector);
-  for (const TapRecord& tap : collector.taps) EXPECT_FALSE(tap.forecast || tap.surface_process);
-  EXPECT_FALSE(experiment.result().forecast.has_value());
+  Finished run("default.yaml", {"taps=12"});
+  for (const TapRecord& tap : run.taps) EXPECT_FALSE(tap.forecast || tap.surface_process);
+  EXPECT_FALSE(run.experiment.result().forecast.has_value());
 }
 
 TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {
   for (const char* surface : {"single", "two_part"}) {
     for (const char* footprint : {"regression", "classifier", "shape"}) {
-      const ResolvedConfig config =
-          shipped_config("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("surface=") + surface,
-                                          std::string("footprint=") + footprint});
-      Experiment experiment(config.options, test::shared_host(), nullptr);
-      Collector collector;
-      experiment.run(collector);
-      for (const TapRecord& tap : collector.taps)
-        EXPECT_EQ(tap.forecast->rmse.has_value(), *experiment.counts().first_hit_tap < tap.number) << tap.number;
-      EXPECT_GT(*experiment.result().forecast->rmse, 0.0) << surface << footprint;
+      Finished run("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("surface=") + surface,
+                                    std::string("footprint=") + footprint});
+      for (const TapRecord& tap : run.taps)
+        EXPECT_EQ(tap.forecast->rmse.has_value(), *run.experiment.counts().first_hit_tap < tap.number) << tap.number;
+      EXPECT_GT(*run.experiment.result().forecast->rmse, 0.0) << surface << footprint;
     }
   }
 }
@@ -157,13 +139,9 @@ TEST(Forecast, IsRightMoreOftenThanItPromises) {
   int wrong = 0;
   for (const std::string& scene : test::stopping_scenes()) {
     for (int seed = 5000; seed < 5006; ++seed) {
-      const ResolvedConfig config =
-          shipped_config("default.yaml", {"scene=" + scene, "scene.placement=random", "taps=45",
-                                          "seed=" + std::to_string(seed), "stop.expected_rmse=1.5 cm"});
-      Experiment experiment(config.options, test::shared_host(), nullptr);
-      Collector collector;
-      experiment.run(collector);
-      const RunResult result = experiment.result();
+      Finished run("default.yaml", {"scene=" + scene, "scene.placement=random", "taps=45",
+                                    "seed=" + std::to_string(seed), "stop.expected_rmse=1.5 cm"});
+      const RunResult result = run.experiment.result();
       if (result.stop_reason != "expected_rmse") continue;
       ++stopped;
       wrong += *result.errors.rmse > 0.015 ? 1 : 0;
@@ -174,4 +152,4 @@ TEST(Forecast, IsRightMoreOftenThanItPromises) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

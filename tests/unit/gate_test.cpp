@@ -3,10 +3,9 @@
 #include "record/gate.hpp"
 
 #include "config/yaml.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 RunOutcome run(int job, std::optional<int> taps, std::optional<double> rmse, bool found = true) {
@@ -25,12 +24,16 @@ RunOutcome failed(int job) {
   return out;
 }
 
+/// The verdicts over runs on what stands behind `expect:`.
+std::vector<Verdict> verdicts(const std::string& expect, const std::vector<RunOutcome>& runs) {
+  const Tree tree = parse_yaml("expect: " + expect + "\n", "c.yaml");
+  return judge(read_expectations(tree.find("expect")), runs);
+}
+
 /// What each expectation got, and whether it holds: "yes 11", "no 3 in job 1".
 std::vector<std::string> judged(const std::string& expect, const std::vector<RunOutcome>& runs) {
-  const Tree tree = parse_yaml("expect: " + expect + "\n", "c.yaml");
   std::vector<std::string> out;
-  for (const Verdict& one : judge(read_expectations(tree.find("expect")), runs))
-    out.push_back((one.holds ? "yes " : "no ") + one.got);
+  for (const Verdict& one : verdicts(expect, runs)) out.push_back((one.holds ? "yes " : "no ") + one.got);
   return out;
 }
 
@@ -100,16 +103,13 @@ TEST(Judge, CountsRunsThatFailed) {
 }
 
 TEST(VerdictLine, NamesPlaceKeyBoundAndWhatCame) {
-  const Tree tree = parse_yaml("expect:\n  median(on_surface_taps): '>= 12'\n", "configs/ci/object_i.yaml");
-  const std::vector<Verdict> verdicts = judge(read_expectations(tree.find("expect")), {run(0, 11, 0.1)});
-  EXPECT_EQ(verdict_line(verdicts.at(0)),
-            "configs/ci/object_i.yaml:2:3: expected median(on_surface_taps) >= 12, got 11");
+  EXPECT_EQ(verdict_line(verdicts("\n  median(on_surface_taps): '>= 12'", {run(0, 11, 0.1)}).at(0)),
+            "c.yaml:2:3: expected median(on_surface_taps) >= 12, got 11");
 }
 
 TEST(TestCases, AreOneARunAndOneAnExpectation) {
-  const Tree tree = parse_yaml("expect: {failed_runs: == 0}\n", "c.yaml");
   const std::vector<RunOutcome> runs{run(0, 1, 0.1), failed(1)};
-  const std::vector<TestCase> cases = test_cases("x", runs, judge(read_expectations(tree.find("expect")), runs));
+  const std::vector<TestCase> cases = test_cases("x", runs, verdicts("{failed_runs: == 0}", runs));
   ASSERT_EQ(cases.size(), 3U);
   EXPECT_EQ(cases[0].name, "job 0: seed=0");
   EXPECT_EQ(cases[0].failure, "");
@@ -120,9 +120,8 @@ TEST(TestCases, AreOneARunAndOneAnExpectation) {
 }
 
 TEST(TestCases, TellFailuresThatAreFewEnoughWithoutCountingThem) {
-  const Tree tree = parse_yaml("expect: {failed_runs: <= 1}\n", "c.yaml");
   const std::vector<RunOutcome> runs{run(0, 1, 0.1), failed(1)};
-  const std::vector<TestCase> cases = test_cases("x", runs, judge(read_expectations(tree.find("expect")), runs));
+  const std::vector<TestCase> cases = test_cases("x", runs, verdicts("{failed_runs: <= 1}", runs));
   ASSERT_EQ(cases.size(), 3U);
   EXPECT_TRUE(cases[1].tolerated);
   const std::string xml = junit_xml("x", cases);
@@ -161,4 +160,4 @@ TEST(JUnit, EscapesMarksAndReplacesWhatXmlCannotHold) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

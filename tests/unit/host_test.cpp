@@ -2,27 +2,17 @@
 #include "plugin/host.hpp"
 
 #include "config/describe.hpp"
-#include "support/plugins.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/kernel.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <atomic>
 #include <cstdlib>
-#include <filesystem>
-#include <memory>
-#include <string>
 #include <thread>
-#include <vector>
 
 namespace palpate::test {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -30,19 +20,8 @@ std::vector<FieldDescription> options_of(const PluginHost& host, const std::stri
   return describe_fields([&](Fields& fields) { host.describe(kind, name, fields); });
 }
 
-/// What `call` throws, as the user reads it.
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
-
 std::string refusal_of(const std::string& kind, const std::string& name) {
-  return refusal([&] { options_of(shared_host(), kind, name); });
+  return error_of([&] { options_of(shared_host(), kind, name); });
 }
 
 /// The value of an environment variable for the time of a test.
@@ -72,16 +51,17 @@ fs::path copy_of_rbf(const TemporaryFolder& folder) {
   return fs::canonical(folder.path()) / "kernel" / "rbf.so";
 }
 
-TEST(PluginHost, OpensTheNamedFileAndNoOther) {
-  const TemporaryFolder folder;
-  const fs::path file = copy_of_rbf(folder);
-  fs::copy(plugin_folder() / "kernel" / "matern32.so", folder.path() / "kernel" / "matern32.so");
-  folder.write("kernel/broken.so", "no library");
-  const PluginHost host({folder.path()});
+using PluginFolder = InFolder;
+
+TEST_F(PluginFolder, OpensTheNamedFileAndNoOther) {
+  const fs::path file = copy_of_rbf(folder_);
+  fs::copy(plugin_folder() / "kernel" / "matern32.so", folder_.path() / "kernel" / "matern32.so");
+  folder_.write("kernel/broken.so", "no library");
+  const PluginHost host({folder_.path()});
   EXPECT_FALSE(mapped(file));
   EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 2U);
   EXPECT_TRUE(mapped(file));
-  EXPECT_FALSE(mapped(fs::canonical(folder.path()) / "kernel" / "matern32.so"));
+  EXPECT_FALSE(mapped(fs::canonical(folder_.path()) / "kernel" / "matern32.so"));
 }
 
 TEST(PluginHost, TellsFileAndHashOfThePluginsAskedForAndOfNoOther) {
@@ -95,10 +75,9 @@ TEST(PluginHost, TellsFileAndHashOfThePluginsAskedForAndOfNoOther) {
   EXPECT_NE(loaded[0].hash, loaded[1].hash);
 }
 
-TEST(PluginHost, ObjectsKeepTheirLibraryAfterTheHostIsGone) {
-  const TemporaryFolder folder;
-  const fs::path file = copy_of_rbf(folder);
-  auto host = std::make_unique<PluginHost>(std::vector<fs::path>{folder.path()});
+TEST_F(PluginFolder, ObjectsKeepTheirLibraryAfterTheHostIsGone) {
+  const fs::path file = copy_of_rbf(folder_);
+  auto host = std::make_unique<PluginHost>(std::vector<fs::path>{folder_.path()});
   std::shared_ptr<Kernel> kernel = make<Kernel>(*host, "rbf", "{length_scale: 1 m}");
   host.reset();
   ASSERT_TRUE(mapped(file));
@@ -111,10 +90,9 @@ TEST(PluginHost, ObjectsKeepTheirLibraryAfterTheHostIsGone) {
   EXPECT_FALSE(mapped(file));
 }
 
-TEST(PluginHost, KeepsALibraryWhenItsObjectsAreGone) {
-  const TemporaryFolder folder;
-  const fs::path file = copy_of_rbf(folder);
-  const PluginHost host({folder.path()});
+TEST_F(PluginFolder, KeepsALibraryWhenItsObjectsAreGone) {
+  const fs::path file = copy_of_rbf(folder_);
+  const PluginHost host({folder_.path()});
   make<Kernel>(host, "rbf").reset();
   EXPECT_TRUE(mapped(file));
 }
@@ -131,26 +109,22 @@ TEST(PluginHost, DescribesOptions) {
   EXPECT_FALSE(options[0].meaning.empty());
 }
 
-TEST(PluginHost, OffersTheNearestName) {
+TEST(PluginHost, OffersTheNearestNameOrListsWhatThereIs) {
   EXPECT_EQ(refusal_of("kernel", "mattern52"), "no plugin kernel/mattern52, did you mean 'matern52'?");
-}
-
-TEST(PluginHost, NamesWithoutANeighbourListWhatThereIs) {
   EXPECT_THAT(refusal_of("fitting", "zzzzzzzzzzzz"), HasSubstr("no plugin fitting/zzzzzzzzzzzz, known: ceres, fixed"));
 }
 
-TEST(PluginHost, AFolderWithoutPluginsIsNamedRatherThanANeighbour) {
-  const TemporaryFolder folder;
+TEST_F(PluginFolder, AFolderWithoutPluginsIsNamedRatherThanANeighbour) {
   const auto refusal_with = [&](const fs::path& other) {
-    return refusal([&] { make<Kernel>(PluginHost({other, test::plugin_folder()}), "mattern52"); });
+    return error_of([&] { make<Kernel>(PluginHost({other, plugin_folder()}), "mattern52"); });
   };
   const std::string begin = "no plugin kernel/mattern52, the folder ";
-  const fs::path missing = folder.path() / "missing";
+  const fs::path missing = folder_.path() / "missing";
   EXPECT_EQ(refusal_with(missing), begin + missing.string() + " does not exist, see PALPATE_PLUGIN_PATH");
-  folder.write("kernel.so", "");
-  EXPECT_EQ(refusal_with(folder.path()),
-            begin + folder.path().string() + " holds no plugin, which is KIND/NAME.so in it, see PALPATE_PLUGIN_PATH");
-  const fs::path file = folder.path() / "kernel.so";
+  folder_.write("kernel.so", "");
+  EXPECT_EQ(refusal_with(folder_.path()),
+            begin + folder_.path().string() + " holds no plugin, which is KIND/NAME.so in it, see PALPATE_PLUGIN_PATH");
+  const fs::path file = folder_.path() / "kernel.so";
   EXPECT_EQ(refusal_with(file), begin + file.string() + " is a file, see PALPATE_PLUGIN_PATH");
 }
 
@@ -161,23 +135,18 @@ TEST(PluginHost, RefusesNamesWithAPath) {
 }
 
 TEST(PluginHost, RefusalOfOptionsNamesTheirPlace) {
-  EXPECT_THAT(refusal([] { choose(shared_host(), "kernel", "rbf", "{length_scal: 2 cm}"); }),
+  EXPECT_THAT(error_of([] { choose(shared_host(), "kernel", "rbf", "{length_scal: 2 cm}"); }),
               testing::StartsWith("options.yaml:1:2: unknown option 'length_scal', did you mean 'length_scale'?"));
 }
 
-TEST(PluginHost, SearchPathIsTheVariableThenTheShippedFolder) {
-  const Variable path("PALPATE_PLUGIN_PATH", "/a/b:relative");
-  EXPECT_THAT(PluginHost::search_path("/shipped"), ElementsAre("/a/b", "relative", "/shipped"));
-}
-
-TEST(PluginHost, SearchPathLeavesEmptyPartsOut) {
-  const Variable path("PALPATE_PLUGIN_PATH", "::/a::/b:");
-  EXPECT_THAT(PluginHost::search_path("/shipped"), ElementsAre("/a", "/b", "/shipped"));
-}
-
-TEST(PluginHost, SearchPathWithoutTheVariableIsTheShippedFolder) {
-  const Variable path("PALPATE_PLUGIN_PATH", "");
-  EXPECT_THAT(PluginHost::search_path("/shipped"), ElementsAre("/shipped"));
+TEST(PluginHost, SearchPathIsTheVariableWithoutEmptyPartsThenTheShippedFolder) {
+  const auto search_path = [](const char* variable) {
+    const Variable path("PALPATE_PLUGIN_PATH", variable);
+    return PluginHost::search_path("/shipped");
+  };
+  EXPECT_THAT(search_path("/a/b:relative"), ElementsAre("/a/b", "relative", "/shipped"));
+  EXPECT_THAT(search_path("::/a::/b:"), ElementsAre("/a", "/b", "/shipped"));
+  EXPECT_THAT(search_path(""), ElementsAre("/shipped"));
 }
 
 TEST(PluginHost, MissingFoldersAreNoError) {
@@ -196,19 +165,7 @@ TEST(PluginHost, ListsShippedPluginsSortedAndSound) {
   EXPECT_THAT(names, testing::IsSupersetOf({"matern32", "matern52", "product", "rbf", "scale", "sum"}));
 }
 
-TEST(PluginHost, CatchesAnErrorOfTheConstructorByItsType) {
-  const PluginHost host({bad_plugin_folder("throws_error")});
-  try {
-    make<Kernel>(host, "throws_error");
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.reason(), "kernel/throws_error: this kernel refuses its options");
-    EXPECT_EQ(error.hint(), "choose another");
-  }
-}
-
-TEST(PluginHost, ErrorsOutliveTheLibraryThatThrewThem) {
-  const TemporaryFolder folder;
+TEST_F(PluginFolder, ErrorsOutliveTheLibraryThatThrewThem) {
   auto host = std::make_unique<PluginHost>(std::vector<fs::path>{bad_plugin_folder("throws_own_exception")});
   std::exception_ptr kept;
   try {
@@ -218,7 +175,7 @@ TEST(PluginHost, ErrorsOutliveTheLibraryThatThrewThem) {
   }
   host.reset();
   ASSERT_FALSE(mapped(bad_plugin_folder("throws_own_exception")));
-  EXPECT_THAT(refusal([&] { std::rethrow_exception(kept); }), HasSubstr("an exception of its own"));
+  EXPECT_THAT(error_of([&] { std::rethrow_exception(kept); }), HasSubstr("an exception of its own"));
 }
 
 TEST(PluginHost, ServesSeveralThreads) {

@@ -2,32 +2,15 @@
 #include "record/json.hpp"
 
 #include "config/yaml.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-using test::TemporaryFolder;
-
-TEST(JsonRow, JoinsNestedNamesByDots) {
-  const auto row = parse_json_row(R"({"a": {"b": {"c": 1}}, "d": "x", "e": null, "f": true, "g": 0.5})");
+TEST(JsonRow, JoinsNestedNamesByDotsAndKeepsTheOrderOfItsFields) {
+  const auto row = parse_json_row(R"({"d": "x", "a": {"b": {"c": 1}}, "g": 0.5, "e": null, "f": true})");
   ASSERT_TRUE(row);
-  ASSERT_EQ(row->fields.size(), 5U);
-  EXPECT_EQ(*row->find("a.b.c"), Scalar{std::int64_t{1}});
-  EXPECT_EQ(*row->find("d"), Scalar{std::string("x")});
-  EXPECT_EQ(*row->find("e"), Scalar{std::monostate{}});
-  EXPECT_EQ(*row->find("f"), Scalar{true});
-  EXPECT_EQ(*row->find("g"), Scalar{0.5});
-}
-
-TEST(JsonRow, KeepsTheOrderOfItsFields) {
-  const auto row = parse_json_row(R"({"z": 1, "a": 2, "m": 3})");
-  ASSERT_TRUE(row);
-  EXPECT_EQ(row->fields[0].first + row->fields[1].first + row->fields[2].first, "zam");
+  EXPECT_EQ(row->fields, (Row{{{"d", "x"}, {"a.b.c", 1}, {"g", 0.5}, {"e", {}}, {"f", true}}}).fields);
 }
 
 TEST(JsonRow, IsNoneForWhatIsNotOneFlatObject) {
@@ -64,48 +47,30 @@ TEST(JsonRow, ReadsBackWhatARowWrites) {
   }
 }
 
-TEST(JsonLines, AreReadWithTheirLength) {
-  const TemporaryFolder folder;
-  const JsonLines lines = read_json_lines(folder.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n"));
+using JsonLinesFile = InFolder;
+
+TEST_F(JsonLinesFile, IsReadWithItsLengthAndOfAnEmptyOneNothing) {
+  const JsonLines lines = read_json_lines(folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n"));
   ASSERT_EQ(lines.rows.size(), 2U);
   EXPECT_EQ(*lines.rows[1].find("tap"), Scalar{std::int64_t{2}});
   EXPECT_EQ(lines.bytes, 22U);
+  const JsonLines none = read_json_lines(folder_.write("taps.jsonl", ""));
+  EXPECT_TRUE(none.rows.empty());
+  EXPECT_EQ(none.bytes, 0U);
 }
 
-TEST(JsonLines, LeaveOutALastLineThatWasCutOff) {
-  const TemporaryFolder folder;
+TEST_F(JsonLinesFile, LeavesOutALastLineThatWasCutOff) {
   for (const char* tail : {"{\"ta", "{\"tap\": 2}"}) {
-    const JsonLines lines = read_json_lines(folder.write("taps.jsonl", std::string("{\"tap\": 1}\n") + tail));
+    const JsonLines lines = read_json_lines(folder_.write("taps.jsonl", std::string("{\"tap\": 1}\n") + tail));
     EXPECT_EQ(lines.rows.size(), 1U) << tail;
     EXPECT_EQ(lines.bytes, 11U) << tail;
   }
 }
 
-TEST(JsonLines, OfAnEmptyFileAreNone) {
-  const TemporaryFolder folder;
-  const JsonLines lines = read_json_lines(folder.write("taps.jsonl", ""));
-  EXPECT_TRUE(lines.rows.empty());
-  EXPECT_EQ(lines.bytes, 0U);
-}
-
-TEST(JsonLines, RefuseADamagedLineInTheMiddle) {
-  const TemporaryFolder folder;
-  const auto file = folder.write("taps.jsonl", "{\"tap\": 1}\n{\"ta\n{\"tap\": 3}\n");
-  try {
-    read_json_lines(file);
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()), file.string() + ":2: is not a JSON object, the file is damaged");
-  }
-}
-
-TEST(JsonLines, RefuseAMissingFile) {
-  try {
-    read_json_lines("/nonexistent/taps.jsonl");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "/nonexistent/taps.jsonl: cannot be read");
-  }
+TEST_F(JsonLinesFile, RefusesADamagedLineInTheMiddleAndAMissingFile) {
+  const auto file = folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"ta\n{\"tap\": 3}\n");
+  EXPECT_EQ(error_of([&] { read_json_lines(file); }), file.string() + ":2: is not a JSON object, the file is damaged");
+  EXPECT_EQ(error_of([] { read_json_lines("/nonexistent/taps.jsonl"); }), "/nonexistent/taps.jsonl: cannot be read");
 }
 
 TEST(JsonTree, KeepsPlainScalarsAndQuotesTheOthers) {
@@ -126,29 +91,25 @@ TEST(JsonTree, ComesBackFromItsFileAsItWas) {
   EXPECT_EQ(to_json(again), to_json(tree));
 }
 
-std::string refusal_of(const std::string& text) {
+std::string json_refusal(const std::string& text) {
   const TemporaryFolder folder;
-  try {
-    read_json(folder.write("manifest.json", text));
-  } catch (const Error& error) {
-    return std::string(error.what()).substr(folder.path().string().size() + 1);
-  }
-  return "accepted";
+  const fs::path file = folder.write("manifest.json", text);
+  return error_of([&] { read_json(file); }).substr(folder.path().string().size() + 1);
 }
 
 TEST(JsonTree, IsRefusedInOneLineWhereItsFileIsDamaged) {
   const std::string remedy = ", the file is damaged: put it back as it was, or remove it";
-  EXPECT_EQ(refusal_of(""), "manifest.json:1:1: is not valid JSON" + remedy);
-  EXPECT_EQ(refusal_of("{\n  \"a\": 1\n},"), "manifest.json:3:2: is not valid JSON" + remedy);
-  EXPECT_EQ(refusal_of("{\"a\": \"\xff\"}"), "manifest.json:1:8: is not valid JSON" + remedy);
+  EXPECT_EQ(json_refusal(""), "manifest.json:1:1: is not valid JSON" + remedy);
+  EXPECT_EQ(json_refusal("{\n  \"a\": 1\n},"), "manifest.json:3:2: is not valid JSON" + remedy);
+  EXPECT_EQ(json_refusal("{\"a\": \"\xff\"}"), "manifest.json:1:8: is not valid JSON" + remedy);
   for (const char* text : {"1", "\"a\"", "[]", "[{}]"})
-    EXPECT_EQ(refusal_of(text), "manifest.json: is not a JSON object" + remedy) << text;
+    EXPECT_EQ(json_refusal(text), "manifest.json: is not a JSON object" + remedy) << text;
   std::string deep = "{\"a\": ";
   for (int i = 0; i < 100'000; ++i) deep += "[";
-  EXPECT_EQ(refusal_of(deep), "manifest.json: is nested too deeply" + remedy);
+  EXPECT_EQ(json_refusal(deep), "manifest.json: is nested too deeply" + remedy);
   std::string many = "{\"a\": [0";
   for (int i = 0; i < 1'000'000; ++i) many += ",0";
-  EXPECT_EQ(refusal_of(many + "]}"), "manifest.json: holds too many values" + remedy);
+  EXPECT_EQ(json_refusal(many + "]}"), "manifest.json: holds too many values" + remedy);
 }
 
 TEST(JsonTree, IsNotReadFromAFileLargerThanAnyThatIsWritten) {
@@ -165,4 +126,4 @@ TEST(Json, TellsValidFromInvalid) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -2,14 +2,12 @@
 #include "config/keys.hpp"
 
 #include "experiment/experiment_options.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
 #include <set>
 #include <stdexcept>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -62,4 +60,4 @@ TEST(ConfigKeys, TellWhereAValueIsTakenOver) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The classifier's approximation against what it approximates, in numbers with more digits and by plain quadrature.
 #include "classifier/laplace.hpp"
-#include "support/plugins.hpp"
-#include "support/support.hpp"
+
+#include "support/testing.hpp"
 #include "support/touches.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/LU>
-
-#include <cmath>
-#include <vector>
 
 namespace palpate::footprints {
 namespace {
@@ -146,27 +141,15 @@ TEST(Laplace, IsTheApproximationThatItsDefinitionSaysAtAModeThatIsStationary) {
   }
 }
 
-/// The posterior of one or two latents, summed up over a fine lattice of 8 standard deviations each way.
+/// The posterior of two latents, summed up over a fine lattice of 8 standard deviations each way.
 struct Exact {
   double evidence = 0.0;
   double probability = 0.0;  ///< of the first place
 };
 
-Exact exact_of_one(const LaplaceSettings& settings, bool on) {
-  Exact out;
-  const double step = 16.0 * settings.signal / 4000;
-  for (int i = -2000; i <= 2000; ++i) {
-    const double f = settings.mean + i * step;
-    const auto prior = static_cast<double>(density(i * step / settings.signal)) / settings.signal;
-    const double joint = prior * normal_cdf(on ? f : -f) * step;
-    out.evidence += joint;
-    out.probability += joint * normal_cdf(f);
-  }
-  out.probability /= out.evidence;
-  return out;
-}
-
-Exact exact_of_two(const LaplaceSettings& settings, double correlation, bool first_on, bool second_on) {
+/// Without a second label it is that of one latent.
+Exact exact_posterior(const LaplaceSettings& settings, double correlation, bool first_on,
+                      std::optional<bool> second_on) {
   Exact out;
   const double across = std::sqrt(1.0 - correlation * correlation);
   const double step = 16.0 / 300;  // of two independent standard normals that the latents are made of
@@ -174,8 +157,9 @@ Exact exact_of_two(const LaplaceSettings& settings, double correlation, bool fir
     const double f = settings.mean + settings.signal * i * step;
     for (int j = -150; j <= 150; ++j) {
       const double g = settings.mean + settings.signal * (correlation * i + across * j) * step;
-      const auto prior = static_cast<double>(density(i * step) * density(j * step));
-      const double joint = prior * normal_cdf(first_on ? f : -f) * normal_cdf(second_on ? g : -g) * step * step;
+      const auto prior = static_cast<double>(density(i * step) * density(j * step)) * step * step;
+      const double second = second_on ? normal_cdf(*second_on ? g : -g) : 1.0;
+      const double joint = prior * normal_cdf(first_on ? f : -f) * second;
       out.evidence += joint;
       out.probability += joint * normal_cdf(f);
     }
@@ -194,7 +178,7 @@ TEST(Laplace, IsNearTheExactPosteriorOfOneLabel) {
       for (const bool on : {false, true}) {
         const LaplaceSettings settings{signal, mean};
         const Laplace posterior(*rbf(), settings, point(0.1, 0.1), {on});
-        const Exact exact = exact_of_one(settings, on);
+        const Exact exact = exact_posterior(settings, 0.0, on, {});
         EXPECT_NEAR(exact.evidence, normal_cdf((on ? mean : -mean) / std::sqrt(1.0 + signal * signal)), 1e-9)
             << "the quadrature, against the integral in closed form";
         EXPECT_NEAR(probability_at(posterior, point(0.1, 0.1)), exact.probability, kApproximation);
@@ -213,7 +197,7 @@ TEST(Laplace, IsNearTheExactPosteriorOfTwoLabels) {
       const LaplaceSettings settings{signal, -0.5};
       const std::vector<bool> on{labels % 2 == 1, labels / 2 == 1};
       const Laplace posterior(*rbf(), settings, points, on);
-      const Exact exact = exact_of_two(settings, correlation(0, 0), on[0], on[1]);
+      const Exact exact = exact_posterior(settings, correlation(0, 0), on[0], on[1]);
       EXPECT_NEAR(probability_at(posterior, points.row(0)), exact.probability, kApproximation)
           << signal << " " << labels;
       EXPECT_NEAR(posterior.log_evidence(), std::log(exact.evidence), 3.0 * kApproximation) << signal << " " << labels;

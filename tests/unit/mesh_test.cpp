@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Meshes made from the primitives agree with the primitives.
-#include "support/plugins.hpp"
 #include "support/shape_cases.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/random.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace palpate::test {
 namespace {
@@ -57,7 +52,6 @@ TEST_P(MeshOfPrimitive, HasItsHeights) {
     }
     EXPECT_LT(worst, 1e-5) << kFormats[i] << " " << pose;
     EXPECT_GT(on_object, 300) << pose;
-    RecordProperty("worst_" + std::to_string(i), std::to_string(1e6 * worst) + " um");
   }
 }
 
@@ -68,32 +62,31 @@ std::string mesh_at(const std::filesystem::path& file, const std::string& more =
   return "{type: mesh, file: '" + file.string() + "', unit: 1 mm, at: [20 cm, 20 cm]" + more + "}";
 }
 
-TEST(Mesh, StandsOnTheDeskAtTheCentreOfItsRectangleWhereverItsFileHasItsOrigin) {
-  const TemporaryFolder folder;
+using MeshInAFile = InFolder;
+
+TEST_F(MeshInAFile, StandsOnTheDeskAtTheCentreOfItsRectangleWhereverItsFileHasItsOrigin) {
   Surface block = extruded([](double) { return 0.03; }, 0.08, 0.05, 1);
   for (Eigen::Vector3d& point : block.points) point += Eigen::Vector3d(0.7, -0.3, -0.2);
-  const auto scene = scene_of({mesh_at(folder.write("a.ply", ply(block)))});
+  const auto scene = scene_of({mesh_at(folder_.write("a.ply", ply(block)))});
   EXPECT_NEAR(scene->height(0.2 - 0.0399, 0.2 + 0.0249), 0.03, 1e-7);
   EXPECT_NEAR(scene->height(0.2 + 0.0399, 0.2 - 0.0249), 0.03, 1e-7);
   EXPECT_EQ(scene->height(0.2 + 0.0401, 0.2), 0.0);
   EXPECT_NEAR(scene->highest(), 0.03, 1e-7);
 }
 
-TEST(Mesh, TurnsAFileWhoseYIsUp) {
-  const TemporaryFolder folder;
+TEST_F(MeshInAFile, TurnsAFileWhoseYIsUp) {
   Surface block = extruded([](double) { return 0.03; }, 0.08, 0.05, 1);
   for (Eigen::Vector3d& point : block.points) point = {point.x(), point.z(), -point.y()};
-  const auto scene = scene_of({mesh_at(folder.write("a.obj", obj(block)), ", up: y")});
+  const auto scene = scene_of({mesh_at(folder_.write("a.obj", obj(block)), ", up: y")});
   EXPECT_NEAR(scene->height(0.2 + 0.0399, 0.2 + 0.0249), 0.03, 1e-7);
   EXPECT_EQ(scene->height(0.2, 0.2 + 0.0251), 0.0);
 }
 
-TEST(Mesh, LetsNoLineSlipBetweenItsTriangles) {
-  const TemporaryFolder folder;
+TEST_F(MeshInAFile, LetsNoLineSlipBetweenItsTriangles) {
   // Two triangles and four make the top: lines along their edges and through their corners.
   const Surface cap = raised(
       {-0.05, 0.0, 0.05}, {-0.05, 0.0, 0.05}, [](double, double) { return true; }, 0.02);
-  const auto scene = scene_of({mesh_at(folder.write("a.stl", stl_binary(cap)))});
+  const auto scene = scene_of({mesh_at(folder_.write("a.stl", stl_binary(cap)))});
   for (int i = -4900; i <= 4900; ++i) {
     const double d = i * 1e-5;
     EXPECT_NEAR(scene->height(0.2 + d, 0.2 + d), 0.02, 1e-7);
@@ -102,9 +95,8 @@ TEST(Mesh, LetsNoLineSlipBetweenItsTriangles) {
   }
 }
 
-TEST(Mesh, IsPlacedAtRandomWhollyInside) {
-  const TemporaryFolder folder;
-  const auto file = folder.write("a.stl", stl_binary(shape_cases().front().surface()));
+TEST_F(MeshInAFile, IsPlacedAtRandomWhollyInside) {
+  const auto file = folder_.write("a.stl", stl_binary(shape_cases().front().surface()));
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     // The primitive and its mesh draw the same numbers and have the same reach, but for the rounding of the file.
     const auto mesh = scene_of({mesh_at(file)}, seed, ", placement: random");

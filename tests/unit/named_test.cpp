@@ -2,20 +2,18 @@
 // Whatever a plugin's functions throw, whichever of them it was, is told with its name.
 #include "plugin/named.hpp"
 
+#include "support/testing.hpp"
+
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
-#include <palpate/error.hpp>
 #include <palpate/fitting.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/kernel.hpp>
 #include <palpate/shape.hpp>
 
-#include <gtest/gtest.h>
-
 #include <stdexcept>
-#include <string>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 [[noreturn]] void fail() { throw std::runtime_error("it broke"); }
@@ -74,61 +72,51 @@ std::shared_ptr<Interface> broken() {
       named(Interface::kKind, "mine", std::shared_ptr<Interface>(std::make_shared<Broken>())));
 }
 
-template <class Call>
-std::string said(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing";
-}
-
 TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   const Points points = Points::Zero(2, 2);
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(2);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2, 2);
   const auto kernel = broken<BrokenKernel, Kernel>();
   const std::string of_kernel = "kernel/mine: it broke";
-  EXPECT_EQ(said([&] { kernel->covariance(points, points, matrix); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->variance(points, vector); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->separable(); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->axis_covariance(0, vector, vector, matrix); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->parameters(); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->differentiable(); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->set_parameters(vector); }), of_kernel);
-  EXPECT_EQ(said([&] { kernel->derivatives(points, points.topRows(1), vector, matrix); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->covariance(points, points, matrix); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->variance(points, vector); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->separable(); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->axis_covariance(0, vector, vector, matrix); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->parameters(); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->differentiable(); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->set_parameters(vector); }), of_kernel);
+  EXPECT_EQ(error_of([&] { kernel->derivatives(points, points.topRows(1), vector, matrix); }), of_kernel);
 
   const auto fitting = broken<BrokenFitting, Fitting>();
   double number = 1.0;
   FitProblem problem{points, *kernel, number, 0.0, {}};
   Random random(1, "test");
-  EXPECT_EQ(said([&] { fitting->due(1); }), "fitting/mine: it broke");
-  EXPECT_EQ(said([&] { fitting->objection(*kernel); }), "fitting/mine: it broke");
-  EXPECT_EQ(said([&] { fitting->fit(problem, random); }), "fitting/mine: it broke");
+  EXPECT_EQ(error_of([&] { fitting->due(1); }), "fitting/mine: it broke");
+  EXPECT_EQ(error_of([&] { fitting->objection(*kernel); }), "fitting/mine: it broke");
+  EXPECT_EQ(error_of([&] { fitting->fit(problem, random); }), "fitting/mine: it broke");
 
   const auto footprint = broken<BrokenFootprint, Footprint>();
-  EXPECT_EQ(said([&] { footprint->is_weight(); }), "footprint/mine: it broke");
-  EXPECT_EQ(said([&] { footprint->add({}); }), "footprint/mine: it broke");
-  EXPECT_EQ(said([&] { footprint->probability(points, vector); }), "footprint/mine: it broke");
-  EXPECT_EQ(said([&] { footprint->numbers(); }), "footprint/mine: it broke");
-  EXPECT_EQ(said([&] { footprint->remark(); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->is_weight(); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->add({}); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->probability(points, vector); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->numbers(); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->remark(); }), "footprint/mine: it broke");
 
   const auto acquisition = broken<BrokenAcquisition, Acquisition>();
-  EXPECT_EQ(said([&] { acquisition->prior_scale(); }), "acquisition/mine: it broke");
+  EXPECT_EQ(error_of([&] { acquisition->prior_scale(); }), "acquisition/mine: it broke");
 
   const auto backend = broken<BrokenBackend, Backend>();
-  EXPECT_EQ(said([&] { backend->tap({}); }), "backend/mine: it broke");
-  EXPECT_EQ(said([&] { backend->repeatable(); }), "backend/mine: it broke");
-  EXPECT_EQ(said([&] { backend->describe({}); }), "backend/mine: it broke");
-  EXPECT_EQ(said([&] { backend->learnt(); }), "backend/mine: it broke");
-  EXPECT_EQ(said([&] { backend->wants_prediction(); }), "backend/mine: it broke");
-  EXPECT_EQ(said([&] { backend->scene_is_truth(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->tap({}); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->repeatable(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->describe({}); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->learnt(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->wants_prediction(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->scene_is_truth(); }), "backend/mine: it broke");
 
   const auto shape = broken<BrokenShape, Shape>();
-  EXPECT_EQ(said([&] { shape->first_hit({}); }), "shape/mine: it broke");
-  EXPECT_EQ(said([&] { shape->support({}); }), "shape/mine: it broke");
-  EXPECT_EQ(said([&] { shape->top(0.0, 0.0); }), "shape/mine: it broke");
+  EXPECT_EQ(error_of([&] { shape->first_hit({}); }), "shape/mine: it broke");
+  EXPECT_EQ(error_of([&] { shape->support({}); }), "shape/mine: it broke");
+  EXPECT_EQ(error_of([&] { shape->top(0.0, 0.0); }), "shape/mine: it broke");
 }
 
 TEST(NamedPlugin, KeepsPlaceReasonAndRemedyOfAnError) {
@@ -143,17 +131,12 @@ TEST(NamedPlugin, KeepsPlaceReasonAndRemedyOfAnError) {
   const auto backend = broken<Arm, Backend>();
   TapRequest request;
   request.number = 1;
-  try {
-    backend->tap(request);
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "backend/mine: arm.txt:3: has no joint, add one");
-    EXPECT_EQ(error.kind(), Error::Kind::busy);
-  }
+  EXPECT_EQ(error_of([&] { backend->tap(request); }, Error::Kind::busy),
+            "backend/mine: arm.txt:3: has no joint, add one");
   request.number = 2;
-  EXPECT_EQ(said([&] { backend->tap(request); }), "backend/mine: threw something that is no exception");
+  EXPECT_EQ(error_of([&] { backend->tap(request); }), "backend/mine: threw something that is no exception");
   EXPECT_TRUE(backend->repeatable());
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

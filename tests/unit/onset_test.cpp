@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tapping/onset.hpp"
+
 #include "simulator/normal.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "support/testing.hpp"
 
 namespace palpate::tapping {
 namespace {

@@ -2,20 +2,14 @@
 // Outlines and the belief over them, against the simplest ways to compute the same: lattices, corners and foci, and a
 // million draws.
 #include "shape/outline.hpp"
+
 #include "shape/particles.hpp"
+#include "support/testing.hpp"
 #include "support/touches.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <map>
-#include <string>
-#include <vector>
 
 namespace palpate::footprints {
 namespace {
@@ -53,7 +47,7 @@ std::vector<Piece> pieces(int count, std::uint64_t seed) {
 /// With labels that are wrong as good as every other time none says anything: what is left are the moves.
 Particles moved_without_a_word(int count, int touches, std::uint64_t seed) {
   Particles out = particles(count, 4, 0.5 - 1e-9, seed);
-  for (const Touch& touch : test::disc_touches(touches)) out.add(touch.place, touch.on);
+  for (const Touch& touch : test::disc_touches(touches)) out.add(touch);
   return out;
 }
 
@@ -214,7 +208,7 @@ TEST(OutlinePrior, FindsRoomOnAnAreaThatIsHardlyLargerThanTheSmallestPiece) {
   OutlinePrior::Settings settings;
   settings.area = {0.0207, 0.0207};
   Particles belief(OutlinePrior(settings), {200, 0.01}, Random(1, "outline test"));
-  for (int i = 0; i < 3; ++i) belief.add({0.01, 0.01}, true);
+  for (int i = 0; i < 3; ++i) belief.add({{0.01, 0.01}, 0.0, true});
   for (const Particle& one : belief.particles()) EXPECT_GT(OutlinePrior(settings).density(one.outline), 0.0);
   settings.area = {0.019, 0.2};
   EXPECT_THROW(Particles(OutlinePrior(settings), {}, Random(1, "outline test")), Error);
@@ -223,7 +217,7 @@ TEST(OutlinePrior, FindsRoomOnAnAreaThatIsHardlyLargerThanTheSmallestPiece) {
 TEST(Particles, CountOutlinesOverPlacesAsOneByOne) {
   Particles belief = particles(500, 4, 0.02, 4);
   for (const Touch& touch : test::disc_touches(6)) {
-    belief.add(touch.place, touch.on);
+    belief.add(touch);
     for (const auto& [columns, rows] : {std::pair{47, 47}, {31, 7}, {1, 40}, {40, 1}, {1, 1}}) {
       const Points places = test::lattice(columns, rows);
       Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
@@ -297,7 +291,7 @@ TEST(Particles, ComeToThePosteriorThatAMillionDrawsWeighedByTheirLabelsComeTo) {
   for (int run = 0; run < kRuns; ++run) {
     Particles belief = particles(4000, 4, kMistaken, 200 + static_cast<std::uint64_t>(run));
     double product = 1.0;
-    for (const auto& [place, on] : labels) product *= belief.add(place, on);
+    for (const auto& [place, on] : labels) product *= belief.add({place, 0.0, on});
     found_evidence += product / kRuns;
     Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
     belief.count_inside(places, 12, inside);
@@ -318,7 +312,7 @@ TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     Particles belief = particles(kCount, 0.0, kMistaken, seed);  // no moves
     const std::vector<Outline> before = outlines(belief);
-    const double evidence = belief.add(place, true);
+    const double evidence = belief.add({place, 0.0, true});
     const std::vector<Outline> after = outlines(belief);
     for (std::size_t i = 0; i < before.size(); ++i) {
       const double weight = before[i].contains(place.x, place.y) ? 1.0 - kMistaken : kMistaken;
@@ -338,7 +332,7 @@ TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
 TEST(Particles, OfOneSeedAreTheSameToTheLastBitAndOfAnotherAreOthers) {
   const auto after = [](std::uint64_t seed) {
     Particles belief = particles(300, 4, 0.02, seed);
-    for (const Touch& touch : test::disc_touches(8)) belief.add(touch.place, touch.on);
+    for (const Touch& touch : test::disc_touches(8)) belief.add(touch);
     return outlines(belief);
   };
   const std::vector<Outline> one = after(7);
@@ -348,10 +342,10 @@ TEST(Particles, OfOneSeedAreTheSameToTheLastBitAndOfAnotherAreOthers) {
 
 TEST(Particles, AgreeWithLabelsThatAnOutlineExplains) {
   Particles belief = particles(1000, 4, 0.02, 9);
-  for (const Touch& touch : test::disc_touches(25)) belief.add(touch.place, touch.on);
+  for (const Touch& touch : test::disc_touches(25)) belief.add(touch);
   EXPECT_LT(belief.mean_mistakes(), 0.7);
   Particles puzzled = particles(1000, 4, 0.02, 9);
-  for (const Touch& touch : test::disorderly_touches(25)) puzzled.add(touch.place, touch.on);
+  for (const Touch& touch : test::disorderly_touches(25)) puzzled.add(touch);
   EXPECT_GT(puzzled.mean_mistakes(), 3.0);
 }
 

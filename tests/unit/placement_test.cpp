@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Several objects, and places drawn from the seed.
 #include "support/shape_cases.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/random.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace palpate::test {
 namespace {
@@ -117,43 +111,40 @@ TEST(FixedPlacement, OfThePapersObjectsHasTheSameBitsAsTheClosedForms) {
   EXPECT_EQ(slope->highest(), 0.08);
 }
 
-std::string refusal(const std::vector<std::string>& objects, const std::string& placement = ", placement: random") {
-  try {
-    scene_of(objects, 1, placement);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string placement_refusal(const std::vector<std::string>& objects,
+                              const std::string& placement = ", placement: random") {
+  return error_of([&] { scene_of(objects, 1, placement); });
 }
 
 TEST(RandomPlacement, SaysWhenAnObjectDoesNotFit) {
-  EXPECT_EQ(refusal({"{type: cone}", "{type: block, length: 60 cm}"}),
+  EXPECT_EQ(placement_refusal({"{type: cone}", "{type: block, length: 60 cm}"}),
             "scene.objects.1: does not fit into the area, make the object smaller or the area larger");
 }
 
 TEST(RandomPlacement, SaysWhenObjectsDoNotFitTogether) {
   const std::string large = "{type: cylinder, diameter: 30 cm}";
-  EXPECT_EQ(refusal({large, large}),
+  EXPECT_EQ(placement_refusal({large, large}),
             "scene.objects: found no room for all 2 in 10000 draws, make them smaller or fewer, or the area larger");
 }
 
-}  // namespace
 TEST(FixedPlacement, RefusesAnObjectThatReachesBeyondTheArea) {
   const std::string hint = " mm beyond the area of 400 x 400 mm, move it by 'at', turn it, or make the area larger";
   const std::string block = "{type: block, length: 10 cm, width: 4 cm, at: ";
-  EXPECT_EQ(refusal({block + "[41 cm, 5 cm]}"}, ""), "scene.objects.0: reaches 60" + hint);
-  EXPECT_EQ(refusal({"{type: cone, at: [10 cm, 10 cm]}", block + "[30 cm, 1.5 cm]}"}, ""),
+  EXPECT_EQ(placement_refusal({block + "[41 cm, 5 cm]}"}, ""), "scene.objects.0: reaches 60" + hint);
+  EXPECT_EQ(placement_refusal({"{type: cone, at: [10 cm, 10 cm]}", block + "[30 cm, 1.5 cm]}"}, ""),
             "scene.objects.1: reaches 5" + hint);
 }
 
 TEST(FixedPlacement, CountsWhatTheObjectCoversAsItStands) {
   const std::string block = "{type: block, length: 10 cm, width: 4 cm, height: 10 cm, at: ";
-  EXPECT_EQ(refusal({block + "[5 cm, 2 cm]}"}, ""), "accepted") << "it touches two edges";
-  EXPECT_EQ(refusal({block + "[2 cm, 5 cm], rotation: 90 deg}"}, ""), "accepted");
-  EXPECT_THAT(refusal({block + "[2 cm, 5 cm]}"}, ""), testing::HasSubstr("reaches 30 mm beyond"));
-  EXPECT_THAT(refusal({block + "[5 cm, 2 cm], rotation: 45 deg}"}, ""), testing::HasSubstr("reaches 29.5 mm beyond"))
+  EXPECT_EQ(placement_refusal({block + "[5 cm, 2 cm]}"}, ""), "accepted") << "it touches two edges";
+  EXPECT_EQ(placement_refusal({block + "[2 cm, 5 cm], rotation: 90 deg}"}, ""), "accepted");
+  EXPECT_THAT(placement_refusal({block + "[2 cm, 5 cm]}"}, ""), testing::HasSubstr("reaches 30 mm beyond"));
+  EXPECT_THAT(placement_refusal({block + "[5 cm, 2 cm], rotation: 45 deg}"}, ""),
+              testing::HasSubstr("reaches 29.5 mm beyond"))
       << "(10 + 4) / 2 / sqrt 2 - 2 cm";
-  EXPECT_THAT(refusal({block + "[5 cm, 2 cm], tilt: 20 deg}"}, ""), testing::HasSubstr("mm beyond"));
+  EXPECT_THAT(placement_refusal({block + "[5 cm, 2 cm], tilt: 20 deg}"}, ""), testing::HasSubstr("mm beyond"));
 }
 
+}  // namespace
 }  // namespace palpate::test

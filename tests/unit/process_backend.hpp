@@ -2,24 +2,16 @@
 // What the tests of the backend `process` share: Python programs, started as a run starts them.
 #pragma once
 
-#include "support/plugins.hpp"
 #include "support/programs.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
 
 #include <atomic>
-#include <filesystem>
-#include <memory>
-#include <string>
 
 namespace palpate::test {
 
-namespace fs = std::filesystem;
-
-class ProcessBackend : public testing::Test {
+class ProcessBackend : public InFolder {
  protected:
   ProcessBackend() { fs::create_directory(folder_.path() / "record"); }
 
@@ -44,20 +36,10 @@ class ProcessBackend : public testing::Test {
   }
 
   std::string refusal(const std::string& command) {
-    try {
-      start(command)->tap(request(1));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
+    return error_of([&] { start(command)->tap(request(1)); });
   }
 
-  static TapRequest request(int number) {
-    TapRequest out;
-    out.number = number;
-    out.target = {0.1, 0.2};
-    return out;
-  }
+  static TapRequest request(int number) { return {number, {0.1, 0.2}, {}, {}}; }
 
   static Contact tap(Backend& backend, int number) { return backend.tap(request(number)); }
 
@@ -92,7 +74,6 @@ class ProcessBackend : public testing::Test {
 
   std::string diary() const { return text_of(folder_.path() / "record" / "process.stderr.txt"); }
 
-  TemporaryFolder folder_;
   std::atomic<bool> interrupted_{false};
   Context context_{shared_host(), wave_scene(), 1, &interrupted_, (folder_.path() / "record").string()};
 };

@@ -2,9 +2,7 @@
 // What becomes of a run when its program is gone, or when one of an earlier attempt is still there.
 #include "unit/process_backend.hpp"
 
-#include <cmath>
 #include <csignal>
-#include <memory>
 #include <thread>
 
 namespace palpate::test {
@@ -18,6 +16,7 @@ struct Gone {
   std::string odd;
   std::string reason;
   std::string deadline = "90 s";
+  Outcome outcome = Outcome::aborted;
 };
 
 class ProgramThatIsGone : public ProcessBackend, public testing::WithParamInterface<Gone> {
@@ -28,8 +27,11 @@ class ProgramThatIsGone : public ProcessBackend, public testing::WithParamInterf
                              "for ask in asks():\n    if ask['tap'] != 2: contact(ask)\n    else:\n        " +
                              GetParam().odd),
                      ", deadline: " + GetParam().deadline + more);
-    expect_contact(tap(*backend_, 1));
-    return tap(*backend_, 2);
+    const Contact first = tap(*backend_, 1);
+    expect_contact(first);
+    Contact second = tap(*backend_, 2);
+    EXPECT_FALSE(running(static_cast<long>(first.force)));
+    return second;
   }
 
   std::shared_ptr<Backend> backend_;
@@ -38,7 +40,7 @@ class ProgramThatIsGone : public ProcessBackend, public testing::WithParamInterf
 TEST_P(ProgramThatIsGone, EndsARunWhoseTapsCannotBeRepeated) {
   const Contact contact = second_tap_of("");
   EXPECT_TRUE(contact.ends_run);
-  EXPECT_EQ(contact.reason, GetParam().reason + kSeeToIt);
+  expect_failure(contact, GetParam().outcome, GetParam().reason + kSeeToIt);
   EXPECT_EQ(diary(), "begin\n");
 }
 
@@ -47,7 +49,7 @@ TEST_P(ProgramThatIsGone, IsStartedAgainIfTheConfigSaysSo) {
     fs::remove(folder_.path() / "record" / "process.stderr.txt");
     const Contact contact = second_tap_of(more);
     EXPECT_FALSE(contact.ends_run);
-    EXPECT_EQ(contact.reason, GetParam().reason);
+    expect_failure(contact, GetParam().outcome, GetParam().reason);
     expect_contact(tap(*backend_, 3));
     EXPECT_EQ(diary(), "begin\nbegin\n");
   }
@@ -58,7 +60,17 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Gone{"Exit", "os._exit(3)", "the program ended with exit status 3, its last words: 'begin'"},
                     Gone{"Signal", "os.kill(os.getpid(), 9)",
                          "the program was ended by signal 9 (Killed), its last words: 'begin'"},
-                    Gone{"Silence", "time.sleep(60)", "the program did not answer in time", "1 s"},
+                    Gone{"Crash", "os.kill(os.getpid(), 11)",
+                         "the program was ended by signal 11 (Segmentation fault), its last words: 'begin'"},
+                    Gone{"Silence", "time.sleep(60)", "the program did not answer in time", "1 s", Outcome::timeout},
+                    // Nor is its answer taken for one to the next tap.
+                    Gone{"LateAnswer", "time.sleep(1); contact(ask)", "the program did not answer in time", "500 ms",
+                         Outcome::timeout},
+                    Gone{"HalfAnAnswer", "os.write(1, b'{\"tap\": 2,'); time.sleep(60)",
+                         "the program did not end its answer in time: '{\"tap\": 2,'", "500 ms", Outcome::timeout},
+                    Gone{"Stubbornness", "import signal; signal.signal(15, signal.SIG_IGN); time.sleep(60)",
+                         "the program did not answer in time", "500 ms", Outcome::timeout},
+                    Gone{"ClosedStdout", "os.close(1); time.sleep(60)", "the program closed its stdin or stdout"},
                     Gone{"Garbage", "print('moving', flush=True)", "the answer is not JSON: 'moving'"},
                     Gone{"AnotherTap", "print('{\"tap\": 7}', flush=True)",
                          "the answer is not that to tap 2: '{\"tap\": 7}'"}),

@@ -4,11 +4,7 @@
 
 #include "config/resolve.hpp"
 #include "config/yaml.hpp"
-
-#include <palpate/error.hpp>
-
-#include <string>
-#include <vector>
+#include "support/testing.hpp"
 
 namespace palpate::test {
 
@@ -43,15 +39,19 @@ inline Tree resolved(Options& options, const std::string& text, ResolveNotes* no
   return resolve(options, parse_yaml(text, "c.yaml"), TwoPlugins(), notes != nullptr ? *notes : own);
 }
 
+/// Where each value came from: "path@place ", one behind the other.
+inline std::string origins(const ResolveNotes& notes) {
+  std::string out;
+  for (const auto& one : notes.origins) out += one.path + "@" + one.place + " ";
+  return out;
+}
+
 template <class T>
 std::string refusal(const std::string& text) {
-  T options;
-  try {
+  return error_of([&] {
+    T options;
     resolved(options, text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
+  });
 }
 
 }  // namespace palpate::test

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "resolve_fixtures.hpp"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <set>
-#include <string>
-#include <utility>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::refusal;
-using test::resolved;
 
 struct Table : Options {
   std::vector<std::array<double, 2>> points;
@@ -74,9 +67,7 @@ TEST(ResolveAdopted, ReadsThePluginAmongTheFieldsAtHand) {
   EXPECT_EQ(some.chosen.options->canonical(), parse_yaml("{scale: 0.1 m, nu: 2.5}", "c.yaml").canonical());
   EXPECT_EQ(some.chosen.options->place.text(), "c.yaml:1:26") << "where its complaints will point";
   EXPECT_EQ(notes.plugins, (std::set<std::pair<std::string, std::string>>{{"kernel", "rough"}}));
-  std::string origins;
-  for (const auto& one : notes.origins) origins += one.path + " " + one.place + ", ";
-  EXPECT_EQ(origins, "type c.yaml:1:26, scale default, nu c.yaml:1:6, last c.yaml:1:17, ");
+  EXPECT_EQ(origins(notes), "type@c.yaml:1:26 scale@default nu@c.yaml:1:6 last@c.yaml:1:17 ");
 }
 
 TEST(ResolveAdopted, TellsTheLineOfWhatIsWrongAndTheNearestName) {
@@ -110,4 +101,4 @@ TEST(ResolveAdopted, RefusesAPluginWhoseOptionHasTheNameOfAFieldBesideIt) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

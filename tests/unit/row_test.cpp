@@ -2,17 +2,13 @@
 #include "record/row.hpp"
 
 #include "record/json.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <random>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -55,9 +51,7 @@ TEST(CsvText, IsQuotedOnlyWhereItMustBe) {
 
 TEST(Csv, HoldsNothingThatASpreadsheetWouldCompute) {
   const auto cell = [](const std::string& text) {
-    Row row;
-    row.add("a", text);
-    const std::string csv = to_csv({row});
+    const std::string csv = to_csv({Row{{{"a", text}}}});
     return csv.substr(2, csv.size() - 3);
   };
   EXPECT_EQ(cell("=1+1"), "'=1+1");
@@ -70,9 +64,7 @@ TEST(Csv, HoldsNothingThatASpreadsheetWouldCompute) {
   for (const char* plain : {"-1.5", "+2e-3", "-.5", "1-1", "'quoted'", "", "'", "-0"}) EXPECT_EQ(cell(plain), plain);
   for (const char* computed : {"-inf", "+nan", "-0x10", "--1", "-1-1", "+", "-"})
     EXPECT_EQ(cell(computed), "'" + std::string(computed));
-  Row row;
-  row.add("=note", 1);
-  EXPECT_EQ(to_csv({row}), "'=note\n1\n");
+  EXPECT_EQ(to_csv({Row{{{"=note", 1}}}}), "'=note\n1\n");
   EXPECT_EQ(csv_cell(std::string("-1 cm")), "-1 cm") << "what is shown to people stays as it is";
 }
 
@@ -119,115 +111,64 @@ TEST(Row, BecomesOneLineOfJson) {
 
 TEST(Row, NestsByTheDotsOfItsNames) {
   Row row;
-  row.add("a.b.c", 1);
-  row.add("a.b.d", 2);
-  row.add("a.e", 3);
-  row.add("f", 4);
+  row.fields = {{"a.b.c", 1}, {"a.b.d", 2}, {"a.e", 3}, {"f", 4}};
   EXPECT_EQ(to_json_line(row), R"({"a": {"b": {"c": 1, "d": 2}, "e": 3}, "f": 4})");
   EXPECT_EQ(
       to_json_text(row),
       "{\n  \"a\": {\n    \"b\": {\n      \"c\": 1,\n      \"d\": 2\n    },\n    \"e\": 3\n  },\n  \"f\": 4\n}\n");
 }
 
-TEST(Row, DoesNotNestWhatOnlyBeginsAlike) {
-  Row row;
-  row.add("a.b", 1);
-  row.add("ab", 2);
-  EXPECT_EQ(to_json_line(row), R"({"a": {"b": 1}, "ab": 2})");
+TEST(Row, NestsNumbersOfAListAndNothingThatOnlyBeginsAlike) {
+  EXPECT_EQ(to_json_line(Row{{{"a.b", 1}, {"ab", 2}}}), R"({"a": {"b": 1}, "ab": 2})");
+  const Row list{{{"kernels.0.factor", 1}, {"kernels.0.kernel.length_scale", 2}, {"kernels.1.alpha", 3}}};
+  EXPECT_EQ(to_json_line(list),
+            R"({"kernels": {"0": {"factor": 1, "kernel": {"length_scale": 2}}, "1": {"alpha": 3}}})");
 }
 
 TEST(Row, FindsAFieldByItsName) {
-  Row row;
-  row.add("a", 1);
-  row.add("b.c", "x");
+  const Row row{{{"a", 1}, {"b.c", "x"}}};
   ASSERT_NE(row.find("b.c"), nullptr);
   EXPECT_EQ(*row.find("b.c"), Scalar{std::string("x")});
   EXPECT_EQ(row.find("b"), nullptr);
 }
 
 TEST(Csv, HasAHeaderAndARowEach) {
-  Row first;
-  first.add("id", "x,y");
-  first.add("n", 1);
-  Row second;
-  second.add("id", "z");
-  second.add("n", 2.5);
-  EXPECT_EQ(to_csv({first, second}), "id,n\n\"x,y\",1\nz,2.5\n");
+  EXPECT_EQ(to_csv({Row{{{"id", "x,y"}, {"n", 1}}}, Row{{{"id", "z"}, {"n", 2.5}}}}), "id,n\n\"x,y\",1\nz,2.5\n");
+  EXPECT_EQ(to_csv({}), "");
 }
 
 TEST(Csv, LeavesCellsEmptyThatARowLacks) {
-  Row whole;
-  whole.add("a", 1);
-  whole.add("b", 2);
-  whole.add("c", 3);
-  Row part;
-  part.add("a", 4);
-  part.add("c", 5);
-  Row swapped;
-  swapped.add("c", 6);
-  swapped.add("a", 7);
+  const Row whole{{{"a", 1}, {"b", 2}, {"c", 3}}};
+  const Row part{{{"a", 4}, {"c", 5}}};
+  const Row swapped{{{"c", 6}, {"a", 7}}};
   EXPECT_EQ(to_csv({part, whole, swapped}), "a,b,c\n4,,5\n1,2,3\n7,,6\n");
 }
 
-TEST(Csv, HasTheNamesOfAllRowsEachBehindTheOneThatItFollows) {
-  Row start;
-  start.add("tap", 1);
-  start.add("signal", 1.5);
-  start.add("rmse", 2);
-  Row fitted;
-  fitted.add("tap", 2);
-  fitted.add("kernel.length_scale", 0.5);
-  fitted.add("signal", 2.5);
-  fitted.add("fit.changed", true);
-  fitted.add("fit.reason", "converged, almost");
-  fitted.add("rmse", 1);
-  Row unfitted;
-  unfitted.add("tap", 3);
-  unfitted.add("kernel.length_scale", 0.25);
-  unfitted.add("signal", 2.5);
-  unfitted.add("rmse", 1);
-  unfitted.add("last", std::optional<double>());
+TEST(Csv, HasTheNamesOfAllRowsEachOnceAndBehindTheOneThatItFollows) {
+  const Row start{{{"tap", 1}, {"signal", 1.5}, {"rmse", 2}}};
+  const Row fitted{{{"tap", 2},
+                    {"kernel.length_scale", 0.5},
+                    {"signal", 2.5},
+                    {"fit.changed", true},
+                    {"fit.reason", "converged, almost"},
+                    {"rmse", 1}}};
+  const Row unfitted{{{"tap", 3}, {"kernel.length_scale", 0.25}, {"signal", 2.5}, {"rmse", 1}, {"last", {}}}};
   EXPECT_EQ(to_csv({start, fitted, unfitted}),
             "tap,kernel.length_scale,signal,fit.changed,fit.reason,rmse,last\n"
             "1,,1.5,,,2,\n"
             "2,0.5,2.5,true,\"converged, almost\",1,\n"
             "3,0.25,2.5,,,1,\n");
-}
-
-TEST(Csv, HasEveryNameOnce) {
-  Row first;
-  first.add("a", 1);
-  first.add("b", 2);
-  Row second;
-  second.add("b", 3);
-  second.add("new", 4);
-  second.add("a", 5);
-  EXPECT_EQ(to_csv({first, second}), "a,b,new\n1,2,\n5,3,4\n");
-}
-
-TEST(Row, NestsPartsOfAListByTheirNumbers) {
-  Row row;
-  row.add("kernel.kernels.0.factor", 1);
-  row.add("kernel.kernels.0.kernel.length_scale", 2);
-  row.add("kernel.kernels.1.alpha", 3);
-  EXPECT_EQ(to_json_line(row),
-            R"({"kernel": {"kernels": {"0": {"factor": 1, "kernel": {"length_scale": 2}}, "1": {"alpha": 3}}}})");
+  EXPECT_EQ(to_csv({Row{{{"a", 1}, {"b", 2}}}, Row{{{"b", 3}, {"new", 4}, {"a", 5}}}}), "a,b,new\n1,2,\n5,3,4\n");
 }
 
 TEST(Csv, ReadsBackWhateverItsCellsHold) {
   const std::vector<std::string> texts = {"x,y", "say \"x\", twice", "two\nlines", "\"", "plain", ""};
   std::vector<Row> rows;
-  for (const std::string& text : texts) {
-    rows.emplace_back();
-    rows.back().add("text", text);
-    rows.back().add("n", std::int64_t{7});
-  }
+  for (const std::string& text : texts) rows.push_back({{{"text", text}, {"n", 7}}});
   const std::vector<test::Cells> read = test::csv_rows(to_csv(rows));
   ASSERT_EQ(read.size(), texts.size());
   for (std::size_t i = 0; i < texts.size(); ++i) EXPECT_EQ(read[i], (test::Cells{{"text", texts[i]}, {"n", "7"}}));
 }
 
-TEST(Csv, OfNoRowsIsEmpty) { EXPECT_EQ(to_csv({}), ""); }
-
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_directory.hpp"
+
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
-#include "support/support.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
 #include <fstream>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::TemporaryFolder;
-using test::text_of;
 
 TapRecord tap(int number, double height) {
   TapRecord out;
@@ -29,7 +22,7 @@ TapRecord tap(int number, double height) {
 constexpr std::array<double, kPhases> kSeconds{0.5, 0.0, 0.25, 0.125, 0.0625};
 
 /// Writes three taps as a living run does.
-void write_three(const std::filesystem::path& directory, bool announce) {
+void write_three(const fs::path& directory, bool announce) {
   RunDirectory run(directory);
   run.open(announce, false);
   for (int i = 1; i <= 3; ++i) {
@@ -38,13 +31,15 @@ void write_three(const std::filesystem::path& directory, bool announce) {
   }
 }
 
-void append(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
+void append(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
 
-TEST(RunDirectory, RecoversTheTapsThatWereRecorded) {
+using RunFolder = InFolder;
+
+TEST_F(RunFolder, RecoversTheTapsThatWereRecorded) {
   for (const bool announce : {false, true}) {
-    const TemporaryFolder folder;
-    write_three(folder.path() / "run", announce);
-    RunDirectory again(folder.path() / "run");
+    const fs::path run = folder_.path() / (announce ? "announced" : "plain");
+    write_three(run, announce);
+    RunDirectory again(run);
     const std::vector<PastTap> past = again.recover();
     ASSERT_EQ(past.size(), 3U);
     EXPECT_EQ(past[1].target.x, 0.2);
@@ -56,31 +51,29 @@ TEST(RunDirectory, RecoversTheTapsThatWereRecorded) {
   }
 }
 
-TEST(RunDirectory, CutsOffHalfALineAtEveryLength) {
-  const TemporaryFolder folder;
-  write_three(folder.path() / "whole", false);
-  const std::string whole = text_of(folder.path() / "whole" / "taps.jsonl");
+TEST_F(RunFolder, CutsOffHalfALineAtEveryLength) {
+  write_three(folder_.path() / "whole", false);
+  const std::string whole = text_of(folder_.path() / "whole" / "taps.jsonl");
   const auto second_end = whole.find('\n', whole.find('\n') + 1) + 1;
   for (std::size_t cut = second_end; cut < whole.size(); cut += 7) {
-    const std::filesystem::path file = folder.write("cut/taps.jsonl", whole.substr(0, cut));
+    const fs::path file = folder_.write("cut/taps.jsonl", whole.substr(0, cut));
     {
-      RunDirectory run(folder.path() / "cut");
+      RunDirectory run(folder_.path() / "cut");
       EXPECT_EQ(run.recover().size(), 2U) << cut;
       EXPECT_EQ(text_of(file), whole.substr(0, second_end));
       run.open(false, false);
       run.record(tap(3, 0.09), kSeconds);
     }
     EXPECT_EQ(text_of(file), whole) << "what follows begins on a line of its own";
-    std::filesystem::remove_all(folder.path() / "cut");
+    fs::remove_all(folder_.path() / "cut");
   }
 }
 
-TEST(RunDirectory, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
-  const TemporaryFolder folder;
-  write_three(folder.path() / "run", true);
-  append(folder.path() / "run" / "taps.jsonl", to_json_line(intent_row(tap(4, 0.0))) + "\n");
+TEST_F(RunFolder, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
+  write_three(folder_.path() / "run", true);
+  append(folder_.path() / "run" / "taps.jsonl", to_json_line(intent_row(tap(4, 0.0))) + "\n");
   for (int i = 0; i < 2; ++i) {
-    RunDirectory run(folder.path() / "run");
+    RunDirectory run(folder_.path() / "run");
     const std::vector<PastTap> past = run.recover();
     ASSERT_EQ(past.size(), 4U);
     EXPECT_EQ(past[3].contact.outcome, Outcome::unknown);
@@ -88,32 +81,24 @@ TEST(RunDirectory, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
   }
 }
 
-TEST(RunDirectory, RefusesADamagedLineWithItsNumber) {
-  const TemporaryFolder folder;
-  write_three(folder.path() / "run", false);
-  std::string text = text_of(folder.path() / "run" / "taps.jsonl");
+TEST_F(RunFolder, RefusesADamagedLineWithItsNumber) {
+  write_three(folder_.path() / "run", false);
+  std::string text = text_of(folder_.path() / "run" / "taps.jsonl");
   text[text.find('\n') + 5] = '\n';
-  folder.write("run/taps.jsonl", text);
-  RunDirectory run(folder.path() / "run");
-  try {
-    run.recover();
-    FAIL() << "a damaged file was taken for a record";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("taps.jsonl:2: is not a JSON object"));
-  }
+  folder_.write("run/taps.jsonl", text);
+  RunDirectory run(folder_.path() / "run");
+  EXPECT_THAT(error_of([&] { run.recover(); }), testing::HasSubstr("taps.jsonl:2: is not a JSON object"));
 }
 
-TEST(RunDirectory, RefusesALineThatIsNoTap) {
-  const TemporaryFolder folder;
-  folder.write("run/taps.jsonl",
-               "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
-  RunDirectory run(folder.path() / "run");
+TEST_F(RunFolder, RefusesALineThatIsNoTap) {
+  folder_.write("run/taps.jsonl",
+                "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
+  RunDirectory run(folder_.path() / "run");
   EXPECT_THROW(run.recover(), Error);
 }
 
-TEST(RunDirectory, TellsItsStateFromItsFilesAlone) {
-  const TemporaryFolder folder;
-  const std::filesystem::path directory = folder.path() / "run";
+TEST_F(RunFolder, TellsItsStateFromItsFilesAlone) {
+  const fs::path directory = folder_.path() / "run";
   EXPECT_EQ(read_status(directory).state, RunStatus::State::absent);
   write_three(directory, true);
   EXPECT_EQ(read_status(directory).state, RunStatus::State::unfinished);
@@ -122,10 +107,10 @@ TEST(RunDirectory, TellsItsStateFromItsFilesAlone) {
     const RunDirectory held(directory);
     EXPECT_EQ(read_status(directory).state, RunStatus::State::running);
   }
-  folder.write("run/summary.json", "{\"status\": \"failed\", \"stop_reason\": \"the arm was stopped\"}");
+  folder_.write("run/summary.json", "{\"status\": \"failed\", \"stop_reason\": \"the arm was stopped\"}");
   EXPECT_EQ(read_status(directory).state, RunStatus::State::failed);
   EXPECT_EQ(read_status(directory).stop_reason, "the arm was stopped");
-  folder.write("run/summary.json", "{\"status\": \"done\", \"stop_reason\": \"tap budget\"}");
+  folder_.write("run/summary.json", "{\"status\": \"done\", \"stop_reason\": \"tap budget\"}");
   EXPECT_EQ(read_status(directory).state, RunStatus::State::done);
 }
 
@@ -148,4 +133,4 @@ TEST(TapRow, AnIntentHoldsNoResult) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -3,21 +3,15 @@
 #include "config/resolve.hpp"
 #include "config/yaml.hpp"
 #include "support/shape_cases.hpp"
-#include "support/support.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
 #include <set>
-#include <string>
-#include <utility>
 
 namespace palpate::test {
 namespace {
 
 /// What is said of an object, without the place.
-std::string refusal(const std::string& object) {
+std::string object_refusal(const std::string& object) {
   try {
     scene_of({object});
   } catch (const Error& error) {
@@ -26,37 +20,32 @@ std::string refusal(const std::string& object) {
   return "accepted";
 }
 
-TEST(SceneOptions, RefuseDimensionsThatMakeNoSolid) {
-  EXPECT_EQ(refusal("{type: dome, diameter: 10 cm, height: 51 mm}"),
+TEST(SceneOptions, RefuseDimensionsThatMakeNoSolidATiltOfMoreThan80DegreesAndFieldsOfAnotherShape) {
+  EXPECT_EQ(object_refusal("{type: dome, diameter: 10 cm, height: 51 mm}"),
             "objects.0.height: is more than half the diameter, which makes half a ball");
-  EXPECT_EQ(refusal("{type: ring, outer: 4 cm, inner: 4 cm}"), "objects.0.inner: is not less than the outer diameter");
-  EXPECT_EQ(refusal("{type: l, length: 8 cm, width: 3 cm, thickness: 3 cm}"),
+  EXPECT_EQ(object_refusal("{type: ring, outer: 4 cm, inner: 4 cm}"),
+            "objects.0.inner: is not less than the outer diameter");
+  EXPECT_EQ(object_refusal("{type: l, length: 8 cm, width: 3 cm, thickness: 3 cm}"),
             "objects.0.thickness: is not less than length and width, nothing would be left of the second bar");
-  EXPECT_EQ(refusal("{type: cone, height: 0 cm}"), "objects.0.height: 0 cm is out of range");
-  EXPECT_EQ(refusal("{type: wave, height: 1 cm, amplitude: 2 cm}"),
+  EXPECT_EQ(object_refusal("{type: cone, height: 0 cm}"), "objects.0.height: 0 cm is out of range");
+  EXPECT_EQ(object_refusal("{type: wave, height: 1 cm, amplitude: 2 cm}"),
             "objects.0.amplitude: is larger than the mean height, the top would dip below the desk");
-}
-
-TEST(SceneOptions, RefuseATiltOfMoreThan80Degrees) {
-  EXPECT_EQ(refusal("{type: block, tilt: 80 deg}"), "accepted");
-  EXPECT_EQ(refusal("{type: block, tilt: -80 deg}"), "accepted");
-  EXPECT_EQ(refusal("{type: block, tilt: 80.1 deg}"), "objects.0.tilt: is more than 80 deg");
-  EXPECT_EQ(refusal("{type: block, tilt: -81 deg}"), "objects.0.tilt: is more than 80 deg");
-}
-
-TEST(SceneOptions, RefuseFieldsOfAnotherShape) {
-  EXPECT_EQ(refusal("{type: cylinder, length: 8 cm}"), "unknown option 'length' of objects.0");
-  EXPECT_EQ(refusal("{type: cube}"), "no plugin shape/cube");
+  EXPECT_EQ(object_refusal("{type: block, tilt: 80 deg}"), "accepted");
+  EXPECT_EQ(object_refusal("{type: block, tilt: -80 deg}"), "accepted");
+  EXPECT_EQ(object_refusal("{type: block, tilt: 80.1 deg}"), "objects.0.tilt: is more than 80 deg");
+  EXPECT_EQ(object_refusal("{type: block, tilt: -81 deg}"), "objects.0.tilt: is more than 80 deg");
+  EXPECT_EQ(object_refusal("{type: cylinder, length: 8 cm}"), "unknown option 'length' of objects.0");
+  EXPECT_EQ(object_refusal("{type: cube}"), "no plugin shape/cube");
 }
 
 std::string outline(const std::string& points, const std::string& hole = "[]") {
-  return refusal("{type: polygon, outline: " + points + ", hole: " + hole + "}");
+  return object_refusal("{type: polygon, outline: " + points + ", hole: " + hole + "}");
 }
 
 TEST(SceneOptions, RefuseOutlinesThatBoundNothing) {
   const std::string square = "[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [0 cm, 4 cm]]";
   EXPECT_EQ(outline(square), "accepted");
-  EXPECT_EQ(refusal("{type: polygon}"), "'objects.0.outline' is missing");
+  EXPECT_EQ(object_refusal("{type: polygon}"), "'objects.0.outline' is missing");
   EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm]]"), "objects.0.outline: needs three points or more");
   EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [0 cm, 0 cm]]"),
             "objects.0.outline: points 4 and 1 are the same; it closes by itself");
@@ -110,7 +99,7 @@ TEST(SceneOptions, NameThePluginsOfTheirShapes) {
   EXPECT_EQ(notes.plugins, (std::set<std::pair<std::string, std::string>>{{"shape", "cone"}, {"shape", "mesh"}}));
   EXPECT_NE(tree.find_path("objects.0.checksum"), nullptr);
   EXPECT_EQ(options.objects[0].rotation, 1.0);
-  EXPECT_EQ(refusal("{type: mesh, fil: cup.stl, unit: 1 mm}"), "unknown option 'fil'");
+  EXPECT_EQ(object_refusal("{type: mesh, fil: cup.stl, unit: 1 mm}"), "unknown option 'fil'");
 }
 
 TEST(SceneOptions, TakeTheOlderSpellingOfAPlugin) {
@@ -122,8 +111,8 @@ TEST(SceneOptions, TakeTheOlderSpellingOfAPlugin) {
       "[{type: plugin, shape: {type: cone, diameter: 0.12 m, height: 0.08 m}, at: [0.115 m, 0.115 m], rotation: 0 rad, "
       "tilt: 0 rad}]";
   EXPECT_EQ(resolved("[{type: plugin, shape: {type: cone}}]"), to_yaml(parse_yaml(older, "resolved.yaml")));
-  EXPECT_EQ(refusal("{type: plugin, shape: {type: torus}}"), "no plugin shape/torus");
-  EXPECT_EQ(refusal("{type: plugin}"), "'objects.0.shape' is missing");
+  EXPECT_EQ(object_refusal("{type: plugin, shape: {type: torus}}"), "no plugin shape/torus");
+  EXPECT_EQ(object_refusal("{type: plugin}"), "'objects.0.shape' is missing");
 }
 
 }  // namespace

@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: MIT
 // The initial design `search`: where it looks, when it ends, and that it is no worse for what happens on the way.
 #include "experiment/search.hpp"
+
 #include "support/runs.hpp"
+#include "support/testing.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <set>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::Collector;
-using test::ScriptedBackend;
-using test::shipped_config;
 
 const Area kArea{0.23, 0.23};
 
-Contact desk() { return {Outcome::contact, 0.0, 8.0, 1.0, {}}; }
-Contact object() { return {Outcome::contact, 0.05, 8.0, 1.0, {}}; }
-Contact refused() { return {Outcome::unreachable, 0.0, 0.0, 0.0, "because the test says so"}; }
+const Contact kDesk = contact_at(0.0);
+const Contact kObject = contact_at(0.05);
+const Contact kRefused{Outcome::unreachable, 0.0, 0.0, 0.0, "because the test says so"};
 
 /// The first `count` places of a search that meets nothing.
 std::vector<int> sequence(double smallest, const Candidates& candidates, std::uint64_t seed, int count) {
@@ -140,53 +134,43 @@ TEST(Search, LooksEverywhereOnceAndOnlyWhereItMay) {
 }
 
 TEST(InitialSearch, EndsWithTheFirstHitAndLeavesTheRestToTheAcquisition) {
-  const ResolvedConfig config = shipped_config("paper/object_i.yaml", {"initial.design=search", "taps=8"});
-  const auto backend = std::make_shared<ScriptedBackend>(
-      std::vector<Contact>{desk(), desk(), refused(), desk(), object(), desk(), desk(), desk()});
-  Experiment experiment(config.options, test::shared_host(), nullptr, backend);
-  Collector collector;
-  experiment.run(collector);
-  ASSERT_EQ(collector.taps.size(), 8U);
+  const Finished run("paper/object_i.yaml", {"initial.design=search", "taps=8"},
+                     scripted({kDesk, kDesk, kRefused, kDesk, kObject}));
+  ASSERT_EQ(run.taps.size(), 8U);
+  const std::vector<int> expected = sequence(0.02, run.experiment.candidates(), run.config.options.seed, 5);
   std::set<int> places;
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(collector.taps[i].source, i < 5 ? Source::initial : Source::acquisition) << "tap " << i + 1;
-    places.insert(collector.taps[i].candidate);
+    EXPECT_EQ(run.taps[i].source, i < 5 ? Source::initial : Source::acquisition) << "tap " << i + 1;
+    if (i < 5) {
+      EXPECT_EQ(run.taps[i].candidate, expected[i]) << "a failed tap was a look";
+    }
+    places.insert(run.taps[i].candidate);
   }
   EXPECT_EQ(places.size(), 8U);
-  EXPECT_EQ(experiment.belief().initial_taps(), 5);
-  EXPECT_EQ(*experiment.counts().first_hit_tap, 5);
-  const std::vector<int> expected = sequence(0.02, experiment.candidates(), config.options.seed, 5);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(collector.taps[i].candidate, expected[i]) << "a failed tap was a look";
+  EXPECT_EQ(run.experiment.belief().initial_taps(), 5);
+  EXPECT_EQ(*run.experiment.counts().first_hit_tap, 5);
 }
 
 TEST(InitialSearch, ThatMeetsNothingSpendsTheBudgetOrLooksEverywhere) {
-  const ResolvedConfig config =
-      shipped_config("paper/object_i.yaml", {"initial.design=search", "taps=12", "candidates.count=3", "repeat=allow"});
-  Experiment experiment(config.options, test::shared_host(), nullptr,
-                        std::make_shared<ScriptedBackend>(std::vector<Contact>{}));
-  Collector collector;
-  experiment.run(collector);
-  ASSERT_EQ(collector.taps.size(), 12U);
+  const Finished run("paper/object_i.yaml", {"initial.design=search", "taps=12", "candidates.count=3", "repeat=allow"},
+                     scripted());
+  ASSERT_EQ(run.taps.size(), 12U);
   std::set<int> places;
   for (std::size_t i = 0; i < 9; ++i) {
-    EXPECT_EQ(collector.taps[i].source, Source::initial);
-    places.insert(collector.taps[i].candidate);
+    EXPECT_EQ(run.taps[i].source, Source::initial);
+    places.insert(run.taps[i].candidate);
   }
   EXPECT_EQ(places.size(), 9U);
-  EXPECT_NE(collector.taps[9].source, Source::initial) << "it has looked everywhere";
-  EXPECT_EQ(experiment.counts().stop_reason, "tap budget");
+  EXPECT_NE(run.taps[9].source, Source::initial) << "it has looked everywhere";
+  EXPECT_EQ(run.experiment.counts().stop_reason, "tap budget");
 }
 
 TEST(InitialSearch, StopsForADeviationOnlyOnceItIsOver) {
-  const ResolvedConfig config =
-      shipped_config("paper/object_i.yaml", {"initial.design=search", "stop.max_standard_deviation=100 m"});
-  Experiment experiment(config.options, test::shared_host(), nullptr,
-                        std::make_shared<ScriptedBackend>(std::vector<Contact>{desk(), desk(), object()}));
-  Collector collector;
-  experiment.run(collector);
-  EXPECT_EQ(experiment.counts().stop_reason, "max_standard_deviation");
-  EXPECT_EQ(experiment.counts().taps, 3);
+  const Finished run("paper/object_i.yaml", {"initial.design=search", "stop.max_standard_deviation=100 m"},
+                     scripted({kDesk, kDesk, kObject}));
+  EXPECT_EQ(run.experiment.counts().stop_reason, "max_standard_deviation");
+  EXPECT_EQ(run.experiment.counts().taps, 3);
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Every primitive, upright and tilted, against its definition as a set of points and as triangles.
-#include "support/plugins.hpp"
+#include "support/filled.hpp"
 #include "support/shape_cases.hpp"
 #include "support/shape_laws.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/random.hpp>
 
-#include <gtest/gtest.h>
 #include <Eigen/Geometry>
-
-#include <cmath>
 
 namespace palpate::test {
 namespace {
@@ -48,7 +45,7 @@ struct Frame {
 };
 
 std::shared_ptr<const Shape> shape_of(const ShapeCase& one) {
-  const SceneOptions scene = scene_options("{area: {width: 1 m, depth: 1 m}, objects: [" + one.options + "]}");
+  const SceneOptions scene = filled<SceneOptions>("{area: {width: 1 m, depth: 1 m}, objects: [" + one.options + "]}");
   return context_of(shared_host()).create<const Shape>(scene.objects[0].shape);
 }
 

@@ -4,15 +4,9 @@
 
 #include "scene/scene_options.hpp"
 #include "support/filled.hpp"
-#include "support/plugins.hpp"
-#include "support/support.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace palpate::test {
 
@@ -30,12 +24,7 @@ class TappingBench {
   const Scene& scene() const { return *scene_; }
   Backend& backend() const { return *backend_; }
 
-  Contact tap(double x, double y, int number = 1) const {
-    TapRequest request;
-    request.number = number;
-    request.target = {x, y};
-    return backend_->tap(request);
-  }
+  Contact tap(double x, double y, int number = 1) const { return backend_->tap({number, {x, y}, {}, {}}); }
 
   /// Taps at `count` random places of the area.
   struct Tapped {
@@ -61,6 +50,14 @@ class TappingBench {
   Context context_;
   std::shared_ptr<Backend> backend_;
 };
+
+inline void expect_same(const Contact& a, const Contact& b) {
+  EXPECT_EQ(a.outcome, b.outcome);
+  EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.force, b.force);
+  EXPECT_EQ(a.seconds, b.seconds);
+  EXPECT_EQ(a.reason, b.reason);
+}
 
 /// What many taps amount to; contacts alone, but for the count of failures.
 struct TapStatistics {

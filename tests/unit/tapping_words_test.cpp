@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a person is told of a tap before it is made, motion by motion.
 #include "support/filled.hpp"
+#include "support/testing.hpp"
 #include "tapping/words.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace palpate::tapping {
 namespace {

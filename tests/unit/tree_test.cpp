@@ -2,12 +2,9 @@
 #include "config/tree.hpp"
 
 #include "config/yaml.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gtest/gtest.h>
-
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 Tree tree_of(const std::string& text) { return parse_yaml(text, "c.yaml"); }
@@ -19,13 +16,7 @@ Tree layered(const std::string& text, Layer layer) {
 }
 
 std::string refusal_at_path(const std::string& text, const std::string& path) {
-  Tree tree = tree_of(text);
-  try {
-    tree.at_path(path, {std::make_shared<const std::string>("command line"), 0, 0});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { tree_of(text).at_path(path, {std::make_shared<const std::string>("command line"), 0, 0}); });
 }
 
 TEST(Place, IsWrittenAsFarAsItIsKnown) {
@@ -48,16 +39,11 @@ TEST(Tree, FindsNothingWhereAPathLeadsNowhere) {
   }
 }
 
-TEST(Tree, MakesTheMapsOnTheWayToAPath) {
-  Tree tree = tree_of("a: 1");
-  tree.at_path("b.c.d", {}) = Tree::scalar("2");
-  EXPECT_EQ(to_yaml(tree), "a: 1\nb:\n  c:\n    d: 2\n");
-}
-
-TEST(Tree, MakesKeysWithThePlaceOfWhoAskedForThem) {
+TEST(Tree, MakesTheMapsOnTheWayToAPathWithThePlaceOfWhoAskedForThem) {
   Tree tree = tree_of("a: 1");
   const Place asker{std::make_shared<const std::string>("command line"), 0, 0};
-  tree.at_path("b.c", asker);
+  tree.at_path("b.c.d", asker) = Tree::scalar("2");
+  EXPECT_EQ(to_yaml(tree), "a: 1\nb:\n  c:\n    d: 2\n");
   EXPECT_EQ(tree.entries.back().place.text(), "command line");
   EXPECT_EQ(tree.find("b")->entries.front().place.text(), "command line");
 }
@@ -69,12 +55,9 @@ TEST(Tree, ReachesItemsOfAListByTheirNumber) {
   EXPECT_EQ(tree.find("l")->items[0].find("x")->text, "1");
 }
 
-TEST(Tree, RefusesAPathThroughAValue) {
+TEST(Tree, RefusesAPathThroughAValueOrToAnItemThatAListDoesNotHave) {
   EXPECT_EQ(refusal_at_path("a: {b: 1}", "a.b.c.d"),
             "command line: 'a.b.c.d': there is no 'c' below a value, the path ends at 'a.b'");
-}
-
-TEST(Tree, RefusesAnItemThatAListDoesNotHave) {
   EXPECT_EQ(refusal_at_path("l: [1, 2]", "l.2"), "command line: 'l.2': the list has no item '2', its items are 0 to 1");
   EXPECT_EQ(refusal_at_path("l: [1, 2]", "l.first"),
             "command line: 'l.first': the list has no item 'first', its items are 0 to 1");
@@ -92,16 +75,10 @@ TEST(Tree, KnowsThePlaceOfAPathOrOfWhatEnclosesIt) {
   EXPECT_EQ(tree.place_of("").text(), "");
 }
 
-TEST(Tree, MergesMapsKeyByKeyAndKeepsTheOrderOfTheLower) {
-  Tree lower = tree_of("a: 1\nb: {c: 2, d: 3}");
-  lower.merge(tree_of("e: 6\nb: {d: 4, f: 5}"));
-  EXPECT_EQ(lower.canonical(), tree_of("a: 1\nb: {c: 2, d: 4, f: 5}\ne: 6").canonical());
-}
-
-TEST(Tree, ReplacesListsAsAWhole) {
-  Tree lower = tree_of("l: [1, 2, 3]");
-  lower.merge(tree_of("l: [4]"));
-  EXPECT_EQ(lower.canonical(), tree_of("l: [4]").canonical());
+TEST(Tree, MergesMapsKeyByKeyInTheOrderOfTheLowerAndReplacesLists) {
+  Tree lower = tree_of("a: 1\nb: {c: 2, d: 3, l: [1, 2, 3]}");
+  lower.merge(tree_of("e: 6\nb: {d: 4, f: 5, l: [4]}"));
+  EXPECT_EQ(lower.canonical(), tree_of("a: 1\nb: {c: 2, d: 4, l: [4], f: 5}\ne: 6").canonical());
 }
 
 TEST(Tree, LeavesAValueOfAHigherLayerWhenALowerOneIsMergedLater) {
@@ -127,10 +104,6 @@ TEST(Tree, ShiftsLayersWithoutChangingTheirOrder) {
   EXPECT_EQ(tree.find("a")->find("b")->items[0].layer, -91);
 }
 
-TEST(Tree, HasACanonicalTextThatPlacesAndLayersDoNotChange) {
-  EXPECT_EQ(tree_of("a: 1\nb: [x, y]").canonical(), layered("{a: 1,   b:\n [x,\n y]}", kCommandLineLayer).canonical());
-}
-
 TEST(Tree, HasDifferentCanonicalTextsForDifferentValues) {
   const std::vector<const char*> values{"a: 1", "a: [1]",  "a: {1: 1}", "a: ",        "a: ~ ",
                                         "b: 1", "a: '1,'", "a: [1, 1]", "a: [[1], 1]"};
@@ -142,30 +115,25 @@ TEST(Tree, HasDifferentCanonicalTextsForDifferentValues) {
   }
 }
 
-TEST(Tree, CannotBeFooledByTextThatLooksLikeItsCanonicalForm) {
+TEST(Tree, HasACanonicalTextThatPlacesAndLayersDoNotChangeAndNoOtherTextLooksLike) {
+  EXPECT_EQ(tree_of("a: 1\nb: [x, y]").canonical(), layered("{a: 1,   b:\n [x,\n y]}", kCommandLineLayer).canonical());
   EXPECT_NE(tree_of("a: ['1', '2']").canonical(), tree_of("a: ['1,1:2']").canonical());
   EXPECT_NE(tree_of("a: '~'").canonical(), tree_of("a: ~").canonical());
 }
 
-TEST(Suggestion, NamesTheNearestOfTheKnownNames) {
+TEST(Suggestion, NamesTheNearestOfTheKnownNamesOrListsThem) {
   EXPECT_EQ(suggestion("length_scal", {"length_scale", "signal"}), "did you mean 'length_scale'?");
   EXPECT_EQ(suggestion("rfb", {"matern32", "rbf"}), "did you mean 'rbf'?") << "two neighbours swapped are one mistake";
-}
-
-TEST(Suggestion, ListsTheKnownNamesWhenNoneIsNear) {
   EXPECT_EQ(suggestion("spline", {"matern32", "rbf"}), "known: matern32, rbf");
+  EXPECT_EQ(suggestion("x", {}), "");
 }
 
-TEST(Suggestion, IsEmptyWhenNothingIsKnown) { EXPECT_EQ(suggestion("x", {}), ""); }
-
-TEST(Suggestion, TakesNoNameForMeantThatSharesLittle) {
+TEST(Suggestion, TakesTheFirstOfEquallyNearNamesAndNoneThatSharesLittleOrIsAMonster) {
+  EXPECT_EQ(nearest("cm", {"dm", "mm"}), "dm");
   EXPECT_EQ(nearest("ab", {"cd"}), "");
   EXPECT_EQ(nearest("", {"a", "bb"}), "a") << "one letter is missing";
+  EXPECT_EQ(nearest(std::string(65, 'a'), {std::string(65, 'a')}), "");
 }
 
-TEST(Suggestion, TakesTheFirstOfEquallyNearNames) { EXPECT_EQ(nearest("cm", {"dm", "mm"}), "dm"); }
-
-TEST(Suggestion, DoesNotCompareMonsters) { EXPECT_EQ(nearest(std::string(65, 'a'), {std::string(65, 'a')}), ""); }
-
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

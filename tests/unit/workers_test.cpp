@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "gp/workers.hpp"
 
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
 #include <atomic>
 #include <chrono>
 #include <thread>
-#include <vector>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 TEST(Workers, DoEveryPieceOfEveryJobOnceBeforeTheyReturn) {
@@ -47,4 +46,4 @@ TEST(Workers, HelpersDoTakePieces) {
 TEST(Workers, MayNeverBeGivenAnything) { const Workers workers(4); }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -6,6 +6,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -68,9 +69,12 @@ void add_link(const std::string& group, const std::string& name, const Place& pl
   const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
   chain.push_back(link);
   if (!cyclic) return;
-  std::string text;
-  for (const std::string& one : chain) text += (text.empty() ? "" : " -> ") + one;
-  throw Error(place.text(), "defaults form a cycle", text);
+  throw Error(place.text(), "defaults form a cycle", fmt::format("{}", fmt::join(chain, " -> ")));
+}
+
+template <class Container, class Holds>
+void drop(Container& from, const Holds& holds) {
+  from.erase(std::remove_if(from.begin(), from.end(), holds), from.end());
 }
 
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
@@ -169,7 +173,8 @@ fs::path Composer::find_group(const std::string& group, const std::string& name,
   return found_.emplace(key, std::move(file)).first->second;
 }
 
-std::vector<std::string> Composer::group_names(const std::string& group, const fs::path& beside) const {
+Error Composer::no_file(const std::string& group, const std::string& name, const Place& place,
+                        const fs::path& beside) const {
   std::set<std::string> names;
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots(beside).safe) {
@@ -179,14 +184,8 @@ std::vector<std::string> Composer::group_names(const std::string& group, const f
       }
     }
   }
-  return {names.begin(), names.end()};
-}
-
-Error Composer::no_file(const std::string& group, const std::string& name, const Place& place,
-                        const fs::path& beside) const {
-  const std::vector<std::string> names = group_names(group, beside);
   return {place.text(), fmt::format("no file {}/{}.yaml", group, name),
-          !names.empty() ? suggestion(name, names)
+          !names.empty() ? suggestion(name, {names.begin(), names.end()})
                          : "looked beside the config, in 'configs' above it, ./configs and the program's configs"};
 }
 
@@ -276,13 +275,18 @@ void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choic
   for (const std::string& key : taken) tree.erase(key);
 }
 
+Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer layer) {
+  std::vector<std::string> chain;
+  Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+  note_group(choice, beside);
+  content.shift_layer(layer);
+  set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
+  return content;
+}
+
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
   const auto lay = [&](const Choice& choice) {
-    std::vector<std::string> chain;
-    Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
-    note_group(choice, beside);
-    content.shift_layer(layer);
-    set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
+    const Tree content = take_group(choice, beside, layer);
     layer += kLayersOfGroup;
     Tree& slot = tree.at_path(choice.path, choice.place);
     if (slot.kind == Tree::Kind::null || keys_.is_part(choice.path)) slot = Tree::map();
@@ -303,7 +307,7 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   const auto last = std::find_if(choices.rbegin(), choices.rend(), is_strategy);
   if (last == choices.rend()) return kGroupLayer;
   const Choice choice = *last;
-  choices.erase(std::remove_if(choices.begin(), choices.end(), is_strategy), choices.end());
+  drop(choices, is_strategy);
   add_link(kStrategy, choice.name, choice.place, chain);
   const fs::path file = find_group(kStrategy, choice.name, choice.place, beside);
   if (file.empty()) throw no_file(kStrategy, choice.name, choice.place, beside);
@@ -311,9 +315,6 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   Tree own = load(file);
   own.set_layer(kGroupLayer);
   std::vector<Choice> inner = take_defaults(own);
-  const auto drop = [](auto& from, const auto& if_so) {
-    from.erase(std::remove_if(from.begin(), from.end(), if_so), from.end());
-  };
   drop(own.entries, [&](const Tree::Entry& one) { return !keys_.is_of_strategy(one.key); });
   take_names(own, "", inner);
   drop(inner, [&](const Choice& one) { return !keys_.is_of_strategy(one.path); });
@@ -339,8 +340,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   take_names(own, "", choices);
   for (const Override& one : overrides) {
     if (!keys_.is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
-    const auto at_path = [&](const Choice& choice) { return choice.path == one.path; };
-    choices.erase(std::remove_if(choices.begin(), choices.end(), at_path), choices.end());
+    drop(choices, [&](const Choice& choice) { return choice.path == one.path; });
     choices.push_back({one.path, one.value.text, one.value.place, one.value.layer});
   }
 
@@ -349,10 +349,8 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   Layer layer = kGroupLayer;
   std::vector<std::string> chain;
   if (lay_strategy(tree, choices, beside, layer, chain) >= kSweepLayer) {
-    const auto is_older = [&](const Choice& choice) {
-      return choice.layer < kSweepLayer && tree.find(first_key(choice.path)) != nullptr;
-    };
-    choices.erase(std::remove_if(choices.begin(), choices.end(), is_older), choices.end());
+    drop(choices,
+         [&](const Choice& older) { return older.layer < kSweepLayer && tree.find(first_key(older.path)) != nullptr; });
     for (const Tree::Entry& entry : tree.entries) own.erase(entry.key);
   }
   lay_groups(tree, choices, beside, layer);
@@ -375,19 +373,13 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
 
 void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& beside) {
   Tree& slot = tree.at_path(choice.path, choice.place);
-  std::vector<std::string> chain;
-  Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
-  note_group(choice, beside);
-  content.shift_layer(kFileLayer - 1);
-  set_layer_of_type(content, choice.layer, choice.place);
-  if (keys_.is_part(choice.path)) {
-    slot = std::move(content);
-    return;
+  Tree content = take_group(choice, beside, kFileLayer - 1);
+  if (slot.is_map() && !keys_.is_part(choice.path)) {
+    const Tree* const type = content.find("type");
+    const Tree chosen = type != nullptr ? *type : Tree();
+    content.merge(slot);
+    if (type != nullptr) content.at("type") = chosen;
   }
-  const Tree* type = content.find("type");
-  const Tree chosen = type != nullptr ? *type : Tree{};
-  if (slot.is_map()) content.merge(slot);
-  if (type != nullptr) content.at("type") = chosen;
   slot = std::move(content);
 }
 

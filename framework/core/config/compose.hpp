@@ -84,13 +84,14 @@ class Composer {
   void note_group(const Choice& choice, const std::filesystem::path& beside);
   Error no_file(const std::string& group, const std::string& name, const Place& place,
                 const std::filesystem::path& beside) const;
+  /// What a chosen group brings, its own content on `layer`.
+  Tree take_group(const Choice& choice, const std::filesystem::path& beside, Layer layer);
   /// Lays the groups over `tree`, each on layers of its own from `layer` on, which becomes the next free one.
   void lay_groups(Tree& tree, const std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer);
   /// The same for the strategy among `choices`, if there is one, which is taken out of them. Returns the layer of its
   /// choice.
   Layer lay_strategy(Tree& tree, std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer,
                      std::vector<std::string>& chain);
-  std::vector<std::string> group_names(const std::string& group, const std::filesystem::path& beside) const;
   /// Folders to look in, the first first; and those that are passed over because others may have put something there.
   struct Roots {
     std::vector<std::filesystem::path> safe, open;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "config/describe.hpp"
 
+#include "config/expand.hpp"
 #include "config/quantity.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -38,20 +40,12 @@ class Describer final : public Fields {
   void reals(double* values, std::size_t count, const Field& field) override {
     FieldDescription& row = add(Type::reals, field);
     row.count = count;
-    for (std::size_t i = 0; i < count; ++i) {
-      row.default_value += (i == 0 ? "[" : ", ") + write_quantity(values[i], field.unit);
-    }
-    row.default_value += "]";
+    row.default_value = value_text(write_quantities(values, count, field.unit));
   }
   void table(std::vector<double>& values, std::size_t columns, const Field& field) override {
     FieldDescription& row = add(Type::table, field);
     row.count = columns;
-    row.default_value = "[";
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (i % columns == 0) row.default_value += i == 0 ? "[" : ", [";
-      row.default_value += write_quantity(values[i], field.unit) + (i % columns + 1 == columns ? "]" : ", ");
-    }
-    row.default_value += "]";
+    row.default_value = value_text(write_table(values, columns, field.unit));
   }
   void integer(std::int64_t& value, const Field& field) override {
     add(Type::integer, field).default_value = std::to_string(value);
@@ -67,12 +61,10 @@ class Describer final : public Fields {
   void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
     FieldDescription& row = add(Type::choice, field);
     row.default_value = cases[index].name;
-    std::vector<FieldDescription::CaseDescription> described;
     for (const Case& one : cases) {
-      described.push_back(
-          {one.name, one.meaning, one.list ? describe_fields(one.list, plugins_) : std::vector<FieldDescription>{}});
+      row.cases.push_back({one.name, one.meaning, {}});
+      if (one.list) row.cases.back().fields = describe_fields(one.list, plugins_);
     }
-    row.cases = std::move(described);
   }
   void section(Options& options, const Field& field) override {
     add(Type::section, field).fields = describe_fields([&](Fields& fields) { options.list(fields); }, plugins_);
@@ -136,27 +128,23 @@ void append_text(std::vector<std::array<std::string, 4>>& lines, const std::vect
   }
 }
 
-Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
-
 /// A quantity in a config is a text such as "1.7 cm"; the pattern lets an editor say so while one types.
 std::string quantity_pattern(Unit unit) {
-  std::string units;
-  for (const std::string& name : unit_names(unit)) units += (units.empty() ? "" : "|") + name;
-  return fmt::format("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *({})$", units);
+  return fmt::format("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *({})$", fmt::join(unit_names(unit), "|"));
 }
 
 void number_schema(Tree& out, const FieldDescription& field) {
   if (field.unit == Unit::none) {
-    out.at("type") = quoted("number");
+    out.at("type") = Tree::quote("number");
   } else {
-    out.at("type") = quoted("string");
-    out.at("pattern") = quoted(quantity_pattern(field.unit));
+    out.at("type") = Tree::quote("string");
+    out.at("pattern") = Tree::quote(quantity_pattern(field.unit));
   }
 }
 
 /// As many numbers as `field` has in a row.
 void row_schema(Tree& out, const FieldDescription& field) {
-  out.at("type") = quoted("array");
+  out.at("type") = Tree::quote("array");
   number_schema(out.at("items"), field);
   out.at("minItems") = Tree::scalar(std::to_string(field.count));
   out.at("maxItems") = Tree::scalar(std::to_string(field.count));
@@ -175,9 +163,7 @@ Tree group_schema(const std::vector<FieldDescription>& fields) {
   for (const auto& one : typed->cases) {
     chosen[static_cast<std::size_t>(typed - fields.begin())].cases = {one};
     any.items.push_back(schema_of(chosen));
-    if (!typed->required) continue;
-    any.items.back().at("required") = Tree::list();
-    any.items.back().at("required").items.push_back(quoted(typed->name));
+    if (typed->required) any.items.back().at("required") = Tree::list({Tree::quote(typed->name)});
   }
   return out;
 }
@@ -185,7 +171,7 @@ Tree group_schema(const std::vector<FieldDescription>& fields) {
 Tree field_schema(const FieldDescription& field) {
   Tree out = Tree::map();
   const std::string range = field.range.empty() ? "" : " (" + field.range + ")";
-  out.at("description") = quoted(field.meaning + range);
+  out.at("description") = Tree::quote(field.meaning + range);
   switch (field.type) {
     case Type::real:
       number_schema(out, field);
@@ -194,22 +180,19 @@ Tree field_schema(const FieldDescription& field) {
       row_schema(out, field);
       break;
     case Type::table:
-      out.at("type") = quoted("array");
+      out.at("type") = Tree::quote("array");
       row_schema(out.at("items"), field);
       break;
     case Type::integer:
-      out.at("type") = quoted("integer");
-      break;
     case Type::flag:
-      out.at("type") = quoted("boolean");
-      break;
     case Type::text:
-      out.at("type") = quoted("string");
+      out.at("type") = Tree::quote(field.type == Type::integer ? "integer"
+                                   : field.type == Type::flag  ? "boolean"
+                                                               : "string");
       break;
     case Type::choice: {
-      Tree names = Tree::list();
-      for (const auto& one : field.cases) names.items.push_back(quoted(one.name));
-      out.at("enum") = names;
+      Tree& names = out.at("enum") = Tree::list();
+      for (const auto& one : field.cases) names.items.push_back(Tree::quote(one.name));
       break;
     }
     case Type::section: {
@@ -217,40 +200,34 @@ Tree field_schema(const FieldDescription& field) {
       if (field.optional || field.group) {
         Tree word = Tree::map();
         if (field.group) {
-          word.at("type") = quoted("string");
-          word.at("description") = quoted(fmt::format("a name: NAME reads {}/NAME.yaml", field.name));
+          word.at("type") = Tree::quote("string");
+          word.at("description") = Tree::quote(fmt::format("a name: NAME reads {}/NAME.yaml", field.name));
         } else {
-          word.at("const") = quoted("none");
+          word.at("const") = Tree::quote("none");
         }
-        Tree either = Tree::list();
-        either.items = {std::move(word), std::move(inner)};
-        out.at("anyOf") = std::move(either);
+        out.at("anyOf") = Tree::list({std::move(word), std::move(inner)});
         break;
       }
       for (const Tree::Entry& entry : inner.entries) out.entries.push_back(entry);
       break;
     }
-    case Type::sections: {
-      out.at("type") = quoted("array");
+    case Type::sections:
+      out.at("type") = Tree::quote("array");
       out.at("items") = group_schema(field.fields);
       break;
-    }
     case Type::plugin:
       out = Tree::map();
-      out.at("$ref") = quoted("#/definitions/" + field.kind);
+      out.at("$ref") = Tree::quote("#/definitions/" + field.kind);
       break;
     case Type::plugins: {
       // In a list no group is chosen by its name: every item is a map with a type.
       Tree plugin = Tree::map();
-      plugin.at("$ref") = quoted("#/definitions/" + field.kind);
+      plugin.at("$ref") = Tree::quote("#/definitions/" + field.kind);
       Tree typed = Tree::map();
-      typed.at("type") = quoted("object");
-      typed.at("required") = Tree::list();
-      typed.at("required").items.push_back(quoted("type"));
-      Tree both = Tree::list();
-      both.items = {std::move(plugin), std::move(typed)};
-      out.at("type") = quoted("array");
-      out.at("items").at("allOf") = std::move(both);
+      typed.at("type") = Tree::quote("object");
+      typed.at("required") = Tree::list({Tree::quote("type")});
+      out.at("type") = Tree::quote("array");
+      out.at("items").at("allOf") = Tree::list({std::move(plugin), std::move(typed)});
       break;
     }
   }
@@ -268,34 +245,22 @@ void add_properties(Tree& properties, const std::vector<FieldDescription>& field
 }  // namespace
 
 std::string FieldDescription::type_name() const {
-  switch (type) {
-    case Type::real:
-      return dimension_name(unit);
-    case Type::reals:
-      return fmt::format("{} {}s", count, dimension_name(unit));
-    case Type::table:
-      return fmt::format("rows of {} {}s", count, dimension_name(unit));
-    case Type::integer:
-      return "whole number";
-    case Type::flag:
-      return "true or false";
-    case Type::text:
-      return "text";
-    case Type::choice: {
-      std::string names = "one of";
-      for (std::size_t i = 0; i < cases.size(); ++i) names += (i == 0 ? " " : ", ") + cases[i].name;
-      return names;
-    }
-    case Type::section:
-      return "group";
-    case Type::sections:
-      return "list of groups";
-    case Type::plugin:
-      return "plugin of kind " + kind;
-    case Type::plugins:
-      return "list of plugins of kind " + kind;
-  }
-  return {};
+  // In the order of Type.
+  constexpr std::array kNames{"{dimension}",
+                              "{count} {dimension}s",
+                              "rows of {count} {dimension}s",
+                              "whole number",
+                              "true or false",
+                              "text",
+                              "one of {cases}",
+                              "group",
+                              "list of groups",
+                              "plugin of kind {kind}",
+                              "list of plugins of kind {kind}"};
+  std::vector<std::string> names;
+  for (const CaseDescription& one : cases) names.push_back(one.name);
+  return fmt::format(fmt::runtime(kNames[static_cast<std::size_t>(type)]), fmt::arg("dimension", dimension_name(unit)),
+                     fmt::arg("count", count), fmt::arg("cases", fmt::join(names, ", ")), fmt::arg("kind", kind));
 }
 
 FieldDescription describe_key(const Field& field) {
@@ -337,20 +302,20 @@ Tree describe_tree(const std::vector<FieldDescription>& fields) {
   Tree list = Tree::list();
   for (const FieldDescription& field : fields) {
     Tree row = Tree::map();
-    row.at("name") = quoted(field.name);
-    row.at("type") = quoted(field.type_name());
-    row.at("unit") = quoted(unit_symbol(field.unit));
-    row.at("range") = quoted(field.range);
-    row.at("default") = field.required ? Tree{} : quoted(field.default_value);
+    row.at("name") = Tree::quote(field.name);
+    row.at("type") = Tree::quote(field.type_name());
+    row.at("unit") = Tree::quote(unit_symbol(field.unit));
+    row.at("range") = Tree::quote(field.range);
+    row.at("default") = field.required ? Tree{} : Tree::quote(field.default_value);
     row.at("required") = Tree::scalar(field.required ? "true" : "false");
-    row.at("meaning") = quoted(field.meaning);
-    row.at("source") = quoted(field.source);
+    row.at("meaning") = Tree::quote(field.meaning);
+    row.at("source") = Tree::quote(field.source);
     if (!field.cases.empty()) {
       Tree cases = Tree::list();
       for (const auto& one : field.cases) {
         Tree entry = Tree::map();
-        entry.at("name") = quoted(one.name);
-        entry.at("meaning") = quoted(one.meaning);
+        entry.at("name") = Tree::quote(one.name);
+        entry.at("meaning") = Tree::quote(one.meaning);
         entry.at("options") = describe_tree(one.fields);
         cases.items.push_back(std::move(entry));
       }
@@ -364,7 +329,7 @@ Tree describe_tree(const std::vector<FieldDescription>& fields) {
 
 Tree schema_of(const std::vector<FieldDescription>& fields) {
   Tree out = Tree::map();
-  out.at("type") = quoted("object");
+  out.at("type") = Tree::quote("object");
   Tree properties = Tree::map();
   add_properties(properties, fields);
   out.at("properties") = std::move(properties);

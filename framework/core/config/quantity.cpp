@@ -51,53 +51,32 @@ constexpr std::array kUnits{
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The length of the decimal number that `text` begins with; 0 if it does not.
-std::size_t decimal_length(std::string_view text) {
-  std::size_t i = 0;
-  if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
-  std::size_t digits = 0;
-  for (; i < text.size() && is_digit(text[i]); ++i) ++digits;
-  if (i < text.size() && text[i] == '.') {
-    for (++i; i < text.size() && is_digit(text[i]); ++i) ++digits;
-  }
-  if (digits == 0) return 0;
-  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
-    std::size_t j = i + 1;
-    if (j < text.size() && (text[j] == '-' || text[j] == '+')) ++j;
-    const std::size_t first = j;
-    for (; j < text.size() && is_digit(text[j]);) ++j;
-    if (j > first) i = j;
-  }
-  return i;
-}
-
 bool looks_octal(std::string_view number) {
   if (!number.empty() && (number[0] == '-' || number[0] == '+')) number.remove_prefix(1);
   return number.size() > 1 && number[0] == '0' && is_digit(number[1]);
 }
 
-std::string example(Unit unit) {
-  switch (unit) {
-    case Unit::none:
-      return "a plain number";
-    case Unit::metre:
-      return "a length like '1.7 cm'";
-    case Unit::second:
-      return "a time like '500 ms'";
-    case Unit::newton:
-      return "a force like '10 N'";
-    case Unit::radian:
-      return "an angle like '30 deg'";
-    case Unit::metre_per_second:
-      return "a speed like '10 cm/s'";
-    case Unit::newton_per_metre:
-      return "a stiffness like '1500 N/m'";
-  }
-  return {};
-}
+struct Dimension {
+  const char* name;
+  const char* example;
+};
+
+/// In the order of Unit.
+constexpr std::array kDimensions{
+    Dimension{"number", "a plain number"},
+    Dimension{"length", "a length like '1.7 cm'"},
+    Dimension{"time", "a time like '500 ms'"},
+    Dimension{"force", "a force like '10 N'"},
+    Dimension{"angle", "an angle like '30 deg'"},
+    Dimension{"speed", "a speed like '10 cm/s'"},
+    Dimension{"stiffness", "a stiffness like '1500 N/m'"},
+};
+
+const Dimension& dimension_of(Unit unit) { return kDimensions[static_cast<std::size_t>(unit)]; }
 
 [[noreturn]] void refuse(const Tree& tree, const std::string& name, const std::string& reason, Unit unit) {
-  throw Error(tree.place.text(), fmt::format("{}: {}", name, reason), fmt::format("write {}", example(unit)));
+  throw Error(tree.place.text(), fmt::format("{}: {}", name, reason),
+              fmt::format("write {}", dimension_of(unit).example));
 }
 
 /// Splits a scalar into number and unit, refusing what is not a scalar with a decimal number in front.
@@ -143,6 +122,15 @@ double to_double(std::string_view number, int power, const Tree& tree, const std
 
 }  // namespace
 
+std::size_t decimal_length(std::string_view text) {
+  const std::size_t sign = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+  // from_chars would take a second sign, infinity and the like, which are no decimals.
+  if (sign == text.size() || (!is_digit(text[sign]) && text[sign] != '.')) return 0;
+  double value = 0.0;
+  const auto read = std::from_chars(text.data() + sign, text.data() + text.size(), value);
+  return read.ec == std::errc::invalid_argument ? 0 : static_cast<std::size_t>(read.ptr - text.data());
+}
+
 std::string unit_symbol(Unit unit) {
   for (const UnitName& known : kUnits) {
     if (known.unit == unit && known.power == 0 && known.factor == 1.0) return std::string(known.name);
@@ -150,25 +138,7 @@ std::string unit_symbol(Unit unit) {
   return {};
 }
 
-std::string dimension_name(Unit unit) {
-  switch (unit) {
-    case Unit::none:
-      return "number";
-    case Unit::metre:
-      return "length";
-    case Unit::second:
-      return "time";
-    case Unit::newton:
-      return "force";
-    case Unit::radian:
-      return "angle";
-    case Unit::metre_per_second:
-      return "speed";
-    case Unit::newton_per_metre:
-      return "stiffness";
-  }
-  return {};
-}
+std::string dimension_name(Unit unit) { return dimension_of(unit).name; }
 
 std::vector<std::string> unit_names(Unit unit) {
   std::vector<std::string> names;
@@ -217,7 +187,7 @@ std::optional<AnyQuantity> any_quantity(const std::string& text) {
   }
   try {
     return AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit};
-  } catch (const Error&) {
+  } catch (const Error&) {  // 1e999 m, say: a text like others, for whoever asks whether it is a quantity
     return std::nullopt;
   }
 }
@@ -244,6 +214,19 @@ std::string write_quantity(double value, Unit unit) {
   const std::string number = fmt::format("{}", value);
   const std::string symbol = unit_symbol(unit);
   return symbol.empty() ? number : number + " " + symbol;
+}
+
+Tree write_quantities(const double* values, std::size_t count, Unit unit) {
+  Tree list = Tree::list();
+  for (std::size_t i = 0; i < count; ++i) list.items.push_back(Tree::scalar(write_quantity(values[i], unit)));
+  return list;
+}
+
+Tree write_table(const std::vector<double>& values, std::size_t columns, Unit unit) {
+  Tree rows = Tree::list();
+  for (std::size_t i = 0; i < values.size(); i += columns)
+    rows.items.push_back(write_quantities(&values[i], columns, unit));
+  return rows;
 }
 
 }  // namespace palpate

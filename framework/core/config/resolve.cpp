@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace palpate {
@@ -27,22 +28,13 @@ class Resolver final : public Fields {
     }
   }
 
-  /// The options of `plugin`: `type` was read by the caller, and options older than it may be dropped.
-  void set_type(const Tree& type, std::string plugin) {
-    known_.emplace_back("type");
-    plugin_ = std::move(plugin);
-    type_layer_ = std::max(type_layer_, type.layer);
-    // What the type needs is missing where it was chosen, not in the group file that it was laid over.
-    if (type.place.file) output_.place = type.place;
-  }
-
   /// Refuses keys that no field has claimed. `elsewhere`: see resolve().
   Tree finish(const std::vector<std::string>& elsewhere = {}) {
     if (input_ != nullptr && !silent_) {
       for (const Tree::Entry& entry : input_->entries) {
         if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
         if (entry.value.highest_layer() < type_layer_) {
-          notes_.dropped.push_back({path_ + entry.key, place_text(entry.value)});
+          notes_.dropped.push_back({path_ + entry.key, entry.value.place.text()});
           continue;
         }
         known_.insert(known_.end(), elsewhere.begin(), elsewhere.end());
@@ -53,54 +45,41 @@ class Resolver final : public Fields {
   }
 
   void real(double& value, const Field& field) override {
-    if (const Tree* tree = claim(field)) value = checked(read_quantity(*tree, name(field), field.unit), *tree, field);
+    if (const Tree* tree = claim(field)) value = quantity(*tree, field);
     write(field, Tree::scalar(write_quantity(value, field.unit)));
   }
 
   void real(std::optional<double>& value, const Field& field) override {
-    if (const Tree* tree = claim(field); tree != nullptr && !is_none(*tree)) {
-      value = checked(read_quantity(*tree, name(field), field.unit), *tree, field);
-    }
+    if (const Tree* tree = claim(field); tree != nullptr && !is_none(*tree)) value = quantity(*tree, field);
     if (value) write(field, Tree::scalar(write_quantity(*value, field.unit)));
   }
 
   void reals(double* values, std::size_t count, const Field& field) override {
     if (const Tree* tree = claim(field)) {
-      if (tree->kind != Tree::Kind::list || tree->items.size() != count) {
-        throw Error(tree->place.text(), fmt::format("{}: expects a list of {} values", name(field), count),
-                    "write them in brackets, with commas between them");
+      if (!is_row(*tree, count)) {
+        refuse(*tree, field, fmt::format("expects a list of {} values", count),
+               "write them in brackets, with commas between them");
       }
-      for (std::size_t i = 0; i < count; ++i) {
-        const Tree& item = tree->items[i];
-        values[i] = checked(read_quantity(item, name(field), field.unit), item, field);
-      }
+      for (std::size_t i = 0; i < count; ++i) values[i] = quantity(tree->items[i], field);
     }
-    Tree list = Tree::list();
-    for (std::size_t i = 0; i < count; ++i) list.items.push_back(Tree::scalar(write_quantity(values[i], field.unit)));
-    write(field, std::move(list));
+    write(field, write_quantities(values, count, field.unit));
   }
 
   void table(std::vector<double>& values, std::size_t columns, const Field& field) override {
     if (const Tree* tree = claim(field)) {
-      const auto refuse = [&](const Tree& at) {
-        throw Error(at.place.text(), fmt::format("{}: expects a list of rows of {} values", name(field), columns),
-                    "write [[1 cm, 2 cm], [3 cm, 4 cm]] with the values and units that it needs");
+      const auto check = [&](const Tree& at, bool is_sound) {
+        if (is_sound) return;
+        refuse(at, field, fmt::format("expects a list of rows of {} values", columns),
+               "write [[1 cm, 2 cm], [3 cm, 4 cm]] with the values and units that it needs");
       };
-      if (tree->kind != Tree::Kind::list) refuse(*tree);
+      check(*tree, tree->kind == Tree::Kind::list);
       values.clear();
       for (const Tree& row : tree->items) {
-        if (row.kind != Tree::Kind::list || row.items.size() != columns) refuse(row);
-        for (const Tree& item : row.items) {
-          values.push_back(checked(read_quantity(item, name(field), field.unit), item, field));
-        }
+        check(row, is_row(row, columns));
+        for (const Tree& item : row.items) values.push_back(quantity(item, field));
       }
     }
-    Tree list = Tree::list();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (i % columns == 0) list.items.push_back(Tree::list());
-      list.items.back().items.push_back(Tree::scalar(write_quantity(values[i], field.unit)));
-    }
-    write(field, std::move(list));
+    write(field, write_table(values, columns, field.unit));
   }
 
   void integer(std::int64_t& value, const Field& field) override {
@@ -115,21 +94,16 @@ class Resolver final : public Fields {
 
   void flag(bool& value, const Field& field) override {
     if (const Tree* tree = claim(field)) {
-      const bool yes = tree->is_scalar() && tree->text == "true";
-      if (!yes && !(tree->is_scalar() && tree->text == "false")) {
-        throw Error(tree->place.text(), fmt::format("{}: {} is not a truth value", name(field), shown(*tree)),
-                    "write true or false");
-      }
-      value = yes;
+      value = tree->is_scalar() && tree->text == "true";
+      if (!value && !(tree->is_scalar() && tree->text == "false"))
+        refuse(*tree, field, shown(*tree) + " is not a truth value", "write true or false");
     }
     write(field, Tree::scalar(value ? "true" : "false"));
   }
 
   void text(std::string& value, const Field& field) override {
     if (const Tree* tree = claim(field)) {
-      if (!tree->is_scalar())
-        throw Error(tree->place.text(), fmt::format("{}: expects a text, not {}", name(field), shown(*tree)),
-                    "write a word or two");
+      if (!tree->is_scalar()) refuse(*tree, field, "expects a text, not " + shown(*tree), "write a word or two");
       value = tree->text;
     }
     write(field, Tree::scalar(value, true));
@@ -137,19 +111,13 @@ class Resolver final : public Fields {
 
   void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
     if (const Tree* tree = claim(field)) {
-      const auto found = std::find_if(cases.begin(), cases.end(),
-                                      [&](const Case& one) { return tree->is_scalar() && tree->text == one.name; });
-      if (found == cases.end()) {
-        std::vector<std::string> names;
-        for (const Case& one : cases) names.emplace_back(one.name);
-        if (tree->is_scalar()) {
-          throw Error(tree->place.text(), fmt::format("{}: unknown value '{}'", name(field), tree->text),
-                      suggestion(tree->text, names));
-        }
-        throw Error(tree->place.text(), fmt::format("{}: {} is not a name", name(field), shown(*tree)),
-                    suggestion("", names));
-      }
-      index = static_cast<std::size_t>(found - cases.begin());
+      std::vector<std::string> names;
+      for (const Case& one : cases) names.emplace_back(one.name);
+      if (!tree->is_scalar()) refuse(*tree, field, shown(*tree) + " is not a name", suggestion("", names));
+      const auto found = std::find(names.begin(), names.end(), tree->text);
+      if (found == names.end())
+        refuse(*tree, field, fmt::format("unknown value '{}'", tree->text), suggestion(tree->text, names));
+      index = static_cast<std::size_t>(found - names.begin());
       const bool is_type = std::any_of(cases.begin(), cases.end(), [](const Case& one) { return bool(one.list); });
       if (is_type) type_layer_ = std::max(type_layer_, tree->layer);
     }
@@ -158,10 +126,7 @@ class Resolver final : public Fields {
   }
 
   void section(Options& options, const Field& field) override {
-    const Tree* tree = claim(field);
-    Resolver inner(tree, path_ + field.name + ".", plugins_, notes_, output_.place);
-    options.list(inner);
-    output_.at(field.name) = inner.finish();
+    output_.at(field.name) = read_group(options, claim(field), name(field));
   }
 
   void section(bool& present, Options& options, const Field& field) override {
@@ -171,40 +136,28 @@ class Resolver final : public Fields {
                   "write {} for its defaults, or none");
     }
     if (tree != nullptr) present = !is_none(*tree);
-    if (!present) return;
-    Resolver inner(tree, path_ + field.name + ".", plugins_, notes_, output_.place);
-    options.list(inner);
-    output_.at(field.name) = inner.finish();
+    if (present) output_.at(field.name) = read_group(options, tree, name(field));
   }
 
   void sections(const ListAccess& access, const Field& field) override {
     Tree list = Tree::list();
     if (const Tree* tree = claim(field)) {
-      if (tree->kind != Tree::Kind::list) {
-        throw Error(tree->place.text(), fmt::format("{}: expects a list", name(field)), "write [{...}, {...}]");
-      }
+      check_list(*tree, field, "write [{...}, {...}]");
       access.resize(tree->items.size());
-      for (std::size_t i = 0; i < tree->items.size(); ++i) {
-        Resolver inner(&tree->items[i], fmt::format("{}{}.{}.", path_, field.name, i), plugins_, notes_, output_.place);
-        access.item(i).list(inner);
-        list.items.push_back(inner.finish());
-      }
+      for (std::size_t i = 0; i < tree->items.size(); ++i)
+        list.items.push_back(read_group(access.item(i), &tree->items[i], fmt::format("{}.{}", name(field), i)));
     }
     output_.at(field.name) = std::move(list);
   }
 
   void plugin(PluginChoice& choice, const Field& field) override {
     const Tree* tree = claim(field);
-    if (tree == nullptr && !choice.type.empty()) {
-      output_.at(field.name) = read_default(choice, path_ + field.name);
-      return;
-    }
-    if (tree == nullptr || tree->kind == Tree::Kind::null) {
+    if (tree != nullptr ? tree->kind == Tree::Kind::null : choice.type.empty()) {
       refuse_misspelt(field.name);
       throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
                   fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name));
     }
-    output_.at(field.name) = read_typed(choice, *tree, path_ + field.name);
+    output_.at(field.name) = read_plugin(choice, tree, name(field));
   }
 
   void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) override {
@@ -219,17 +172,13 @@ class Resolver final : public Fields {
   void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) override {
     const Tree* tree = claim(field);
     if (tree != nullptr) {
-      if (tree->kind != Tree::Kind::list) {
-        throw Error(tree->place.text(), fmt::format("{}: expects a list", name(field)),
-                    "write [{type: ...}, {type: ...}]");
-      }
+      check_list(*tree, field, "write [{type: ...}, {type: ...}]");
       choices.assign(tree->items.size(), PluginChoice{kind, {}, nullptr});
     }
     Tree list = Tree::list();
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      const std::string path = fmt::format("{}{}.{}", path_, field.name, i);
-      list.items.push_back(tree != nullptr ? read_typed(choices[i], tree->items[i], path)
-                                           : read_default(choices[i], path));
+      const Tree* item = tree != nullptr ? &tree->items[i] : nullptr;
+      list.items.push_back(read_plugin(choices[i], item, fmt::format("{}.{}", name(field), i)));
     }
     output_.at(field.name) = std::move(list);
   }
@@ -262,20 +211,22 @@ class Resolver final : public Fields {
   std::string owner() const { return path_.empty() ? "the config" : path_.substr(0, path_.size() - 1); }
   std::string where() const { return output_.place.text(); }
 
-  static std::string place_text(const Tree& tree) { return tree.place.text(); }
   static bool is_none(const Tree& tree) { return tree.is_scalar() && !tree.quoted && tree.text == "none"; }
+  static bool is_row(const Tree& tree, std::size_t values) {
+    return tree.kind == Tree::Kind::list && tree.items.size() == values;
+  }
   static std::string shown(const Tree& tree) {
-    switch (tree.kind) {
-      case Tree::Kind::scalar:
-        return "'" + tree.text + "'";
-      case Tree::Kind::list:
-        return "a list";
-      case Tree::Kind::map:
-        return "a map";
-      case Tree::Kind::null:
-        return "nothing";
-    }
-    return {};
+    constexpr std::array kKinds{"nothing", "a value", "a list", "a map"};
+    return tree.is_scalar() ? "'" + tree.text + "'" : kKinds[static_cast<std::size_t>(tree.kind)];
+  }
+
+  [[noreturn]] void refuse(const Tree& at, const Field& field, const std::string& reason,
+                           const std::string& hint) const {
+    throw Error(at.place.text(), fmt::format("{}: {}", name(field), reason), hint);
+  }
+
+  void check_list(const Tree& tree, const Field& field, const char* hint) const {
+    if (tree.kind != Tree::Kind::list) refuse(tree, field, "expects a list", hint);
   }
 
   /// Finds the field's value and remembers that the field exists. Null when the config does not say it.
@@ -313,18 +264,15 @@ class Resolver final : public Fields {
   /// What a dotted key stands for, as a file has it: `weight: {clip: yes}`.
   static std::string nested(const Tree::Entry& entry) {
     std::string out;
-    std::string braces;
-    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-      end = entry.key.find('.', begin);
-      out += entry.key.substr(begin, end == std::string::npos ? end : end - begin) + ": ";
-      if (end == std::string::npos) continue;
-      out += "{";
-      braces += "}";
+    std::string end;
+    for (const char c : entry.key) {
+      out += c == '.' ? ": {" : std::string(1, c);
+      if (c == '.') end += '}';
     }
     constexpr std::size_t kShort = 40;
     const std::string& text = entry.value.text;
     const bool short_value = entry.value.is_scalar() && text.size() < kShort && text.find('\n') == std::string::npos;
-    return out + (short_value ? entry.value.text : "...") + braces;
+    return out + ": " + (short_value ? text : "...") + end;
   }
 
   /// Before complaining that `missing` is missing: perhaps it is there under a name that is nearly right.
@@ -339,21 +287,21 @@ class Resolver final : public Fields {
 
   void write(const Field& field, Tree value) {
     const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
-    notes_.origins.push_back({path_ + field.name, tree != nullptr ? place_text(*tree) : "default"});
+    notes_.origins.push_back({path_ + field.name, tree != nullptr ? tree->place.text() : "default"});
     if (tree != nullptr) value.place = tree->place;
     output_.at(field.name) = std::move(value);
   }
 
+  double quantity(const Tree& tree, const Field& field) const {
+    return checked(read_quantity(tree, name(field), field.unit), tree, field);
+  }
+
   double checked(double value, const Tree& tree, const Field& field) const {
     const bool low = field.open_below ? !(value > field.least) : value < field.least;
-    if (low || value > field.most) {
-      const std::string bound =
-          low ? fmt::format("{} {}", field.open_below ? "above" : "at least", write_quantity(field.least, field.unit))
-              : fmt::format("at most {}", write_quantity(field.most, field.unit));
-      throw Error(tree.place.text(), fmt::format("{}: {} is out of range", name(field), tree.text),
-                  fmt::format("it must be {}", bound));
-    }
-    return value;
+    if (!low && !(value > field.most)) return value;
+    const char* const bound = !low ? "at most" : field.open_below ? "above" : "at least";
+    refuse(tree, field, tree.text + " is out of range",
+           fmt::format("it must be {} {}", bound, write_quantity(low ? field.least : field.most, field.unit)));
   }
 
   std::int64_t whole(const Tree& tree, const Field& field) const {
@@ -362,23 +310,11 @@ class Resolver final : public Fields {
     return value;
   }
 
-  /// A plugin that the config does not say.
-  Tree read_default(PluginChoice& choice, const std::string& path) {
-    static const Tree nothing = Tree::map();
-    return read_plugin(choice, nothing, nullptr, path);
-  }
-
-  /// A plugin at `path` whose group must name its type.
-  Tree read_typed(PluginChoice& choice, const Tree& tree, const std::string& path) {
-    if (!tree.is_map()) {
-      throw Error(tree.place.text(), fmt::format("{} is not a group of options", path), "write {type: ...}");
-    }
-    const Tree* type = tree.find("type");
-    if (type == nullptr) {
-      throw Error(tree.place.text(), fmt::format("{} has no type", path),
-                  fmt::format("'palpate plugins {}' lists the types", choice.kind));
-    }
-    return read_plugin(choice, tree, type, path);
+  /// Nested options; `tree` is null where the config does not say them.
+  Tree read_group(Options& options, const Tree* tree, const std::string& path) {
+    Resolver inner(tree, path + ".", plugins_, notes_, output_.place);
+    options.list(inner);
+    return inner.finish();
   }
 
   /// What stands at `path` to name a plugin.
@@ -395,18 +331,34 @@ class Resolver final : public Fields {
     if (fields.silent_) return;
     try {
       plugins_.describe(choice.kind, choice.type, fields);
-    } catch (const Error& trouble) {
+    } catch (const Error& trouble) {  // thrown on: a source of plugins knows no places
       if (!trouble.where().empty()) throw;
       throw Error(place, trouble.reason(), trouble.hint(), trouble.kind());
     }
   }
 
-  /// Fills `choice`; returns what goes into the resolved config.
-  Tree read_plugin(PluginChoice& choice, const Tree& tree, const Tree* type, const std::string& path) {
+  /// What names the type of the plugin at `path`.
+  static const Tree& type_of(const Tree& tree, const std::string& kind, const std::string& path) {
+    if (!tree.is_map())
+      throw Error(tree.place.text(), fmt::format("{} is not a group of options", path), "write {type: ...}");
+    if (const Tree* type = tree.find("type")) return *type;
+    throw Error(tree.place.text(), fmt::format("{} has no type", path),
+                fmt::format("'palpate plugins {}' lists the types", kind));
+  }
+
+  /// Fills `choice`; returns what goes into the resolved config. `tree` is null where the config does not say the
+  /// plugin and `choice` names the default.
+  Tree read_plugin(PluginChoice& choice, const Tree* tree, const std::string& path) {
+    static const Tree nothing = Tree::map();
+    const Tree* const type = tree != nullptr ? &type_of(*tree, choice.kind, path) : nullptr;
     const std::string at = type != nullptr ? type->place.text() : where();
     if (type != nullptr) choice.type = name_of_plugin(*type, choice.kind, path + ".type");
-    Resolver inner(&tree, path + ".", plugins_, notes_, output_.place);
-    inner.set_type(type != nullptr ? *type : tree, choice.kind + "/" + choice.type);
+    Resolver inner(tree != nullptr ? tree : &nothing, path + ".", plugins_, notes_, output_.place);
+    inner.plugin_ = choice.kind + "/" + choice.type;
+    inner.known_.emplace_back("type");
+    inner.type_layer_ = (type != nullptr ? *type : nothing).layer;  // options older than it may be dropped
+    // What the type needs is missing where it was chosen, not in the group file that it was laid over.
+    if (type != nullptr && type->place.file) inner.output_.place = type->place;
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
     list_plugin(choice, at, inner);
     Tree options = inner.finish();
@@ -431,10 +383,6 @@ class Resolver final : public Fields {
 };
 
 }  // namespace
-
-Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes) {
-  return resolve(options, input, plugins, notes, {});
-}
 
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere) {

@@ -36,11 +36,10 @@ struct ResolveNotes {
 };
 
 /// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first
-/// unknown key, wrong type, missing unit or value out of range.
-Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes);
-/// The same; `elsewhere` are keys beside those of `options` that others read: the hint of an unknown one names them.
+/// unknown key, wrong type, missing unit or value out of range. `elsewhere` are keys beside those of `options` that
+/// others read: the hint of an unknown one names them.
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
-             const std::vector<std::string>& elsewhere);
+             const std::vector<std::string>& elsewhere = {});
 
 /// Lists the fields that `describe` knows into the values of a tree that was resolved before: how plugins are made.
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,

@@ -4,10 +4,10 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 
 namespace palpate {
 
@@ -18,22 +18,15 @@ std::string Place::text() const {
 }
 
 Tree Tree::scalar(std::string text, bool quoted) {
-  Tree tree;
-  tree.kind = Kind::scalar;
+  Tree tree(Kind::scalar);
   tree.text = std::move(text);
   tree.quoted = quoted;
   return tree;
 }
 
-Tree Tree::list() {
-  Tree tree;
-  tree.kind = Kind::list;
-  return tree;
-}
-
-Tree Tree::map() {
-  Tree tree;
-  tree.kind = Kind::map;
+Tree Tree::list(std::vector<Tree> items) {
+  Tree tree(Kind::list);
+  tree.items = std::move(items);
   return tree;
 }
 
@@ -252,9 +245,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& kn
   if (near.empty()) near = longer_form(name, known);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
   if (known.empty()) return {};
-  return fmt::format("known: {}",
-                     std::accumulate(std::next(known.begin()), known.end(), known.front(),
-                                     [](const std::string& a, const std::string& b) { return a + ", " + b; }));
+  return fmt::format("known: {}", fmt::join(known, ", "));
 }
 
 }  // namespace palpate

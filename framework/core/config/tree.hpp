@@ -42,9 +42,14 @@ struct Tree {
   Place place;
   Layer layer = kFileLayer;
 
+  Tree() = default;
+  explicit Tree(Kind of) : kind(of) {}
   static Tree scalar(std::string text, bool quoted = false);
-  static Tree list();
-  static Tree map();
+  /// A scalar that is text whatever it looks like.
+  static Tree quote(std::string text) { return scalar(std::move(text), true); }
+  static Tree list() { return Tree(Kind::list); }
+  static Tree list(std::vector<Tree> items);
+  static Tree map() { return Tree(Kind::map); }
 
   bool is_map() const { return kind == Kind::map; }
   bool is_scalar() const { return kind == Kind::scalar; }

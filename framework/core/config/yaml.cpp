@@ -167,7 +167,7 @@ YAML::Node load(const std::string& text, const std::string& file) {
                   "remove a '---' or a stray sign here or before");
     }
     return YAML::Load(text);
-  } catch (const YAML::Exception& trouble) {
+  } catch (const YAML::Exception& trouble) {  // thrown on as an Error: the library's own goes no further
     // yaml-cpp's message for deep nesting is "bad file", which misleads.
     const bool deep = dynamic_cast<const YAML::DeepRecursion*>(&trouble) != nullptr;
     throw Error(
@@ -276,7 +276,7 @@ Tree parse_value(const std::string& text, const std::string& file) {
   std::optional<YAML::Node> document;
   try {
     if (!is_block && !second_document(text)) document = YAML::Load(text);
-  } catch (const YAML::Exception&) {
+  } catch (const YAML::Exception&) {  // then it is text: see below
   }
   if (document) return Converter(file, text, false).convert(*document);
   Tree tree = Tree::scalar(text, true);

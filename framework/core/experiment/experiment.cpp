@@ -25,7 +25,7 @@ void Experiment::run(Journal& journal, int most_taps) {
     tap->contact = touch(*tap);
     if (is_broken_off(tap->contact)) return watch_.stop(kStoppedByUser);
     if (tap->contact.outcome == Outcome::contact) tap->on_surface = scene_->on_surface(tap->contact.height);
-    observe({tap->target, tap->contact, tap->source});
+    observe(*tap);
     journal.record(*tap, clock_.take());
     check_backend(tap->contact);
   }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/policy.hpp"
 
-#include <palpate/error.hpp>
-
-#include <fmt/format.h>
 #include <boost/random/sobol.hpp>
 
 #include <algorithm>
@@ -68,10 +65,6 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
 std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
                                 std::uint64_t seed) {
   const auto count = static_cast<std::size_t>(options.count);
-  if (!options.searches() && options.count > candidates.size()) {
-    throw Error("initial.count", fmt::format("{} taps, but there are only {} candidates", count, candidates.size()),
-                "take fewer first taps or more candidates");
-  }
   Random random(seed, "initial");
   std::vector<int> design;
   switch (options.design) {

@@ -16,8 +16,8 @@
 namespace palpate {
 
 /// The candidates of the first taps, all different, of a design that counts them. Depends on the design, the candidates
-/// and the seed alone, so that strategies with equal seeds start alike. Throws Error when there are fewer candidates
-/// than taps.
+/// and the seed alone, so that strategies with equal seeds start alike. There are as many candidates: the field list of
+/// the config refuses fewer.
 std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
                                 std::uint64_t seed);
 

@@ -114,18 +114,15 @@ void TapBelief::observe(const Target& place, const Contact& contact, bool initia
   initial_taps_ += initial ? 1 : 0;
   if (contact.outcome != Outcome::contact) return;
   const bool on = context_.scene.on_surface(contact.height);
-  const Datum datum{place, contact.height - desk_, on ? 1.0 : 0.0};
-  if (footprint_) touches_.push_back({place, datum.height, on});
-  heights_.data.push_back(datum);
-  if (!joined_) labels_.data.push_back(datum);
-  if (on) object_.data.push_back(datum);
+  touches_.push_back({place, contact.height - desk_, on});
+  if (on) hits_.push_back(touches_.back());
   current_ = false;
 }
 
 Quantities TapBelief::known(Quantities asked) const {
   const bool of_weight = asked.has(Quantity::weight) || (asked.has(Quantity::probability) && !footprint_);
-  const bool of_heights =
-      asked.has(Quantity::uncertainty) || (asked.has(Quantity::height) && !two_part_) || (of_weight && joined_);
+  const bool of_heights = asked.has(Quantity::uncertainty) || (asked.has(Quantity::height) && !two_part_) ||
+                          (of_weight && joined_);  // two outputs of one process
   Quantities out = asked;
   if (of_weight) out = out | Quantity::weight;
   if (of_weight && !footprint_) out = out | Quantity::probability;
@@ -135,14 +132,11 @@ Quantities TapBelief::known(Quantities asked) const {
 }
 
 std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
-  const bool of_weight = quantities.has(Quantity::weight) || (quantities.has(Quantity::probability) && !footprint_);
+  const Quantities all = known(quantities);
   std::vector<std::string> out;
-  if (quantities.has(Quantity::uncertainty) || (quantities.has(Quantity::height) && !two_part_) ||
-      (of_weight && joined_)) {  // two outputs of one process
-    out.emplace_back("height process");
-  }
-  if (quantities.has(Quantity::height) && two_part_) out.emplace_back("surface process");
-  if (of_weight) out.emplace_back("weight process");
+  if (all.has(Quantity::uncertainty)) out.emplace_back("height process");
+  if (all.has(Quantity::height) && two_part_) out.emplace_back("surface process");
+  if (all.has(Quantity::weight)) out.emplace_back("weight process");
   if (quantities.has(Quantity::probability) && footprint_) out.push_back("footprint " + footprint_type_);
   return out;
 }
@@ -197,10 +191,12 @@ void TapBelief::take_in(Model& model) {
   // One by one, fits included: a process that is asked for late, or after a resume, goes through the very states that
   // one which was there from the first tap went through.
   Process& process = *model.process;
-  while (process.size() < static_cast<int>(model.data.size())) {
-    const Datum& datum = model.data[static_cast<std::size_t>(process.size())];
-    const std::array<double, 2> values{model.of_labels ? datum.label : datum.height, datum.label};
-    process.add(datum.place,
+  const std::vector<Touch>& data = data_of(model);
+  while (process.size() < static_cast<int>(data.size())) {
+    const Touch& touch = data[static_cast<std::size_t>(process.size())];
+    const double label = touch.on ? 1.0 : 0.0;
+    const std::array<double, 2> values{model.of_labels ? label : touch.height, label};
+    process.add(touch.place,
                 Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(model.outputs.size())));
     if (model.fitting->due(process.size())) fit(model);
     model.stale = true;

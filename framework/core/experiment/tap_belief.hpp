@@ -104,11 +104,6 @@ class TapBelief final : public Belief {
   Prediction predict(int candidate) const;
 
  private:
-  struct Datum {
-    Target place;
-    double height;
-    double label;
-  };
   using Map = std::optional<Eigen::VectorXd>;
   /// A process and all that it is made from; built when it is asked for.
   struct Model {
@@ -117,7 +112,6 @@ class TapBelief final : public Belief {
     std::shared_ptr<Fitting> fitting;
     std::vector<ProcessSettings> outputs;
     bool of_labels = false;  ///< the first output is the labels
-    std::vector<Datum> data;
     std::unique_ptr<Process> process;
     bool stale = false;  ///< its maps are older than the process
     FitSummary fit;
@@ -130,6 +124,8 @@ class TapBelief final : public Belief {
   bool equal_for_good(const ExperimentOptions& options) const;
   const Model& labels() const { return joined_ ? heights_ : labels_; }
   int label_output() const { return joined_ ? 1 : 0; }
+  /// The taps that a model learns from.
+  const std::vector<Touch>& data_of(const Model& model) const { return &model == &object_ ? hits_ : touches_; }
   const Model& surface() const { return two_part_ ? object_ : heights_; }
   static Output output(const Model& model, int output);
   void show(Model& model, int output);
@@ -156,11 +152,12 @@ class TapBelief final : public Belief {
   Model heights_;
   Model labels_;                          ///< unless joined
   Model object_;                          ///< heights of the taps on an object
+  std::vector<Touch> touches_;            ///< all contacts, heights above the desk
+  std::vector<Touch> hits_;               ///< those on an object
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
   std::string footprint_type_;
   bool footprint_asked_ = false;
-  std::vector<Touch> touches_;  ///< of the footprint
-  std::size_t touches_taken_ = 0;
+  std::size_t touches_taken_ = 0;  ///< by the footprint
   int failed_fits_ = 0;
   Map uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
 };

@@ -40,14 +40,28 @@ struct FootprintState {
   std::string remark;
 };
 
+/// All models as they stood, as far as the loop had built them, and how good they were.
+struct ModelState {
+  std::optional<ProcessState> height_process, weight_process;
+  std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
+  std::optional<FootprintState> footprint;
+  std::optional<Forecast> forecast;  ///< where a stop rule asks for it
+  Errors errors;
+};
+
+/// A tap that was made, as far as what comes after depends on it.
+struct PastTap {
+  Target target;
+  Contact contact;
+  Source source = Source::initial;
+};
+
 /// One tap: the choice, the state it was made from, and what came of it. Everything about the models is absent where
 /// the loop had not built them.
-struct TapRecord {
+struct TapRecord : PastTap, ModelState {
   int number = 1;
-  Source source = Source::initial;
   std::string why;  ///< of a fallback
   int candidate = 0;
-  Target target;
 
   // At the choice.
   std::optional<double> score, uncertainty, weight, exploration;
@@ -56,16 +70,10 @@ struct TapRecord {
   std::optional<Target> runner_up;
   std::optional<double> runner_up_score;
   std::optional<double> max_standard_deviation, mean_standard_deviation, min_weight, max_weight;
-  std::optional<ProcessState> height_process, weight_process;
-  std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
-  std::optional<FootprintState> footprint;
-  std::optional<Forecast> forecast;  ///< where a stop rule asks for it
-  Errors errors;
 
   std::optional<Prediction> predicted;  ///< of the height at the target; only for a backend that wants it
 
   // After the tap.
-  Contact contact;
   std::optional<bool> on_surface;       ///< absent unless the outcome is a contact
   std::optional<bool> true_on_surface;  ///< absent where no truth is known
 };
@@ -77,7 +85,7 @@ constexpr const char* kStoppedByUser = "interrupted";
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 
 /// The result of a run, in the order of summary.json but for what the record adds (clocks, memory, names).
-struct RunResult {
+struct RunResult : ModelState {
   std::string stop_reason;
   bool interrupted = false;
   int taps = 0;
@@ -85,15 +93,10 @@ struct RunResult {
   int off_surface_taps = 0;
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
-  std::optional<Forecast> forecast;  ///< where a stop rule asks for it
-  Errors errors;
   Calibration calibration;
   double robot_seconds = 0.0;
   double jitter_max = 0.0;
   std::map<std::string, int> interventions;  ///< by kind, zeros included
-  /// The final models, as far as they were built; that of the surface only for `surface: two_part`.
-  std::optional<ProcessState> height_process, weight_process, surface_process;
-  std::optional<FootprintState> footprint;
 };
 
 /// What is known of a tap before it is made, for people.
@@ -122,13 +125,6 @@ class Journal {
   virtual bool follows_errors() const { return false; }
   /// The tap is over. `seconds` is the time since the last tap, by phase.
   virtual void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) = 0;
-};
-
-/// A tap that was made, as far as what comes after depends on it.
-struct PastTap {
-  Target target;
-  Contact contact;
-  Source source = Source::initial;
 };
 
 }  // namespace palpate

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "gp/axis_basis.hpp"
 
+#include "gp/tolerances.hpp"
+
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace palpate {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Covariances along one axis between some places.
 class Line {

@@ -53,8 +53,8 @@ class Engine {
   /// if it is the same at all.
   virtual void restart(int means, const VectorView& prior) = 0;
 
-  /// Takes one more row into the maps; `rule` says which score the bounds of the maps are for.
-  virtual void absorb(const FactorRow& row, const ScoreRule& rule) = 0;
+  /// Takes one more row into the maps.
+  virtual void absorb(const FactorRow& row) = 0;
 
   /// The largest error of a covariance between a tap and a candidate so far, in the unit of the kernel: what the engine
   /// leaves away, beyond what the kernel itself may be off by rounding.

@@ -27,7 +27,7 @@ class Dense final : public Engine {
     maps_.restart(means, prior);
   }
 
-  void absorb(const FactorRow& row, const ScoreRule& rule) override {
+  void absorb(const FactorRow& row) override {
     const int depth = rows_.rows();
     rows_.extend();
     machine_.workers->for_each(maps_.tiling().strips(), [&](int piece, int) {
@@ -37,7 +37,7 @@ class Dense final : public Engine {
       kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1), own.head(count));
       own.tail(simd::kPiece - count).setZero();
       machine_.loops->absorb_dense({rows_.panel(piece), row.factor.data(), depth, row.pivot},
-                                   maps_.update(piece, row.coefficients, rule));
+                                   maps_.update(piece, row.coefficients));
     });
   }
 

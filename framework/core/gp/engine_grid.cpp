@@ -35,7 +35,7 @@ class Grid final : public Engine {
     maps_.restart(means, prior);
   }
 
-  void absorb(const FactorRow& row, const ScoreRule& rule) override {
+  void absorb(const FactorRow& row) override {
     append(0, candidates_.xs, row, along_x_);
     append(1, candidates_.ys, row, along_y_);
     const int depth = along_x_.rows();
@@ -53,7 +53,7 @@ class Grid final : public Engine {
       }
       machine_.loops->absorb_product(
           {a, a_stride, count, along_x_.panel(0), along_x_.stride(), depth, along_x_.padded() / kLine},
-          maps_.update(first, row.coefficients, rule));
+          maps_.update(first, row.coefficients));
     });
   }
 

@@ -77,7 +77,7 @@ class Lowrank final : public Engine {
     maps_.restart(means, prior);
   }
 
-  void absorb(const FactorRow& row, const ScoreRule& rule) override {
+  void absorb(const FactorRow& row) override {
     x_.take(kernel_, 0, row);
     y_.take(kernel_, 1, row);
     in_x_.append(x_.coordinates.data());
@@ -90,7 +90,7 @@ class Lowrank final : public Engine {
       double* const a = a_[static_cast<std::size_t>(worker)].data();
       gather(strip, a);
       const simd::Product product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
-      const simd::Update update = maps_.update(strip, row.coefficients, rule);
+      const simd::Update update = maps_.update(strip, row.coefficients);
       if (mirror > 0) {
         machine_.loops->absorb_mirrored({product, x_.basis.even, mirror}, update);
       } else {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gp/maps.hpp"
 
-#include <limits>
-
 namespace palpate {
 
 Tiling Tiling::pieces(int candidates) {
@@ -41,8 +39,7 @@ void Tiling::tile(int columns) {
   strip_size_ = static_cast<std::size_t>(padded_) * simd::kStripRows;
 }
 
-Maps::Maps(const Tiling& tiling)
-    : tiling_(tiling), variance_(tiling.size()), best_(static_cast<std::size_t>(tiling.tiles())) {}
+Maps::Maps(const Tiling& tiling) : tiling_(tiling), variance_(tiling.size()) {}
 
 void Maps::restart(int means, const VectorView& prior) {
   means_ = means;
@@ -52,7 +49,6 @@ void Maps::restart(int means, const VectorView& prior) {
     std::fill_n(map.data(), map.size(), 0.0);
   }
   const bool same = prior.size() == 1;
-  // Padding has no variance and thus a score of 0.
   std::fill_n(variance_.data(), variance_.size(), 0.0);
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
@@ -60,10 +56,9 @@ void Maps::restart(int means, const VectorView& prior) {
         variance_.data()[cell + static_cast<std::size_t>(i)] = prior(same ? 0 : candidate + step * i);
     });
   }
-  std::fill(best_.begin(), best_.end(), std::numeric_limits<double>::infinity());
 }
 
-simd::Update Maps::update(int strip, const double* coefficients, const ScoreRule& rule) {
+simd::Update Maps::update(int strip, const double* coefficients) {
   const std::size_t first = static_cast<std::size_t>(strip) * tiling_.strip_size();
   simd::Update out{};
   out.means = means_;
@@ -72,9 +67,6 @@ simd::Update Maps::update(int strip, const double* coefficients, const ScoreRule
     out.mean[k] = mean_[static_cast<std::size_t>(k)].data() + first;
   }
   out.variance = variance_.data() + first;
-  out.scale = rule.scale;
-  out.shift = rule.shift;
-  out.best = rule.wanted ? best_.data() + strip * tiling_.tiles_per_strip() : nullptr;
   return out;
 }
 
@@ -89,16 +81,5 @@ void Maps::read(const simd::Lines& map, VectorOut out) const {
 void Maps::read_mean(int k, VectorOut out) const { read(mean_[static_cast<std::size_t>(k)], out); }
 
 void Maps::read_variance(VectorOut out) const { read(variance_, out); }
-
-int Maps::read_tile(int tile, int k, TileCell* out) const {
-  const double* const mean = mean_[static_cast<std::size_t>(k)].data();
-  int cells = 0;
-  tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
-    for (int i = 0; i < count; ++i, ++cell) {
-      out[cells++] = {candidate + step * i, variance_.data()[cell], mean[cell]};
-    }
-  });
-  return cells;
-}
 
 }  // namespace palpate

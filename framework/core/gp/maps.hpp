@@ -11,12 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 namespace palpate {
 
 /// Where the candidates lie in a map. A map is a sequence of strips, which are what one call updates; a strip is
-/// a sequence of tiles, of each of which the best score is known.
+/// a sequence of tiles, one a panel of the columns.
 class Tiling {
  public:
   /// Any places: strips of one tile of simd::kPiece candidates one after the other.
@@ -28,7 +27,6 @@ class Tiling {
   static Tiling mirrored_grid(const Candidates& candidates);
 
   int strips() const { return strips_; }
-  int tiles_per_strip() const { return tiles_per_strip_; }
   int tiles() const { return strips_ * tiles_per_strip_; }
   /// Cells in a strip and in all, padding included.
   std::size_t strip_size() const { return strip_size_; }
@@ -75,20 +73,6 @@ class Tiling {
   std::ptrdiff_t mirror_ = 0;
 };
 
-/// Whether the loops form the exploration function e = u w, and how the weight w follows from the maps.
-struct ScoreRule {
-  bool wanted = false;
-  double scale = 1.0;  ///< the weight is scale * (second mean) + shift
-  double shift = 0.0;
-};
-
-struct TileCell {
-  int candidate;
-  double variance;
-  double mean;
-};
-constexpr int kMostCells = 2 * simd::kStripRows * simd::kPanelLines * simd::kLine;
-
 /// Maps of means and of the variance as they stand, all in units of the prior.
 class Maps {
  public:
@@ -98,16 +82,12 @@ class Maps {
   void restart(int means, const VectorView& prior);
 
   /// What the loops need to take a row with such coefficients into the cells of a strip.
-  simd::Update update(int strip, const double* coefficients, const ScoreRule& rule);
+  simd::Update update(int strip, const double* coefficients);
 
   /// The mean number k, and the variance, at all candidates.
   void read_mean(int k, VectorOut out) const;
   void read_variance(VectorOut out) const;
 
-  /// The largest score of a tile, or more, as of the latest update: padding is not told from candidates.
-  double bound(int tile) const { return best_[static_cast<std::size_t>(tile)]; }
-  /// The candidates of a tile, at most kMostCells of them, with variance and mean number k; returns how many.
-  int read_tile(int tile, int k, TileCell* out) const;
   const Tiling& tiling() const { return tiling_; }
 
  private:
@@ -117,7 +97,6 @@ class Maps {
   int means_ = 0;
   std::array<simd::Lines, simd::kMeans> mean_;
   simd::Lines variance_;
-  std::vector<double> best_;
 };
 
 }  // namespace palpate

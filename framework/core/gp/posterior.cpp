@@ -10,36 +10,47 @@
 namespace palpate {
 namespace {
 
-EngineChoice choose_separable(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
-                              double error) {
-  const auto grid = [&](std::string reason) -> EngineChoice {
-    return {make_grid(settings.machine, kernel, candidates), std::move(reason)};
-  };
+using Kind = PosteriorSettings::Kind;
+
+/// An engine by its kind, and why that one.
+struct Choice {
+  Kind engine;
+  std::string reason;
+};
+
+Choice choose_separable(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
+                        double error) {
   if (error > settings.accuracy) {
-    return grid(
-        fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy));
+    return {Kind::grid,
+            fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy)};
   }
   // Multiplications a candidate and tap: those of `grid` grow with the taps; `lowrank` has half its rank, as grids are
   // their own mirror image, and what it does in its own coordinates once a tap. A short run earns back no basis.
   const double of_grid = 0.5 * settings.taps;
   constexpr double kShort = 12;
-  if (of_grid < kShort) return grid(fmt::format("separable kernel on a grid and {} taps", settings.taps));
+  if (of_grid < kShort) return {Kind::grid, fmt::format("separable kernel on a grid and {} taps", settings.taps)};
   const int x = axis_rank(kernel, 0, candidates.xs, settings.tolerance, settings.taps);
   const int y = axis_rank(kernel, 1, candidates.ys, settings.tolerance, settings.taps);
   // Each tap would bring a direction of its own, and the basis alone could cost more than all of them.
-  if (std::max(x, y) >= settings.taps) {
-    return grid(fmt::format("separable kernel of a rank that {} taps do not reach", settings.taps));
-  }
+  if (std::max(x, y) >= settings.taps)
+    return {Kind::grid, fmt::format("separable kernel of a rank that {} taps do not reach", settings.taps)};
   const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
-  const std::string found = fmt::format("separable kernel of rank {} x {} on a grid and {} taps", x, y, settings.taps);
-  if (of_lowrank >= of_grid) return grid(found);
-  return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance), found};
+  return {of_lowrank < of_grid ? Kind::lowrank : Kind::grid,
+          fmt::format("separable kernel of rank {} x {} on a grid and {} taps", x, y, settings.taps)};
+}
+
+Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
+                   double error) {
+  if (settings.engine != Kind::automatic) return {settings.engine, "asked for"};
+  if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
+  if (!candidates.is_grid()) return {Kind::dense, "the candidates are no product grid"};
+  if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};
+  return choose_separable(settings, kernel, candidates, error);
 }
 
 }  // namespace
 
 std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates) {
-  using Kind = PosteriorSettings::Kind;
   if (settings.engine == Kind::automatic || settings.engine == Kind::dense) return {};
   if (!kernel.separable()) return "which is not separable: no product of a factor along x and one along y";
   if (!candidates.is_grid()) return "as the candidates are no product grid";
@@ -48,24 +59,12 @@ std::string objection(const PosteriorSettings& settings, const Kernel& kernel, c
 
 EngineChoice choose_engine(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
                            double error) {
-  const auto dense = [&](const char* reason) -> EngineChoice {
-    return {make_dense(settings.machine, kernel, candidates), reason};
-  };
-  constexpr const char* kAsked = "asked for";
-  switch (settings.engine) {
-    case PosteriorSettings::Kind::dense:
-      return dense(kAsked);
-    case PosteriorSettings::Kind::grid:
-      return {make_grid(settings.machine, kernel, candidates), kAsked};
-    case PosteriorSettings::Kind::lowrank:
-      return {make_lowrank(settings.machine, kernel, candidates, settings.tolerance), kAsked};
-    case PosteriorSettings::Kind::automatic:
-      break;
-  }
-  if (!kernel.separable()) return dense("the kernel is not separable");
-  if (!candidates.is_grid()) return dense("the candidates are no product grid");
-  if (!(settings.accuracy > 0.0)) return dense("no error is allowed");
-  return choose_separable(settings, kernel, candidates, error);
+  Choice choice = choose_kind(settings, kernel, candidates, error);
+  const Machine& machine = settings.machine;
+  return {choice.engine == Kind::dense  ? make_dense(machine, kernel, candidates)
+          : choice.engine == Kind::grid ? make_grid(machine, kernel, candidates)
+                                        : make_lowrank(machine, kernel, candidates, settings.tolerance),
+          std::move(choice.reason)};
 }
 
 }  // namespace palpate

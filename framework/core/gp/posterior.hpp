@@ -17,10 +17,7 @@ struct PosteriorSettings {
   /// prior variances.
   double accuracy = 1e-9;
   double tolerance = 1e-15;  ///< of `lowrank`: see make_lowrank()
-  /// Whether Process::best() will be asked for: bounds of e = u w then come out of the update of the maps. Not with an
-  /// unknown constant in the mean.
-  bool scores = false;
-  int taps = 64;  ///< that are expected: room is made for them, and `automatic` weighs engines by them
+  int taps = 64;             ///< that are expected: room is made for them, and `automatic` weighs engines by them
   Machine machine;
 };
 

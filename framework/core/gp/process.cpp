@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace palpate {
@@ -109,9 +108,7 @@ void Process::absorb(int row) {
   std::array<double, simd::kMeans> coefficients{};
   for (int k = 0; k < shown_; ++k) coefficients[static_cast<std::size_t>(k)] = reduced_(row, k);
   if (with_constant()) coefficients[static_cast<std::size_t>(shown_)] = reduced_(row, targets_.cols());
-  ScoreRule rule;
-  if (posterior_.scores && shown_ > 1) rule = {true, outputs_at(1).signal, outputs_at(1).mean};
-  engine.absorb({factored_.topRows(row + 1), factor_.row(row), factor_.pivot(row), inverse, coefficients.data()}, rule);
+  engine.absorb({factored_.topRows(row + 1), factor_.row(row), factor_.pivot(row), inverse, coefficients.data()});
 }
 
 void Process::restart() {
@@ -226,48 +223,6 @@ double Process::constant_precision() const {
 double Process::constant_mean() const {
   const int n = factor_.size();
   return reduced_.col(targets_.cols()).head(n).dot(reduced_.col(0).head(n)) / constant_precision();
-}
-
-int Process::best() const {
-  std::array<ScoredCell, kMostCells> cells;
-  ScoredCell best{-1, -std::numeric_limits<double>::infinity()};
-  const auto look = [&](int piece) {
-    const int count = read(piece, cells.data());
-    for (int i = 0; i < count; ++i) {
-      const ScoredCell& cell = cells[static_cast<std::size_t>(i)];
-      if (cell.score > best.score || (cell.score == best.score && cell.candidate < best.candidate)) best = cell;
-    }
-  };
-  // The one with the largest bound has a good score most often, so that few of the others need be read.
-  int first = 0;
-  for (int piece = 1; piece < pieces(); ++piece) {
-    if (bound(piece) > bound(first)) first = piece;
-  }
-  look(first);
-  for (int piece = 0; piece < pieces(); ++piece) {
-    if (piece != first && bound(piece) >= best.score) look(piece);
-  }
-  return best.candidate;
-}
-
-double Process::bound(int piece) const {
-  if (!same_prior_) return std::numeric_limits<double>::infinity();
-  const double best = maps().bound(piece) / prior_(0);
-  // read() forms the same products, but rounds them otherwise than the loops do.
-  const double rounding = 4.0 * kEpsilon;
-  return best + rounding * (std::abs(best) + std::abs(outputs_at(1).mean));
-}
-
-int Process::read(int piece, ScoredCell* out) const {
-  std::array<TileCell, kMostCells> cells;
-  const int count = maps().read_tile(piece, 1, cells.data());
-  for (int i = 0; i < count; ++i) {
-    const TileCell& cell = cells[static_cast<std::size_t>(i)];
-    const double prior = prior_(same_prior_ ? 0 : cell.candidate);
-    const double weight = outputs_at(1).signal * cell.mean + outputs_at(1).mean;
-    out[i] = {cell.candidate, std::min(std::max(cell.variance, 0.0), prior) / prior * weight};
-  }
-  return count;
 }
 
 template <class Use>

@@ -25,11 +25,6 @@ struct ProcessSettings {
   double mean_ratio = 0.0;
 };
 
-struct ScoredCell {
-  int candidate;
-  double score;
-};
-
 /// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates, of
 /// one quantity or of several that were measured at the same places and have the same kernel and ratio of noise to
 /// signal. These, the outputs, share all that does not depend on the targets: one factorisation, and one variance but
@@ -69,15 +64,6 @@ class Process {
   /// before; at first only output 0 has one.
   void show(int outputs);
   int shown() const { return shown_; }
-
-  /// The candidate of the highest score u w, of equals the first; u is the relative variance, w the mean of output 1,
-  /// which is shown. Most pieces of the maps need not be read for it, if the settings say that it will be asked for.
-  int best() const;
-  /// The scores in pieces: no score of a piece is above its bound. read() gives the candidates of a piece, in any order
-  /// and at most kMostCells, and returns how many.
-  int pieces() const { return maps().tiling().tiles(); }
-  double bound(int piece) const;
-  int read(int piece, ScoredCell* out) const;
 
   /// Posterior mean over the candidates, unit of the targets, of an output that is shown.
   void read_mean(int output, VectorOut out) const;

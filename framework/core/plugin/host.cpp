@@ -22,6 +22,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <vector>
 
 #include <boost/dll/shared_library.hpp>
@@ -225,11 +226,9 @@ PluginHost::~PluginHost() = default;
 std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
   std::vector<fs::path> out;
   if (const char* variable = std::getenv("PALPATE_PLUGIN_PATH")) {
-    const std::string text = variable;
-    for (std::size_t begin = 0; begin <= text.size();) {
-      const auto end = std::min(text.find(':', begin), text.size());
-      if (end > begin) out.emplace_back(text.substr(begin, end - begin));
-      begin = end + 1;
+    std::istringstream in(variable);
+    for (std::string folder; std::getline(in, folder, ':');) {
+      if (!folder.empty()) out.emplace_back(folder);
     }
   }
   out.push_back(shipped);

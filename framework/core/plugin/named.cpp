@@ -9,6 +9,7 @@
 #include <palpate/kernel.hpp>
 #include <palpate/shape.hpp>
 
+#include <functional>
 #include <utility>
 
 namespace palpate {
@@ -54,18 +55,18 @@ class Declared final : public Belief {
   const std::string& name_;
 };
 
+/// An object of a plugin, behind the interface that it implements: every call goes through here.
 template <class Interface>
 class Named : public Interface {
  public:
   Named(std::string name, std::shared_ptr<Interface> inner) : name_(std::move(name)), inner_(std::move(inner)) {}
 
  protected:
-  const std::string& name() const { return name_; }
-
-  template <class Call>
-  auto in_plugin(const Call& call) const {
+  /// What the method of that name does in the plugin.
+  template <class Method, class... Arguments>
+  auto call(Method method, Arguments&&... arguments) const {
     try {
-      return call(*inner_);
+      return std::invoke(method, *inner_, std::forward<Arguments>(arguments)...);
     } catch (const Undeclared&) {
       throw;
     } catch (const Error& trouble) {
@@ -78,6 +79,9 @@ class Named : public Interface {
     }
   }
 
+  /// `belief` as far as the plugin may read it.
+  Declared declared(const Belief& belief) const { return Declared(belief, call(&Interface::reads), name_); }
+
  private:
   std::string name_;
   std::shared_ptr<Interface> inner_;
@@ -87,120 +91,66 @@ class NamedKernel final : public Named<Kernel> {
  public:
   using Named::Named;
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
-    in_plugin([&](const Kernel& inner) { inner.covariance(a, b, out); });
+    call(&Kernel::covariance, a, b, out);
   }
-  void variance(const PointsView& a, VectorOut out) const override {
-    in_plugin([&](const Kernel& inner) { inner.variance(a, out); });
-  }
-  bool separable() const override {
-    return in_plugin([](const Kernel& inner) { return inner.separable(); });
-  }
+  void variance(const PointsView& a, VectorOut out) const override { call(&Kernel::variance, a, out); }
+  bool separable() const override { return call(&Kernel::separable); }
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
-    in_plugin([&](const Kernel& inner) { inner.axis_covariance(axis, a, b, out); });
+    call(&Kernel::axis_covariance, axis, a, b, out);
   }
-  std::vector<KernelParameter> parameters() const override {
-    return in_plugin([](const Kernel& inner) { return inner.parameters(); });
-  }
-  bool differentiable() const override {
-    return in_plugin([](const Kernel& inner) { return inner.differentiable(); });
-  }
-  void set_parameters(const VectorView& values) override {
-    in_plugin([&](Kernel& inner) { inner.set_parameters(values); });
-  }
+  std::vector<KernelParameter> parameters() const override { return call(&Kernel::parameters); }
+  bool differentiable() const override { return call(&Kernel::differentiable); }
+  void set_parameters(const VectorView& values) override { call(&Kernel::set_parameters, values); }
   void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
-    in_plugin([&](const Kernel& inner) { inner.derivatives(a, b, value, slopes); });
+    call(&Kernel::derivatives, a, b, value, slopes);
   }
 };
 
 class NamedAcquisition final : public Named<Acquisition> {
  public:
   using Named::Named;
-  Quantities reads() const override {
-    return in_plugin([](const Acquisition& inner) { return inner.reads(); });
-  }
-  void score(const Belief& belief, VectorOut out) const override {
-    in_plugin([&](const Acquisition& inner) { inner.score(Declared(belief, inner.reads(), this->name()), out); });
-  }
-  double prior_scale() const override {
-    return in_plugin([](const Acquisition& inner) { return inner.prior_scale(); });
-  }
+  Quantities reads() const override { return call(&Acquisition::reads); }
+  void score(const Belief& belief, VectorOut out) const override { call(&Acquisition::score, declared(belief), out); }
+  double prior_scale() const override { return call(&Acquisition::prior_scale); }
 };
 
 class NamedFitting final : public Named<Fitting> {
  public:
   using Named::Named;
-  bool due(int taps) const override {
-    return in_plugin([&](const Fitting& inner) { return inner.due(taps); });
-  }
-  std::string objection(const Kernel& kernel) const override {
-    return in_plugin([&](const Fitting& inner) { return inner.objection(kernel); });
-  }
-  FitSummary fit(FitProblem& problem, Random& random) const override {
-    return in_plugin([&](const Fitting& inner) { return inner.fit(problem, random); });
-  }
+  bool due(int taps) const override { return call(&Fitting::due, taps); }
+  std::string objection(const Kernel& kernel) const override { return call(&Fitting::objection, kernel); }
+  FitSummary fit(FitProblem& problem, Random& random) const override { return call(&Fitting::fit, problem, random); }
 };
 
 class NamedFootprint final : public Named<Footprint> {
  public:
   using Named::Named;
-  bool is_weight() const override {
-    return in_plugin([](const Footprint& inner) { return inner.is_weight(); });
-  }
-  void add(const Touch& touch) override {
-    in_plugin([&](Footprint& inner) { inner.add(touch); });
-  }
-  void probability(const PointsView& places, VectorOut out) override {
-    in_plugin([&](Footprint& inner) { inner.probability(places, out); });
-  }
-  std::vector<FootprintNumber> numbers() const override {
-    return in_plugin([](const Footprint& inner) { return inner.numbers(); });
-  }
-  std::string remark() const override {
-    return in_plugin([](const Footprint& inner) { return inner.remark(); });
-  }
+  bool is_weight() const override { return call(&Footprint::is_weight); }
+  void add(const Touch& touch) override { call(&Footprint::add, touch); }
+  void probability(const PointsView& places, VectorOut out) override { call(&Footprint::probability, places, out); }
+  std::vector<FootprintNumber> numbers() const override { return call(&Footprint::numbers); }
+  std::string remark() const override { return call(&Footprint::remark); }
 };
 
 class NamedBackend final : public Named<Backend> {
  public:
   using Named::Named;
-  Contact tap(const TapRequest& request) override {
-    return in_plugin([&](Backend& inner) { return inner.tap(request); });
-  }
-  bool repeatable() const override {
-    return in_plugin([](const Backend& inner) { return inner.repeatable(); });
-  }
-  std::vector<std::string> describe(const TapRequest& request) override {
-    return in_plugin([&](Backend& inner) { return inner.describe(request); });
-  }
-  std::vector<Learnt> learnt() const override {
-    return in_plugin([](const Backend& inner) { return inner.learnt(); });
-  }
-  bool wants_prediction() const override {
-    return in_plugin([](const Backend& inner) { return inner.wants_prediction(); });
-  }
-  Quantities reads() const override {
-    return in_plugin([](const Backend& inner) { return inner.reads(); });
-  }
-  void show(const Belief& belief) override {
-    in_plugin([&](Backend& inner) { inner.show(Declared(belief, inner.reads(), this->name())); });
-  }
-  bool scene_is_truth() const override {
-    return in_plugin([](const Backend& inner) { return inner.scene_is_truth(); });
-  }
+  Contact tap(const TapRequest& request) override { return call(&Backend::tap, request); }
+  bool repeatable() const override { return call(&Backend::repeatable); }
+  std::vector<std::string> describe(const TapRequest& request) override { return call(&Backend::describe, request); }
+  std::vector<Learnt> learnt() const override { return call(&Backend::learnt); }
+  bool wants_prediction() const override { return call(&Backend::wants_prediction); }
+  Quantities reads() const override { return call(&Backend::reads); }
+  void show(const Belief& belief) override { call(&Backend::show, declared(belief)); }
+  bool scene_is_truth() const override { return call(&Backend::scene_is_truth); }
 };
 
 class NamedShape final : public Named<Shape> {
  public:
   using Named::Named;
-  double first_hit(const Line& line) const override {
-    return in_plugin([&](const Shape& inner) { return inner.first_hit(line); });
-  }
-  double support(const Eigen::Vector3d& direction) const override {
-    return in_plugin([&](const Shape& inner) { return inner.support(direction); });
-  }
-  double top(double s, double t) const override {
-    return in_plugin([&](const Shape& inner) { return inner.top(s, t); });
-  }
+  double first_hit(const Line& line) const override { return call(&Shape::first_hit, line); }
+  double support(const Eigen::Vector3d& direction) const override { return call(&Shape::support, direction); }
+  double top(double s, double t) const override { return call(&Shape::top, s, t); }
 };
 
 /// A pointer to the interface, as it was: what becomes of it is cast back to that.

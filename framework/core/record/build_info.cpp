@@ -2,6 +2,7 @@
 #include "record/build_info.hpp"
 
 #include "config/hash.hpp"
+#include "record/files.hpp"
 #include "record/json.hpp"
 
 #include <palpate/error.hpp>
@@ -22,14 +23,12 @@ const char* const kVersion = PALPATE_VERSION;
 
 namespace {
 
-Tree text(const std::string& value) { return Tree::scalar(value, true); }
-
 Tree libraries() {
   Tree out = Tree::map();
-  out.at("Eigen") = text(fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
-  out.at("Boost") = text(BOOST_LIB_VERSION);
-  out.at("fmt") = text(fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100));
-  out.at("yaml-cpp") = text(PALPATE_YAML_CPP_VERSION);
+  out.at("Eigen") = Tree::quote(fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
+  out.at("Boost") = Tree::quote(BOOST_LIB_VERSION);
+  out.at("fmt") = Tree::quote(fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100));
+  out.at("yaml-cpp") = Tree::quote(PALPATE_YAML_CPP_VERSION);
   return out;
 }
 
@@ -37,10 +36,10 @@ Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {
   Tree out = Tree::list();
   for (const LoadedPlugin& one : host.loaded(plugins)) {
     Tree row = Tree::map();
-    row.at("kind") = text(one.kind);
-    row.at("name") = text(one.name);
-    row.at("file") = text(one.file.string());
-    row.at("hash") = text(one.hash);
+    row.at("kind") = Tree::quote(one.kind);
+    row.at("name") = Tree::quote(one.name);
+    row.at("file") = Tree::quote(one.file.string());
+    row.at("hash") = Tree::quote(one.hash);
     row.at("abi") = Tree::scalar(std::to_string(kPluginAbi));
     out.items.push_back(std::move(row));
   }
@@ -72,22 +71,21 @@ std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
 Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
                     const std::string& instruction_path) {
   Tree out = Tree::map();
-  out.at("version") = text(kVersion);
+  out.at("version") = Tree::quote(kVersion);
   // Kept beside the program, not in it: a commit that changes no code leaves the program's bytes alone.
   const fs::path commit = installation.plugins / "build.json";
-  std::error_code none;
-  Tree stamp = fs::exists(commit, none) ? read_json(commit) : Tree::map();
+  Tree stamp = is_there(commit) ? read_json(commit) : Tree::map();
   for (const char* key : {"commit", "dirty"}) {
     const Tree* value = stamp.find(key);
     out.at(key) = value != nullptr ? *value : Tree{};
   }
-  out.at("build") = text(build_hash(host, plugins));
-  out.at("compiler") = text(PALPATE_COMPILER);
-  out.at("instruction_path") = text(instruction_path);
-  out.at("build_stamp") = text(PALPATE_BUILD_STAMP);
+  out.at("build") = Tree::quote(build_hash(host, plugins));
+  out.at("compiler") = Tree::quote(PALPATE_COMPILER);
+  out.at("instruction_path") = Tree::quote(instruction_path);
+  out.at("build_stamp") = Tree::quote(PALPATE_BUILD_STAMP);
   out.at("libraries") = libraries();
   out.at("plugins") = describe_plugins(host, plugins);
-  out.at("host") = text(host_name());
+  out.at("host") = Tree::quote(host_name());
   return out;
 }
 

@@ -57,8 +57,8 @@ std::vector<Row> summaries_after(const Workshop& workshop, const Recording& reco
       const auto of_run = recording.summary ? recording.summary->number(whole) : std::nullopt;
       return of_run && share ? std::optional(*of_run * *share) : std::nullopt;
     };
-    rows.push_back(summary_list().row({recording.config,
-                                       result,
+    rows.push_back(summary_list().row({result,
+                                       recording.config,
                                        "",
                                        part("wall_seconds"),
                                        part("compute_seconds"),

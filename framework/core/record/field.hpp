@@ -55,8 +55,8 @@ struct RecordField {
 template <class Record>
 class FieldList {
  public:
-  /// One field; `get` takes a Record and returns a number, truth value, text, or an optional of these, null without
-  /// one.
+  /// One field; `get`, a function or a member, gives of a Record a number, truth value, text, or an optional of these,
+  /// null without one.
   template <class Get>
   RecordField& add(std::string name, std::string meaning, Get get) {
     return add_where([](const Record&) { return true; }, std::move(name), std::move(meaning), std::move(get));
@@ -66,9 +66,9 @@ class FieldList {
   template <class Has, class Get>
   RecordField& add_where(Has has, std::string name, std::string meaning, Get get) {
     RecordField field(std::move(name), std::move(meaning));
-    field.type = type_of(static_cast<std::decay_t<decltype(get(std::declval<const Record&>()))>*>(nullptr));
+    field.type = type_of(static_cast<std::decay_t<std::invoke_result_t<Get, const Record&>>*>(nullptr));
     return insert(field, false, [=, key = field.name](Row& row, const Record& record) {
-      if (has(record)) row.add(key, get(record));
+      if (has(record)) row.add(key, std::invoke(get, record));
     });
   }
 

@@ -27,28 +27,24 @@ const std::vector<ErrorField>& error_list() {
                    "desk elsewhere")
            .in(Unit::metre)
            .less()
-           .absent(kNoTruth)
            .called("over the scene")
            .headline(),
        &Errors::rmse},
       {RecordField("rmse_on_surface_m", "the same over the cells that truly lie on an object")
            .in(Unit::metre)
            .less()
-           .absent(kNoTruth)
            .called("on the object")
            .headline(),
        &Errors::rmse_on_surface},
       {RecordField("rmse_height_m", "the height mean itself over those cells, whatever the footprint")
            .in(Unit::metre)
            .less()
-           .absent(kNoTruth)
            .called("height mean on the object"),
        &Errors::rmse_height},
       {RecordField("footprint_iou",
                    "cells with a probability >= 1/2, by the config's footprint, against cells truly on an object: "
                    "intersection over union")
            .more()
-           .absent(kNoTruth)
            .called("outline IoU")
            .headline(),
        &Errors::footprint_iou},
@@ -57,12 +53,12 @@ const std::vector<ErrorField>& error_list() {
 }
 
 /// Where the loop lays the state of its models down, in a tap and in a result alike.
-template <class Record, class Holder>
-void list_models(FieldList<Record>& list, const Holder& (*holder)(const Record&), bool reasons) {
-  const auto process = [&](const char* name, const char* meaning, std::optional<ProcessState> Holder::*state) {
+template <class Record>
+void list_models(FieldList<Record>& list, bool reasons) {
+  const auto process = [&](const char* name, const char* meaning, std::optional<ProcessState> ModelState::*state) {
     list.add_family(std::string(name) + ".*", meaning, [=](Row& row, const Record& record) {
-      const std::optional<ProcessState>& of = holder(record).*state;
-      if (!of && state == &Holder::surface_process) return;
+      const std::optional<ProcessState>& of = record.*state;
+      if (!of && state == &ModelState::surface_process) return;
       add_process(row, name, of);
       if (reasons) row.add(std::string(name) + ".engine_reason", of ? std::optional(of->engine_reason) : std::nullopt);
     });
@@ -75,33 +71,26 @@ void list_models(FieldList<Record>& list, const Holder& (*holder)(const Record&)
       "of `dense`, to means in signals or to variances in signals squared, whichever is more. `fit.*` of the fit "
       "after the latest tap, if one was due: `changed` (false: the old hyperparameters stay), `objective` (the fit's "
       "own measure, larger is better), `evaluations`, `reason` (why it ended)",
-      &Holder::height_process);
-  process("weight_process", "the same of the process over labels", &Holder::weight_process);
+      &ModelState::height_process);
+  process("weight_process", "the same of the process over labels", &ModelState::weight_process);
   process(
       "surface_process",
       "the same for the heights of the taps on an object; only with `surface: two_part`, and only where a strategy, "
       "a rule that ends the run or the backend reads the height itself",
-      &Holder::surface_process);
+      &ModelState::surface_process);
   list.add_family("footprint.*",
                   "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
                   "how it came to them; only where `footprint` is not `regression`",
-                  [=](Row& row, const Record& record) { add_footprint(row, holder(record).footprint); });
-}
-
-template <class Record, class Holder>
-void list_forecast(FieldList<Record>& list, const Holder& (*holder)(const Record&)) {
+                  [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
   list.add_family(
           "expected_rmse_m",
           "the error over the scene that is to be expected of what is believed; only with `stop.expected_rmse`, "
           "null before the first hit",
-          [=](Row& row, const Record& record) {
-            if (holder(record).forecast) row.add("expected_rmse_m", holder(record).forecast->rmse);
+          [](Row& row, const Record& record) {
+            if (record.forecast) row.add("expected_rmse_m", record.forecast->rmse);
           })
       .in(Unit::metre);
 }
-
-const TapRecord& itself(const TapRecord& tap) { return tap; }
-const RunResult& result_of(const Summary& summary) { return summary.result; }
 
 template <class T, class Member>
 auto part(const std::optional<T>& whole, Member T::*member) {
@@ -118,7 +107,7 @@ std::optional<double> if_touched(const TapRecord& tap, double value) {
 FieldList<TapRecord> make_tap_list() {
   using Tap = TapRecord;
   FieldList<Tap> list;
-  list.add("tap", "number, from 1", [](const Tap& t) { return t.number; });
+  list.add("tap", "number, from 1", &Tap::number);
   list.add("source", "`initial`, `acquisition` or `fallback`", [](const Tap& t) { return source_name(t.source); });
   list.add("why", "of a fallback, why", [](const Tap& t) { return if_any(t.why); });
   list.add("x", "where", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
@@ -126,7 +115,7 @@ FieldList<TapRecord> make_tap_list() {
   list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
-  list.add("on_surface", "whether a contact was one with an object", [](const Tap& t) { return t.on_surface; });
+  list.add("on_surface", "whether a contact was one with an object", &Tap::on_surface);
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
   list.add("force", "of a contact, the largest that was felt (in a scene without effects, the threshold)",
            [](const Tap& t) { return if_touched(t, t.contact.force); })
@@ -135,27 +124,25 @@ FieldList<TapRecord> make_tap_list() {
            [](const Tap& t) { return t.contact.seconds; })
       .in(Unit::second);
 
-  list.add("score", "of the acquisition at the chosen place", [](const Tap& t) { return t.score; });
-  list.add("u", "uncertainty at the chosen place, before the tap", [](const Tap& t) { return t.uncertainty; });
-  list.add("w", "the weight there, never clipped", [](const Tap& t) { return t.weight; });
-  list.add("e", "their product", [](const Tap& t) { return t.exploration; });
+  list.add("score", "of the acquisition at the chosen place", &Tap::score);
+  list.add("u", "uncertainty at the chosen place, before the tap", &Tap::uncertainty);
+  list.add("w", "the weight there, never clipped", &Tap::weight);
+  list.add("e", "their product", &Tap::exploration);
   list.add_where([](const Tap& t) { return t.footprint.has_value(); }, "p",
                  "the footprint's probability of an object there; only where `footprint` is not `regression`, whose "
                  "probability is the weight, clipped",
-                 [](const Tap& t) { return t.probability; });
-  list.add("ties", "how many candidates were tied with the best", [](const Tap& t) { return t.ties; });
+                 &Tap::probability);
+  list.add("ties", "how many candidates were tied with the best", &Tap::ties);
   list.add("runner_up.x", "the best of the others", [](const Tap& t) { return part(t.runner_up, &Target::x); })
       .in(Unit::metre);
   list.add("runner_up.y", "the same", [](const Tap& t) { return part(t.runner_up, &Target::y); }).in(Unit::metre);
-  list.add("runner_up.score", "its score", [](const Tap& t) { return t.runner_up_score; });
+  list.add("runner_up.score", "its score", &Tap::runner_up_score);
   list.add("max_standard_deviation", "of the height over the candidates, before the tap; of the height process",
-           [](const Tap& t) { return t.max_standard_deviation; })
+           &Tap::max_standard_deviation)
       .in(Unit::metre);
-  list.add("mean_standard_deviation", "the same", [](const Tap& t) { return t.mean_standard_deviation; })
-      .in(Unit::metre);
-  list.add("min_weight", "over the candidates, before the tap, never clipped",
-           [](const Tap& t) { return t.min_weight; });
-  list.add("max_weight", "the same", [](const Tap& t) { return t.max_weight; });
+  list.add("mean_standard_deviation", "the same", &Tap::mean_standard_deviation).in(Unit::metre);
+  list.add("min_weight", "over the candidates, before the tap, never clipped", &Tap::min_weight);
+  list.add("max_weight", "the same", &Tap::max_weight);
   const auto is_predicted = [](const Tap& t) { return t.predicted.has_value(); };
   list.add_where(is_predicted, "predicted.height",
                  "what the models expected of the height there, in the frame of the scene; only where the backend asks "
@@ -165,18 +152,11 @@ FieldList<TapRecord> make_tap_list() {
   list.add_where(is_predicted, "predicted.standard_deviation", "its standard deviation",
                  [](const Tap& t) { return t.predicted->standard_deviation; })
       .in(Unit::metre);
-  list_models(list, itself, false);
-  list_forecast(list, itself);
-  list.add("true_on_surface", "whether an object truly is there", [](const Tap& t) { return t.true_on_surface; })
-      .absent(kNoTruth);
+  list_models(list, false);
+  list.add("true_on_surface", "whether an object truly is there", &Tap::true_on_surface).absent(kNoTruth);
   list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });
   return list;
 }
-
-struct Counted {
-  const char* name;
-  const char* meaning;
-};
 
 /// The phases of a tap, in their order.
 constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fitting hyperparameters",
@@ -194,89 +174,69 @@ FieldList<Summary> make_summary_list() {
       "stop_reason",
       "`tap budget`, `robot_time`, `max_standard_deviation`, `expected_rmse`, `no candidate is left`, or the error "
       "(`backend/baxter: ...` where the backend could go on no more)",
-      [](const Summary& s) { return s.failure.empty() ? s.result.stop_reason : s.failure; });
-  list.add("taps", "all of them; the next three add up to it", [](const Summary& s) { return s.result.taps; })
-      .less()
-      .headline();
-  list.add("on_surface_taps", "contacts with an object", [](const Summary& s) { return s.result.on_surface_taps; })
-      .more()
-      .headline();
-  list.add("off_surface_taps", "contacts with the desk", [](const Summary& s) { return s.result.off_surface_taps; })
-      .less();
-  list.add("failed_taps", "taps without a contact", [](const Summary& s) { return s.result.failed_taps; }).less();
-  list.add("first_hit_tap", "number of the first contact with an object",
-           [](const Summary& s) { return s.result.first_hit_tap; })
+      [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
+  list.add("taps", "all of them; the next three add up to it", &Summary::taps).less().headline();
+  list.add("on_surface_taps", "contacts with an object", &Summary::on_surface_taps).more().headline();
+  list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less();
+  list.add("failed_taps", "taps without a contact", &Summary::failed_taps).less();
+  list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
       .less()
       .absent("the object was not found");
-  list.add("found", "whether there was one", [](const Summary& s) { return s.result.on_surface_taps > 0; }).more();
-  list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.result.errors); });
+  list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; }).more();
+  list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
   list.add("nlpd",
            "mean negative log predictive density of the true height (natural logarithm) over the cells on an object "
            "that "
            "were not tapped, noise included",
-           [](const Summary& s) { return s.result.calibration.nlpd; })
+           [](const Summary& s) { return s.calibration.nlpd; })
       .less()
       .absent(no_cell)
       .headline();
   list.add("coverage_95", "share of those cells whose true height lies in the central 95 % interval: best at 0.95",
-           [](const Summary& s) { return s.result.calibration.coverage_95; })
+           [](const Summary& s) { return s.calibration.coverage_95; })
       .absent(no_cell)
       .called("95 % coverage")
       .headline();
-  list.add("robot_seconds", "robot time", [](const Summary& s) { return s.result.robot_seconds; })
-      .in(Unit::second)
-      .less()
-      .headline();
-  list.add("wall_seconds", "of the process that ended the run", [](const Summary& s) { return s.wall_seconds; })
-      .in(Unit::second)
-      .less()
-      .measured();
-  list.add("compute_seconds", "CPU time of that process", [](const Summary& s) { return s.compute_seconds; })
-      .in(Unit::second)
-      .less()
-      .measured()
-      .headline();
+  const auto seconds = [&](const std::string& name, const std::string& meaning, auto get) -> RecordField& {
+    return list.add(name, meaning, get).in(Unit::second).less();
+  };
+  seconds("robot_seconds", "robot time", &Summary::robot_seconds).headline();
+  seconds("wall_seconds", "of the process that ended the run", &Summary::wall_seconds).measured();
+  seconds("compute_seconds", "CPU time of that process", &Summary::compute_seconds).measured().headline();
   for (std::size_t i = 0; i < kPhases; ++i) {
-    list.add(std::string("compute.") + kPhaseNames[i], std::string("wall time, all taps: ") + kPhaseMeanings[i],
-             [i](const Summary& s) { return s.phases ? std::optional((*s.phases)[i]) : std::nullopt; })
-        .in(Unit::second)
-        .less()
+    seconds(std::string("compute.") + kPhaseNames[i], std::string("wall time, all taps: ") + kPhaseMeanings[i],
+            [i](const Summary& s) { return s.phases ? std::optional((*s.phases)[i]) : std::nullopt; })
         .measured();
   }
-  list.add("jitter_max", "largest jitter of the final models, a variance",
-           [](const Summary& s) { return s.result.jitter_max; })
-      .less();
-  for (const Counted& one : {
-           Counted{"fallback", "taps that the fallback chose"},
-           Counted{"fit_failed",
-                   "fits that came to no finite values and kept the old ones; heights and labels fitted "
-                   "together count once"},
-           Counted{"height_refused", "taps of which the backend reported no finite number"},
-           Counted{"jitter", "how often it was raised"},
-           Counted{"pivoted", "how often no jitter helped and the covariance was factorised with pivoting"},
-           Counted{"set_aside", "taps that stay out of the final models because the others tell all about them"},
-           Counted{"variance_clamped",
-                   "candidates of the final models whose variance rounding took out of [0, prior]; "
-                   "they read as its ends"},
+  list.add("jitter_max", "largest jitter of the final models, a variance", &Summary::jitter_max).less();
+  for (const auto& [name, meaning] : {
+           std::pair{"fallback", "taps that the fallback chose"},
+           std::pair{"fit_failed",
+                     "fits that came to no finite values and kept the old ones; heights and labels fitted "
+                     "together count once"},
+           std::pair{"height_refused", "taps of which the backend reported no finite number"},
+           std::pair{"jitter", "how often it was raised"},
+           std::pair{"pivoted", "how often no jitter helped and the covariance was factorised with pivoting"},
+           std::pair{"set_aside", "taps that stay out of the final models because the others tell all about them"},
+           std::pair{"variance_clamped",
+                     "candidates of the final models whose variance rounding took out of [0, prior]; "
+                     "they read as its ends"},
        }) {
-    list.add(std::string("interventions.") + one.name, one.meaning,
-             [kind = std::string(one.name)](const Summary& s) {
-               const auto found = s.result.interventions.find(kind);
-               return found != s.result.interventions.end() ? found->second : 0;
+    list.add(std::string("interventions.") + name, meaning,
+             [kind = std::string(name)](const Summary& s) {
+               const auto found = s.interventions.find(kind);
+               return found != s.interventions.end() ? found->second : 0;
              })
         .less();
   }
-  list_models(list, result_of, true);
-  list_forecast(list, result_of);
-  list.add("peak_rss_bytes", "peak memory of the process", [](const Summary& s) { return s.peak_rss_bytes; })
-      .less()
-      .measured();
+  list_models(list, true);
+  list.add("peak_rss_bytes", "peak memory of the process", &Summary::peak_rss_bytes).less().measured();
   return list;
 }
 
 FieldList<TapTimes> make_timing_list() {
   FieldList<TapTimes> list;
-  list.add("tap", "number, from 1", [](const TapTimes& t) { return t.tap; });
+  list.add("tap", "number, from 1", &TapTimes::tap);
   for (std::size_t i = 0; i < kPhases; ++i) {
     list.add(kPhaseNames[i], std::string("wall time ") + kPhaseMeanings[i],
              [i](const TapTimes& t) { return t.seconds[i]; })
@@ -344,7 +304,7 @@ bool depends_on_machine(const std::string& name) {
 const std::vector<RecordField>& error_fields() {
   static const std::vector<RecordField> fields = [] {
     std::vector<RecordField> out;
-    for (const ErrorField& one : error_list()) out.push_back(one.field);
+    for (ErrorField one : error_list()) out.push_back(one.field.absent(kNoTruth));
     return out;
   }();
   return fields;
@@ -392,8 +352,7 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
 Timings read_timings(const std::filesystem::path& directory) {
   Timings out;
   const auto file = directory / "timings.csv";
-  std::error_code none;
-  if (!std::filesystem::exists(file, none)) return out;
+  if (!is_there(file)) return out;
   const std::string text = read_file(file);
   for (std::size_t begin = text.find('\n') + 1, end; begin != 0 && (end = text.find('\n', begin)) != std::string::npos;
        begin = end + 1) {

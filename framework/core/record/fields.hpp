@@ -20,9 +20,8 @@
 namespace palpate {
 
 /// What summary.json is made of. Times and memory are absent where nobody measured them.
-struct Summary {
+struct Summary : RunResult {
   const ResolvedConfig& config;
-  const RunResult& result;
   std::string failure;  ///< "" unless the run failed
   std::optional<double> wall_seconds, compute_seconds;
   std::optional<std::array<double, kPhases>> phases;  ///< seconds, all taps

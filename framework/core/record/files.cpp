@@ -28,35 +28,18 @@ namespace {
 }
 
 /// Opens what is to be written, but no link: whoever made that would choose what is overwritten.
-int open_to_write(const fs::path& file, int flags) {
-  const int descriptor = ::open(file.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (descriptor >= 0) return descriptor;
+Descriptor open_to_write(const fs::path& file, int flags) {
+  Descriptor opened(::open(file.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (opened) return opened;
   if (errno == ELOOP) refuse_link(file);
   fail(file, "cannot be opened");
-}
-
-void write_all(int descriptor, const std::string& text, const fs::path& file) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(file, "cannot be written");
-    done += static_cast<std::size_t>(count);
-  }
 }
 
 /// A lock of the open file and not of the process: another one of the same process is refused, too, and a lock can be
 /// asked after without taking it.
 const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
-int open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT); }
-
-/// Closes on leaving, errors on the way included.
-struct Descriptor {
-  int value;
-  ~Descriptor() {
-    if (value >= 0) ::close(value);
-  }
-};
+Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT); }
 
 constexpr const char* kTemporary = ".tmp";
 
@@ -66,12 +49,11 @@ Neighbour::Neighbour(const fs::path& file) : file_(file) {
   std::uint64_t unforeseen = 0;
   if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen) fail(file, "no random name for it");
   path_ = file.string() + fmt::format(".{:016x}{}", unforeseen, kTemporary);
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(file, "cannot be made");
+  descriptor_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!descriptor_) fail(file, "cannot be made");
 }
 
 Neighbour::~Neighbour() {
-  ::close(descriptor_);
   if (!path_.empty()) ::unlink(path_.c_str());
 }
 
@@ -82,12 +64,12 @@ void Neighbour::rename() {
 
 void write_file(const fs::path& file, const std::string& text, bool sync) {
   Neighbour neighbour(file);
-  write_all(neighbour.descriptor(), text, file);
-  if (sync && ::fsync(neighbour.descriptor()) != 0) fail(file, "cannot be synced");
+  if (!write_all(neighbour.descriptor(), text)) fail(file, "cannot be written");
+  if (sync && ::fsync(neighbour.descriptor().number()) != 0) fail(file, "cannot be synced");
   neighbour.rename();
   if (sync) {
     const Descriptor folder{::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-    if (folder.value >= 0) ::fsync(folder.value);
+    if (folder) ::fsync(folder.number());
   }
 }
 
@@ -102,8 +84,13 @@ void remove_neighbours(const fs::path& folder, std::initializer_list<const char*
 }
 
 void cut_file(const fs::path& file, std::uintmax_t bytes) {
-  const Descriptor out{open_to_write(file, O_WRONLY)};
-  if (::ftruncate(out.value, static_cast<off_t>(bytes)) != 0) fail(file, "cannot be cut");
+  const Descriptor out = open_to_write(file, O_WRONLY);
+  if (::ftruncate(out.number(), static_cast<off_t>(bytes)) != 0) fail(file, "cannot be cut");
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code none;
+  return fs::exists(path, none);
 }
 
 void refuse_link(const fs::path& path) {
@@ -130,67 +117,40 @@ std::string read_file(const fs::path& file) {
 AppendFile::AppendFile(const fs::path& file)
     : file_(file), descriptor_(open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {}
 
-AppendFile::~AppendFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-AppendFile::AppendFile(AppendFile&& other) noexcept
-    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
-  std::swap(file_, other.file_);
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
 void AppendFile::append(const std::string& text, bool sync) {
-  write_all(descriptor_, text, file_);
-  if (sync && ::fdatasync(descriptor_) != 0) fail(file_, "cannot be synced");
+  if (!write_all(descriptor_, text)) fail(file_, "cannot be written");
+  if (sync && ::fdatasync(descriptor_.number()) != 0) fail(file_, "cannot be synced");
 }
 
 bool AppendFile::is_in_place() const {
   struct stat named {};
   struct stat open {};
-  return ::stat(file_.c_str(), &named) == 0 && ::fstat(descriptor_, &open) == 0 && named.st_dev == open.st_dev &&
-         named.st_ino == open.st_ino;
+  return ::stat(file_.c_str(), &named) == 0 && ::fstat(descriptor_.number(), &open) == 0 &&
+         named.st_dev == open.st_dev && named.st_ino == open.st_ino;
 }
 
 FileLock::FileLock(const fs::path& file) : descriptor_(open_lock(file)) {
-  if (::fcntl(descriptor_, F_OFD_SETLK, &kWholeFile) == 0) return;
-  const int why = errno;
-  ::close(std::exchange(descriptor_, -1));
-  if (why == EAGAIN || why == EACCES) {
+  if (::fcntl(descriptor_.number(), F_OFD_SETLK, &kWholeFile) == 0) return;
+  if (errno == EAGAIN || errno == EACCES) {
     throw Error(file.parent_path().string(), "another process holds this run", "wait for it, or stop it",
                 Error::Kind::busy);
   }
-  errno = why;
   fail(file, "cannot be locked");
 }
 
 FileLock FileLock::wait_for(const fs::path& file) {
   FileLock lock;
   lock.descriptor_ = open_lock(file);
-  while (::fcntl(lock.descriptor_, F_OFD_SETLKW, &kWholeFile) != 0) {
+  while (::fcntl(lock.descriptor_.number(), F_OFD_SETLKW, &kWholeFile) != 0) {
     if (errno != EINTR) fail(file, "cannot be locked");
   }
   return lock;
 }
 
-FileLock::~FileLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-FileLock::FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-FileLock& FileLock::operator=(FileLock&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
 bool FileLock::is_held(const fs::path& file) {
   const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
   struct flock other = kWholeFile;
-  return in.value >= 0 && ::fcntl(in.value, F_OFD_GETLK, &other) == 0 && other.l_type != F_UNLCK;
+  return in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0 && other.l_type != F_UNLCK;
 }
 
 void check_locks(const fs::path& folder) {

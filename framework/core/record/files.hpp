@@ -4,6 +4,8 @@
 // it writes.
 #pragma once
 
+#include "children/child_process.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -22,18 +24,16 @@ class Neighbour {
   /// Throws Error.
   explicit Neighbour(const std::filesystem::path& file);
   ~Neighbour();
-  Neighbour(const Neighbour&) = delete;
-  Neighbour& operator=(const Neighbour&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  int descriptor() const { return descriptor_; }
+  const Descriptor& descriptor() const { return descriptor_; }
   /// Takes the place of `file`. Throws Error.
   void rename();
 
  private:
   std::filesystem::path file_;
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// Removes what kills left behind in `folder` of files on their way to `names`, or, without any, of all. For who
@@ -42,6 +42,9 @@ void remove_neighbours(const std::filesystem::path& folder, std::initializer_lis
 
 /// Keeps the first `bytes` of a file. Throws Error.
 void cut_file(const std::filesystem::path& file, std::uintmax_t bytes);
+
+/// Whether there is something of that name; what cannot be looked at is not there.
+bool is_there(const std::filesystem::path& path);
 
 /// Throws Error where `path`, a part of a record, is a link: what is written would lie where another person chose.
 void refuse_link(const std::filesystem::path& path);
@@ -58,9 +61,6 @@ class AppendFile {
   AppendFile() = default;
   /// Opens or makes `file`. Throws Error.
   explicit AppendFile(const std::filesystem::path& file);
-  ~AppendFile();
-  AppendFile(AppendFile&& other) noexcept;
-  AppendFile& operator=(AppendFile&& other) noexcept;
 
   /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error.
   void append(const std::string& text, bool sync);
@@ -70,7 +70,7 @@ class AppendFile {
 
  private:
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// A lock of the kernel on a file: it ends when the process does, however it ends, and children do not inherit it. It
@@ -80,9 +80,6 @@ class FileLock {
   FileLock() = default;
   /// Makes `file` if need be and locks it. Throws Error of kind `busy` if another process holds it.
   explicit FileLock(const std::filesystem::path& file);
-  ~FileLock();
-  FileLock(FileLock&& other) noexcept;
-  FileLock& operator=(FileLock&& other) noexcept;
 
   /// Makes `file` if need be and waits until it can be locked. Throws Error.
   static FileLock wait_for(const std::filesystem::path& file);
@@ -91,7 +88,7 @@ class FileLock {
   static bool is_held(const std::filesystem::path& file);
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// Throws Error if the file system of `folder`, which exists, keeps no locks: two processes would do the same work.

@@ -19,23 +19,12 @@ using Comparison = Expectation::Comparison;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool holds(Comparison comparison, double value, double bound) {
-  switch (comparison) {
-    case Comparison::at_least:
-      return value >= bound;
-    case Comparison::above:
-      return value > bound;
-    case Comparison::at_most:
-      return value <= bound;
-    case Comparison::below:
-      return value < bound;
-    case Comparison::equal:
-      return value == bound;
-  }
-  return false;
-}
-
 bool wants_more(Comparison comparison) { return comparison == Comparison::at_least || comparison == Comparison::above; }
+
+bool holds(Comparison comparison, double value, double bound) {
+  if (value == bound) return comparison != Comparison::above && comparison != Comparison::below;
+  return comparison != Comparison::equal && (value > bound) == wants_more(comparison);
+}
 
 /// Number or flag at `field` of the summary; none when it is null or absent.
 std::optional<double> number_at(const RunOutcome& run, const std::string& field) {
@@ -72,10 +61,9 @@ struct Judgement {
 Judgement judge_run(const Expectation& one, const RunOutcome& run) {
   const RecordField* field = find_summary_field(one.field);
   if (field != nullptr && field->type == RecordField::Type::text) {
-    const Scalar* value = run.summary ? run.summary->find(one.field) : nullptr;
-    const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-    if (text == nullptr) return {false, "no value: " + absence(one, run)};
-    return {*text == one.text, *text};
+    const std::string text = run.summary ? run.summary->text(one.field) : std::string();
+    if (text.empty()) return {false, "no value: " + absence(one, run)};
+    return {text == one.text, text};
   }
   const std::optional<double> value = number_at(run, one.field);
   if (!value) return {false, "no value: " + absence(one, run)};
@@ -173,9 +161,8 @@ std::vector<TestCase> test_cases(const std::string& suite, const std::vector<Run
     return one.expectation.field == kFailedRuns && one.holds;
   });
   for (const RunOutcome& run : runs) {
-    const Scalar* seconds = run.summary ? run.summary->find("wall_seconds") : nullptr;
-    const auto* known = seconds != nullptr ? std::get_if<double>(seconds) : nullptr;
-    cases.push_back({suite, run.name, known != nullptr ? *known : 0.0, run.failure, tolerated});
+    const std::optional<double> seconds = run.summary ? run.summary->number("wall_seconds") : std::nullopt;
+    cases.push_back({suite, run.name, seconds.value_or(0.0), run.failure, tolerated});
   }
   for (const Verdict& verdict : verdicts) {
     const Expectation& one = verdict.expectation;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -147,21 +148,19 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
       out += tree.quoted ? json_quoted(tree.text) : tree.text;
       break;
     case Tree::Kind::list:
-      out += "[";
-      for (std::size_t i = 0; i < tree.items.size(); ++i) {
-        out += (i == 0 ? "\n" : ",\n") + inner;
-        append(out, tree.items[i], inner);
-      }
-      out += tree.items.empty() ? "]" : "\n" + indent + "]";
+    case Tree::Kind::map: {
+      const char* separator = "\n";
+      out += tree.is_map() ? "{" : "[";
+      const auto add = [&](const std::string& name, const Tree& value) {
+        out += std::exchange(separator, ",\n") + inner + name;
+        append(out, value, inner);
+      };
+      for (const Tree& item : tree.items) add("", item);
+      for (const Tree::Entry& entry : tree.entries) add(json_quoted(entry.key) + ": ", entry.value);
+      if (!tree.items.empty() || !tree.entries.empty()) out += "\n" + indent;
+      out += tree.is_map() ? "}" : "]";
       break;
-    case Tree::Kind::map:
-      out += "{";
-      for (std::size_t i = 0; i < tree.entries.size(); ++i) {
-        out += (i == 0 ? "\n" : ",\n") + inner + json_quoted(tree.entries[i].key) + ": ";
-        append(out, tree.entries[i].value, inner);
-      }
-      out += tree.entries.empty() ? "}" : "\n" + indent + "}";
-      break;
+    }
   }
 }
 

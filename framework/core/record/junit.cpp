@@ -6,38 +6,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
+#include <utility>
 
 namespace palpate {
 namespace {
 
+/// What stands for a character; blanks but the space, as they are, would be read as spaces.
+constexpr std::array<std::pair<char, std::string_view>, 7> kEntities{
+    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\t', "&#9;"}, {'\n', "&#10;"}, {'\r', "&#13;"}}};
+
 /// Text inside the quotes of an attribute.
 std::string xml_text(const std::string& text) {
-  constexpr std::string_view kReplacement = "\xef\xbf\xbd";
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else if (c == '\t' || c == '\n' || c == '\r') {
-      // As they are, a reader would take them for blanks.
-      out += fmt::format("&#{};", static_cast<int>(c));
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += kReplacement;
-    } else {
-      const std::size_t length = utf8_length(std::string_view(text).substr(i));
-      const std::string_view sequence = std::string_view(text).substr(i, length);
-      // U+FFFE and U+FFFF are valid UTF-8, but no characters of XML.
-      const bool is_none = length == 0 || sequence == "\xef\xbf\xbe" || sequence == "\xef\xbf\xbf";
-      out += is_none ? kReplacement : sequence;
-      i += std::max<std::size_t>(length, 1) - 1;
-    }
+  for (std::string_view rest = text; !rest.empty();) {
+    const auto entity =
+        std::find_if(kEntities.begin(), kEntities.end(), [&](const auto& one) { return one.first == rest.front(); });
+    const std::size_t length = utf8_length(rest);
+    const std::string_view sequence = rest.substr(0, std::max<std::size_t>(length, 1));
+    // U+FFFE and U+FFFF are valid UTF-8, but no characters of XML.
+    const bool is_none = length == 0 || static_cast<unsigned char>(rest.front()) < 0x20 || sequence == "\xef\xbf\xbe" ||
+                         sequence == "\xef\xbf\xbf";
+    out += entity != kEntities.end() ? entity->second : is_none ? "\xef\xbf\xbd" : sequence;
+    rest.remove_prefix(sequence.size());
   }
   return out;
 }

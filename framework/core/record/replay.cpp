@@ -98,7 +98,7 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
     result.stop_reason = summary.text("stop_reason");
   }
   const std::string failure = failed ? result.stop_reason : std::string();
-  compare(summary, summary_list().row({recording.config, result, failure, {}, {}, {}, {}}), 0, report);
+  compare(summary, summary_list().row({result, recording.config, failure, {}, {}, {}, {}}), 0, report);
   return report;
 }
 

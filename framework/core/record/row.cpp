@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "record/row.hpp"
 
+#include "config/quantity.hpp"
 #include "config/utf8.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -62,6 +61,17 @@ const Scalar* Row::find(std::string_view name) const {
   return nullptr;
 }
 
+namespace {
+
+/// The value at `name`, null where there is something else.
+template <class T>
+const T* value_of(const Row& row, std::string_view name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? std::get_if<T>(value) : nullptr;
+}
+
+}  // namespace
+
 std::optional<double> Row::number(std::string_view name) const {
   const Scalar* value = find(name);
   if (value == nullptr) return std::nullopt;
@@ -72,15 +82,18 @@ std::optional<double> Row::number(std::string_view name) const {
 }
 
 std::optional<bool> Row::flag(std::string_view name) const {
-  const Scalar* value = find(name);
-  const auto* truth = value != nullptr ? std::get_if<bool>(value) : nullptr;
+  const bool* truth = value_of<bool>(*this, name);
   return truth != nullptr ? std::optional(*truth) : std::nullopt;
 }
 
 std::string Row::text(std::string_view name) const {
-  const Scalar* value = find(name);
-  const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+  const std::string* text = value_of<std::string>(*this, name);
   return text != nullptr ? *text : std::string();
+}
+
+void Row::erase(std::string_view name) {
+  fields.erase(std::remove_if(fields.begin(), fields.end(), [&](const auto& field) { return field.first == name; }),
+               fields.end());
 }
 
 std::string Row::cell(std::string_view name) const {
@@ -100,22 +113,12 @@ std::string csv_text(const std::string& text) {
 
 namespace {
 
-bool is_number(const std::string& text) {
-  const std::size_t sign = text.front() == '+' || text.front() == '-' ? 1 : 0;
-  const char* const begin = text.data() + sign;
-  const char* const end = text.data() + text.size();
-  double value = 0.0;
-  // A sign of its own, infinity and the like are no numbers of a table.
-  return begin != end && (std::isdigit(static_cast<unsigned char>(*begin)) != 0 || *begin == '.') &&
-         std::from_chars(begin, end, value).ptr == end;
-}
-
 /// For a spreadsheet, which computes what begins like a formula: an apostrophe makes it a text. Whatever has
 /// apostrophes in front of that gets one more, so that taking one away gives back the same text.
 std::string guarded(const std::string& text) {
   const std::size_t begin = text.find_first_not_of("' \t\r\n");
   const bool computed = begin != std::string::npos && std::string_view("=+-@").find(text[begin]) != std::string::npos;
-  return computed && !is_number(text) ? "'" + text : text;
+  return computed && decimal_length(text) != text.size() ? "'" + text : text;
 }
 
 /// As it stands in a file.
@@ -145,32 +148,19 @@ std::string json_value(const Scalar& value) {
 
 std::string json_quoted(const std::string& text) {
   if (std::all_of(text.begin(), text.end(), is_plain)) return '"' + text + '"';
+  constexpr std::string_view kShort = "\"\\\n\t";  // these have a letter of their own
   std::string out = "\"";
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    switch (c) {
-      case '"':
-        out += "\\\"";
-        break;
-      case '\\':
-        out += "\\\\";
-        break;
-      case '\n':
-        out += "\\n";
-        break;
-      case '\t':
-        out += "\\t";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) < 0x20) {
-          out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-        } else if (const std::size_t length = utf8_length(std::string_view(text).substr(i)); length > 0) {
-          out.append(text, i, length);
-          i += length - 1;
-        } else {
-          out += "\\ufffd";
-        }
+  for (std::string_view rest = text; !rest.empty();) {
+    const char c = rest.front();
+    const std::size_t length = utf8_length(rest);
+    if (const std::size_t known = kShort.find(c); known != std::string_view::npos) {
+      out += {'\\', "\"\\nt"[known]};
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+    } else {
+      out += length > 0 ? rest.substr(0, length) : "\\ufffd";
     }
+    rest.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return out + "\"";
 }

@@ -41,6 +41,8 @@ struct Row {
   std::optional<bool> flag(std::string_view name) const;
   /// The text at `name`; "" where there is something else.
   std::string text(std::string_view name) const;
+  /// Takes away what stands at `name`.
+  void erase(std::string_view name);
   /// Whatever stands at `name`, as csv_cell() has it; "" where there is none.
   std::string cell(std::string_view name) const;
 };

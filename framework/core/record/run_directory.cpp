@@ -34,14 +34,10 @@ const char* state_name(RunStatus::State state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-bool is_sweep(const fs::path& directory) {
-  std::error_code none;
-  return fs::exists(directory / "manifest.jsonl", none);
-}
+bool is_sweep(const fs::path& directory) { return is_there(directory / "manifest.jsonl"); }
 
 std::optional<Row> read_summary(const fs::path& directory) {
-  std::error_code none;
-  if (!fs::exists(directory / kSummary, none)) return std::nullopt;
+  if (!is_there(directory / kSummary)) return std::nullopt;
   // A power cut may leave its name without its content.
   return read_json_row(directory / kSummary,
                        "the file is damaged: remove it, and 'palpate resume' makes it anew from the taps");
@@ -50,7 +46,7 @@ std::optional<Row> read_summary(const fs::path& directory) {
 std::optional<Row> read_outcome(const fs::path& directory) {
   try {
     return read_summary(directory);
-  } catch (const Error& trouble) {
+  } catch (const Error& trouble) {  // it is told as the reason of a run that failed
     Row failed;
     failed.add("status", "failed");
     failed.add("stop_reason", trouble.what());
@@ -67,11 +63,10 @@ void check_complete(const Row& summary, int recorded, const fs::path& directory)
 
 RunStatus read_ending(const fs::path& directory) {
   RunStatus out;
-  std::error_code none;
   if (const std::optional<Row> summary = read_outcome(directory)) {
     out.state = summary->text("status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
     out.stop_reason = summary->text("stop_reason");
-  } else if (fs::exists(directory / kTaps, none)) {
+  } else if (is_there(directory / kTaps)) {
     out.state = RunStatus::State::unfinished;
   }
   return out;
@@ -81,8 +76,7 @@ bool is_running(const fs::path& directory) { return FileLock::is_held(directory 
 
 RunStatus read_record(const fs::path& directory) {
   RunStatus out = read_ending(directory);
-  std::error_code none;
-  if (fs::exists(directory / kTaps, none)) {
+  if (is_there(directory / kTaps)) {
     for (const Row& row : read_json_lines(directory / kTaps).rows) out.taps += is_intent(row) ? 0 : 1;
   }
   if (out.state == RunStatus::State::done) check_complete(read_summary(directory).value(), out.taps, directory);
@@ -109,8 +103,7 @@ void RunDirectory::check_in_place() const {
 }
 
 std::vector<PastTap> RunDirectory::recover() {
-  std::error_code none;
-  if (!fs::exists(path_ / kTaps, none)) return {};
+  if (!is_there(path_ / kTaps)) return {};
   JsonLines lines = read_json_lines(path_ / kTaps);
   cut_file(path_ / kTaps, lines.bytes);
   std::optional<Row> intent;
@@ -135,8 +128,7 @@ std::vector<PastTap> RunDirectory::recover() {
 }
 
 void RunDirectory::recover_timings() {
-  std::error_code none;
-  if (!fs::exists(path_ / kTimings, none)) return;
+  if (!is_there(path_ / kTimings)) return;
   const std::string text = read_file(path_ / kTimings);
   cut_file(path_ / kTimings, text.rfind('\n') + 1);
   for (const TapTimes& tap : read_timings(path_).taps) {
@@ -149,11 +141,11 @@ void RunDirectory::open(bool announce, bool sync) {
   sync_ = sync;
   taps_ = AppendFile(path_ / kTaps);
   std::error_code none;
-  const bool fresh = !fs::exists(path_ / kTimings, none) || fs::file_size(path_ / kTimings, none) == 0;
+  const bool fresh = !is_there(path_ / kTimings) || fs::file_size(path_ / kTimings, none) == 0;
   timings_ = AppendFile(path_ / kTimings);
   if (!fresh) return;
-  std::string header = "tap";
-  for (const char* name : kPhaseNames) header += std::string(",") + name;
+  std::string header;
+  for (const RecordField& field : timing_list().fields()) header += (header.empty() ? "" : ",") + field.name;
   timings_.append(header + "\n", false);
 }
 

@@ -18,27 +18,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Tree quoted(const std::string& text) { return Tree::scalar(text, true); }
-
 std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config, const Experiment& experiment) {
   Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
-  Tree& line = out.at("command_line");
-  line = Tree::list();
-  for (const std::string& word : workshop.command_line) line.items.push_back(quoted(word));
-  Tree& origins = out.at("origins");
-  origins = Tree::map();
-  for (const ResolveNotes::Origin& one : config.notes.origins)
-    origins.entries.push_back({one.path, {}, quoted(one.place)});
-  Tree& dropped = out.at("dropped");
-  dropped = Tree::map();
-  for (const ResolveNotes::Origin& one : config.notes.dropped)
-    dropped.entries.push_back({one.path, {}, quoted(one.place)});
-  Tree& models = out.at("models");
-  models = Tree::map();
+  const auto places = [](const std::vector<ResolveNotes::Origin>& of) {
+    Tree all = Tree::map();
+    for (const ResolveNotes::Origin& one : of) all.entries.push_back({one.path, {}, Tree::quote(one.place)});
+    return all;
+  };
+  Tree& line = out.at("command_line") = Tree::list();
+  for (const std::string& word : workshop.command_line) line.items.push_back(Tree::quote(word));
+  out.at("origins") = places(config.notes.origins);
+  out.at("dropped") = places(config.notes.dropped);
+  Tree& models = out.at("models") = Tree::map();
   for (const ModelReader& one : experiment.readers()) {
     Tree& who = models.at(one.model);
     who.kind = Tree::Kind::list;
-    who.items.push_back(quoted(one.who));
+    who.items.push_back(Tree::quote(one.who));
   }
   out.at("resumed") = Tree::list();
   return to_json(out);
@@ -46,8 +41,7 @@ std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config
 
 /// The build that began the run in `directory`, "" if that is not known.
 std::string recorded_build(const fs::path& directory) {
-  std::error_code none;
-  if (!fs::exists(directory / "manifest.json", none)) return {};
+  if (!is_there(directory / "manifest.json")) return {};
   const Tree manifest = read_json(directory / "manifest.json");
   const Tree* build = manifest.find("build");
   return build != nullptr ? build->text : std::string();
@@ -58,7 +52,7 @@ void note_resume(const Workshop& workshop, const ResolvedConfig& config, const R
   Tree manifest = read_json(directory.path() / "manifest.json");
   Tree entry = Tree::map();
   entry.at("after_tap") = Tree::scalar(std::to_string(from));
-  entry.at("build") = quoted(build_hash(workshop.host, config.notes.plugins));
+  entry.at("build") = Tree::quote(build_hash(workshop.host, config.notes.plugins));
   manifest.at("resumed").kind = Tree::Kind::list;
   manifest.at("resumed").items.push_back(std::move(entry));
   directory.write("manifest.json", to_json(manifest));
@@ -68,9 +62,8 @@ void note_resume(const Workshop& workshop, const ResolvedConfig& config, const R
 void note_learnt(const RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
   if (learnt.empty()) return;
   Tree manifest = read_json(directory.path() / "manifest.json");
-  Tree& notes = manifest.at("learnt");
-  notes = Tree::map();
-  for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, quoted(one.value)});
+  Tree& notes = manifest.at("learnt") = Tree::map();
+  for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, Tree::quote(one.value)});
   directory.write("manifest.json", to_json(manifest));
 }
 
@@ -127,7 +120,7 @@ class Relay final : public Journal {
   void look_at_errors() {
     try {
       errors_ = experiment_.errors();
-    } catch (const std::exception&) {
+    } catch (const std::exception&) {  // see above
       errors_ = {};
     }
   }
@@ -150,7 +143,7 @@ class Relay final : public Journal {
 Experiment build_experiment(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
   try {
     return Experiment(config.options, workshop.host, workshop.interrupted, nullptr, directory.string());
-  } catch (const Error& trouble) {
+  } catch (const Error& trouble) {  // thrown on, with the place that only the config knows
     const std::string place = config.tree.place_of(trouble.where()).text();
     if (place.empty()) throw;
     throw Error(place, trouble.where() + ": " + trouble.reason(), trouble.hint(), trouble.kind());
@@ -191,7 +184,7 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   if (!failure.empty()) result = experiment.counts();
   note_learnt(directory, experiment.backend().learnt());
   report.interrupted = result.interrupted;
-  report.summary = summary_list().row({config, result, failure, watch.wall_seconds(), watch.cpu_seconds(),
+  report.summary = summary_list().row({result, config, failure, watch.wall_seconds(), watch.cpu_seconds(),
                                        directory.total_seconds(), peak_rss_bytes()});
   directory.write("taps.csv", to_csv(directory.rows()));
   if (result.interrupted) return report;
@@ -252,8 +245,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
 
 Tree read_run_config(const fs::path& directory) {
   const fs::path file = directory / "config.yaml";
-  std::error_code none;
-  if (!fs::exists(file, none)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
+  if (!is_there(file)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
   Tree config = read_yaml(file);
   check_format(config);
   return config;

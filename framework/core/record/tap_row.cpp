@@ -50,9 +50,7 @@ bool is_intent(const Row& row) { return row.find("intent") != nullptr; }
 
 Row unknown_result_of(const Row& intent) {
   Row row = intent;
-  row.fields.erase(
-      std::remove_if(row.fields.begin(), row.fields.end(), [](const auto& field) { return field.first == "intent"; }),
-      row.fields.end());
+  row.erase("intent");
   for (auto& [name, value] : row.fields) {
     if (name == "reason") value = std::string("the program ended during this tap");
   }

@@ -108,36 +108,32 @@ void EffectGroup<Shaft>::list(Fields& fields) {
                                 .from("8 cm: less than the paper's objects are high, an estimate"));
 }
 
+template <class Self, class Visit>
+void EffectOptions::each(Self& self, const Visit& visit) {
+  visit(self.force_noise, &Effects::force_noise, Field("force_noise", "white noise of the force sensor"));
+  visit(self.force_drift, &Effects::force_drift,
+        Field("force_drift", "the force sensor's zero wanders during the descent"));
+  visit(self.stiffness, &Effects::stiffness, Field("stiffness", "the object, and the arm, give way"));
+  visit(self.joint_lag, &Effects::joint_lag,
+        Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
+  visit(self.tip_radius, &Effects::tip_radius,
+        Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
+  visit(self.pose_noise, &Effects::pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
+  visit(self.missed_contacts, &Effects::missed_contacts, Field("missed_contacts", "contacts that are not felt"));
+  visit(self.false_contacts, &Effects::false_contacts, Field("false_contacts", "contacts in the air"));
+  visit(self.reach, &Effects::reach, Field("reach", "places that the arm cannot reach"));
+  visit(self.shaft, &Effects::shaft, Field("shaft", "the tool's shaft touches tall objects beside the tip"));
+}
+
 void EffectOptions::list(Fields& fields) {
-  fields.section(force_noise, Field("force_noise", "white noise of the force sensor"));
-  fields.section(force_drift, Field("force_drift", "the force sensor's zero wanders during the descent"));
-  fields.section(stiffness, Field("stiffness", "the object, and the arm, give way"));
-  fields.section(
-      joint_lag,
-      Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
-  fields.section(tip_radius, Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
-  fields.section(pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
-  fields.section(missed_contacts, Field("missed_contacts", "contacts that are not felt"));
-  fields.section(false_contacts, Field("false_contacts", "contacts in the air"));
-  fields.section(reach, Field("reach", "places that the arm cannot reach"));
-  fields.section(shaft, Field("shaft", "the tool's shaft touches tall objects beside the tip"));
+  each(*this, [&](auto& group, auto, const Field& field) { fields.section(group, field); });
 }
 
 Effects EffectOptions::values() const {
   Effects out;
-  const auto take = [](auto& effect, const auto& group) {
-    if (group) effect = group->value;
-  };
-  take(out.force_noise, force_noise);
-  take(out.force_drift, force_drift);
-  take(out.stiffness, stiffness);
-  take(out.joint_lag, joint_lag);
-  take(out.tip_radius, tip_radius);
-  take(out.pose_noise, pose_noise);
-  take(out.missed_contacts, missed_contacts);
-  take(out.false_contacts, false_contacts);
-  take(out.reach, reach);
-  take(out.shaft, shaft);
+  each(*this, [&](const auto& group, auto effect, const Field&) {
+    if (group) out.*effect = group->value;
+  });
   return out;
 }
 

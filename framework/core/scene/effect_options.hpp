@@ -32,6 +32,11 @@ struct EffectOptions : Options {
 
   /// The effects alone, as simulators see them.
   Effects values() const;
+
+ private:
+  /// Calls visit(its group, the member of Effects, its field) for each effect.
+  template <class Self, class Visit>
+  static void each(Self& self, const Visit& visit);
 };
 
 }  // namespace palpate

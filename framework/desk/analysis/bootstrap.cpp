@@ -101,6 +101,18 @@ double share_below_end(double side, std::size_t count, double bias, double accel
   return normal_share(bias + shifted / (1.0 - acceleration * shifted));
 }
 
+/// BCa of resampled values, whose places in order it may change, about what was estimated.
+MeanInterval interval_of(std::vector<double>& values, double centre, double rounding,
+                         const std::vector<double>& influences) {
+  const double bias = bias_of(values, centre, rounding);
+  const double acceleration = acceleration_of(influences);
+  const auto end = [&](double side) {
+    return quantile_of(values, share_below_end(side, influences.size(), bias, acceleration));
+  };
+  const double low = end(-1.0);
+  return {low, end(1.0)};
+}
+
 }  // namespace
 
 MeanEstimate bootstrap_mean(const std::vector<double>& values) {
@@ -111,13 +123,9 @@ MeanEstimate bootstrap_mean(const std::vector<double>& values) {
   if (centred.unit == 0.0 || !std::isfinite(centred.unit)) return out;
   const auto count = static_cast<double>(values.size());
   std::vector<double> sums = resampled_sums(centred.distances);
-  const double acceleration = acceleration_of(centred.distances);
-  const double bias = bias_of(sums, 0.0, 1e-12 * count);
-  const auto end = [&](double side) {
-    return quantile_of(sums, share_below_end(side, values.size(), bias, acceleration)) * centred.unit / count;
-  };
-  const double low = end(-1.0);
-  const double high = end(1.0);
+  const MeanInterval ends = interval_of(sums, 0.0, 1e-12 * count, centred.distances);
+  const double low = ends.low * centred.unit / count;
+  const double high = ends.high * centred.unit / count;
   out.interval =
       centred.mirrored ? MeanInterval{out.mean - high, out.mean - low} : MeanInterval{out.mean + low, out.mean + high};
   return out;
@@ -156,13 +164,7 @@ std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, c
     // 0 over 0 says no more of how large the ratio may be than a positive number over 0.
     ratio = b > 0.0 ? a / b : std::numeric_limits<double>::infinity();
   }
-  const double bias = bias_of(ratios, out.ratio, kRounding * out.ratio);
-  const double acceleration = acceleration_of(influences);
-  const auto end = [&](double side) {
-    return quantile_of(ratios, share_below_end(side, pairs.size(), bias, acceleration));
-  };
-  const double low = end(-1.0);
-  out.interval = MeanInterval{low, end(1.0)};
+  out.interval = interval_of(ratios, out.ratio, kRounding * out.ratio, influences);
   return out;
 }
 

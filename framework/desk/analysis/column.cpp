@@ -9,11 +9,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 namespace palpate {
 
-constexpr const char* kCommandLine = "command line";
+std::string Column::better_words() const {
+  if (better == RecordField::Better::neither) return {};
+  return better == RecordField::Better::more ? "more is better" : "less is better";
+}
 
 std::vector<std::string> columns_of(const std::vector<Row>& results) {
   std::vector<std::string> names;
@@ -28,23 +32,48 @@ std::vector<std::string> columns_of(const std::vector<Row>& results) {
 
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option) {
   if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
-    throw Error(kCommandLine, fmt::format("{}: results.csv has no column '{}'", option, name),
+    throw Error("command line", fmt::format("{}: results.csv has no column '{}'", option, name),
                 suggestion(name, columns));
   }
   const RecordField* field = find_summary_field(name);
   return {name, unit_of_column(name), field != nullptr ? field->better : RecordField::Better::neither};
 }
 
-std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option) {
-  const Scalar* value = row.find(column);
-  const std::string text = value != nullptr ? csv_cell(*value) : std::string();
-  if (text.empty()) return {};
-  if (text == "true" || text == "false") return text == "true" ? 1.0 : 0.0;
+CellNumber number_of(const Scalar* cell) {
+  if (cell == nullptr) return {};
+  if (const auto* truth = std::get_if<bool>(cell)) return {*truth ? 1.0 : 0.0};
+  if (const auto* whole = std::get_if<std::int64_t>(cell)) return {static_cast<double>(*whole)};
+  if (const auto* real = std::get_if<double>(cell)) return {std::isfinite(*real) ? std::optional(*real) : std::nullopt};
+  const auto* text = std::get_if<std::string>(cell);
+  if (text == nullptr || text->empty()) return {};
+  if (*text == "true" || *text == "false") return {*text == "true" ? 1.0 : 0.0};
   double number = 0.0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (result.ec == std::errc() && result.ptr == text.data() + text.size()) return number;
-  throw Error(kCommandLine, fmt::format("{}: the column '{}' holds {}, not numbers", option, column, text),
+  const char* const end = text->data() + text->size();
+  const auto read = std::from_chars(text->data(), end, number);
+  return read.ec == std::errc() && read.ptr == end ? CellNumber{number} : CellNumber{{}, true};
+}
+
+std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option) {
+  const CellNumber number = number_of(row.find(column));
+  if (!number.is_text) return number.value;
+  throw Error("command line",
+              fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row.cell(column)),
               "name one that can be averaged");
+}
+
+JobValue value_of_job(const Row* row, const std::string& column, const std::string& option) {
+  if (row == nullptr) return {Fate::unfinished};
+  if (!is_done(*row)) return {Fate::failed};
+  const std::optional<double> value = number_in(*row, column, option);
+  return value ? JobValue{Fate::counted, *value} : JobValue{Fate::without_value};
+}
+
+void JobCounts::add(Fate fate) {
+  ++jobs;
+  left_out += fate == Fate::left_out ? 1 : 0;
+  failed += fate == Fate::failed ? 1 : 0;
+  unfinished += fate == Fate::unfinished ? 1 : 0;
+  without_value += fate == Fate::without_value ? 1 : 0;
 }
 
 bool is_done(const Row& row) { return row.text("status") == "done"; }

@@ -17,6 +17,8 @@ struct Column {
   std::string name;
   Unit unit = Unit::none;
   RecordField::Better better = RecordField::Better::neither;  ///< `neither` of what is no field of the summary
+
+  std::string better_words() const;  ///< "less is better", "more is better" or ""
 };
 
 /// The names of all columns that `results` have.
@@ -25,9 +27,37 @@ std::vector<std::string> columns_of(const std::vector<Row>& results);
 /// The column that `option` ("--cost") names. Throws Error, of the command line, if there is none.
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option);
 
-/// The number in a cell; flags are 0 and 1, and swept values, which are text, count if they are plain numbers. None
-/// where the row has no value. Throws Error, of the command line, for other text.
+/// The number in a cell; flags are 0 and 1, and swept values, which are text, count if they are plain numbers.
+struct CellNumber {
+  std::optional<double> value;  ///< none where there is nothing
+  bool is_text = false;         ///< other text stands there
+};
+CellNumber number_of(const Scalar* cell);
+
+/// That of a row. Throws Error, of the command line, for other text.
 std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option);
+
+/// What became of a job of which a column is asked.
+enum class Fate { counted, left_out, unfinished, failed, without_value };
+
+struct JobValue {
+  Fate fate = Fate::counted;
+  double value = 0.0;  ///< if it counts
+};
+
+/// The value of a job by its row, null for one that has not ended. Throws Error as number_in().
+JobValue value_of_job(const Row* row, const std::string& column, const std::string& option);
+
+/// Some jobs by what became of them. What is left out counts as that alone, however it ended.
+struct JobCounts {
+  int jobs = 0;
+  int left_out = 0;  ///< by a condition, which fails where it asks for what a job has not
+  int failed = 0;
+  int unfinished = 0;
+  int without_value = 0;  ///< done, but the column is null
+
+  void add(Fate fate);
+};
 
 /// Whether the row is that of a run that ended well.
 bool is_done(const Row& row);

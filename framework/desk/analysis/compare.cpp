@@ -18,19 +18,10 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kCommandLine = "command line";
-
 using Values = std::vector<std::string>;
 
-enum class Fate { counted, left_out, unfinished, failed, without_value };
-
-struct Outcome {
-  Fate fate = Fate::counted;
-  double value = 0.0;
-};
-
 /// The jobs of a group by the values that make pairs. Sorted: the order of the jobs decides nothing.
-using Outcomes = std::map<Values, Outcome>;
+using Outcomes = std::map<Values, JobValue>;
 
 struct Collected {
   Values values;
@@ -53,18 +44,19 @@ Values others(const Values& names, const Values& without) {
 void check_keys(const Sweep& sweep, const CompareQuery& query) {
   for (auto key = query.by.begin(); key != query.by.end(); ++key) {
     if (*key == "seed") {
-      throw Error(kCommandLine, "--by: the seed repeats a job, it makes no groups", "name another swept key");
+      throw Error("command line", "--by: the seed repeats a job, it makes no groups", "name another swept key");
     }
     if (!contains(sweep.keys, *key)) {
-      throw Error(kCommandLine, fmt::format("--by: this sweep does not vary '{}'", *key),
+      throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
                   suggestion(*key, others(sweep.keys, {"seed"})));
     }
     if (std::find(query.by.begin(), key, *key) != key) {
-      throw Error(kCommandLine, fmt::format("--by: '{}' is named twice", *key), "name it once");
+      throw Error("command line", fmt::format("--by: '{}' is named twice", *key), "name it once");
     }
   }
   if (contains(sweep.keys, query.metric)) {
-    throw Error(kCommandLine, fmt::format("--metric: '{}' is swept, so it was set and did not come out", query.metric),
+    throw Error("command line",
+                fmt::format("--metric: '{}' is swept, so it was set and did not come out", query.metric),
                 query.metric == "seed" ? "name a field of the summary" : "give it to --by");
   }
 }
@@ -104,15 +96,8 @@ class Filter {
   const Condition* where_;
 };
 
-Outcome outcome_of(const Row* row, const std::string& metric) {
-  if (row == nullptr) return {Fate::unfinished};
-  if (!is_done(*row)) return {Fate::failed};
-  const std::optional<double> value = number_in(*row, metric, "--metric");
-  return value ? Outcome{Fate::counted, *value} : Outcome{Fate::without_value};
-}
-
 /// A list may hold the same job more than once: each is the counterpart of its like.
-void insert(Outcomes& outcomes, Values pairing, const Outcome& outcome) {
+void insert(Outcomes& outcomes, Values pairing, const JobValue& outcome) {
   pairing.emplace_back();
   for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat) pairing.back() = std::to_string(repeat);
 }
@@ -126,7 +111,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
   for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
     groups.push_back({group.values, {}});
     for (const auto& [job, row] : group.jobs) {
-      Outcome outcome = outcome_of(row, query.metric);
+      JobValue outcome = value_of_job(row, query.metric, "--metric");
       if (!filter.keeps(*job, row)) {
         ++out.left_out;
         out.left_out_failed += outcome.fate == Fate::failed ? 1 : 0;
@@ -155,24 +140,8 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   out.name = fmt::format("{}", fmt::join(out.values, ", "));
   std::vector<double> values;
   for (const auto& [pairing, outcome] : collected.outcomes) {
-    ++out.counts.jobs;
-    switch (outcome.fate) {
-      case Fate::counted:
-        values.push_back(outcome.value);
-        break;
-      case Fate::left_out:
-        ++out.counts.left_out;
-        break;
-      case Fate::unfinished:
-        ++out.counts.unfinished;
-        break;
-      case Fate::failed:
-        ++out.counts.failed;
-        break;
-      case Fate::without_value:
-        ++out.counts.without_value;
-        break;
-    }
+    out.counts.add(outcome.fate);
+    if (outcome.fate == Fate::counted) values.push_back(outcome.value);
   }
   out.mean = only_mean ? estimate_mean(values) : bootstrap_mean(values);
   if (only_mean) out.mean.interval.reset();
@@ -185,7 +154,7 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
 }
 
 /// Counts a pair that is not complete; null is a job that the group does not have.
-void count_lost(LostPairs& lost, const Outcome* a, const Outcome* b) {
+void count_lost(LostPairs& lost, const JobValue* a, const JobValue* b) {
   const auto either = [&](Fate fate) { return (a != nullptr && a->fate == fate) || (b != nullptr && b->fate == fate); };
   if (either(Fate::left_out)) {
     if (a != nullptr && b != nullptr && a->fate != b->fate) ++lost.left_out;
@@ -211,7 +180,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   std::vector<double> differences;
   for (const auto& [pairing, outcome] : a) {
     const auto partner = b.find(pairing);
-    const Outcome* other = partner != b.end() ? &partner->second : nullptr;
+    const JobValue* other = partner != b.end() ? &partner->second : nullptr;
     if (other == nullptr || outcome.fate != Fate::counted || other->fate != Fate::counted) {
       count_lost(out.lost, &outcome, other);
       continue;
@@ -253,11 +222,12 @@ std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::s
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (without_blanks(groups[i].name) == without_blanks(name)) {
       if (groups[i].counts.left_out < groups[i].counts.jobs) return i;
-      throw Error(kCommandLine, fmt::format("--baseline: --where leaves out all of '{}'", name), "name another group");
+      throw Error("command line", fmt::format("--baseline: --where leaves out all of '{}'", name),
+                  "name another group");
     }
     names.push_back(groups[i].name);
   }
-  throw Error(kCommandLine, fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
+  throw Error("command line", fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
 }
 
 /// Adds to `apart` the places in the pairing of which the two groups have no value in common.
@@ -286,14 +256,14 @@ void check_values(const Comparison& made, const Sweep& sweep) {
   }
   if (values > 0) return;
   if (made.left_out == made.jobs) {
-    throw Error(kCommandLine, fmt::format("--where: leaves none of the {} jobs", made.jobs),
+    throw Error("command line", fmt::format("--where: leaves none of the {} jobs", made.jobs),
                 "results.csv, or results_at_N.csv with --at, has the values it is compared with");
   }
   if (all.without_value == 0) {
     throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");
   }
   const RecordField* field = find_summary_field(made.metric.name);
-  throw Error(kCommandLine, fmt::format("--metric: no job has a value of '{}'", made.metric.name),
+  throw Error("command line", fmt::format("--metric: no job has a value of '{}'", made.metric.name),
               field != nullptr ? field->when_null : "");
 }
 

@@ -27,15 +27,6 @@ struct CompareQuery {
   bool only_groups = false;             ///< no pairs, and no intervals, which are what takes time
 };
 
-/// The jobs of a group. What is left out counts as that alone, however it ended.
-struct JobCounts {
-  int jobs = 0;
-  int left_out = 0;  ///< by the condition, which fails where it asks for what a job has not
-  int failed = 0;
-  int unfinished = 0;
-  int without_value = 0;  ///< done, but the metric is null
-};
-
 struct ComparedGroup {
   std::string name;  ///< its values, in the order of the keys: "weighted, rbf"; "(none)" of a key that its jobs lack
   std::vector<std::string> values;  ///< the same one by one

@@ -186,12 +186,10 @@ std::string remarks(const Comparison& comparison) {
 
 std::string compare_tables(const Comparison& comparison) {
   const Scale scale = scale_of(comparison);
-  const char* const direction = comparison.metric.better == Better::more   ? "; more is better"
-                                : comparison.metric.better == Better::less ? "; less is better"
-                                                                           : "";
-  std::string out =
-      fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
-                  comparison.after_taps ? fmt::format(" after {} taps", *comparison.after_taps) : "", direction);
+  const std::string better = comparison.metric.better_words();
+  std::string out = fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
+                                comparison.after_taps ? fmt::format(" after {} taps", *comparison.after_taps) : "",
+                                better.empty() ? "" : "; " + better);
   out += group_table(comparison, scale);
   if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale));
   const std::string notes = remarks(comparison);
@@ -242,22 +240,16 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     rows.push_back(std::move(row));
     return rows.back();
   };
-  const auto add_mean = [](Row& row, const MeanEstimate& mean) {
+  const auto add_estimate = [](Row& row, const MeanEstimate& mean) {
     row.add("n", static_cast<std::int64_t>(mean.count));
-    row.add("mean", mean.count > 0 ? std::optional(mean.mean) : std::nullopt);
-    row.add("low_95", mean.interval ? std::optional(mean.interval->low) : std::nullopt);
-    row.add("high_95", mean.interval ? std::optional(mean.interval->high) : std::nullopt);
+    add_mean(row, "", mean);
   };
   for (const ComparedGroup& one : comparison.groups) {
     Row& row = begin("group");
     const auto known = [&](double value) { return one.mean.count > 0 ? std::optional(value) : std::nullopt; };
     row.add("group", one.name);
-    row.add("jobs", one.counts.jobs);
-    row.add("left_out", one.counts.left_out);
-    row.add("failed", one.counts.failed);
-    row.add("unfinished", one.counts.unfinished);
-    row.add("without_value", one.counts.without_value);
-    add_mean(row, one.mean);
+    add_counts(row, one.counts, true);
+    add_estimate(row, one.mean);
     row.add("median", known(one.median));
     row.add("p10", known(one.low_10));
     row.add("p90", known(one.high_90));
@@ -266,7 +258,7 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     Row& row = begin("pair");
     row.add("group", comparison.groups[one.first].name);
     row.add("minus", comparison.groups[one.second].name);
-    add_mean(row, one.difference);
+    add_estimate(row, one.difference);
     if (comparison.ratios) {
       const std::optional<MeanInterval> ends = one.ratio ? one.ratio->interval : std::nullopt;
       row.add("ratio", one.ratio ? std::optional(one.ratio->ratio) : std::nullopt);

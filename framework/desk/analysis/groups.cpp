@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 
+#include "analysis/column.hpp"
 #include "analysis/readable.hpp"
 
 #include <algorithm>
@@ -27,6 +28,16 @@ std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& res
     groups[at->second].jobs.push_back({&job, rows[static_cast<std::size_t>(job.index)]});
   }
   return groups;
+}
+
+std::vector<double> values_of(const JobGroup& group, const std::string& column, const std::string& option) {
+  std::vector<double> out;
+  for (const JobResult& job : group.jobs) {
+    const JobValue one = value_of_job(job.row, column, option);
+    if (one.fate == Fate::counted) out.push_back(one.value);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 std::vector<std::string> setting_keys(const Sweep& sweep) {

@@ -14,31 +14,16 @@ namespace {
 /// Two digits of the least: means of tens and hundreds then have no decimals that nobody reads.
 constexpr int kDigits = 2;
 
-/// The comparisons after one number of taps: one a metric.
-using Block = std::vector<const Comparison*>;
-
-std::vector<Block> blocks_of(const std::vector<Comparison>& comparisons) {
-  std::vector<Block> blocks;
-  for (const Comparison& one : comparisons) {
-    if (blocks.empty() || blocks.back().front()->after_taps != one.after_taps) blocks.emplace_back();
-    blocks.back().push_back(&one);
-  }
-  return blocks;
-}
-
-/// Of a metric in all rows, so that a column has one unit.
-std::vector<Scale> scales_of(const std::vector<Block>& blocks) {
-  std::vector<Scale> scales;
-  for (std::size_t metric = 0; metric < blocks.front().size(); ++metric) {
-    std::vector<double> means;
-    for (const Block& block : blocks) {
-      for (const ComparedGroup& group : block[metric]->groups) {
-        if (group.mean.count > 0) means.push_back(group.mean.mean);
-      }
+/// Of a metric in all rows, so that a column has one unit: `first` is its first comparison, the next ones are `step`
+/// behind each other.
+Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step) {
+  std::vector<double> means;
+  for (std::size_t i = first; i < comparisons.size(); i += step) {
+    for (const ComparedGroup& group : comparisons[i].groups) {
+      if (group.mean.count > 0) means.push_back(group.mean.mean);
     }
-    scales.push_back(readable_scale(blocks.front()[metric]->metric.unit, means, kDigits));
   }
-  return scales;
+  return readable_scale(comparisons[first].metric.unit, means, kDigits);
 }
 
 /// A '|' in a name would end its cell.
@@ -49,40 +34,35 @@ std::string cell(std::string text) {
 
 std::string line_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
 
-std::string head(const std::vector<Block>& blocks, const std::vector<Scale>& scales) {
-  const Comparison& first = *blocks.front().front();
+std::string head(const std::vector<Comparison>& comparisons, const std::vector<Scale>& scales) {
+  const Comparison& first = comparisons.front();
   std::vector<std::string> names;
-  std::vector<std::string> sides;
-  for (const std::string& key : first.by) {
-    names.push_back(cell(key));
-    sides.emplace_back("---");
-  }
+  for (const std::string& key : first.by) names.push_back(cell(key));
+  std::vector<std::string> sides(names.size(), "---");
   if (first.after_taps) names.emplace_back("taps");
-  for (std::size_t i = 0; i < scales.size(); ++i)
-    names.push_back(cell(scales[i].title(blocks.front()[i]->metric.name)));
+  for (std::size_t i = 0; i < scales.size(); ++i) names.push_back(cell(scales[i].title(comparisons[i].metric.name)));
   sides.resize(names.size(), "---:");
-  return line_of(names) + "|" + fmt::format("{}", fmt::join(sides, "|")) + "|\n";
+  return line_of(names) + fmt::format("|{}|\n", fmt::join(sides, "|"));
 }
 
 /// What is in no mean, or not in all: a metric that some runs lack, jobs that failed or have not ended.
-std::string remarks(const std::vector<Block>& blocks) {
+std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metrics) {
   std::string out;
-  for (const Comparison* one : blocks.front()) {
-    const RecordField* field = find_summary_field(one->metric.name);
-    const bool lacks = std::any_of(blocks.begin(), blocks.end(), [&](const Block& block) {
-      const auto same = std::find_if(block.begin(), block.end(),
-                                     [&](const Comparison* other) { return other->metric.name == one->metric.name; });
-      return std::any_of((*same)->groups.begin(), (*same)->groups.end(),
-                         [](const ComparedGroup& group) { return group.counts.without_value > 0; });
-    });
+  for (std::size_t metric = 0; metric < metrics; ++metric) {
+    const std::string& name = comparisons[metric].metric.name;
+    const RecordField* field = find_summary_field(name);
+    bool lacks = false;
+    for (std::size_t i = metric; i < comparisons.size(); i += metrics) {
+      for (const ComparedGroup& group : comparisons[i].groups) lacks = lacks || group.counts.without_value > 0;
+    }
     if (!lacks) continue;
     out +=
-        fmt::format("{}: mean over the runs that have one{}.\n", one->metric.name,
+        fmt::format("{}: mean over the runs that have one{}.\n", name,
                     field != nullptr && !field->when_null.empty() ? fmt::format(" (else {})", field->when_null) : "");
   }
   int failed = 0;
   int unfinished = 0;
-  for (const ComparedGroup& group : blocks.front().front()->groups) {
+  for (const ComparedGroup& group : comparisons.front().groups) {
     failed += group.counts.failed;
     unfinished += group.counts.unfinished;
   }
@@ -94,25 +74,29 @@ std::string remarks(const std::vector<Block>& blocks) {
 }  // namespace
 
 std::string means_table(const std::vector<Comparison>& comparisons) {
-  const std::vector<Block> blocks = blocks_of(comparisons);
-  const std::vector<Scale> scales = scales_of(blocks);
-  std::string out = head(blocks, scales);
-  for (const Block& block : blocks) {
-    const Comparison& first = *block.front();
+  const auto metrics =
+      static_cast<std::size_t>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& one) {
+        return one.after_taps == comparisons.front().after_taps;
+      }));
+  std::vector<Scale> scales;
+  for (std::size_t metric = 0; metric < metrics; ++metric) scales.push_back(scale_of(comparisons, metric, metrics));
+  std::string out = head(comparisons, scales);
+  for (std::size_t block = 0; block < comparisons.size(); block += metrics) {
+    const Comparison& first = comparisons[block];
     for (std::size_t i = 0; i < first.groups.size(); ++i) {
       const JobCounts& counts = first.groups[i].counts;
       if (counts.left_out == counts.jobs) continue;
       std::vector<std::string> cells;
       for (const std::string& value : first.groups[i].values) cells.push_back(cell(value));
       if (first.after_taps) cells.push_back(std::to_string(*first.after_taps));
-      for (std::size_t metric = 0; metric < block.size(); ++metric) {
-        const MeanEstimate& mean = block[metric]->groups[i].mean;
+      for (std::size_t metric = 0; metric < metrics; ++metric) {
+        const MeanEstimate& mean = comparisons[block + metric].groups[i].mean;
         cells.push_back(mean.count > 0 ? scales[metric].number(mean.mean) : "-");
       }
       out += line_of(cells);
     }
   }
-  const std::string notes = remarks(blocks);
+  const std::string notes = remarks(comparisons, metrics);
   return out + (notes.empty() ? "" : "\n" + notes);
 }
 

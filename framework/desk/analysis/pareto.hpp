@@ -3,11 +3,9 @@
 // error. analysis/pareto_report.hpp shows them.
 #pragma once
 
+#include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
-#include "record/row.hpp"
 #include "sweep/sweep.hpp"
-
-#include <palpate/options.hpp>
 
 #include <cstddef>
 #include <string>
@@ -15,49 +13,33 @@
 
 namespace palpate {
 
-/// A column of results.csv that is compared.
-struct ParetoKey {
-  std::string name;
-  Unit unit = Unit::none;
-  bool more_is_better = false;
-};
-
 /// All jobs that differ in nothing but the seed.
 struct Setting {
   std::vector<std::string> values;  ///< one for each of Pareto::keys
   std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
-  int jobs = 0;
-  int failed = 0;
-  int unfinished = 0;
-  int without_value = 0;  ///< done, but cost or error is null
-  MeanEstimate cost;      ///< over the jobs that are done and have both values
+  JobCounts counts;                 ///< without a value: of cost or error
+  MeanEstimate cost;                ///< over the jobs that are done and have both values
   MeanEstimate error;
-  int front = 0;  ///< its number on the front, from 1 in the order of cost; 0 if it is not on it
+  /// Its number on the front, from 1 in the order of cost; 0 if it is not on it: another complete one is at least as
+  /// good in both and better in one. Equal ones are on it together or not at all.
+  int front = 0;
 
   /// Whether every job has both values. Others are shown, but the front is made, and the cheapest chosen, without them:
   /// the mean of the jobs that went well says nothing about those that did not.
-  bool complete() const { return failed == 0 && unfinished == 0 && without_value == 0 && jobs > 0; }
+  bool complete() const { return counts.jobs > 0 && static_cast<std::size_t>(counts.jobs) == error.count; }
 };
 
 struct Pareto {
-  ParetoKey cost;
-  ParetoKey error;
+  Column cost;
+  Column error;
   std::vector<std::string> keys;  ///< the swept ones but the seed
   std::vector<Setting> settings;  ///< in the order of cost, those without a value last
   int jobs = 0;
   int unfinished = 0;
-};
 
-/// A place in the plane of two quantities of which less is better.
-struct ParetoPoint {
-  double cost = 0.0;
-  double error = 0.0;
+  bool more_is_better() const { return error.better == RecordField::Better::more; }
 };
-
-/// Whether each point is such that no other is at most as large in both and smaller in one. Equal points are on the
-/// front together or not at all.
-std::vector<bool> non_dominated(const std::vector<ParetoPoint>& points);
 
 /// Groups the results of `sweep` by all keys but the seed. Throws Error, of the command line, for a column that does
 /// not exist, holds no numbers, is best neither small nor large (coverage_95), or, as cost, is better when it is more.

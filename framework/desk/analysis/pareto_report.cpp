@@ -17,7 +17,7 @@ using Pick = std::function<const MeanEstimate&(const Setting&)>;
 const MeanEstimate& cost_of(const Setting& setting) { return setting.cost; }
 const MeanEstimate& error_of(const Setting& setting) { return setting.error; }
 
-Scale scale_of(const Pareto& pareto, const ParetoKey& key, const Pick& pick) {
+Scale scale_of(const Pareto& pareto, const Column& key, const Pick& pick) {
   std::vector<double> means;
   for (const Setting& setting : pareto.settings) {
     if (pick(setting).count > 0) means.push_back(pick(setting).mean);
@@ -28,11 +28,11 @@ Scale scale_of(const Pareto& pareto, const ParetoKey& key, const Pick& pick) {
 std::string note_of(const Setting& setting) {
   std::string note;
   const auto add = [&](int count, const char* what) {
-    if (count > 0) note += fmt::format("{}{} of {} {}", note.empty() ? "" : ", ", count, setting.jobs, what);
+    if (count > 0) note += fmt::format("{}{} of {} {}", note.empty() ? "" : ", ", count, setting.counts.jobs, what);
   };
-  add(setting.failed, "failed");
-  add(setting.unfinished, "unfinished");
-  add(setting.without_value, "without a value");
+  add(setting.counts.failed, "failed");
+  add(setting.counts.unfinished, "unfinished");
+  add(setting.counts.without_value, "without a value");
   return note;
 }
 
@@ -56,14 +56,14 @@ std::string pareto_table(const Pareto& pareto) {
   std::vector<std::vector<std::string>> lines{
       {"front", "setting", "jobs", cost.title(pareto.cost.name), error.title(pareto.error.name), ""}};
   for (const Setting& one : pareto.settings) {
-    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, std::to_string(one.jobs),
+    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, std::to_string(one.counts.jobs),
                      cost_text(one, cost), error_text(one, error), note_of(one)});
   }
   std::string out = aligned(lines, "rlrrrl");
   out += fmt::format(
       "mean over the seeds, with its 95 % interval; {} of {} is better; numbered: no other setting is at "
       "least as good in both\n",
-      pareto.error.more_is_better ? "more" : "less", pareto.error.name);
+      pareto.more_is_better() ? "more" : "less", pareto.error.name);
   const bool all_complete =
       std::all_of(pareto.settings.begin(), pareto.settings.end(), [](const Setting& one) { return one.complete(); });
   if (!all_complete) out += "settings with jobs that failed, are missing or have no value are not compared\n";
@@ -76,17 +76,9 @@ std::vector<Row> pareto_rows(const Pareto& pareto) {
     Row row;
     row.add("front", one.front > 0 ? std::optional(one.front) : std::nullopt);
     for (std::size_t i = 0; i < pareto.keys.size(); ++i) row.add(pareto.keys[i], one.values[i]);
-    row.add("jobs", one.jobs);
-    row.add("failed", one.failed);
-    row.add("unfinished", one.unfinished);
-    row.add("without_value", one.without_value);
-    const auto add = [&row](const std::string& name, const MeanEstimate& estimate) {
-      row.add(name + ".mean", estimate.count > 0 ? std::optional(estimate.mean) : std::nullopt);
-      row.add(name + ".low_95", estimate.interval ? std::optional(estimate.interval->low) : std::nullopt);
-      row.add(name + ".high_95", estimate.interval ? std::optional(estimate.interval->high) : std::nullopt);
-    };
-    add(pareto.cost.name, one.cost);
-    add(pareto.error.name, one.error);
+    add_counts(row, one.counts);
+    add_mean(row, pareto.cost.name + ".", one.cost);
+    add_mean(row, pareto.error.name + ".", one.error);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -111,100 +103,71 @@ std::string bound_words(const Pareto& pareto, double bound) {
 
 namespace {
 
-/// Ends of an axis in its unit, and whether it is logarithmic.
-struct AxisRange {
+/// An axis with its ends in its unit, and whether it is logarithmic.
+struct PlotAxis {
+  Scale scale;
   double low = 0.0;
   double high = 1.0;
   bool logarithmic = false;
 
-  /// A bar may begin at or below 0, which a logarithmic axis has not.
-  double clipped(double value) const { return logarithmic ? std::max(value, low) : value; }
+  /// "mean low high". A bar may begin at or below 0, which a logarithmic axis has not.
+  std::string columns(const MeanEstimate& estimate) const {
+    const MeanInterval ends = interval_or_mean(estimate);
+    const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };
+    return fmt::format("{} {} {}", estimate.mean / scale.factor, clipped(ends.low / scale.factor),
+                       clipped(ends.high / scale.factor));
+  }
+
+  static MeanInterval interval_or_mean(const MeanEstimate& estimate) {
+    return estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
+  }
 };
 
-AxisRange axis_range(const Pareto& pareto, const Pick& pick, const Scale& scale, const std::optional<double>& line) {
+PlotAxis plot_axis(const Pareto& pareto, const Column& key, const Pick& pick, const std::optional<double>& line) {
   constexpr double kLogarithmicFrom = 20.0;
+  PlotAxis axis;
+  axis.scale = scale_of(pareto, key, pick);
   std::vector<double> means;
   std::vector<double> ends;
   for (const Setting& one : pareto.settings) {
     const MeanEstimate& estimate = pick(one);
     if (estimate.count == 0) continue;
-    means.push_back(estimate.mean / scale.factor);
-    const MeanInterval interval = estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
-    ends.push_back(interval.low / scale.factor);
-    ends.push_back(interval.high / scale.factor);
+    means.push_back(estimate.mean / axis.scale.factor);
+    for (const double end : {PlotAxis::interval_or_mean(estimate).low, PlotAxis::interval_or_mean(estimate).high})
+      ends.push_back(end / axis.scale.factor);
   }
-  if (line) ends.push_back(*line / scale.factor);
+  if (line) ends.push_back(*line / axis.scale.factor);
   const auto [least, most] = std::minmax_element(means.begin(), means.end());
   const auto [low, high] = std::minmax_element(ends.begin(), ends.end());
-  AxisRange range;
-  range.logarithmic = *least > 0.0 && *most / *least > kLogarithmicFrom && (!line || *line > 0.0);
-  if (range.logarithmic) {
-    const double bottom = *low > *least / 4 ? *low : *least / 4;
+  axis.logarithmic = *least > 0.0 && *most / *least > kLogarithmicFrom && (!line || *line > 0.0);
+  if (axis.logarithmic) {
+    const double bottom = std::max(*low, *least / 4);
     const double margin = std::pow(*high / bottom, 0.06);
-    range.low = bottom / margin;
-    range.high = *high * margin;
+    axis.low = bottom / margin;
+    axis.high = *high * margin;
   } else {
     const double margin = *high > *low ? 0.06 * (*high - *low) : std::max(0.1 * std::abs(*high), 1e-12);
-    range.low = *low - margin;
-    range.high = *high + margin;
+    axis.low = *low - margin;
+    axis.high = *high + margin;
   }
-  return range;
+  return axis;
 }
-
-/// x y xlow xhigh ylow yhigh number, a setting a line.
-class PointWriter {
- public:
-  PointWriter(const Scale& cost, const Scale& error, const AxisRange& x, const AxisRange& y)
-      : cost_(cost), error_(error), x_(x), y_(y) {}
-
-  std::string line(const Setting& one) const {
-    return fmt::format("{} {} {} {} {}\n", one.cost.mean / cost_.factor, one.error.mean / error_.factor,
-                       ends(one.cost, cost_, x_), ends(one.error, error_, y_), one.front);
-  }
-
- private:
-  static std::string ends(const MeanEstimate& estimate, const Scale& scale, const AxisRange& range) {
-    const MeanInterval interval = estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
-    return fmt::format("{} {}", range.clipped(interval.low / scale.factor),
-                       range.clipped(interval.high / scale.factor));
-  }
-
-  const Scale& cost_;
-  const Scale& error_;
-  const AxisRange& x_;
-  const AxisRange& y_;
-};
 
 constexpr double kListLeft = 0.635;  // of the picture's width: where the list of names begins
-
-/// The name in lines that fit beside the plot, broken behind commas where it can be.
-std::vector<std::string> wrapped(const std::string& name) {
-  constexpr std::size_t kLongest = 48;
-  std::vector<std::string> lines;
-  for (std::size_t begin = 0; begin < name.size();) {
-    std::size_t end = name.size();
-    if (end - begin > kLongest) {
-      const auto comma = name.rfind(", ", begin + kLongest - 1);
-      end = comma != std::string::npos && comma > begin ? comma + 2 : begin + kLongest;
-    }
-    lines.push_back(name.substr(begin, end - begin));
-    begin = end;
-  }
-  return lines;
-}
 
 constexpr const char* kFrontColour = "#0b5394";
 constexpr const char* kChosenColour = "#c1440e";
 
 /// An entry of the list at height `y`, which it lowers: the mark that the setting has in the picture, and its name.
 std::string list_entry(const Setting& one, const char* colour, double& y) {
+  constexpr std::size_t kLongest = 48;  // letters that fit beside the plot
   std::string out = fmt::format("set label '' at screen {}, screen {} point pt 7 ps 2.4 lc rgb '{}' front\n",
                                 kListLeft + 0.012, y, colour);
   if (one.front > 0) {
     out += fmt::format("set label '{}' at screen {}, screen {} center tc rgb 'white' font ',10' front\n", one.front,
                        kListLeft + 0.012, y);
   }
-  for (const std::string& line : wrapped(one.name)) {
+  for (const std::string& line : wrapped(one.name, kLongest)) {
     out +=
         fmt::format("set label {} at screen {}, screen {} left font ',11'\n", gnuplot_text(line), kListLeft + 0.03, y);
     y -= 0.026;
@@ -239,19 +202,17 @@ std::string front_list(const Pareto& pareto, const Setting* chosen) {
 
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen) {
-  const Scale cost = scale_of(pareto, pareto.cost, cost_of);
-  const Scale error = scale_of(pareto, pareto.error, error_of);
-  const AxisRange x = axis_range(pareto, cost_of, cost, {});
-  const AxisRange y = axis_range(pareto, error_of, error, bound);
-  const PointWriter points(cost, error, x, y);
+  const PlotAxis x = plot_axis(pareto, pareto.cost, cost_of, {});
+  const PlotAxis y = plot_axis(pareto, pareto.error, error_of, bound);
   std::string front;
   std::string others;
   std::string incomplete;
   std::string choice;
   for (const Setting& one : pareto.settings) {
     if (one.cost.count == 0) continue;
-    (one.front > 0 ? front : one.complete() ? others : incomplete) += points.line(one);
-    if (&one == chosen) choice = points.line(one);
+    const std::string line = fmt::format("{} {} {}\n", x.columns(one.cost), y.columns(one.error), one.front);
+    (one.front > 0 ? front : one.complete() ? others : incomplete) += line;
+    if (&one == chosen) choice = line;
   }
 
   std::string out;
@@ -261,9 +222,9 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
     out += fmt::format("${} << END\n{}END\n", name, lines);
   };
   out += fmt::format("set title {} font ',14'\n", gnuplot_text(title));
-  out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + cost.title(pareto.cost.name)),
-                     gnuplot_text("mean " + error.title(pareto.error.name) +
-                                  (pareto.error.more_is_better ? " (more is better)" : "")));
+  out += fmt::format(
+      "set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
+      gnuplot_text("mean " + y.scale.title(pareto.error.name) + (pareto.more_is_better() ? " (more is better)" : "")));
   if (x.logarithmic) out += "set logscale x\n";
   if (y.logarithmic) out += "set logscale y\n";
   out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
@@ -275,29 +236,29 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   if (!incomplete.empty()) {
     block("incomplete", incomplete);
     plot(
-        "$incomplete using 1:2:3:4:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' "
+        "$incomplete using 1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' "
         "title 'not compared: jobs failed or missing'");
   }
   if (!others.empty()) {
     block("others", others);
-    plot("$others using 1:2:3:4:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'");
+    plot("$others using 1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'");
   }
   if (bound) {
-    plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '#c1440e' title {}", *bound / error.factor,
-                     gnuplot_text((pareto.error.more_is_better ? "wanted: at least " : "wanted: at most ") +
+    plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '#c1440e' title {}", *bound / y.scale.factor,
+                     gnuplot_text((pareto.more_is_better() ? "wanted: at least " : "wanted: at most ") +
                                   bound_words(pareto, *bound))));
   }
   if (!front.empty()) {
     block("front", front);
-    plot("$front using 1:2 with steps lw 2 lc rgb '#0b5394' title 'front: dominated by none'");
-    plot("$front using 1:2:3:4:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '#0b5394' notitle");
-    plot("$front using 1:2 with points pt 7 ps 2.4 lc rgb '#0b5394' notitle");
+    plot("$front using 1:4 with steps lw 2 lc rgb '#0b5394' title 'front: dominated by none'");
+    plot("$front using 1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '#0b5394' notitle");
+    plot("$front using 1:4 with points pt 7 ps 2.4 lc rgb '#0b5394' notitle");
   }
   if (!choice.empty()) {
     block("choice", choice);
-    plot("$choice using 1:2 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'");
+    plot("$choice using 1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'");
   }
-  if (!front.empty()) plot("$front using 1:2:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle");
+  if (!front.empty()) plot("$front using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle");
   return out + plots + "\n";
 }
 

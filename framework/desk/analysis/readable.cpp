@@ -58,6 +58,31 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines, const st
   return out;
 }
 
+std::vector<std::string> wrapped(const std::string& text, std::size_t longest) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size(); begin += lines.back().size()) {
+    const std::string line = text.substr(begin, longest);
+    const auto comma = begin + longest < text.size() ? line.rfind(", ") : std::string::npos;
+    lines.push_back(comma != std::string::npos && comma > 0 ? line.substr(0, comma + 2) : line);
+  }
+  return lines;
+}
+
+void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate) {
+  const auto& ends = estimate.interval;
+  row.add(prefix + "mean", estimate.count > 0 ? std::optional(estimate.mean) : std::nullopt);
+  row.add(prefix + "low_95", ends ? std::optional(ends->low) : std::nullopt);
+  row.add(prefix + "high_95", ends ? std::optional(ends->high) : std::nullopt);
+}
+
+void add_counts(Row& row, const JobCounts& counts, bool left_out) {
+  row.add("jobs", counts.jobs);
+  if (left_out) row.add("left_out", counts.left_out);
+  row.add("failed", counts.failed);
+  row.add("unfinished", counts.unfinished);
+  row.add("without_value", counts.without_value);
+}
+
 std::string one_line(std::string text) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Numbers and tables for people: units in which values are short, columns that stand under each other.
+// Numbers and tables for people: units in which values are short, columns that stand under each other; and those for
+// programs, as rows.
 #pragma once
 
+#include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
 
 #include <palpate/options.hpp>
@@ -34,6 +36,14 @@ Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 
 /// Lines of as many cells each, under each other and two blanks apart; `sides` has an l or r for each column. A
 /// column that is empty in all lines takes no room.
 std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides);
+
+/// The text in lines of at most `longest` letters, broken behind commas where that can be.
+std::vector<std::string> wrapped(const std::string& text, std::size_t longest);
+
+/// Adds `prefix`mean and the ends of its interval, null where there are none.
+void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate);
+/// Adds how many jobs there are and what became of them, on request with those that a condition leaves out.
+void add_counts(Row& row, const JobCounts& counts, bool left_out = false);
 
 /// The text with blanks for control characters: one line, whatever stood in a config.
 std::string one_line(std::string text);

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include <unistd.h>
 
@@ -59,61 +60,67 @@ class Attempt {
   int number_;
 };
 
-void write_failure(const fs::path& directory, const std::string& id, const std::string& reason) {
+/// None if another process has it in hand.
+std::optional<RunDirectory> hold(const fs::path& directory) {
+  try {
+    return std::optional<RunDirectory>(std::in_place, directory);
+  } catch (const Error& trouble) {  // to be told from what is wrong with the folder
+    if (trouble.kind() != Error::Kind::busy) throw;
+    return std::nullopt;
+  }
+}
+
+/// Its reason is kept unless the job has ended for another one.
+void write_failure(const fs::path& directory, const std::string& reason) {
+  if (has_ended(directory)) return;
   Row row;
-  row.add("id", id);
+  row.add("id", directory.filename().string());
   row.add("status", "failed");
   row.add("stop_reason", reason);
   write_file(directory / "summary.json", to_json_text(row));
 }
 
-bool has_ended(const fs::path& directory) {
-  const RunStatus::State state = read_ending(directory).state;
-  return state == RunStatus::State::done || state == RunStatus::State::failed;
-}
-
-/// Under the lock: the run, and a summary whatever becomes of it.
-JobEnd carry_on(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
-                const ResumeOptions& options) {
+/// Under the lock: the attempt from its beginning to its end.
+JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of, RunDirectory& held,
+                   const ResumeOptions& options) {
+  const fs::path& directory = held.path();
+  std::error_code none;
+  JobEnd end = JobEnd::failed;
+  std::optional<Attempt> attempt;
   try {
-    return resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
-  } catch (const Error& trouble) {
-    std::error_code none;
-    if (!fs::exists(held.path(), none)) throw;  // nothing can be recorded there any more
+    const ResolvedConfig config = config_of();
+    attempt.emplace(directory, read_record(directory).taps);
+    end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
+  } catch (const Error& trouble) {  // which ends the job alone, not the sweep
+    if (!fs::exists(directory / "config.yaml", none)) throw;
     // What failed before the run could begin has left no summary.
-    if (!has_ended(held.path())) write_failure(held.path(), config.id, trouble.what());
-    return JobEnd::failed;
+    write_failure(directory, trouble.what());
   }
+  if (attempt) attempt->end(end == JobEnd::done ? "done" : end == JobEnd::failed ? "failed" : "interrupted");
+  return end;
 }
 
 }  // namespace
 
-JobEnd run_job(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory,
+JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of, const fs::path& directory,
                const ResumeOptions& options) {
   refuse_link(directory.parent_path());
   refuse_link(directory);
   std::error_code none;
-  if (!fs::is_directory(directory, none)) throw Error(directory.string(), "is gone", {}, Error::Kind::run);
-  std::optional<RunDirectory> held;
-  try {
-    held.emplace(directory);
-  } catch (const Error& trouble) {
-    if (trouble.kind() == Error::Kind::busy) return JobEnd::busy;
-    throw;
+  if (!fs::is_directory(directory, none)) {
+    throw Error(directory.string(), "is gone", "it has no config.yaml: 'palpate sweep' puts it back", Error::Kind::run);
   }
+  std::optional<RunDirectory> held = hold(directory);
+  if (!held) return JobEnd::busy;
   const RunStatus::State state = read_ending(directory).state;
   if (state == RunStatus::State::done) return JobEnd::done;
   if (state == RunStatus::State::failed && !options.retry_failed) return JobEnd::failed;
-  std::optional<Attempt> attempt;
-  try {
-    attempt.emplace(directory, read_record(directory).taps);
-  } catch (const Error& trouble) {  // its record or its list of attempts is damaged
-    if (!has_ended(directory)) write_failure(directory, config.id, trouble.what());
-    return JobEnd::failed;
-  }
-  const JobEnd end = carry_on(workshop, config, *held, options);
-  attempt->end(end == JobEnd::done ? "done" : end == JobEnd::failed ? "failed" : "interrupted");
-  return end;
+  return attempt_job(workshop, config_of, *held, options);
+}
+
+bool has_ended(const fs::path& directory) {
+  const RunStatus::State state = read_ending(directory).state;
+  return state == RunStatus::State::done || state == RunStatus::State::failed;
 }
 
 int attempts_of(const fs::path& directory) {
@@ -129,14 +136,8 @@ int attempts_of(const fs::path& directory) {
   return attempts;
 }
 
-void record_failure(const fs::path& directory, const std::string& id, const std::string& reason) {
-  try {
-    const RunDirectory held(directory);
-    if (has_ended(directory)) return;
-    write_failure(directory, id, reason);
-  } catch (const Error& trouble) {
-    if (trouble.kind() != Error::Kind::busy) throw;
-  }
+void record_failure(const fs::path& directory, const std::string& reason) {
+  if (const std::optional<RunDirectory> held = hold(directory)) write_failure(directory, reason);
 }
 
 }  // namespace palpate

@@ -11,27 +11,33 @@
 #include "record/session.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace palpate {
 
-/// How an attempt at a job ended.
+/// How an attempt at a job ended, and the exit status of a process that made it.
 enum class JobEnd {
-  done,         ///< now or before
-  failed,       ///< now or before; summary.json has the reason
-  busy,         ///< another process has it in hand; nothing was done
-  interrupted,  ///< by the user's wish; it can be carried on
+  done = 0,           ///< now or before
+  failed = 1,         ///< now or before; summary.json has the reason
+  unrecorded = 2,     ///< not even that could be recorded
+  busy = 75,          ///< another process has it in hand; nothing was done
+  interrupted = 130,  ///< by the user's wish; it can be carried on
 };
 
-/// Runs the job in `directory` unless it is done, or has failed and is not to be tried again. What goes wrong becomes
-/// the reason of its failure. Throws Error only where nothing could be recorded.
-JobEnd run_job(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory,
-               const ResumeOptions& options);
+/// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
+/// `config_of` reads its config. What goes wrong becomes the reason of its failure; but a config that was deleted is
+/// none, as `palpate sweep` puts it back. Throws Error only where nothing is recorded.
+JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of,
+               const std::filesystem::path& directory, const ResumeOptions& options);
+
+/// Whether the job is done or has failed.
+bool has_ended(const std::filesystem::path& directory);
 
 /// How often the job has been begun: lines of its attempts.jsonl that say so.
 int attempts_of(const std::filesystem::path& directory);
 
 /// Ends the job as failed, unless it has ended or somebody has it in hand: for processes that died over it.
-void record_failure(const std::filesystem::path& directory, const std::string& id, const std::string& reason);
+void record_failure(const std::filesystem::path& directory, const std::string& reason);
 
 }  // namespace palpate

@@ -19,27 +19,13 @@
 namespace palpate {
 namespace {
 
-using std::chrono::milliseconds;
-
-constexpr milliseconds kBusyPause{200};
-
-/// Exit statuses of a child.
-constexpr std::array<std::pair<JobEnd, int>, 4> kStatuses{
-    {{JobEnd::done, 0}, {JobEnd::failed, 1}, {JobEnd::busy, 75}, {JobEnd::interrupted, 130}}};
-constexpr int kUnrecorded = 2;  ///< not even the failure could be recorded
-
-int status_of(JobEnd end) {
-  return std::find_if(kStatuses.begin(), kStatuses.end(), [end](const auto& one) { return one.first == end; })->second;
-}
+constexpr std::chrono::milliseconds kBusyPause{200};
 
 /// Signals by which a program breaks down by itself; others come from outside.
 bool is_crash(int signal) {
   constexpr std::array<int, 7> kCrashes{SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
   return std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
 }
-
-/// Not with fmt::print, which throws when stderr is a terminal that was closed.
-void mention(std::size_t job, const char* what) { std::fputs(fmt::format("job {}: {}\n", job, what).c_str(), stderr); }
 
 }  // namespace
 
@@ -56,7 +42,7 @@ bool LocalLauncher::start(std::size_t job) {
     // What it may open is for its own files.
     for (const Running& other : running_) other.process->forget();
     // Not as children end otherwise: plugins have things to take down, such as a robot's node.
-    std::exit(be_child(job));
+    std::exit(static_cast<int>(run(job)));
   });
   if (!process && !running_.empty()) return false;
   if (!process) throw Error("", fmt::format("no process for a job: {}", std::strerror(errno)), {}, Error::Kind::run);
@@ -65,34 +51,23 @@ bool LocalLauncher::start(std::size_t job) {
 }
 
 JobEnd LocalLauncher::run(std::size_t job) const {
-  std::optional<ResolvedConfig> config;
   try {
-    config.emplace(config_of_(job));
-  } catch (const Error& trouble) {
+    return run_job(
+        workshop_, [&] { return config_of_(job); }, directory_of(job), options_.resume);
+  } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
     std::error_code none;
-    // One that was deleted has not failed: `palpate sweep` puts it back.
-    if (!std::filesystem::exists(directory_of(job) / "config.yaml", none)) throw;
-    record_failure(directory_of(job), sweep_.jobs[job].id, trouble.what());
-    return JobEnd::failed;
+    // Who conducts the sweep says once that all of it is gone. fmt::print would throw where a terminal was closed.
+    if (std::filesystem::exists(sweep_.directory, none)) {
+      std::fputs(fmt::format("job {}: {}\n", job, trouble.what()).c_str(), stderr);
+    }
   }
-  return run_job(workshop_, *config, directory_of(job), options_.resume);
-}
-
-int LocalLauncher::be_child(std::size_t job) const {
-  try {
-    return status_of(run(job));
-  } catch (const std::exception& trouble) {
-    std::error_code none;
-    // Who conducts the sweep says once that all of it is gone.
-    if (std::filesystem::exists(sweep_.directory, none)) mention(job, trouble.what());
-  }
-  return kUnrecorded;
+  return JobEnd::unrecorded;
 }
 
 Launcher::State LocalLauncher::poll(double seconds) {
-  while (!later_.empty() && later_.front().when <= Clock::now()) {
-    waiting_.push_back(later_.front().job);
-    later_.pop_front();
+  if (again_ <= Clock::now()) {
+    submit(later_);
+    later_.clear();
   }
   while (!waiting_.empty() && static_cast<int>(running_.size()) < options_.workers && start(waiting_.front())) {
     waiting_.pop_front();
@@ -115,22 +90,21 @@ Launcher::State LocalLauncher::poll(double seconds) {
 void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
   if (wait_status < 0) throw Error("", "a job's process is lost", {}, Error::Kind::run);
   if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
-  const int status = WEXITSTATUS(wait_status);
-  if (status == status_of(JobEnd::busy) && options_.wait_for_others && !cancelled_) {
-    later_.push_back({job, Clock::now() + kBusyPause});
+  const auto end = static_cast<JobEnd>(WEXITSTATUS(wait_status));
+  if (end == JobEnd::busy && options_.wait_for_others && !cancelled_) {
+    again_ = Clock::now() + kBusyPause;
+    later_.push_back(job);
     return;
   }
-  if (status != kUnrecorded && !cancelled_ && !is_borne_out(job, status)) {
-    record_failure(directory_of(job), sweep_.jobs[job].id, fmt::format("its process ended with status {}", status));
+  if (!cancelled_ && !is_borne_out(job, end)) {
+    record_failure(directory_of(job), fmt::format("its process ended with status {}", WEXITSTATUS(wait_status)));
   }
   state.returned.push_back(job);
 }
 
-bool LocalLauncher::is_borne_out(std::size_t job, int status) const {
-  if (status == status_of(JobEnd::busy) || status == status_of(JobEnd::interrupted)) return true;
-  if (status != status_of(JobEnd::done) && status != status_of(JobEnd::failed)) return false;
-  const RunStatus::State state = read_ending(directory_of(job)).state;
-  return state == RunStatus::State::done || state == RunStatus::State::failed;
+bool LocalLauncher::is_borne_out(std::size_t job, JobEnd end) const {
+  if (end == JobEnd::done || end == JobEnd::failed) return has_ended(directory_of(job));
+  return end == JobEnd::unrecorded || end == JobEnd::busy || end == JobEnd::interrupted;
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
@@ -138,11 +112,11 @@ void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
   const int attempts = std::max(attempts_of(directory_of(job)), ++kills_[job]);
   const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
   if (is_crash(signal)) {
-    record_failure(directory_of(job), sweep_.jobs[job].id, "crashed: " + name);
+    record_failure(directory_of(job), "crashed: " + name);
   } else if (cancelled_) {
     // As wished.
   } else if (attempts >= options_.most_attempts) {
-    record_failure(directory_of(job), sweep_.jobs[job].id,
+    record_failure(directory_of(job),
                    fmt::format("was killed by {}{} in attempt {}", name,
                                signal == SIGKILL ? ", as is done when memory runs out," : "", attempts));
   } else {

@@ -44,21 +44,14 @@ class LocalLauncher final : public Launcher {
     std::size_t job = 0;
     std::unique_ptr<ChildProcess> process;
   };
-  /// A job that somebody else had in hand, to be looked at again.
-  struct Later {
-    std::size_t job = 0;
-    Clock::time_point when;
-  };
 
   /// Returns false where this process may have no more files or children, and has to go on with those it has.
   bool start(std::size_t job);
-  /// In the child: the exit status.
-  int be_child(std::size_t job) const;
-  /// In the child. A config that cannot be read fails its job alone.
+  /// In the child.
   JobEnd run(std::size_t job) const;
   void conclude(std::size_t job, int wait_status, State& state);
   /// Whether an exit status is a job's own: a plugin that calls exit(0) or exit(1) leaves no result behind.
-  bool is_borne_out(std::size_t job, int status) const;
+  bool is_borne_out(std::size_t job, JobEnd end) const;
   void was_killed(std::size_t job, int signal, State& state);
   std::filesystem::path directory_of(std::size_t job) const { return job_directory(sweep_, sweep_.jobs[job]); }
 
@@ -67,7 +60,8 @@ class LocalLauncher final : public Launcher {
   Configs config_of_;
   LocalOptions options_;
   std::deque<std::size_t> waiting_;
-  std::deque<Later> later_;
+  std::vector<std::size_t> later_;  ///< that others had in hand, to be looked at again
+  Clock::time_point again_;         ///< when
   std::vector<Running> running_;
   std::map<std::size_t, int> kills_;  ///< of each job's processes
   bool cancelled_ = false;

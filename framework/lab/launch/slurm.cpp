@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <regex>
 #include <sstream>
 
 #include <poll.h>
@@ -20,24 +21,14 @@ namespace {
 constexpr double kPatience = 30.0;  ///< s for an answer
 constexpr std::chrono::seconds kPause{1};
 
-/// A list of more ranges than this becomes a second array: at most 16 bytes each, well below what a command line holds.
-constexpr std::size_t kMostRanges = 1000;
-
 constexpr const char* kAskedElsewhere =
     "run this where Slurm's commands work, on a cluster's login node, or leave out '--launcher slurm'";
 
-std::vector<std::string> lines_of(const std::string& text) {
+/// Lines, or the parts of a line between its '|'.
+std::vector<std::string> parts_of(const std::string& text, char end = '\n') {
   std::vector<std::string> out;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) out.push_back(line);
-  return out;
-}
-
-/// The parts of a line between its '|'.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> out;
-  std::istringstream cells(line);
-  for (std::string cell; std::getline(cells, cell, '|');) out.push_back(cell);
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, end);) out.push_back(part);
   return out;
 }
 
@@ -52,23 +43,16 @@ std::optional<int> whole_number(const std::string& text) {
 
 /// The number behind `name` and an equals sign, blanks around it or not; none where there is no such thing.
 std::optional<int> setting(const std::string& text, const std::string& name) {
-  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
-    const std::size_t sign = text.find_first_not_of(" \t", at + name.size());
-    if (sign == std::string::npos || text[sign] != '=') continue;
-    const std::size_t begin = text.find_first_not_of(" \t", sign + 1);
-    if (begin == std::string::npos) continue;
-    const std::size_t end = std::min(text.find_first_not_of("0123456789", begin), text.size());
-    if (const auto number = whole_number(text.substr(begin, end - begin))) return number;
-  }
-  return std::nullopt;
+  std::smatch found;
+  if (!std::regex_search(text, found, std::regex(name + "[ \t]*=[ \t]*([0-9]+)"))) return std::nullopt;
+  return whole_number(found[1]);
 }
 
-bool begins_with(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
-
-/// Settings by which users change what these commands print or how long they stay, behind the back of who reads it.
-bool is_seen(std::string_view variable) {
-  return !begins_with(variable, "SQUEUE_") && !begins_with(variable, "SINFO_") &&
-         !begins_with(variable, "SBATCH_WAIT=");
+/// Whether it is none by which users change what these commands print or how long they stay, behind the back of who
+/// reads it.
+bool is_seen(const std::string& variable) {
+  static const std::regex users("SQUEUE_|SINFO_|SBATCH_WAIT=");
+  return !std::regex_search(variable, users, std::regex_constants::match_continuous);
 }
 
 std::unique_ptr<ChildProcess> start(const std::vector<std::string>& words) {
@@ -93,18 +77,17 @@ std::string ask(const std::vector<std::string>& words, const std::string& hint =
 
 }  // namespace
 
-Limits parse_limits(const std::string& config) {
+int parse_most_tasks(const std::string& config) {
   const std::optional<int> indices = setting(config, "MaxArraySize");
   if (!indices) throw Error("scontrol", "does not say MaxArraySize", "see 'scontrol show config'");
   if (*indices < 2) throw Error("scontrol", "this cluster takes no arrays", "its MaxArraySize would have to be raised");
-  const int tasks = setting(config, "max_array_tasks").value_or(*indices);
-  return {*indices, std::clamp(tasks, 1, *indices)};
+  return std::clamp(setting(config, "max_array_tasks").value_or(*indices), 1, *indices);
 }
 
 std::vector<Nodes> parse_nodes(const std::string& lines) {
   std::vector<Nodes> out;
-  for (const std::string& line : lines_of(lines)) {
-    const std::vector<std::string> cells = cells_of(line);
+  for (const std::string& line : parts_of(lines)) {
+    const std::vector<std::string> cells = parts_of(line, '|');
     const std::optional<int> cpus = cells.size() == 2 ? whole_number(cells[1]) : std::nullopt;
     if (!cpus || cells[0].empty()) continue;
     Nodes nodes{cells[0], cells[0].back() == '*', *cpus};
@@ -116,8 +99,8 @@ std::vector<Nodes> parse_nodes(const std::string& lines) {
 
 std::vector<Task> parse_queue(const std::string& lines) {
   std::vector<Task> out;
-  for (const std::string& line : lines_of(lines)) {
-    const std::vector<std::string> cells = cells_of(line);
+  for (const std::string& line : parts_of(lines)) {
+    const std::vector<std::string> cells = parts_of(line, '|');
     if (cells.size() != 3) continue;
     const std::optional<int> array = whole_number(cells[0]);
     const std::optional<int> index = whole_number(cells[1]);
@@ -128,59 +111,24 @@ std::vector<Task> parse_queue(const std::string& lines) {
 
 std::optional<int> parse_array_id(const std::string& output) {
   std::optional<int> out;
-  for (const std::string& line : lines_of(output)) {
+  for (const std::string& line : parts_of(output)) {
     if (const auto id = whole_number(line.substr(0, line.find(';')))) out = id;
-  }
-  return out;
-}
-
-std::string index_list(const std::vector<int>& indices) {
-  std::string out;
-  for (std::size_t first = 0; first < indices.size();) {
-    std::size_t last = first;
-    while (last + 1 < indices.size() && indices[last + 1] == indices[last] + 1) ++last;
-    out += fmt::format("{}{}", out.empty() ? "" : ",", indices[first]);
-    if (last > first) out += fmt::format("-{}", indices[last]);
-    first = last + 1;
-  }
-  return out;
-}
-
-std::vector<Part> split(const std::vector<int>& tasks, const Limits& limits) {
-  std::vector<Part> out;
-  std::size_t ranges = 0;
-  for (const int task : tasks) {
-    const int index = task % limits.indices;
-    const int offset = task - index;
-    const bool fits = !out.empty() && out.back().offset == offset &&
-                      out.back().indices.size() < static_cast<std::size_t>(limits.tasks);
-    const bool goes_on = fits && out.back().indices.back() + 1 == index;
-    if (!goes_on) ++ranges;
-    if (!fits || ranges > kMostRanges) {
-      out.push_back({offset, {}});
-      ranges = 1;
-    }
-    out.back().indices.push_back(index);
   }
   return out;
 }
 
 std::string words_of(const std::string& output) {
   std::string out;
-  for (std::string line : lines_of(output)) {
-    for (const char* name : {"sbatch", "squeue", "scontrol", "sinfo", "scancel"}) {
-      if (begins_with(line, fmt::format("{}: ", name))) line = line.substr(std::string_view(name).size() + 2);
-    }
-    for (const char* level : {"error: ", "fatal: "}) {
-      if (begins_with(line, level)) line = line.substr(std::string_view(level).size());
-    }
+  static const std::regex whose("^((sbatch|squeue|scontrol|sinfo|scancel): )?((error|fatal): )?");
+  for (const std::string& said : parts_of(output)) {
+    const std::string line = std::regex_replace(said, whose, "", std::regex_constants::format_first_only);
     if (line.find_first_not_of(" \t") == std::string::npos) continue;
     out += (out.empty() ? "" : "; ") + line;
   }
   return out.empty() ? "failed and says nothing" : out;
 }
 
-Limits limits() { return parse_limits(ask({"scontrol", "show", "config"})); }
+int most_tasks() { return parse_most_tasks(ask({"scontrol", "show", "config"})); }
 
 int most_cpus(const std::string& partition) {
   int most = 0;

@@ -13,14 +13,9 @@
 
 namespace palpate::slurm {
 
-/// What the controller takes as one array.
-struct Limits {
-  int indices = 0;  ///< an index is smaller than this
-  int tasks = 0;    ///< in one array
-};
-
-/// From what `scontrol show config` prints. Throws Error when it says nothing of arrays, or takes none.
-Limits parse_limits(const std::string& config);
+/// How many tasks the controller takes as one array, numbered from 0: from what `scontrol show config` prints. Throws
+/// Error when it says nothing of arrays, or takes none.
+int parse_most_tasks(const std::string& config);
 
 /// The nodes of a partition that are alike.
 struct Nodes {
@@ -44,25 +39,14 @@ std::vector<Task> parse_queue(const std::string& lines);
 /// The array's id in what `sbatch --parsable` printed, warnings around it or not.
 std::optional<int> parse_array_id(const std::string& output);
 
-/// "0-3,7,9-12" from ascending indices.
-std::string index_list(const std::vector<int>& indices);
-
-/// Tasks that go into one array: task `offset + index` for each index.
-struct Part {
-  int offset = 0;
-  std::vector<int> indices;
-};
-/// Distributes ascending task numbers to as few arrays as the limits and a command line of sane length allow.
-std::vector<Part> split(const std::vector<int>& tasks, const Limits& limits);
-
 /// What a program of Slurm said, in one line without its name before each.
 std::string words_of(const std::string& output);
 
 /// Asks the controller. Throws Error when Slurm is not installed or does not answer.
-Limits limits();
+int most_tasks();
 
 /// The most CPUs that a node has in `partition`, or in the cluster's default one for "": 0 when that is not known.
-/// Throws Error as limits() does.
+/// Throws Error as most_tasks() does.
 int most_cpus(const std::string& partition);
 
 /// Submits by `sbatch` with `words` behind it and returns the array's id. Throws Error in sbatch's words.

@@ -6,11 +6,13 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <set>
+#include <sstream>
 #include <utility>
 
 namespace palpate {
@@ -20,6 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kScript = "task.sh";
+constexpr const char* kJobs = "jobs";
 constexpr double kMostSilence = 600.0;  ///< s
 
 /// What palpate says to sbatch, and how a user has a say in it.
@@ -40,33 +43,15 @@ constexpr std::array<OwnWord, 10> kOwnWords{{{"--partition", "-p", kOwnOption},
                                              {"--wrap", "--wrap", "what a task runs is palpate's to say"},
                                              {"--parsable", "--parsable", "leave it out"}}};
 
-/// Every folder of a search path absolute: a task may begin elsewhere.
-std::string absolute_path_list(const std::string& list) {
-  std::string out;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(':', begin), list.size());
-    if (end > begin) out += (out.empty() ? "" : ":") + fs::absolute(list.substr(begin, end - begin)).string();
-    begin = end + 1;
-  }
-  return out;
-}
-
+/// Every folder of the search path absolute: a task may begin elsewhere.
 std::optional<std::string> own_plugin_path() {
   const char* value = std::getenv("PALPATE_PLUGIN_PATH");
   if (value == nullptr) return std::nullopt;
-  return absolute_path_list(value);
-}
-
-/// Without a slash at its end, whose last part would be empty.
-fs::path absolute_folder(const fs::path& folder) {
-  const fs::path out = fs::absolute(folder).lexically_normal();
-  return out.has_filename() ? out : out.parent_path();
-}
-
-/// `folder` in a name with Slurm's placeholders: a percent sign begins one.
-std::string without_placeholders(const fs::path& folder) {
   std::string out;
-  for (const char c : folder.string()) out += c == '%' ? "%%" : std::string(1, c);
+  std::istringstream folders(value);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!folder.empty()) out += (out.empty() ? "" : ":") + fs::absolute(folder).string();
+  }
   return out;
 }
 
@@ -75,15 +60,7 @@ std::string without_placeholders(const fs::path& folder) {
 std::string shell_word(const std::string& text) {
   constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=@+%";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      out += "'\\''";
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
+  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
 void check_sbatch_words(const std::vector<std::string>& words) {
@@ -101,21 +78,18 @@ void check_sbatch_words(const std::vector<std::string>& words) {
   }
 }
 
-std::string task_script(const fs::path& program, const fs::path& directory, std::size_t count,
+std::string task_script(const fs::path& program, const fs::path& directory, const fs::path& jobs,
                         const SlurmOptions& options, const std::optional<std::string>& plugin_path) {
-  std::string out = fmt::format(
+  std::string out =
       "#!/bin/sh\n"
-      "# A task of a Slurm array carries on {} of the sweep's jobs: those from {} times (the first argument, 0 if "
+      "# A task of a Slurm array carries on the sweep's jobs on a line of a list: that of the first argument, 0 if "
       "there\n"
-      "# is none, plus the array's index) on. Jobs that are done or in other hands are left alone.\n",
-      options.jobs_per_task, options.jobs_per_task);
+      "# is none, plus the array's index. Jobs that are done or in other hands are left alone.\n";
   out += plugin_path ? fmt::format("export PALPATE_PLUGIN_PATH={}\n", shell_word(*plugin_path))
                      : "unset PALPATE_PLUGIN_PATH\n";
-  out += fmt::format("first=$(((${{1:-0}} + SLURM_ARRAY_TASK_ID) * {}))\n", options.jobs_per_task);
-  out += fmt::format("last=$((first + {}))\n", options.jobs_per_task - 1);
-  out += fmt::format("[ \"$last\" -lt {0} ] || last={1}\n", count, count - 1);
+  out += fmt::format("jobs=$(sed -n \"$((${{1:-0}} + SLURM_ARRAY_TASK_ID + 1))p\" {})\n", shell_word(jobs.string()));
   out +=
-      fmt::format("exec {} resume {} --jobs \"$first-$last\" -j {} --attempts {} --quiet{}{}\n",
+      fmt::format("exec {} resume {} --jobs \"${{jobs:?there is no such task}}\" -j {} --attempts {} --quiet{}{}\n",
                   shell_word(program.string()), shell_word(directory.string()), options.workers, options.most_attempts,
                   options.resume.retry_failed ? " --retry-failed" : "", options.resume.force ? " --force" : "");
   return out;
@@ -125,7 +99,7 @@ SlurmLauncher::SlurmLauncher(fs::path program, const Sweep& sweep, SlurmOptions 
                              std::function<void(const SlurmArray&)> submitted)
     : program_(std::move(program)),
       sweep_(sweep),
-      directory_(absolute_folder(sweep.directory)),
+      directory_(fs::absolute(sweep.directory / "").lexically_normal().parent_path()),
       options_(std::move(options)),
       submitted_(std::move(submitted)) {}
 
@@ -158,13 +132,14 @@ fs::path SlurmLauncher::make_folder() const {
   throw Error(all.string(), "cannot be made: " + trouble.message());
 }
 
-std::vector<std::string> SlurmLauncher::words_for(const slurm::Part& part, const fs::path& folder) const {
+std::vector<std::string> SlurmLauncher::words_for(std::size_t first, std::size_t count, const fs::path& folder) const {
   // Behind the user's words, so that one of those without its value takes nothing away unnoticed.
   std::vector<std::string> words = options_.more;
   const std::string beside = options_.tasks_at_once > 0 ? fmt::format("%{}", options_.tasks_at_once) : "";
-  words.push_back(fmt::format("--array={}{}", slurm::index_list(part.indices), beside));
+  words.push_back(fmt::format("--array=0-{}{}", count - 1, beside));
   words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
-  words.push_back(fmt::format("--output={}/%A_%a.log", without_placeholders(folder)));
+  // A percent sign begins a placeholder of Slurm's.
+  words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
   words.push_back(fmt::format("--cpus-per-task={}", options_.workers));
   if (!options_.partition.empty()) words.push_back("--partition=" + options_.partition);
   if (!options_.time.empty()) words.push_back("--time=" + options_.time);
@@ -173,27 +148,33 @@ std::vector<std::string> SlurmLauncher::words_for(const slurm::Part& part, const
   if (options_.tasks_at_once > 0 && !arrays_.empty())
     words.push_back(fmt::format("--dependency=afterany:{}", arrays_.back()));
   words.push_back((folder / kScript).string());
-  words.push_back(std::to_string(part.offset));
+  words.push_back(std::to_string(first));
   return words;
 }
 
 void SlurmLauncher::submit(const std::vector<std::size_t>& jobs) {
   if (jobs.empty()) return;
-  const slurm::Limits limits = slurm::limits();
+  const auto most = static_cast<std::size_t>(slurm::most_tasks());
   check_cores();
   const fs::path folder = make_folder();
-  write_file(folder / kScript, task_script(program_, directory_, sweep_.jobs.size(), options_, own_plugin_path()));
-  std::map<int, std::vector<std::size_t>> jobs_of;
-  for (const std::size_t job : jobs) jobs_of[static_cast<int>(job) / options_.jobs_per_task].push_back(job);
-  std::vector<int> tasks;
-  for (const auto& task : jobs_of) tasks.push_back(task.first);
-  for (const slurm::Part& part : slurm::split(tasks, limits)) {
-    SlurmArray array{slurm::submit(words_for(part, folder)), static_cast<int>(part.indices.size()), 0, folder};
+  std::vector<std::vector<std::size_t>> tasks;
+  for (const std::size_t job : jobs) {
+    if (tasks.empty() || tasks.back().size() == static_cast<std::size_t>(options_.jobs_per_task)) tasks.emplace_back();
+    tasks.back().push_back(job);
+  }
+  // Between the first and the last of a task lie only such as it leaves alone.
+  std::string list;
+  for (const auto& task : tasks) list += fmt::format("{}-{}\n", task.front(), task.back());
+  write_file(folder / kJobs, list);
+  write_file(folder / kScript, task_script(program_, directory_, folder / kJobs, options_, own_plugin_path()));
+  for (std::size_t first = 0; first < tasks.size(); first += most) {
+    const std::size_t count = std::min(most, tasks.size() - first);
+    SlurmArray array{slurm::submit(words_for(first, count, folder)), static_cast<int>(count), 0, folder};
     arrays_.push_back(array.id);
-    for (const int index : part.indices) {
-      const std::vector<std::size_t>& own = jobs_of[part.offset + index];
+    for (std::size_t index = 0; index < count; ++index) {
+      std::vector<std::size_t>& own = tasks[first + index];
       array.jobs += static_cast<int>(own.size());
-      tasks_[{array.id, index}] = {own, true};
+      tasks_[{array.id, static_cast<int>(index)}] = {std::move(own), true};
     }
     submitted_(array);
   }

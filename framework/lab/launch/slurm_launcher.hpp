@@ -43,11 +43,12 @@ std::string shell_word(const std::string& text);
 /// Throws Error for words to sbatch that palpate says itself, or that are no options.
 void check_sbatch_words(const std::vector<std::string>& words);
 
-/// The script of the tasks. Task t, which is the array's index plus the script's first argument, carries on the jobs
-/// from t * jobs_per_task on, of `count`. `program` and `directory` are absolute; `plugin_path` is what
-/// PALPATE_PLUGIN_PATH is to be, none for unset.
-std::string task_script(const std::filesystem::path& program, const std::filesystem::path& directory, std::size_t count,
-                        const SlurmOptions& options, const std::optional<std::string>& plugin_path);
+/// The script of the tasks. Task t, which is the array's index plus the script's first argument, carries on the jobs of
+/// line t, from 0, of the file `jobs`. All paths are absolute; `plugin_path` is what PALPATE_PLUGIN_PATH is to be, none
+/// for unset.
+std::string task_script(const std::filesystem::path& program, const std::filesystem::path& directory,
+                        const std::filesystem::path& jobs, const SlurmOptions& options,
+                        const std::optional<std::string>& plugin_path);
 
 class SlurmLauncher final : public Launcher {
  public:
@@ -56,8 +57,8 @@ class SlurmLauncher final : public Launcher {
   SlurmLauncher(std::filesystem::path program, const Sweep& sweep, SlurmOptions options,
                 std::function<void(const SlurmArray&)> submitted);
 
-  /// Writes the script to slurm/N in the sweep's directory, where the logs will be, and submits it; tasks have all of
-  /// their missing jobs among `jobs`. Throws Error when Slurm cannot be asked, when no node has as many cores as a
+  /// Writes the script, and which task has which of `jobs`, to slurm/N in the sweep's directory, where the logs will
+  /// be, and submits it. Throws Error when Slurm cannot be asked, when no node has as many cores as a
   /// task is to have, or when an array is refused; those that `submitted` heard of stay.
   void submit(const std::vector<std::size_t>& jobs) override;
 
@@ -76,7 +77,8 @@ class SlurmLauncher final : public Launcher {
 
   void check_cores() const;
   std::filesystem::path make_folder() const;
-  std::vector<std::string> words_for(const slurm::Part& part, const std::filesystem::path& folder) const;
+  /// For an array of `count` tasks from `first` on.
+  std::vector<std::string> words_for(std::size_t first, std::size_t count, const std::filesystem::path& folder) const;
   bool has_ended(std::size_t job) const;
 
   std::filesystem::path program_;

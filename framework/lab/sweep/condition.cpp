@@ -13,22 +13,9 @@
 
 namespace palpate {
 
-/// A comparison, or others joined.
-struct ConditionNode {
-  enum class Kind { comparison, all, any, none };
-  Kind kind = Kind::comparison;
-  std::vector<ConditionNode> parts;  ///< of all, any and none
-  std::string name;                  ///< of a comparison, as all below
-  std::string sign;
-  std::string value;
-  bool quoted = false;
-
-  std::string shown() const { return fmt::format("{} {} {}", name, sign, value); }
-};
-
 namespace {
 
-using Node = ConditionNode;
+using Formula = Condition::Formula;
 
 constexpr const char* kHowTo = "write it like taps >= 12 and not surface == two_part";
 constexpr int kMaxDepth = 100;
@@ -63,16 +50,19 @@ std::string meant_by(const std::string& sign) {
 /// Reads the text of a condition by descent: or, and, not, comparison.
 class Reader {
  public:
-  Reader(const std::string& text, std::string place) : text_(text), place_(std::move(place)) { cut(); }
+  Reader(const std::string& text, std::string place, Condition::Comparisons& comparisons)
+      : text_(text), place_(std::move(place)), comparisons_(comparisons) {
+    cut();
+  }
 
-  Node read() {
+  Formula read() {
     if (tokens_.empty()) throw refuse("it is empty");
-    Node root = any(0);
+    Formula out = any(0);
     if (next_ < tokens_.size()) {
       const bool closes = tokens_[next_].kind == Token::Kind::close;
       throw refuse(closes ? "a ')' without '('" : fmt::format("'{}' is not expected there", tokens_[next_].text));
     }
-    return root;
+    return out;
   }
 
  private:
@@ -116,42 +106,41 @@ class Reader {
     return there;
   }
 
-  Node joined(Node::Kind kind, const char* word, Node (Reader::*part)(int), int depth) {
-    Node first = (this->*part)(depth);
-    if (!at_word(word)) return first;
-    Node out;
-    out.kind = kind;
-    out.parts.push_back(std::move(first));
-    while (take(word)) out.parts.push_back((this->*part)(depth));
-    return out;
+  /// Parts with `word` between them: one that comes out as `decides` decides for all.
+  Formula joined(bool decides, const char* word, Formula (Reader::*part)(int), int depth) {
+    std::vector<Formula> parts{(this->*part)(depth)};
+    while (take(word)) parts.push_back((this->*part)(depth));
+    if (parts.size() == 1) return parts.front();
+    return [decides, parts = std::move(parts)](const auto& holds) {
+      const bool any =
+          std::any_of(parts.begin(), parts.end(), [&](const Formula& one) { return one(holds) == decides; });
+      return any == decides;
+    };
   }
 
-  Node any(int depth) { return joined(Node::Kind::any, "or", &Reader::all, depth); }
-  Node all(int depth) { return joined(Node::Kind::all, "and", &Reader::one, depth); }
+  Formula any(int depth) { return joined(true, "or", &Reader::all, depth); }
+  Formula all(int depth) { return joined(false, "and", &Reader::one, depth); }
 
-  Node one(int depth) {
+  Formula one(int depth) {
     if (depth > kMaxDepth) throw refuse("nested too deeply", "at most 100 levels");
     if (take("not")) {
-      Node out;
-      out.kind = Node::Kind::none;
-      out.parts.push_back(one(depth + 1));
-      return out;
+      return [inner = one(depth + 1)](const auto& holds) { return !inner(holds); };
     }
     if (!at(Token::Kind::open)) return comparison();
     ++next_;
-    Node out = any(depth + 1);
+    Formula out = any(depth + 1);
     if (!at(Token::Kind::close)) throw refuse("a '(' is not closed", "close it");
     ++next_;
     return out;
   }
 
-  Node comparison() {
+  Formula comparison() {
     if (at(Token::Kind::sign)) {
       throw refuse(fmt::format("'{}' is not expected there", tokens_[next_].text), meant_by(tokens_[next_].text));
     }
     if (!at_value()) throw refuse("a comparison is missing");
     const bool is_name = at(Token::Kind::word) && (tokens_[next_].text[0] < '0' || tokens_[next_].text[0] > '9');
-    Node out;
+    Condition::Comparison out;
     out.name = tokens_[next_++].text;
     if (!is_name) throw refuse(fmt::format("'{}' is no name", out.name), "write the name first: taps >= 12");
     if (!at(Token::Kind::sign)) throw refuse(fmt::format("behind '{}' a comparison is missing", out.name));
@@ -171,11 +160,13 @@ class Reader {
       throw refuse(fmt::format("'{}' is not expected there", sign),
                    joins ? meant_by(sign) : "join two comparisons by 'and'");
     }
-    return out;
+    comparisons_.push_back(std::move(out));
+    return [number = comparisons_.size() - 1](const auto& holds) { return holds(number); };
   }
 
   const std::string& text_;
   std::string place_;
+  Condition::Comparisons& comparisons_;
   std::vector<Token> tokens_;
   std::size_t next_ = 0;
 };
@@ -189,75 +180,41 @@ bool compare(const Number& left, const std::string& sign, const Number& right) {
   return sign == ">" ? left > right : left >= right;
 }
 
-/// Asks a condition; `place` is to blame.
-class Asker {
- public:
-  Asker(const std::string& place, const Condition::Values& value_of, const std::vector<std::string>& known)
-      : place_(place), value_of_(value_of), known_(known) {}
-
-  /// Names that no evaluation may reach are checked all the same.
-  void check(const Node& node) const {
-    for (const Node& part : node.parts) check(part);
-    if (node.kind != Node::Kind::comparison || value_of_(node.name)) return;
-    throw Error(place_, fmt::format("in the condition '{}' the name '{}' is not known", node.shown(), node.name),
-                suggestion(node.name, known_));
-  }
-
-  bool holds(const Node& node) const {
-    const auto one = [&](const Node& part) { return holds(part); };
-    switch (node.kind) {
-      case Node::Kind::all:
-        return std::all_of(node.parts.begin(), node.parts.end(), one);
-      case Node::Kind::any:
-        return std::any_of(node.parts.begin(), node.parts.end(), one);
-      case Node::Kind::none:
-        return std::none_of(node.parts.begin(), node.parts.end(), one);
-      case Node::Kind::comparison:
-        break;
-    }
-    return compares(node);
-  }
-
- private:
-  bool compares(const Node& node) const {
-    const std::string left = *value_of_(node.name);
-    const std::optional<std::string> named = node.quoted ? std::nullopt : value_of_(node.value);
-    const std::string right = named.value_or(node.value);
-    if (left.empty() || (named && named->empty())) return false;
-    const std::optional<AnyQuantity> a = node.quoted ? std::nullopt : any_quantity(left);
-    const std::optional<AnyQuantity> b = node.quoted ? std::nullopt : any_quantity(right);
-    if (a && b) {
-      if (a->unit == b->unit) return compare(a->value, node.sign, b->value);
-      throw Error(place_,
-                  fmt::format("the condition '{}' compares a {} ('{}') with a {} ('{}')", node.shown(),
-                              dimension_name(a->unit), left, dimension_name(b->unit), right),
-                  "give both the same dimension");
-    }
-    if (node.sign == "==" || node.sign == "!=") return compare(left, node.sign, right);
-    throw Error(place_, fmt::format("the condition '{}' orders texts: '{}' and '{}'", node.shown(), left, right),
-                "texts compare by == and != alone");
-  }
-
-  const std::string& place_;
-  const Condition::Values& value_of_;
-  const std::vector<std::string>& known_;
-};
-
 }  // namespace
 
 Condition::Condition(const Tree& text) : place_(text.place.text()) {
   if (!text.is_scalar()) throw Error(place_, "a condition is a text", kHowTo);
-  root_ = std::make_unique<const Node>(Reader(text.text, place_).read());
+  formula_ = Reader(text.text, place_, comparisons_).read();
 }
 
-Condition::~Condition() = default;
-Condition::Condition(Condition&& other) noexcept = default;
-Condition& Condition::operator=(Condition&& other) noexcept = default;
-
 bool Condition::holds(const Values& value_of, const std::vector<std::string>& known) const {
-  const Asker asker(place_, value_of, known);
-  asker.check(*root_);
-  return asker.holds(*root_);
+  // Names that no evaluation may reach are checked all the same.
+  for (const Comparison& one : comparisons_) {
+    if (value_of(one.name)) continue;
+    throw Error(place_, fmt::format("in the condition '{}' the name '{}' is not known", one.shown(), one.name),
+                suggestion(one.name, known));
+  }
+  return formula_([&](std::size_t number) { return holds(comparisons_[number], value_of); });
+}
+
+bool Condition::holds(const Comparison& comparison, const Values& value_of) const {
+  const auto& [name, sign, value, quoted] = comparison;
+  const std::string left = *value_of(name);
+  const std::string right = quoted ? value : value_of(value).value_or(value);
+  // A value as it is written is never empty unless it is quoted: who has none is a name.
+  if (left.empty() || (right.empty() && !quoted)) return false;
+  const std::optional<AnyQuantity> a = quoted ? std::nullopt : any_quantity(left);
+  const std::optional<AnyQuantity> b = quoted ? std::nullopt : any_quantity(right);
+  if (a && b) {
+    if (a->unit == b->unit) return compare(a->value, sign, b->value);
+    throw Error(place_,
+                fmt::format("the condition '{}' compares a {} ('{}') with a {} ('{}')", comparison.shown(),
+                            dimension_name(a->unit), left, dimension_name(b->unit), right),
+                "give both the same dimension");
+  }
+  if (sign == "==" || sign == "!=") return compare(left, sign, right);
+  throw Error(place_, fmt::format("the condition '{}' orders texts: '{}' and '{}'", comparison.shown(), left, right),
+              "texts compare by == and != alone");
 }
 
 }  // namespace palpate

@@ -5,14 +5,11 @@
 #include "config/tree.hpp"
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace palpate {
-
-struct ConditionNode;
 
 /// A condition, read once and asked often.
 ///
@@ -22,14 +19,23 @@ struct ConditionNode;
 /// one is known, else a value. A value in quotes is always a text, and may hold any character.
 class Condition {
  public:
+  /// One of those that it joins.
+  struct Comparison {
+    std::string name;
+    std::string sign;
+    std::string value;
+    bool quoted = false;
+    std::string shown() const { return name + " " + sign + " " + value; }
+  };
+  using Comparisons = std::vector<Comparison>;
+  /// How they are joined: whether it holds, given which of them, by their numbers, do.
+  using Formula = std::function<bool(const std::function<bool(std::size_t comparison)>& holds)>;
+
   /// The text of a name's value ("2 cm", "rbf"; "" where it has none), or none where there is no such name.
   using Values = std::function<std::optional<std::string>(const std::string& name)>;
 
   /// Throws Error, with the place of `text`, for what is no condition.
   explicit Condition(const Tree& text);
-  ~Condition();
-  Condition(Condition&& other) noexcept;
-  Condition& operator=(Condition&& other) noexcept;
 
   /// A comparison with a name that has no value does not hold, whatever it compares. `and` and `or` look no further
   /// than they need to, so `spacing != none and spacing > 2 mm` is fine. Throws Error, with the place of the condition,
@@ -37,9 +43,14 @@ class Condition {
   /// that do not go together.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
+  const std::string& place() const { return place_; }
+
  private:
+  bool holds(const Comparison& comparison, const Values& value_of) const;
+
   std::string place_;
-  std::unique_ptr<const ConditionNode> root_;
+  Comparisons comparisons_;
+  Formula formula_;
 };
 
 }  // namespace palpate

@@ -70,11 +70,23 @@ void check_key(const Axis& axis) {
   }
 }
 
-/// All that a part says, to tell equal parts.
-std::string text_of_axes(const std::vector<Axis>& axes) {
-  std::string out;
-  for (const Axis& axis : axes) out += fmt::format("{}={},", axis.key, axis.written.canonical());
-  return out;
+/// Takes a key out of all blocks but the grid: the command line says what becomes of it.
+void take_out(Tree& blocks, const std::string& key) {
+  if (Tree* zip = blocks.find("zip")) zip->erase(key);
+  Tree* sobol = blocks.find("sobol");
+  if (Tree* ranges = sobol != nullptr ? sobol->find("keys") : nullptr; ranges != nullptr && ranges->find(key)) {
+    ranges->erase(key);
+    if (ranges->entries.empty()) blocks.erase("sobol");
+  }
+  Tree* list = blocks.find("list");
+  if (list == nullptr) return;
+  std::vector<Tree>& items = list->items;
+  if (std::none_of(items.begin(), items.end(), [&](const Tree& item) { return item.find(key) != nullptr; })) return;
+  for (Tree& item : items) item.erase(key);
+  // Those that differed by this key alone are one now.
+  std::set<std::string> kept;
+  const auto is_twin = [&](const Tree& item) { return !kept.insert(item.canonical()).second; };
+  items.erase(std::remove_if(items.begin(), items.end(), is_twin), items.end());
 }
 
 }  // namespace
@@ -141,27 +153,30 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
   return block;
 }
 
-void SweepDescription::add_where(const Tree& described) {
-  where_tree_ = described;
-  const std::vector<Tree> all = described.kind == Tree::Kind::list ? described.items : std::vector<Tree>{described};
-  for (const Tree& one : all) where_.push_back({Condition(one), one.place.text()});
-}
-
-SweepDescription::SweepDescription(const Tree* config, const SweepWords& words) {
-  Tree all = config != nullptr ? *config : Tree::map();
-  if (!all.is_map()) throw Error(all.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
-  for (const Tree::Entry& entry : all.entries) check_block(entry.key, entry.place);
-  for (const auto& [name, value] : words.blocks) all.at(name) = value;
-  for (const Tree::Entry& entry : all.entries) {
-    if (is_empty(entry.value)) continue;
-    if (entry.key == "where") {
-      add_where(entry.value);
-    } else {
+SweepDescription::SweepDescription(const Tree* config, const SweepWords& words)
+    : written_(config != nullptr ? *config : Tree::map()) {
+  if (!written_.is_map()) {
+    throw Error(written_.place.text(), "sweep: expects a map", "write sweep: {grid: {key: [values]}}");
+  }
+  for (const Tree::Entry& entry : written_.entries) check_block(entry.key, entry.place);
+  for (const auto& [name, value] : words.blocks) written_.at(name) = value;
+  auto& blocks = written_.entries;
+  blocks.erase(std::remove_if(blocks.begin(), blocks.end(), [](const auto& block) { return is_empty(block.value); }),
+               blocks.end());
+  for (const Axis& axis : words.axes) {
+    take_out(written_, axis.key);
+    if (written_.find("grid") == nullptr) written_.at("grid") = Tree::map();
+    if (Tree& grid = written_.at("grid"); grid.is_map()) grid.at(axis.key) = axis.written;
+  }
+  for (const Tree::Entry& entry : blocks) {
+    if (entry.key != "where") {
       blocks_.push_back(read_block(entry.key, entry.value));
+      continue;
     }
+    const bool many = entry.value.kind == Tree::Kind::list;
+    for (const Tree& one : many ? entry.value.items : std::vector<Tree>{entry.value}) where_.emplace_back(one);
   }
   check_keys();
-  for (const Axis& axis : words.axes) take_over(axis);
   count();
 }
 
@@ -180,52 +195,6 @@ void SweepDescription::check_keys() const {
       }
     }
   }
-}
-
-/// A key of the command line goes to the grid and leaves all else.
-void SweepDescription::take_over(const Axis& axis) {
-  check_key(axis);
-  Block* grid = nullptr;
-  for (Block& block : blocks_) {
-    if (block.name == "grid") {
-      grid = &block;
-    } else {
-      leave(block, axis.key);
-    }
-  }
-  const auto says_nothing = [](const Block& block) {
-    return std::all_of(block.parts.begin(), block.parts.end(), [](const Part& part) { return part.axes.empty(); });
-  };
-  if (grid == nullptr) {
-    blocks_.push_back({"grid", {Part{}}, {}});
-    grid = &blocks_.back();
-  }
-  std::vector<Axis>& axes = grid->parts.front().axes;
-  const auto same = std::find_if(axes.begin(), axes.end(), [&](const Axis& one) { return one.key == axis.key; });
-  if (same != axes.end()) {
-    *same = axis;
-  } else {
-    axes.push_back(axis);
-  }
-  blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), says_nothing), blocks_.end());
-}
-
-void SweepDescription::leave(Block& block, const std::string& key) const {
-  std::set<std::string> kept;
-  std::vector<Part> parts;
-  bool left = false;
-  for (Part& part : block.parts) {
-    const auto end =
-        std::remove_if(part.axes.begin(), part.axes.end(), [&](const Axis& one) { return one.key == key; });
-    left = left || end != part.axes.end();
-    part.axes.erase(end, part.axes.end());
-  }
-  if (!left) return;
-  // Items that differed by this key alone are one now.
-  for (Part& part : block.parts) {
-    if (kept.insert(text_of_axes(part.axes)).second) parts.push_back(std::move(part));
-  }
-  block.parts = std::move(parts);
 }
 
 void SweepDescription::count() {
@@ -268,15 +237,10 @@ Combination SweepDescription::at(std::size_t number) const {
     const auto end = std::upper_bound(block.ends.begin(), block.ends.end(), index);
     const Part& part = block.parts[static_cast<std::size_t>(end - block.ends.begin())];
     const std::size_t within = index - (*end - part.size());
-    std::size_t stride = part.size();
+    std::size_t left = part.size();
     for (const Axis& axis : part.axes) {
-      if (part.together) {
-        out.push_back({&axis, within, 0});
-        continue;
-      }
-      const std::size_t outer = stride;
-      stride /= axis.values.size();
-      out.push_back({&axis, within % outer / stride, stride * faster});
+      if (!part.together) left /= axis.values.size();
+      out.push_back({&axis, part.together ? within : within / left % axis.values.size()});
     }
   }
   return out;
@@ -310,36 +274,13 @@ bool SweepDescription::wanted(const Combination& combination, const Condition::V
     std::optional<std::string> text = base(name);
     return text || !swept ? text : "";
   };
-  return std::all_of(where_.begin(), where_.end(), [&](const Where& where) {
-    place = &where.place;
-    return where.condition.holds(value_of, keys_);
+  return std::all_of(where_.begin(), where_.end(), [&](const Condition& where) {
+    place = &where.place();
+    return where.holds(value_of, keys_);
   });
 }
 
-std::string SweepDescription::where_place() const { return where_.empty() ? std::string() : where_.front().place; }
-
-Tree SweepDescription::written() const {
-  Tree out = Tree::map();
-  for (const Block& block : blocks_) {
-    Tree all = Tree::list();
-    for (const Part& part : block.parts) {
-      Tree keys = Tree::map();
-      for (const Axis& axis : part.axes) keys.at(axis.key) = axis.written;
-      all.items.push_back(std::move(keys));
-    }
-    Tree& described = out.at(block.name);
-    if (block.name == "list") {
-      described = std::move(all);
-    } else if (block.name == "sobol") {
-      described.at("samples") = Tree::scalar(std::to_string(block.size()));
-      described.at("keys") = std::move(all.items.front());
-    } else {
-      described = std::move(all.items.front());
-    }
-  }
-  if (!where_.empty()) out.at("where") = where_tree_;
-  return out;
-}
+std::string SweepDescription::where_place() const { return where_.empty() ? std::string() : where_.front().place(); }
 
 std::vector<Override> overrides_of(const Combination& combination) {
   std::vector<Override> out;

@@ -28,8 +28,6 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words);
 struct SweptValue {
   const Axis* axis;   ///< lives as long as its description
   std::size_t digit;  ///< which of its values
-  /// Number of the combination that has the next value, less that of this one; 0 where another key moves with it.
-  std::size_t stride;
 
   const Tree& value() const { return axis->values[digit]; }
 };
@@ -49,8 +47,6 @@ using Combination = std::vector<SweptValue>;
 /// Values are lists, `range` and `log`: see expand_values(). A key stands in one block only.
 class SweepDescription {
  public:
-  SweepDescription() = default;
-
   /// `config` is the config's `sweep:`, or null. A block among the words takes the place of the config's block; a key
   /// among them leaves zip, sobol and list and goes to the grid, where it takes the place of that key. Throws Error for
   /// what is not understood, and for more than a million combinations.
@@ -69,7 +65,7 @@ class SweepDescription {
   std::string where_place() const;
 
   /// What `palpate sweep` would read as the same description.
-  Tree written() const;
+  const Tree& written() const { return written_; }
 
  private:
   /// Axes side by side, or multiplied with each other.
@@ -85,22 +81,15 @@ class SweepDescription {
     std::vector<std::size_t> ends;  ///< number of combinations of the first part, of the first two, ...
     std::size_t size() const { return ends.back(); }
   };
-  struct Where {
-    Condition condition;
-    std::string place;
-  };
 
   static Block read_block(const std::string& name, const Tree& described);
-  void add_where(const Tree& described);
   void check_keys() const;
-  void take_over(const Axis& axis);
-  void leave(Block& block, const std::string& key) const;
   void count();
   bool depends(const std::string& name, const std::string& choice) const;
 
+  Tree written_;
   std::vector<Block> blocks_;
-  std::vector<Where> where_;
-  Tree where_tree_;  ///< as described
+  std::vector<Condition> where_;
   std::vector<std::string> keys_;
 };
 

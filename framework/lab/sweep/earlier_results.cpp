@@ -58,9 +58,7 @@ std::optional<Row> EarlierResults::kept(std::size_t job, int taps) const {
   if (!row) return std::nullopt;
   const Scalar* of = row->find(kOf);
   if (of == nullptr || *of != Scalar(hash_of(to_json_line(*summaries_[job])))) return std::nullopt;
-  row->fields.erase(
-      std::remove_if(row->fields.begin(), row->fields.end(), [](const auto& one) { return one.first == kOf; }),
-      row->fields.end());
+  row->erase(kOf);
   return row;
 }
 

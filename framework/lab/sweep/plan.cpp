@@ -2,6 +2,8 @@
 #include "sweep/plan.hpp"
 
 #include "config/yaml.hpp"
+#include "record/session.hpp"
+#include "sweep/description.hpp"
 #include "sweep/written_config.hpp"
 
 #include <palpate/error.hpp>
@@ -10,9 +12,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 namespace palpate {
 
@@ -23,24 +27,6 @@ namespace {
 /// As many configs are kept: enough for a sweep whose seeds run slowest over the settings of a usual one.
 constexpr std::size_t kMostKept = 64;
 
-/// The seed that a combination sets, if its other settings can be had without it.
-const SweptValue* find_seed(const Combination& combination) {
-  const auto found = std::find_if(combination.begin(), combination.end(),
-                                  [](const SweptValue& one) { return one.axis->key == "seed" && one.stride > 0; });
-  return found != combination.end() ? &*found : nullptr;
-}
-
-/// The number of the combination that has the first seed instead.
-std::size_t number_without_seed(std::size_t number, const SweptValue* seed) {
-  return seed != nullptr ? number - seed->digit * seed->stride : number;
-}
-
-std::vector<Override> job_overrides(const SweepPlan& plan, const Combination& combination) {
-  std::vector<Override> overrides = plan.shared;
-  for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));
-  return overrides;
-}
-
 /// The config without any combination; none if it is no whole config, as when all that it lacks is swept.
 std::optional<ResolvedConfig> resolve_alone(const Tree& base, const PluginSource& plugins) {
   try {
@@ -50,7 +36,10 @@ std::optional<ResolvedConfig> resolve_alone(const Tree& base, const PluginSource
   }
 }
 
-/// A combination but for its seed, resolved: the config, and what each key came to in it.
+/// A combination but for its seed: of each axis which value, the first for any seed.
+using Settings = std::vector<std::pair<const Axis*, std::size_t>>;
+
+/// Such a combination resolved: the config, and what each key came to in it.
 struct Resolved {
   std::shared_ptr<ResolvedConfig> config;
   std::vector<std::string> values;  ///< one a key
@@ -59,32 +48,45 @@ struct Resolved {
 /// Makes the jobs one by one.
 class Planner {
  public:
-  Planner(SweepPlan& plan, Composer& composer, const PluginHost& host)
-      : plan_(plan), composer_(composer), host_(host), keys_(plan.description.keys()) {
+  /// `shared` is what all jobs lay over `file` before their combination.
+  Planner(Composer& composer, const PluginHost& host, const fs::path& file, const SweepDescription& description,
+          const std::vector<Override>& shared)
+      : composer_(composer),
+        host_(host),
+        file_(file),
+        description_(description),
+        shared_(shared),
+        keys_(description.keys()),
+        takes_part_(keys_.size()),
+        asker_(keys_.size()),
+        siblings_(keys_.size()) {
     for (std::size_t i = 0; i < keys_.size(); ++i) key_numbers_.emplace(keys_[i], i);
-    takes_part_.resize(keys_.size());
-    siblings_.resize(keys_.size());
-    asker_.resize(keys_.size(), nullptr);
   }
 
   void add(std::size_t number, const Combination& combination, const JobSink& sink) {
-    const SweptValue* seed = find_seed(combination);
-    const Resolved& resolved = resolve(number, combination, seed);
-    ResolvedConfig& config = *resolved.config;
-    Job job{static_cast<int>(plan_.sweep.jobs.size()), {}, resolved.values};
+    const Tree* seed = nullptr;
+    Settings settings;
+    for (const SweptValue& one : combination) {
+      const bool is_seed = one.axis->key == "seed";
+      if (is_seed) seed = &one.value();
+      settings.emplace_back(one.axis, is_seed ? 0 : one.digit);
+    }
+    const Resolved& resolved = resolve(settings, combination);
+    Job job{static_cast<int>(jobs_.size()), {}, resolved.values};
     if (seed != nullptr) {
-      set_seed(config, seed->value(), host_);
-      job.values[key_numbers_.at("seed")] = value_text(seed->value());
+      set_seed(*resolved.config, *seed, host_);
+      job.values[key_numbers_.at("seed")] = value_text(*seed);
     }
-    job.id = config.id;
-    const auto [twin, is_new] = seen_.emplace(job.id, job.index);
+    job.id = resolved.config->id;
+    const auto [twin, is_new] = seen_.emplace(job.id, jobs_.size());
     if (!is_new) {
-      if (differs_by_what_is_left_out(static_cast<std::size_t>(twin->second), job, combination)) return;
-      throw same_run(plan_.sweep.jobs[static_cast<std::size_t>(twin->second)], job);
+      if (differs_by_what_is_left_out(twin->second, job, combination)) return;
+      throw same_run(jobs_[twin->second], job);
     }
-    if (sink) sink(job, config);
-    plan_.sweep.jobs.push_back(std::move(job));
-    plan_.combinations.push_back(number);
+    sink(job, *resolved.config);
+    jobs_.push_back(std::move(job));
+    combinations_.push_back(number);
+    configs_.push_back({many_ ? nullptr : resolved.config, seed != nullptr ? *seed : Tree()});
   }
 
   /// Throws Error for a key that no job has.
@@ -97,16 +99,20 @@ class Planner {
                   fmt::format("no job of the sweep has an option '{}'", keys_[i]),
                   hint.empty() ? "take it away" : hint);
     }
-    for (auto& [number, resolved] : resolved_) plan_.kept.emplace(number, std::move(resolved.config));
   }
 
+  std::vector<Job> take_jobs() { return std::move(jobs_); }
+  std::vector<PlannedConfig> take_configs() { return std::move(configs_); }
+
  private:
-  const Resolved& resolve(std::size_t number, const Combination& combination, const SweptValue* seed) {
-    const std::size_t first = number_without_seed(number, seed);
-    const auto known = resolved_.find(first);
+  const Resolved& resolve(const Settings& settings, const Combination& combination) {
+    const auto known = resolved_.find(settings);
     if (known != resolved_.end()) return known->second;
+    many_ = many_ || resolved_.size() == kMostKept;
     if (resolved_.size() == kMostKept) resolved_.clear();
-    const Tree composed = composer_.compose(plan_.file, job_overrides(plan_, combination));
+    std::vector<Override> overrides = shared_;
+    for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));
+    const Tree composed = composer_.compose(file_, overrides);
     Resolved out{std::make_shared<ResolvedConfig>(resolve_experiment(composed, host_)), {}};
     out.values.resize(keys_.size());
     std::vector<bool> said(keys_.size());
@@ -125,7 +131,7 @@ class Planner {
     for (std::size_t key = 0; key < keys_.size(); ++key) {
       if (!said[key]) out.values[key] = unswept_text(keys_[key], composed, out.config->tree);
     }
-    return resolved_.emplace(first, std::move(out)).first->second;
+    return resolved_.emplace(settings, std::move(out)).first->second;
   }
 
   /// Whether plugins chosen later do not have the option, neither where it stands nor where it is inherited.
@@ -158,9 +164,9 @@ class Planner {
 
   /// Whether two jobs that are the same run are so because of options that were left out, and for no other reason.
   bool differs_by_what_is_left_out(std::size_t twin, const Job& job, const Combination& combination) const {
-    if (plan_.sweep.jobs[twin].values != job.values) return false;
+    if (jobs_[twin].values != job.values) return false;
     bool any = false;
-    const Combination other = plan_.description.at(plan_.combinations[twin]);
+    const Combination other = description_.at(combinations_[twin]);
     for (const Combination* one : {&combination, &other}) {
       for (const SweptValue& setting : *one) {
         const bool left_out =
@@ -182,18 +188,24 @@ class Planner {
       if (twin.values[key] != job.values[key]) differing.push_back(keys_[key]);
     }
     const std::string reason = fmt::format("jobs {} and {} of the sweep are the same run", twin.index, job.index);
-    if (differing.empty()) return {plan_.file.string(), reason, "a value stands twice: write it once"};
-    return {plan_.file.string(), fmt::format("{} though they differ in {}", reason, fmt::join(differing, ", ")),
+    if (differing.empty()) return {file_.string(), reason, "a value stands twice: write it once"};
+    return {file_.string(), fmt::format("{} though they differ in {}", reason, fmt::join(differing, ", ")),
             "that has no effect there: take it away, or what differs in writing alone"};
   }
 
-  SweepPlan& plan_;
   Composer& composer_;
   const PluginHost& host_;
+  const fs::path& file_;
+  const SweepDescription& description_;
+  const std::vector<Override>& shared_;
   const std::vector<std::string>& keys_;
+  std::vector<Job> jobs_;
+  std::vector<std::size_t> combinations_;  ///< of each job: its number in the description
   std::unordered_map<std::string, std::size_t> key_numbers_;
-  std::unordered_map<std::string, int> seen_;
-  std::map<std::size_t, Resolved> resolved_;
+  std::unordered_map<std::string, std::size_t> seen_;  ///< the job of each id
+  std::map<Settings, Resolved> resolved_;
+  std::vector<PlannedConfig> configs_;
+  bool many_ = false;  ///< more than can be kept
   std::vector<bool> takes_part_;
   std::vector<const Axis*> asker_;               ///< of each key, once a job sets it
   std::vector<std::set<std::string>> siblings_;  ///< options that stand where the key would
@@ -203,61 +215,56 @@ class Planner {
 
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& file,
                      const std::vector<std::string>& words, const fs::path& runs, const JobSink& sink) {
-  SweepPlan plan;
-  plan.file = file;
   const SweepWords read = parse_sweep_words(words);
-  plan.shared = read.expectations;
   const Tree base = composer.compose(file, read.expectations);
-  plan.description = SweepDescription(base.find("sweep"), read);
-  const SweepDescription& description = plan.description;
+  const SweepDescription description(base.find("sweep"), read);
   if (description.keys().empty()) {
     throw Error(file.string(), "nothing to sweep", "give KEY=V1,V2 or a 'sweep:' in the config");
   }
-  plan.sweep.keys = description.keys();
+  std::vector<Override> shared = read.expectations;
   if (base.find_path("log.surface") == nullptr) {
     // The sweep's own record decides whether surfaces are kept: not by default.
-    plan.shared.push_back({"log.surface", Tree::scalar("false")});
-    plan.shared.back().value.set_layer(kGroupLayer);
+    shared.push_back({"log.surface", Tree::scalar("false")});
+    shared.back().value.set_layer(kGroupLayer);
   }
 
   const std::optional<ResolvedConfig> alone = resolve_alone(base, host);
   const Condition::Values base_value = [&](const std::string& name) -> std::optional<std::string> {
-    if (name == "sweep" || name.compare(0, 6, "sweep.") == 0) return std::nullopt;
+    if (first_key(name) == "sweep") return std::nullopt;
     const Tree* found = base.find_path(name);
     if (found == nullptr && alone) found = alone->tree.find_path(name);
     return found != nullptr ? std::optional(condition_text(*found)) : std::nullopt;
   };
-  std::shared_ptr<const ResolvedConfig> first;
-  Planner planner(plan, composer, host);
+  std::optional<ResolvedConfig> first;
+  Planner planner(composer, host, file, description, shared);
   for (std::size_t number = 0; number < description.size(); ++number) {
     const Combination combination = description.at(number);
     if (!description.wanted(combination, base_value)) continue;
     planner.add(number, combination, [&](const Job& job, const ResolvedConfig& config) {
-      if (first == nullptr) first = std::make_shared<const ResolvedConfig>(config);
+      if (!first) first = config;
       if (sink) sink(job, config);
     });
   }
-  if (first == nullptr) {
+  if (!first) {
     throw Error(description.where_place(),
                 fmt::format("sweep.where: it holds for none of the {} combinations", description.size()),
                 "ask for less, or sweep other values");
   }
   planner.finish();
-  plan.name = first->options.name;
-  plan.config = written_config(file, base, alone, description, *first);
+  SweepPlan plan{first->options.name,
+                 {{}, description.keys(), planner.take_jobs()},
+                 written_config(file, base, alone, description, *first),
+                 planner.take_configs()};
   check_readable(plan.config, file.string());
   plan.sweep.directory = runs / slug(plan.name) / sweep_id(plan.config, plan.sweep);
   return plan;
 }
 
-ResolvedConfig planned_config(const SweepPlan& plan, Composer& composer, const PluginHost& host, std::size_t index) {
-  const std::size_t number = plan.combinations[index];
-  const Combination combination = plan.description.at(number);
-  const SweptValue* seed = find_seed(combination);
-  const auto kept = plan.kept.find(number_without_seed(number, seed));
-  if (kept == plan.kept.end()) return load_experiment(composer, host, plan.file, job_overrides(plan, combination));
-  ResolvedConfig config = *kept->second;
-  if (seed != nullptr) set_seed(config, seed->value(), host);
+ResolvedConfig planned_config(const SweepPlan& plan, const PluginHost& host, std::size_t index) {
+  const auto& [kept, seed] = plan.configs[index];
+  if (kept == nullptr) return load_run(host, job_directory(plan.sweep, plan.sweep.jobs[index]));
+  ResolvedConfig config = *kept;
+  if (seed.is_scalar()) set_seed(config, seed, host);
   return config;
 }
 

@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kHowTo = "write uniform(0.1 mm, 1 mm) or log(1cm, 10cm), both ends with the same unit";
+constexpr const char* kHowToDraw = "write uniform(0.1 mm, 1 mm) or log(1cm, 10cm), both ends with the same unit";
 constexpr std::int64_t kMaxSamples = 100'000;
 constexpr std::size_t kMaxKeys = 1000;  // Boost's tables end at 3667
 
@@ -35,16 +35,16 @@ struct Range {
 Range parse_range(const Tree::Entry& entry) {
   const Tree& value = entry.value;
   const std::string place = value.place.text();
-  const std::optional<Call> call = parse_call(value, entry.key, {"uniform", "log"}, kHowTo);
+  const std::optional<Call> call = parse_call(value, entry.key, {"uniform", "log"}, kHowToDraw);
   if (!call || call->bounds.size() != 2) {
     throw Error(
         place,
         fmt::format("{}: {} is no continuous range", entry.key, value.is_scalar() ? "'" + value.text + "'" : "this"),
-        kHowTo);
+        kHowToDraw);
   }
   Range range{call->name == "log", call->bounds[0].value, call->bounds[1].value, call->bounds[0].unit};
   if (call->bounds[1].unit != range.unit) {
-    throw Error(place, fmt::format("{}: the ends of '{}' have unlike units", entry.key, value.text), kHowTo);
+    throw Error(place, fmt::format("{}: the ends of '{}' have unlike units", entry.key, value.text), kHowToDraw);
   }
   if (!(range.first < range.last) || (range.logarithmic && !(range.first > 0.0)) ||
       !std::isfinite(range.last - range.first)) {

@@ -22,17 +22,21 @@ namespace {
 
 constexpr const char* kSweep = "sweep";  ///< the field with the id
 
-/// A line of manifest.jsonl but for the sweep's id, which is a hash of these.
-Row manifest_row(const std::vector<std::string>& keys, const Job& job) {
-  Row row;
-  row.add("job", job.index);
-  row.add("id", job.id);
+FieldList<JobLine> make_job_list() {
+  FieldList<JobLine> list;
+  list.add("job", "number, from 0", [](const JobLine& line) { return line.job.index; });
+  list.add("id", "of its run", [](const JobLine& line) { return line.job.id; });
   // A dot in a key would nest it: the keys of a manifest stand flat, in the order of the sweep.
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    row.add(fmt::format("key_{}", i), keys[i]);
-    row.add(fmt::format("value_{}", i), job.values[i]);
-  }
-  return row;
+  list.add_family("key_N", "a swept key, N from 0", [](Row& row, const JobLine& line) {
+    for (std::size_t i = 0; i < line.keys.size(); ++i) {
+      row.add(fmt::format("key_{}", i), line.keys[i]);
+      row.add(fmt::format("value_{}", i), line.job.values[i]);
+    }
+  });
+  list.add_family("value_N", "what the job has there; empty where its plugin has no such option",
+                  [](Row&, const JobLine&) {});
+  list.add_where([](const JobLine& line) { return !line.sweep.empty(); }, kSweep, "id of the sweep", &JobLine::sweep);
+  return list;
 }
 
 /// The texts at `name` 0, 1, ... for as long as there are any.
@@ -49,13 +53,14 @@ bool is_id(const std::string& text) { return text.size() == kIdLength && begins_
 
 }  // namespace
 
+const FieldList<JobLine>& job_list() {
+  static const FieldList<JobLine> list = make_job_list();
+  return list;
+}
+
 std::string manifest_text(const Sweep& sweep, const std::string& id) {
   std::string text;
-  for (const Job& job : sweep.jobs) {
-    Row row = manifest_row(sweep.keys, job);
-    row.add(kSweep, id);
-    text += to_json_line(row) + "\n";
-  }
+  for (const Job& job : sweep.jobs) text += to_json_line(job_list().row({sweep.keys, job, id})) + "\n";
   return text;
 }
 
@@ -65,9 +70,7 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
   for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
     if (enters_id(entry.key)) identity.entries.push_back(std::move(entry));
   }
-  std::string all = identity.canonical();
-  for (const Job& job : sweep.jobs) all += to_json_line(manifest_row(sweep.keys, job)) + "\n";
-  return hash_of(all).substr(0, kIdLength);
+  return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);
 }
 
 fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
@@ -97,13 +100,11 @@ Sweep read_sweep(const fs::path& directory) {
     const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
     // What is read must be all that the line says, and an id is the name of a folder: nothing of it is believed before.
     const bool whole = is_id(job.id) && job.values.size() == sweep.keys.size();
-    Row said = whole ? manifest_row(sweep.keys, job) : Row();
-    if (whole && said.fields == row.fields) {
+    if (whole && job_list().row({sweep.keys, job, ""}).fields == row.fields) {
       throw Error(directory.string(), "an older palpate made this sweep: nothing tells whether its jobs were changed",
                   "results.csv is good still; 'palpate sweep' on config.yaml in it makes it anew");
     }
-    said.add(kSweep, id);
-    if (!whole || said.fields != row.fields) {
+    if (!whole || job_list().row({sweep.keys, job, id}).fields != row.fields) {
       throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is no job of this sweep",
                   "the file is damaged: put it back as it was");
     }

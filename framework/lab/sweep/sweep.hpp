@@ -2,6 +2,7 @@
 // The directory of a sweep: its jobs as listed when it began, what became of each, and the table made from that.
 #pragma once
 
+#include "record/field.hpp"
 #include "record/gate.hpp"
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
@@ -19,6 +20,14 @@ struct Job {
   std::string id;
   std::vector<std::string> values;  ///< one for each swept key; "" where the job's plugins have no such option
 };
+
+/// A line of manifest.jsonl.
+struct JobLine {
+  const std::vector<std::string>& keys;
+  const Job& job;
+  std::string sweep;  ///< its id; "" in what that is a hash of
+};
+const FieldList<JobLine>& job_list();
 
 /// A sweep's directory: config.yaml, manifest.jsonl, jobs/<id>/, results.csv.
 struct Sweep {

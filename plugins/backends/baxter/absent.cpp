@@ -2,16 +2,9 @@
 // The backend of a build without ROS: what a robot recorded elsewhere can be read and replayed here.
 #include "absent.hpp"
 
-#include "baxter/available.hpp"
 #include "baxter/options.hpp"
 
 #include <palpate/backend.hpp>
-
-namespace palpate::baxter {
-
-bool available() { return false; }
-
-}  // namespace palpate::baxter
 
 PALPATE_ABSENT_PLUGIN(palpate::Backend, palpate::baxter::BaxterOptions, "baxter",
                       "a Baxter over ROS 1, which this build does not have")

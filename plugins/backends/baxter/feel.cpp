@@ -63,7 +63,7 @@ Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
     if (watch_.fresh()) readings.push_back(seen_.endpoint->force);
   }
   if (readings.size() < kForceSamples) {
-    throw Fault{"endpoint_state comes too seldom for the force at rest", Fault::Then::hold, true};
+    throw Fault{"endpoint_state comes too seldom for the force at rest", Fault::Then::hold};
   }
   return median(std::move(readings));
 }

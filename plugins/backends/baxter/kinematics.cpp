@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/kinematics.hpp"
 
-#include "baxter/left_arm.hpp"
+#include "baxter/kdl.hpp"
 
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>
-#include <kdl/chainjnttojacsolver.hpp>
 
 namespace palpate::baxter {
 namespace {
@@ -16,10 +15,6 @@ using namespace description;
 constexpr double kAccuracy = 1e-6;
 constexpr int kIterations = 100;
 constexpr double kLever = 0.1;  // m: a turn counts as much as the way of a point so far away
-
-KDL::Frame frame(const Step& step) {
-  return {KDL::Rotation::RPY(step.roll, step.pitch, step.yaw), KDL::Vector(step.x, step.y, step.z)};
-}
 
 /// KDL turns a joint after the fixed part of its segment, a URDF before it: so each joint takes the next one's step.
 KDL::Chain left_arm(const Eigen::Vector3d& tip) {
@@ -31,12 +26,6 @@ KDL::Chain left_arm(const Eigen::Vector3d& tip) {
   return out;
 }
 
-KDL::JntArray array_of(const Joints& joints) {
-  KDL::JntArray out(7);
-  out.data = joints;
-  return out;
-}
-
 Eigen::Matrix<double, 6, 1> weights() {
   return (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished();
 }
@@ -45,10 +34,9 @@ Eigen::Matrix<double, 6, 1> weights() {
 
 struct Arm::Chain {
   explicit Chain(const Eigen::Vector3d& tip)
-      : arm(left_arm(tip)), forward(arm), tangent(arm), inverse(arm, weights(), kAccuracy, kIterations) {}
+      : arm(left_arm(tip)), forward(arm), inverse(arm, weights(), kAccuracy, kIterations) {}
   KDL::Chain arm;
   KDL::ChainFkSolverPos_recursive forward;
-  KDL::ChainJntToJacSolver tangent;
   KDL::ChainIkSolverPos_LMA inverse;
 };
 
@@ -80,12 +68,6 @@ std::optional<Joints> Arm::solve(const Pose& tip, const Joints& seed, double mar
   const Joints out = found.data;
   if (!out.allFinite() || beyond_limits(out, margin) >= 0) return std::nullopt;
   return out;
-}
-
-Eigen::Matrix<double, 3, 7> Arm::jacobian(const Joints& joints) const {
-  KDL::Jacobian out(7);
-  chain_->tangent.JntToJac(array_of(joints), out);
-  return out.data.topRows<3>();
 }
 
 const Joints& lower_limits() {

@@ -27,9 +27,6 @@ class Arm {
   /// to another posture of the elbow unless the seed is far away.
   std::optional<Joints> solve(const Pose& tip, const Joints& seed, double margin = 0.0) const;
 
-  /// How the tip moves with the joints: 3 x 7, metres per radian.
-  Eigen::Matrix<double, 3, 7> jacobian(const Joints& joints) const;
-
  private:
   struct Chain;
   std::unique_ptr<Chain> chain_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/options.hpp"
 
-#include "baxter/available.hpp"
-
 namespace palpate::baxter {
 namespace {
 
@@ -16,7 +14,15 @@ constexpr double kSlowest = 0.01;        ///< m/s, for ways that have no time-ou
 constexpr double kFastest = 0.1;         ///< m/s, downwards: the arm presses on for a third of a second of it
 constexpr double kDeepest = 0.1;         ///< m below the desk
 
-Field mandatory(Field field) { return available() ? field.needed() : field; }
+/// Whether this build can talk to a robot. Where it cannot, no option is mandatory: what is to be said first is then
+/// what to install.
+#ifdef PALPATE_ABSENT
+constexpr bool kAvailable = false;
+#else
+constexpr bool kAvailable = true;
+#endif
+
+Field mandatory(Field field) { return kAvailable ? field.needed() : field; }
 
 }  // namespace
 
@@ -41,6 +47,10 @@ void PlaceOptions::list(Fields& fields) {
                             .in(Unit::radian)
                             .at_least(-6.3)
                             .at_most(6.3));
+}
+
+Eigen::Isometry3d PlaceOptions::frame() const {
+  return Eigen::Translation3d(corner[0], corner[1], height) * Eigen::AngleAxisd(rotation, Eigen::Vector3d::UnitZ());
 }
 
 void CalibrationOptions::list(Fields& fields) {

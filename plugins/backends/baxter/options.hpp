@@ -6,6 +6,8 @@
 
 #include <palpate/options.hpp>
 
+#include <Eigen/Geometry>
+
 #include <optional>
 
 namespace palpate::baxter {
@@ -17,12 +19,13 @@ struct ToolOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Where the frame of the scene lies in the robot's frame `base`: a point (x, y, z) of the scene is at
-/// corner + R(rotation) (x, y), height + z.
+/// Where the frame of the scene lies in the robot's frame `base`.
 struct PlaceOptions : Options {
   double corner[2] = {0.0, 0.0};  ///< metres
   double height = 0.0;            ///< of the scene's zero, metres
   double rotation = 0.0;          ///< about the vertical, radians
+  /// Brings a point (x, y, z) of the scene to corner + R(rotation) (x, y), height + z.
+  Eigen::Isometry3d frame() const;
   void list(Fields& fields) override;
 };
 

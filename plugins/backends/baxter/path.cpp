@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include <fmt/format.h>
 
 namespace palpate::baxter {
 namespace {
@@ -18,11 +19,8 @@ constexpr double kTurnStep = 0.05;
 constexpr double kJump = 0.15;
 
 std::string place_text(const Pose& pose) {
-  std::ostringstream out;
-  out.precision(1);
-  out << std::fixed << "(" << 100 * pose.position.x() << ", " << 100 * pose.position.y() << ", "
-      << 100 * pose.position.z() << ") cm of base";
-  return out.str();
+  const Eigen::Vector3d at = 100 * pose.position;
+  return fmt::format("({:.1f}, {:.1f}, {:.1f}) cm of base", at.x(), at.y(), at.z());
 }
 
 int steps(double length, double step) { return std::max(1, static_cast<int>(std::ceil(length / step - 1e-9))); }
@@ -41,6 +39,12 @@ std::size_t Path::segment(double distance) const {
   return std::clamp<std::size_t>(index, 1, at_.size() - 1);
 }
 
+/// How fast a joint turns on it, rad/m.
+double Path::slope(std::size_t segment) const {
+  const Joints turn = joints_[segment] - joints_[segment - 1];
+  return turn.cwiseAbs().maxCoeff() / (at_[segment] - at_[segment - 1]);
+}
+
 Joints Path::at(double distance) const {
   if (at_.size() == 1 || distance <= 0.0) return joints_.front();
   if (distance >= at_.back()) return joints_.back();
@@ -51,8 +55,7 @@ Joints Path::at(double distance) const {
 
 double Path::advance(double distance, double speed, double seconds) const {
   if (distance >= length()) return length();
-  const std::size_t i = segment(distance);
-  const double turn = (joints_[i] - joints_[i - 1]).cwiseAbs().maxCoeff() / (at_[i] - at_[i - 1]);
+  const double turn = slope(segment(distance));
   const double fastest = turn > 0.0 ? std::min(speed, kJointSpeed / turn) : speed;
   return std::min(length(), distance + fastest * seconds);
 }
@@ -72,27 +75,8 @@ Path Path::back(double distance) const {
 
 double Path::steepest() const {
   double out = 0.0;
-  for (std::size_t i = 1; i < at_.size(); ++i) {
-    out = std::max(out, (joints_[i] - joints_[i - 1]).cwiseAbs().maxCoeff() / (at_[i] - at_[i - 1]));
-  }
+  for (std::size_t i = 1; i < at_.size(); ++i) out = std::max(out, slope(i));
   return out;
-}
-
-Planner::Planner(const PlaceOptions& place, const Arm& arm, Inverse inverse)
-    : corner_(place.corner[0], place.corner[1]),
-      rotation_(place.rotation),
-      height_(place.height),
-      arm_(arm),
-      inverse_(std::move(inverse)) {}
-
-Pose Planner::pose(const Target& place, double height) const {
-  const Eigen::Vector2d flat = corner_ + rotation_ * Eigen::Vector2d(place.x, place.y);
-  return {{flat.x(), flat.y(), height_ + height}, straight_down()};
-}
-
-Eigen::Vector3d Planner::to_scene(const Eigen::Vector3d& base) const {
-  const Eigen::Vector2d flat = rotation_.inverse() * (base.head<2>() - corner_);
-  return {flat.x(), flat.y(), base.z() - height_};
 }
 
 Joints Planner::solve(const Pose& tip, const Joints& seed, const char* what) const {

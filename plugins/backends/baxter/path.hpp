@@ -11,6 +11,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::baxter {
@@ -39,6 +40,7 @@ class Path {
 
  private:
   std::size_t segment(double distance) const;
+  double slope(std::size_t segment) const;
 
   std::vector<double> at_;
   std::vector<Joints> joints_;
@@ -58,11 +60,14 @@ using Inverse = std::function<std::optional<Joints>(const Pose& tip, const Joint
 /// Plans in the frame of the scene. Throws NoPath.
 class Planner {
  public:
-  Planner(const PlaceOptions& place, const Arm& arm, Inverse inverse);
+  Planner(const PlaceOptions& place, const Arm& arm, Inverse inverse)
+      : frame_(place.frame()), arm_(arm), inverse_(std::move(inverse)) {}
 
   /// Of a point of the scene and back, metres; the tool points straight down.
-  Pose pose(const Target& place, double height) const;
-  Eigen::Vector3d to_scene(const Eigen::Vector3d& base) const;
+  Pose pose(const Target& place, double height) const {
+    return {frame_ * Eigen::Vector3d(place.x, place.y, height), straight_down()};
+  }
+  Eigen::Vector3d to_scene(const Eigen::Vector3d& base) const { return frame_.inverse() * base; }
 
   /// From `hover` straight down to `floor` (m) at `place`. Every height is planned from the one above, the first from
   /// the joints at `middle`, so that a column depends on its place alone and not on the way there. No joint turns
@@ -76,14 +81,12 @@ class Planner {
   Path up(const Joints& from, double rise) const;
 
   /// The desk turned out to lie so much higher (m) than the config has it.
-  void raise(double height) { height_ += height; }
+  void raise(double height) { frame_.translation().z() += height; }
 
  private:
   Joints solve(const Pose& tip, const Joints& seed, const char* what) const;
 
-  Eigen::Vector2d corner_;
-  Eigen::Rotation2Dd rotation_;
-  double height_;
+  Eigen::Isometry3d frame_;  ///< of the scene, in `base`
   const Arm& arm_;
   Inverse inverse_;
 };

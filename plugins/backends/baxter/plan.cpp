@@ -2,9 +2,8 @@
 // What Tapper looks at and plans while nothing moves.
 #include "baxter/tapper.hpp"
 
+#include "baxter/words.hpp"
 #include "tapping/words.hpp"
-
-#include <palpate/error.hpp>
 
 #include <algorithm>
 
@@ -34,19 +33,19 @@ void Tapper::check() {
   check_plan(options_, scene_);
   const std::optional<Fault> slow = listen();
   await_fit(!options_.dry_run);
-  if (slow && !options_.dry_run) throw Error("", slow->reason, {}, Error::Kind::run);
+  if (slow && !options_.dry_run) throw trouble("", slow->reason);
   check_before_flight(seen_, options_, planner_, workspace_, !options_.dry_run);
   if (!options_.dry_run) {
     for (const std::string& line : check_settings(seen_)) note_(line);
   }
   try {
-    if (options_.calibration) column({options_.calibration->at[0], options_.calibration->at[1]});
+    if (options_.calibration) column(bare());
     if (options_.dry_run) try_reach();
   } catch (const NoPath& none) {
-    throw Error("calibration.at", none.reason,
-                "take another place, or move the area: its middle near x = 60 cm, y = 20 cm of base", Error::Kind::run);
+    throw trouble("calibration.at", none.reason,
+                  "take another place, or move the area: its middle near x = 60 cm, y = 20 cm of base");
   } catch (const Fault& fault) {
-    throw Error("", fault.reason, {}, Error::Kind::run);
+    throw trouble("", fault.reason);
   }
 }
 
@@ -56,11 +55,7 @@ std::optional<Fault> Tapper::listen() {
   watch_.begin();
   const double end = seen_.now + kListen;
   std::optional<Fault> slow;
-  for (next_ = seen_.now; next_ < end; slow = watch_.listen(seen_)) {
-    next_ += tapping::GuardedTap::kPeriod;
-    if (!robot_.wait_until(next_)) break;
-    take(robot_.read());
-  }
+  for (next_ = seen_.now; next_ < end && pass();) slow = watch_.listen(seen_);
   return slow;
 }
 
@@ -76,8 +71,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
     }
   }
   if (options_.calibration && !calibrated_) {
-    const Target bare{options_.calibration->at[0], options_.calibration->at[1]};
-    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare));
+    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare()));
   }
   const std::vector<std::string> motion = tapping::describe(options_.motion, scene_.desk(), request, from);
   out.insert(out.end(), motion.begin(), motion.end());
@@ -90,17 +84,15 @@ void Tapper::try_reach() {
   const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
   const int places = check_reach(planner_, scene_.area(), descent.hover + kFromAbove, descent.floor,
                                  fastest(options_.motion), kReachSpacing);
-  note_("dry run: all " + std::to_string(places) + " places of the area can be reached, all the way down");
+  note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
 }
 
 /// Reads until the robot is fit; if it is not within a second, what was read last says why.
 void Tapper::await_fit(bool moving) {
   take(robot_.read());
-  const double begin = seen_.now;
-  for (next_ = begin; next_ < begin + kPatience && Watch::fit(seen_, moving); take(robot_.read())) {
-    next_ += tapping::GuardedTap::kPeriod;
-    if (!robot_.wait_until(next_)) return;
-  }
+  next_ = seen_.now;
+  const double end = next_ + kPatience;
+  while (next_ < end && Watch::fit(seen_, moving) && pass()) continue;
 }
 
 Path Tapper::column(const Target& place) const {
@@ -129,7 +121,7 @@ std::optional<Joints> Tapper::ask_robot(const Pose& tip, const Joints& seed) {
   const Robot::Answer answer = robot_.solve(
       {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},
       seed);
-  if (!answer.trouble.empty()) throw Fault{answer.trouble, Then::silence, true};
+  if (!answer.trouble.empty()) throw Fault{answer.trouble};
   if (!answer.joints || !answer.joints->allFinite() || beyond_limits(*answer.joints, kLimitMargin) >= 0)
     return std::nullopt;
   const Pose reached = arm_.tip(*answer.joints);

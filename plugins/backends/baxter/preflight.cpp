@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/preflight.hpp"
 
-#include <palpate/error.hpp>
+#include "baxter/words.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <limits>
 #include <tuple>
 
 namespace palpate::baxter {
@@ -18,25 +19,11 @@ constexpr double kUpright = 0.35;      ///< rad that the tool may lean before th
 
 /// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
 constexpr double kLeastRatio = 0.27;
+constexpr double kAnyRatio = std::numeric_limits<double>::infinity();
 constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
 constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
 
-std::string number(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
-
-[[noreturn]] void refuse(const std::string& where, const std::string& reason, const std::string& hint) {
-  throw Error(where, reason, hint, Error::Kind::run);
-}
-
-std::string centimetres(double length) {
-  std::ostringstream out;
-  out.precision(2);
-  out << std::fixed << 100.0 * length << " cm";
-  return out.str();
-}
+std::string centimetres(double length) { return fmt::format("{:.2f} cm", 100.0 * length); }
 
 /// Own kinematics against the robot's: they must agree on left_gripper, but for a gripper that the config does not
 /// know.
@@ -47,16 +34,16 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
   const double turned = hand.rotation.angularDistance(endpoint.pose.rotation);
   if (aside <= kAgreement && std::abs(seen.z() - gripper) <= kAgreement && turned <= kAgreedTurn) return;
   if (aside <= kAgreement && turned <= kAgreedTurn) {
-    refuse("tool.gripper",
-           "the robot has left_gripper " + centimetres(seen.z()) + " from left_hand, the config has it at " +
-               centimetres(gripper),
-           "a gripper is configured on the robot that the config does not know: see what is mounted, then correct "
-           "tool.gripper and tool.tip");
+    throw trouble("tool.gripper",
+                  fmt::format("the robot has left_gripper {} from left_hand, the config has it at {}",
+                              centimetres(seen.z()), centimetres(gripper)),
+                  "a gripper is configured on the robot that the config does not know: see what is mounted, then "
+                  "correct tool.gripper and tool.tip");
   }
-  refuse("tool.gripper",
-         "joints and endpoint_state disagree by " + centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm()) +
-             " about where left_gripper is",
-         "this is another arm than the Baxter whose lengths are known, or its gripper is mounted askew");
+  throw trouble("tool.gripper",
+                fmt::format("joints and endpoint_state disagree by {} about where left_gripper is",
+                            centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm())),
+                "this is another arm than the Baxter whose lengths are known, or its gripper is mounted askew");
 }
 
 }  // namespace
@@ -72,64 +59,67 @@ void check_plan(const BaxterOptions& options, const Scene& scene) {
   const Area area = scene.area();
   const auto [x, y] = std::tie(options.calibration->at[0], options.calibration->at[1]);
   if (x < 0.0 || y < 0.0 || x > area.width || y > area.depth) {
-    refuse("calibration.at", "lies outside of the area", "take a bare place within");
+    throw trouble("calibration.at", "lies outside of the area", "take a bare place within");
   }
 }
 
 void check_before_flight(const Snapshot& seen, const BaxterOptions& options, const Planner& planner,
                          const Workspace& workspace, bool moving) {
-  if (const std::optional<Fault> fault = Watch::fit(seen, moving)) refuse("", fault->reason, "");
+  if (const std::optional<Fault> fault = Watch::fit(seen, moving)) throw trouble("", fault->reason);
   if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0 && moving) {
-    refuse("", std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is beyond its limit",
-           "move the arm by hand");
+    throw trouble("", fmt::format("{} is beyond its limit", kJointNames[static_cast<std::size_t>(joint)]),
+                  "move the arm by hand");
   }
   check_gripper(*seen.joints, *seen.endpoint, options.tool.gripper);
   if (!moving) return;
   const Pose tip = Arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)).tip(seen.joints->position);
   const std::string breach = workspace.breach(planner.to_scene(tip.position));
   if (!breach.empty()) {
-    refuse("", breach,
-           "bring the tool by hand to a place above the area; palpate moves the arm there and nowhere else");
+    throw trouble("", breach,
+                  "bring the tool by hand to a place above the area; palpate moves the arm there and nowhere else");
   }
   const Eigen::Vector3d down = tip.rotation * Eigen::Vector3d::UnitZ();
-  if (std::acos(std::min(1.0, std::max(-1.0, -down.z()))) > kUpright) {
-    refuse("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
+  if (std::acos(std::clamp(-down.z(), -1.0, 1.0)) > kUpright) {
+    throw trouble("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
   }
 }
 
 std::vector<std::string> check_settings(const Snapshot& seen) {
-  std::vector<std::string> out;
-  const auto in_words = [](const std::optional<Setting>& setting, const char* topic, const char* own) {
-    return std::string(topic) + (setting ? ": " + number(setting->value) + " from " + setting->sender
-                                         : std::string(": nobody says it now, taken for the robot's own ") + own);
+  const struct {
+    const char* topic;
+    const std::optional<Setting>& setting;
+    const char* own;
+    double least, most;
+    const char* reason;
+    const char* remedy;
+  } settings[] = {
+      {"set_speed_ratio", seen.speed_ratio, "0.3", kLeastRatio, kAnyRatio, ", at which the arm cannot follow",
+       "set it to 0.3, on /robot/limb/left/set_speed_ratio"},
+      {"joint_command_timeout", seen.command_timeout, "0.2 s", kLeastTimeout, kMostTimeout,
+       " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the next",
+       "set it to 0.2, on /robot/limb/left/joint_command_timeout"},
   };
-  out.push_back(in_words(seen.speed_ratio, "set_speed_ratio", "0.3"));
-  out.push_back(in_words(seen.command_timeout, "joint_command_timeout", "0.2 s"));
-  if (seen.speed_ratio && !(seen.speed_ratio->value >= kLeastRatio)) {
-    refuse("set_speed_ratio",
-           seen.speed_ratio->sender + " has set it to " + number(seen.speed_ratio->value) +
-               ", at which the arm cannot follow",
-           "set it to 0.3, on /robot/limb/left/set_speed_ratio");
-  }
-  if (seen.command_timeout &&
-      !(seen.command_timeout->value >= kLeastTimeout && seen.command_timeout->value <= kMostTimeout)) {
-    refuse(
-        "joint_command_timeout",
-        seen.command_timeout->sender + " has set it to " + number(seen.command_timeout->value) +
-            " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the next",
-        "set it to 0.2, on /robot/limb/left/joint_command_timeout");
+  std::vector<std::string> out;
+  for (const auto& [topic, setting, own, least, most, reason, remedy] : settings) {
+    if (!setting) {
+      out.push_back(fmt::format("{}: nobody says it now, taken for the robot's own {}", topic, own));
+      continue;
+    }
+    out.push_back(fmt::format("{}: {:g} from {}", topic, setting->value, setting->sender));
+    if (setting->value >= least && setting->value <= most) continue;
+    throw trouble(topic, fmt::format("{} has set it to {:g}{}", setting->sender, setting->value, reason), remedy);
   }
   if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
-    std::string from = seen.avoidance->other_arm ? "the other arm" : "";
-    for (const std::string& object : seen.avoidance->objects) from += (from.empty() ? "" : " and ") + object;
-    refuse("collision_avoidance_state", "the robot pushes the arm away from " + from,
-           "move the other arm away, or the area forward");
+    std::vector<std::string> from = seen.avoidance->objects;
+    if (seen.avoidance->other_arm) from.insert(from.begin(), "the other arm");
+    throw trouble("collision_avoidance_state", "the robot pushes the arm away from " + listed(from),
+                  "move the other arm away, or the area forward");
   }
   const EndEffector& mounted = seen.end_effector;
-  out.push_back("mounted, as the robot has it: " +
-                (mounted.product.empty() ? std::string("no gripper that it knows") : mounted.product) +
-                (mounted.mass ? ", " + number(*mounted.mass) + " kg beyond the flange" : ", of unknown mass") +
-                "; a tool of another mass moves the zero of the force with the posture");
+  out.push_back(fmt::format(
+      "mounted, as the robot has it: {}, {}; a tool of another mass moves the zero of the force with the posture",
+      mounted.product.empty() ? "no gripper that it knows" : mounted.product,
+      mounted.mass ? fmt::format("{:g} kg beyond the flange", *mounted.mass) : "of unknown mass"));
   return out;
 }
 
@@ -146,19 +136,15 @@ int check_reach(const Planner& planner, const Area& area, double hover, double f
       try {
         planner.column(place, middle, hover, floor, speed);
       } catch (const NoPath& none) {
-        if (missed++ == 0) {
-          first = "the first at (" + centimetres(place.x) + ", " + centimetres(place.y) + "): " + none.reason;
-        }
+        if (missed++ > 0) continue;
+        first = fmt::format("({}, {}): {}", centimetres(place.x), centimetres(place.y), none.reason);
       }
     }
   }
-  if (missed > 0) {
-    refuse(
-        "place",
-        std::to_string(missed) + " of " + std::to_string(nx * ny) + " places of the area cannot be reached, " + first,
-        "put the middle of the area near x = 60 cm, y = 20 cm of base");
-  }
-  return nx * ny;
+  if (missed == 0) return nx * ny;
+  throw trouble("place",
+                fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
+                "put the middle of the area near x = 60 cm, y = 20 cm of base");
 }
 
 }  // namespace palpate::baxter

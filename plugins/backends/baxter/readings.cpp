@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace palpate::baxter {
@@ -15,15 +16,9 @@ constexpr double kSteady = 1.5;  ///< N from the first half of it to the second:
 
 }  // namespace
 
-void Mean::add(const Eigen::Vector3d& force) {
-  sum_ += force;
-  ++count_;
-}
-
-Eigen::Vector3d Mean::take() {
-  const Eigen::Vector3d out = sum_ / count_;
-  *this = {};
-  return out;
+Eigen::Vector3d average(const std::vector<Eigen::Vector3d>& readings) {
+  const Eigen::Vector3d sum = std::accumulate(readings.begin(), readings.end(), Eigen::Vector3d(0, 0, 0));
+  return sum / static_cast<double>(readings.size());
 }
 
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
@@ -39,27 +34,19 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
 
 bool EvenDescent::add(double time, const Eigen::Vector3d& reading) {
   if (time >= kEvenTo) return conclude();
-  if (time < kEvenFrom) {
-    readings_.clear();
-  } else {
-    readings_.push_back(reading);
-  }
+  if (time < kEvenFrom) readings_.clear();
+  if (time >= kEvenFrom) readings_.push_back(reading);
   return false;
 }
 
 bool EvenDescent::conclude() {
   const std::vector<Eigen::Vector3d> readings = std::exchange(readings_, {});
   if (readings.size() < kFewest) return false;
-  const std::size_t half = readings.size() / 2;
-  Mean early;
-  Mean late;
-  Mean all;
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    (i < half ? early : late).add(readings[i]);
-    all.add(readings[i]);
-  }
-  if (std::abs(late.take().z() - early.take().z()) >= kSteady) return false;
-  mean_ = all.take();
+  const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
+  const Eigen::Vector3d early = average({readings.begin(), middle});
+  const Eigen::Vector3d late = average({middle, readings.end()});
+  if (std::abs(late.z() - early.z()) >= kSteady) return false;
+  mean_ = average(readings);
   return true;
 }
 

@@ -8,17 +8,8 @@
 
 namespace palpate::baxter {
 
-/// The mean of what has been added.
-class Mean {
- public:
-  void add(const Eigen::Vector3d& force);
-  /// At least one having been added; begins anew.
-  Eigen::Vector3d take();
-
- private:
-  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
-  int count_ = 0;
-};
+/// The mean of each component.
+Eigen::Vector3d average(const std::vector<Eigen::Vector3d>& readings);
 
 /// The median of each component; at least one reading.
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings);

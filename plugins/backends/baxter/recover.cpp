@@ -56,9 +56,7 @@ void Tapper::outlast_reflex() {
   step(seen_.joints->position);
 }
 
-Fault Tapper::standstill() {
-  return {"the clock of the robot's network stands still: its sender is gone", Then::silence, true};
-}
+Fault Tapper::standstill() { return {"the clock of the robot's network stands still: its sender is gone"}; }
 
 /// Sends the joints, which keep the arm where it is, for a while; or less, where a rule comes to ask for silence. That
 /// rule, if one did.
@@ -67,9 +65,7 @@ std::optional<Fault> Tapper::hold(Joints joints) {
   next_ = seen_.now;
   for (double left = kHeld; left > 0.0; left -= kPeriod) {
     robot_.command(joints);
-    next_ += kPeriod;
-    if (!robot_.wait_until(next_)) return standstill();
-    take(robot_.read());
+    if (!pass()) return standstill();
     std::optional<Fault> fault = watch_.look(seen_, tip_);
     if (fault && fault->then == Then::silence) return fault;
   }

@@ -5,6 +5,7 @@
 
 #include "baxter/robot.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -18,16 +19,29 @@ class Stream {
   static constexpr int kFewest = 25;
 
   /// Takes what is the latest at `now` (s); whether it is new, that is, has another stamp than the one before.
-  bool hear(const Arrival& arrival, double now);
+  bool hear(const Arrival& arrival, double now) {
+    while (!heard_.empty() && heard_.front().time < now - kWindow - kSlack) heard_.pop_front();
+    if (stamp_ == arrival.stamp) return false;
+    stamp_ = arrival.stamp;
+    heard_.push_back({now, arrival.count});
+    return true;
+  }
 
   /// How many were new within the last kWindow seconds, with those that came and went between two looks, where the
   /// arrivals are counted.
-  int heard() const;
+  int heard() const {
+    if (heard_.empty()) return 0;
+    const long counted = heard_.back().count - heard_.front().count + 1;
+    return static_cast<int>(std::max(counted, static_cast<long>(heard_.size())));
+  }
 
   /// Counts anew. What was heard last is still not new.
   void begin() { heard_.clear(); }
 
  private:
+  /// A stream of exactly the fewest has as many in every window, whatever the sums of its times round to.
+  static constexpr double kSlack = 1e-6;
+
   struct Heard {
     double time;
     long count;

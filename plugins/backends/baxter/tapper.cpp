@@ -3,6 +3,7 @@
 
 #include "baxter/readings.hpp"
 #include "baxter/signed_tap.hpp"
+#include "baxter/words.hpp"
 #include "tapping/words.hpp"
 
 #include <algorithm>
@@ -16,6 +17,7 @@ namespace {
 using tapping::centimetres;
 using tapping::GuardedTap;
 using tapping::newtons;
+using ForceSign = BaxterOptions::ForceSign;
 using Then = Fault::Then;
 
 constexpr double kPeriod = GuardedTap::kPeriod;
@@ -37,18 +39,6 @@ tapping::MotionOptions gentle(tapping::MotionOptions motion) {
   return motion;
 }
 
-double sign_of(BaxterOptions::ForceSign sign) {
-  switch (sign) {
-    case BaxterOptions::ForceSign::negative:
-      return -1.0;
-    case BaxterOptions::ForceSign::positive:
-      return 1.0;
-    case BaxterOptions::ForceSign::learn:
-      return 0.0;
-  }
-  return 0.0;
-}
-
 Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false) {
   Contact out{outcome, 0.0, 0.0, 0.0, reason};
   out.ends_run = ends_run;
@@ -68,7 +58,9 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
       planner_(options.place, arm_, [this](const Pose& tip, const Joints& seed) { return inverse(tip, seed); }),
       workspace_(workspace_of(options, scene)),
       watch_(workspace_, options.force_stop),
-      sign_(sign_of(options.sign())) {}
+      sign_(options.sign() == ForceSign::learn      ? 0.0
+            : options.sign() == ForceSign::positive ? 1.0
+                                                    : -1.0) {}
 
 Contact Tapper::tap(const TapRequest& request) {
   const double begin = robot_.read().now;
@@ -80,13 +72,12 @@ Contact Tapper::tap(const TapRequest& request) {
   } catch (const Fault& fault) {
     contact = failed(Outcome::aborted, fault.reason + "; " + recover(fault), fault.ends_run);
   } catch (const std::exception& trouble) {
-    contact = failed(Outcome::aborted, std::string(trouble.what()) + "; " + kSilent, true);
+    contact = failed(Outcome::aborted, fmt::format("{}; {}", trouble.what(), kSilent), true);
   }
   contact.seconds = std::max(0.0, robot_.read().now - begin);
-  note_("tap " + std::to_string(request.number) + ": " +
-        (contact.outcome == Outcome::contact
-             ? "contact at " + centimetres(contact.height) + ", at most " + newtons(contact.force)
-             : contact.reason));
+  const std::string touched =
+      fmt::format("contact at {}, at most {}", centimetres(contact.height), newtons(contact.force));
+  note_(fmt::format("tap {}: {}", request.number, contact.reason.empty() ? touched : contact.reason));
   return contact;
 }
 
@@ -96,10 +87,10 @@ Contact Tapper::attempt(const TapRequest& request) {
   if (options_.dry_run) return failed(Outcome::aborted, "dry run: the place can be reached, nothing moved");
   if (options_.calibration && !calibrated_) {
     TapRequest desk;
-    desk.target = {options_.calibration->at[0], options_.calibration->at[1]};
-    const Path bare = column(desk.target);
-    go_to(bare.front());
-    calibrate(descend(desk, gentle(options_.motion), bare));
+    desk.target = bare();
+    const Path way = column(desk.target);
+    go_to(way.front());
+    calibrate(descend(desk, gentle(options_.motion), way));
     learn_sign();
     down = column(request.target);
   }
@@ -112,15 +103,15 @@ Contact Tapper::attempt(const TapRequest& request) {
 /// The scene's zero moves to where a tap on the bare desk found it.
 void Tapper::calibrate(const Contact& contact) {
   if (contact.outcome != Outcome::contact) {
-    throw Fault{"the calibration tap met no desk: " + contact.reason, Then::hold, true};
+    throw Fault{"the calibration tap met no desk: " + contact.reason, Then::hold};
   }
   const double off = contact.height - scene_.desk();
   if (std::abs(off) > options_.calibration->tolerance) {
-    throw Fault{"the calibration tap found the desk " + centimetres(std::abs(off)) +
-                    (off > 0.0 ? " higher" : " lower") +
-                    " than place.height has it: measure again, see that nothing lies there, or raise "
-                    "calibration.tolerance",
-                Then::hold, true};
+    throw Fault{
+        fmt::format("the calibration tap found the desk {} {} than place.height has it: measure again, see that "
+                    "nothing lies there, or raise calibration.tolerance",
+                    centimetres(std::abs(off)), off > 0.0 ? "higher" : "lower"),
+        Then::hold};
   }
   planner_.raise(off);
   calibrated_ = true;
@@ -155,7 +146,7 @@ void Tapper::await_height(const Joints& top) {
   const double begin = seen_.now;
   while (height() < travel_height() - kNearTravel) {
     if (seen_.now > begin + kSettling) {
-      throw Fault{"the arm did not come up to the height of travel: see what holds it", Then::hold, true};
+      throw Fault{"the arm did not come up to the height of travel: see what holds it", Then::hold};
     }
     step(top);
   }
@@ -182,7 +173,7 @@ void Tapper::settle(const Joints& goal) {
     }
     if (seen_.now - since >= kStillFor && (now - goal).cwiseAbs().maxCoeff() < kAtGoal) return;
   }
-  throw Fault{"the arm did not come to rest where it was sent: see what holds it", Then::hold, true};
+  throw Fault{"the arm did not come to rest where it was sent: see what holds it", Then::hold};
 }
 
 /// Comes down to `hover` from just above and waits until the arm rests. Its joints rub: at 0.4 Nm the force of an arm
@@ -202,7 +193,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
   rest_from_above(column);
   SignedTap signed_tap(motion, plan, sign_);
-  Mean tare;
+  std::vector<Eigen::Vector3d> tare;
   EvenDescent even;
   std::optional<double> moving;
   int pulled = 0;
@@ -224,11 +215,11 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
       command = at(set_point);
     }
     if (taring) {
-      if (fresh) tare.add(reading);
+      if (fresh) tare.push_back(reading);
       pulled = 0;
       if (!signed_tap.tap().taring() && !signed_tap.tap().done()) {
         // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
-        zero_ = tare.take();
+        zero_ = average(std::exchange(tare, {}));
         if (std::exchange(first, false)) at_hover = zero_;
         watch_.set_tare(zero_);
       }
@@ -244,7 +235,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
         throw Fault{
             "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
             "wrong",
-            Then::retreat, true};
+            Then::retreat};
       }
     }
     step(command);
@@ -301,25 +292,27 @@ void Tapper::step(const Joints& command) {
   const auto jump = [&](const Joints& from) { return (command - from).cwiseAbs().maxCoeff() > kStepClamp; };
   if (!command.allFinite() ||
       (jump(seen_.joints->position) && jump(watch_.last_sent().value_or(seen_.joints->position)))) {
-    throw Fault{"a set-point would have jumped", Then::hold, true};
+    throw Fault{"a set-point would have jumped", Then::hold};
   }
   robot_.command(command);
   watch_.sent(seen_.now, command);
-  next_ += kPeriod;
   // A period that was missed is not made up for: the arm would be sent several set-points at once.
-  if (next_ <= seen_.now) next_ = seen_.now + kPeriod;
-  if (!robot_.wait_until(next_)) throw standstill();
-  take(robot_.read());
+  if (next_ + kPeriod <= seen_.now) next_ = seen_.now;
+  if (!pass()) throw standstill();
   if (std::optional<Fault> fault = watch_.look(seen_, tip_)) throw *fault;
+}
+
+/// Waits for the next period and reads; false where time stands still.
+bool Tapper::pass() {
+  next_ += kPeriod;
+  if (!robot_.wait_until(next_)) return false;
+  take(robot_.read());
+  return true;
 }
 
 void Tapper::take(Snapshot seen) {
   seen_ = std::move(seen);
   if (seen_.joints) tip_ = planner_.to_scene(arm_.tip(seen_.joints->position).position);
 }
-
-bool Tapper::interrupted() const { return interrupted_ != nullptr && interrupted_->load(); }
-double Tapper::height() const { return tip_.z(); }
-double Tapper::travel_height() const { return scene_.desk() + options_.motion.hover; }
 
 }  // namespace palpate::baxter

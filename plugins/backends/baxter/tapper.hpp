@@ -73,15 +73,17 @@ class Tapper {
   void climb(const Path& up);
   void await_height(const Joints& top);
   Path column(const Target& place) const;
+  Target bare() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
   std::optional<Joints> inverse(const Pose& tip, const Joints& seed);
   std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);
   std::optional<Fault> hold(Joints joints);
-  bool interrupted() const;
+  bool pass();
   void take(Snapshot seen);
-  double height() const;
-  double travel_height() const;
+  bool interrupted() const { return interrupted_ != nullptr && interrupted_->load(); }
+  double height() const { return tip_.z(); }
+  double travel_height() const { return scene_.desk() + options_.motion.hover; }
   void learn_sign();
 
   BaxterOptions options_;

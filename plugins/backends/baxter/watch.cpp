@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/watch.hpp"
 
+#include "baxter/words.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 namespace palpate::baxter {
@@ -12,56 +13,36 @@ namespace {
 using Then = Fault::Then;
 using Button = StateReading::Button;
 
-std::string number(double value, int digits = 1) {
-  std::ostringstream out;
-  out.precision(digits);
-  out << std::fixed << value;
-  return out.str();
-}
-
-std::string degrees(double radians) { return number(radians * 180.0 / 3.14159265358979323846) + " deg"; }
-
-std::string names(const std::vector<std::string>& all) {
-  std::string out;
-  for (const std::string& one : all) out += (out.empty() ? "" : " and ") + one;
-  return out;
-}
+double degrees(double radians) { return radians * 180.0 / 3.14159265358979323846; }
 
 constexpr const char* kReset =
     "reset it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun baxter_tools enable_robot.py -e)";
 
-/// What the robot's state forbids.
+/// What the robot's state forbids; the first rule that is broken counts.
 std::optional<Fault> state_forbids(const StateReading& state, const std::optional<JointReading>& joints, bool moving) {
-  if (state.estop_button == Button::pressed) {
-    return Fault{std::string("the emergency stop is pressed: release it, then ") + kReset, Then::silence, true};
+  const bool stays_disabled = moving && !state.enabled;
+  const double shoulder = joints ? joints->position(1) : 0.0;
+  const struct {
+    bool broken;
+    const char* words;
+  } rules[] = {
+      {state.estop_button == Button::pressed, "the emergency stop is pressed: release it, then {reset}"},
+      {state.estop_button == Button::released, "the emergency stop was pressed and is released: {reset}"},
+      // An error alone stops nothing, by Rethink's own reference: an enabled robot may report one and move.
+      {state.error && !state.enabled, "the robot reports an error and is disabled: see its screen, then {reset}"},
+      {state.stopped && state.estop_button == Button::unknown,
+       "a program stopped the robot (/robot/set_super_stop), a safety node perhaps: see why, then {reset}"},
+      {state.stopped, "the robot is stopped: {reset}"},
+      {stays_disabled && shoulder < -1.6,
+       "the robot is disabled and its arm is tucked (left_s1 at {shoulder:.1f} deg): untuck it, which enables it"},
+      {stays_disabled,
+       "the robot is disabled: enable it (rosrun baxter_tools enable_robot.py -e), palpate never does that itself"},
+      {moving && !state.ready, "the robot is not ready: wait until it has started"},
+  };
+  for (const auto& [broken, words] : rules) {
+    if (!broken) continue;
+    return Fault{fmt::format(fmt::runtime(words), fmt::arg("reset", kReset), fmt::arg("shoulder", degrees(shoulder)))};
   }
-  if (state.estop_button == Button::released) {
-    return Fault{std::string("the emergency stop was pressed and is released: ") + kReset, Then::silence, true};
-  }
-  // An error alone stops nothing, by Rethink's own reference: an enabled robot may report one and move.
-  if (state.error && !state.enabled) {
-    return Fault{std::string("the robot reports an error and is disabled: see its screen, then ") + kReset,
-                 Then::silence, true};
-  }
-  if (state.stopped && state.estop_button == Button::unknown) {
-    return Fault{
-        std::string("a program stopped the robot (/robot/set_super_stop), a safety node perhaps: see why, then ") +
-            kReset,
-        Then::silence, true};
-  }
-  if (state.stopped) return Fault{std::string("the robot is stopped: ") + kReset, Then::silence, true};
-  if (!moving) return std::nullopt;
-  if (!state.enabled && joints && joints->position(1) < -1.6) {
-    return Fault{"the robot is disabled and its arm is tucked (left_s1 at " + degrees(joints->position(1)) +
-                     "): untuck it, which enables it",
-                 Then::silence, true};
-  }
-  if (!state.enabled) {
-    return Fault{
-        "the robot is disabled: enable it (rosrun baxter_tools enable_robot.py -e), palpate never does that itself",
-        Then::silence, true};
-  }
-  if (!state.ready) return Fault{"the robot is not ready: wait until it has started", Then::silence, true};
   return std::nullopt;
 }
 
@@ -69,40 +50,46 @@ constexpr const char* kOwnSlowness =
     ": end what else keeps this computer busy, and let palpate have real-time scheduling (see its baxter.txt)";
 
 /// `gap`: how long ago the driver itself looked last. What is old only by that is nobody else's fault.
-std::optional<Fault> stale(const char* stream, double age, double most, double gap) {
+std::optional<Fault> stale(const char* stream, double age, double most, double gap, Then then = Then::silence) {
   if (age <= most) return std::nullopt;
   if (gap > most && age <= gap + most) {
-    return Fault{"this computer did not get to the arm for " + number(gap, 2) + " s" + kOwnSlowness, Then::silence,
-                 true};
+    return Fault{fmt::format("this computer did not get to the arm for {:.2f} s{}", gap, kOwnSlowness), then};
   }
-  return Fault{std::string(stream) + " did not come for " + number(age, 2) +
-                   " s: see to the network and to the robot's processes",
-               Then::silence, true};
+  return Fault{
+      fmt::format("{} did not come for {:.2f} s: see to the network and to the robot's processes", stream, age), then};
 }
 
-std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Delay& best) {
+std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Delay& best, Then then) {
   const double delay = arrival.received - arrival.stamp;
-  if (!std::isfinite(delay)) return Fault{std::string(stream) + " has a stamp that is no number", Then::silence, true};
+  if (!std::isfinite(delay)) return Fault{fmt::format("{} has a stamp that is no number", stream), then};
   // Two clocks that nobody sets drift apart, by more than kLate within hours.
   best.least = std::min(delay, best.least + Watch::kDrift * std::max(0.0, arrival.received - best.at));
   best.at = arrival.received;
   if (delay - best.least <= Watch::kLate) return std::nullopt;
-  return Fault{std::string(stream) + " comes with stamps " + number(delay - best.least, 2) +
-                   " s older than before: its data are stale, see to the network and to the robot's processes",
-               Then::silence, true};
+  return Fault{
+      fmt::format("{} comes with stamps {:.2f} s older than before: its data are stale, see to the network and "
+                  "to the robot's processes",
+                  stream, delay - best.least),
+      then};
+}
+
+std::optional<Fault> many(const char* stream, const std::vector<std::string>& senders) {
+  if (senders.size() < 2) return std::nullopt;
+  return Fault{fmt::format("{} from more than one node, {}: one of them is no robot, end it", stream, listed(senders))};
 }
 
 }  // namespace
 
 std::string Workspace::breach(const Eigen::Vector3d& tip) const {
   const auto beyond = [](double value, double least, double most) { return !(value >= least && value <= most); };
-  const std::string where = "the tip is at (" + number(100 * tip.x()) + ", " + number(100 * tip.y()) + ", " +
-                            number(100 * tip.z()) + ") cm of the scene, ";
+  const Eigen::Vector3d at = 100 * tip;
+  const std::string where =
+      fmt::format("the tip is at ({:.1f}, {:.1f}, {:.1f}) cm of the scene, ", at.x(), at.y(), at.z());
   if (beyond(tip.x(), -kSideways, width + kSideways) || beyond(tip.y(), -kSideways, depth + kSideways)) {
-    return where + "more than " + number(100 * kSideways, 0) + " cm beside the area";
+    return fmt::format("{}more than {:.0f} cm beside the area", where, 100 * kSideways);
   }
-  if (!(tip.z() >= floor)) return where + "below the floor of " + number(100 * floor) + " cm";
-  if (!(tip.z() <= ceiling)) return where + "above the ceiling of " + number(100 * ceiling) + " cm";
+  if (!(tip.z() >= floor)) return fmt::format("{}below the floor of {:.1f} cm", where, 100 * floor);
+  if (!(tip.z() <= ceiling)) return fmt::format("{}above the ceiling of {:.1f} cm", where, 100 * ceiling);
   return {};
 }
 
@@ -161,67 +148,53 @@ std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
   if (seen.now - began_ < Stream::kWindow) return std::nullopt;
   const int looks = static_cast<int>(looks_.size());
   const auto in_window = [](int times) {
-    return std::to_string(times) + " times in the last " + number(Stream::kWindow) + " s, " +
-           std::to_string(Stream::kFewest) + " are needed";
+    return fmt::format("{} times in the last {:.1f} s, {} are needed", times, Stream::kWindow, Stream::kFewest);
   };
   if (looks < Stream::kFewest && !seen.simulated) {
-    return Fault{"this computer got to the arm " + in_window(looks) + kOwnSlowness, Then::hold, true};
+    return Fault{fmt::format("this computer got to the arm {}{}", in_window(looks), kOwnSlowness), Then::hold};
   }
   const int fewest = seen.simulated ? std::min(Stream::kFewest, looks / 2) : Stream::kFewest;
   for (const auto& [name, stream] : {std::pair{"/robot/joint_states of the left arm", &joint_stream_},
                                      std::pair{"endpoint_state of the left arm", &endpoint_stream_}}) {
     if (stream->heard() >= fewest) continue;
-    return Fault{std::string(name) + " came only " + in_window(stream->heard()) +
-                     ": see to the network, and to /robot/joint_state_publish_rate, which should be 100",
-                 Then::hold, true};
+    return Fault{
+        fmt::format("{} came only {}: see to the network, and to /robot/joint_state_publish_rate, which should be 100",
+                    name, in_window(stream->heard())),
+        Then::hold};
   }
   return std::nullopt;
 }
 
 /// Whatever forbids to command even the measured joints.
 std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap) {
-  if (!seen.malformed.empty()) return Fault{seen.malformed, Then::silence, true};
-  if (!seen.state || !seen.joints || !seen.endpoint) {
-    return Fault{"not all of joints, endpoint and state were heard", Then::silence, true};
-  }
+  if (!seen.malformed.empty()) return Fault{seen.malformed};
+  if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"not all of joints, endpoint and state were heard"};
   if (auto fault = stale("/robot/state", seen.now - seen.state->received, kStateFresh, gap)) return fault;
   if (auto fault = state_forbids(*seen.state, seen.joints, moving)) return fault;
-  if (seen.state_senders.size() > 1) {
-    return Fault{"/robot/state comes from more than one node, " + names(seen.state_senders) +
-                     ": one of them is no robot, end it",
-                 Then::silence, true};
-  }
-  if (seen.joint_senders.size() > 1) {
-    return Fault{"joints of the left arm come from more than one node, " + names(seen.joint_senders) +
-                     ": one of them is no robot, end it",
-                 Then::silence, true};
-  }
+  if (auto fault = many("/robot/state comes", seen.state_senders)) return fault;
+  if (auto fault = many("joints of the left arm come", seen.joint_senders)) return fault;
   if (!seen.commanders.empty()) {
-    return Fault{"the arm is commanded by " + names(seen.commanders) + ", too: end that first", Then::silence, true};
+    return Fault{fmt::format("the arm is commanded by {}, too: end that first", listed(seen.commanders))};
   }
   if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh, gap)) {
     return fault;
   }
-  if (!seen.joints->position.allFinite()) {
-    return Fault{"/robot/joint_states has a position that is no number: restart the robot", Then::silence, true};
-  }
-  return std::nullopt;
+  if (seen.joints->position.allFinite()) return std::nullopt;
+  return Fault{"/robot/joint_states has a position that is no number: restart the robot"};
 }
 
 /// Where the arm is, is known: it may be held there.
 std::optional<Fault> Watch::feels(const Snapshot& seen, double gap) {
-  if (auto fault = stale("endpoint_state of the left arm", seen.now - seen.endpoint->received, kFresh, gap)) {
-    fault->then = Then::hold;
+  const EndpointReading& endpoint = *seen.endpoint;
+  if (auto fault = stale("endpoint_state of the left arm", seen.now - endpoint.received, kFresh, gap, Then::hold)) {
     return fault;
   }
-  if (!seen.endpoint->force.allFinite() || !seen.endpoint->pose.position.allFinite()) {
-    return Fault{"endpoint_state has a force or a place that is no number: restart the robot", Then::hold, true};
+  if (!endpoint.force.allFinite() || !endpoint.pose.position.allFinite()) {
+    return Fault{"endpoint_state has a force or a place that is no number: restart the robot", Then::hold};
   }
-  if (seen.endpoint->force.isZero(0.0)) {
-    return Fault{"endpoint_state has a force of exactly zero: this robot, a Gazebo simulation perhaps, does not feel",
-                 Then::hold, true};
-  }
-  return std::nullopt;
+  if (!endpoint.force.isZero(0.0)) return std::nullopt;
+  return Fault{"endpoint_state has a force of exactly zero: this robot, a Gazebo simulation perhaps, does not feel",
+               Then::hold};
 }
 
 /// Of several rules that are broken at once that counts which leaves the least to do: so all that ask for silence are
@@ -235,13 +208,12 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
   if (auto fault = endpoint(seen, own)) return fault;
   if (auto fault = too_slow(seen)) return fault;
   if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
-    return Fault{std::string(kJointNames[static_cast<std::size_t>(joint)]) + " is at " +
-                     degrees(seen.joints->position(joint)) + ", beyond its limit: move the arm by hand",
-                 Then::hold, true};
+    return Fault{fmt::format("{} is at {:.1f} deg, beyond its limit: move the arm by hand",
+                             kJointNames[static_cast<std::size_t>(joint)], degrees(seen.joints->position(joint))),
+                 Then::hold};
   }
   const std::string breach = workspace_.breach(tip);
-  if (!breach.empty())
-    return Fault{breach + ": see whether place and tool are as the config has them", Then::hold, true};
+  if (!breach.empty()) return Fault{breach + ": see whether place and tool are as the config has them", Then::hold};
   if (auto fault = follows(seen)) return fault;
   if (!collision_expected_ && seen.collision && seen.collision->collision) {
     return Fault{
@@ -253,34 +225,30 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
 }
 
 std::optional<Fault> Watch::joints(const Snapshot& seen) {
-  if (auto fault = late("/robot/joint_states", *seen.joints, joint_delay_)) return fault;
-  if (joints_) {
-    const double jump = (seen.joints->position - joints_->position).cwiseAbs().maxCoeff();
-    if (jump > kJump) {
-      return Fault{"/robot/joint_states jumped by " + degrees(jump) + ": no joint turns so fast, restart the robot",
-                   Then::silence, true};
-    }
+  if (auto fault = late("/robot/joint_states", *seen.joints, joint_delay_, Then::silence)) return fault;
+  const double jump = joints_ ? (seen.joints->position - joints_->position).cwiseAbs().maxCoeff() : 0.0;
+  if (jump > kJump) {
+    return Fault{fmt::format("/robot/joint_states jumped by {:.1f} deg: no joint turns so fast, restart the robot",
+                             degrees(jump))};
   }
   joints_ = seen.joints;
   return std::nullopt;
 }
 
 std::optional<Fault> Watch::endpoint(const Snapshot& seen, double gap) {
-  if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_)) {
-    fault->then = Then::hold;
-    return fault;
-  }
+  if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_, Then::hold)) return fault;
   const Eigen::Vector3d& now = seen.endpoint->force;
   if (!last_force_ || now != *last_force_) {
     last_force_ = now;
     force_changed_ = seen.now;
   }
-  if (seen.now - force_changed_ > kFrozen) {
-    return Fault{"endpoint_state has had the same force to the last digit for " + number(seen.now - force_changed_, 2) +
-                     " s: its sender is frozen, restart the robot",
-                 Then::hold, true};
-  }
-  return collision_silent(seen, gap);
+  const double frozen = seen.now - force_changed_;
+  if (frozen <= kFrozen) return collision_silent(seen, gap);
+  return Fault{
+      fmt::format("endpoint_state has had the same force to the last digit for {:.2f} s: its sender is frozen, "
+                  "restart the robot",
+                  frozen),
+      Then::hold};
 }
 
 /// A robot that sends it again and again must go on; one that sends it when it changes may be silent.
@@ -292,9 +260,7 @@ std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
     collision_received_ = received;
   }
   if (!collision_streams_) return std::nullopt;
-  auto fault = stale("collision_detection_state of the left arm", seen.now - received, kStateFresh, gap);
-  if (fault) fault->then = Then::hold;
-  return fault;
+  return stale("collision_detection_state of the left arm", seen.now - received, kStateFresh, gap, Then::hold);
 }
 
 std::optional<Fault> Watch::force(const Snapshot& seen) {
@@ -308,10 +274,10 @@ std::optional<Fault> Watch::force(const Snapshot& seen) {
   if (zero_ == Zero::follows) *tare_ += felt * std::min(1.0, since / kZeroFollows);
   too_strong_ = change > force_stop_ ? too_strong_ + 1 : 0;
   if (too_strong_ < kForceSamples) return std::nullopt;
-  return Fault{"the force changed by " + number(change) +
-                   " N, more than force_stop allows: take a lower motion.speed "
-                   "or motion.threshold, or see what the arm met",
-               Then::retreat, true};
+  return Fault{fmt::format("the force changed by {:.1f} N, more than force_stop allows: take a lower motion.speed or "
+                           "motion.threshold, or see what the arm met",
+                           change),
+               Then::retreat};
 }
 
 std::optional<Fault> Watch::follows(const Snapshot& seen) const {
@@ -322,9 +288,10 @@ std::optional<Fault> Watch::follows(const Snapshot& seen) const {
   for (const Sent& one : sent_) nearest = std::min(nearest, from(one.target));
   const double behind = from(sent_.back().target);
   if (behind <= kFollowing && nearest <= kOffTheWay) return std::nullopt;
-  return Fault{"the arm does not follow, a joint is " + degrees(behind) +
-                   " from where it was sent: see what blocks it, and whether others command it",
-               Then::hold, true};
+  return Fault{fmt::format("the arm does not follow, a joint is {:.1f} deg from where it was sent: see what blocks it, "
+                           "and whether others command it",
+                           degrees(behind)),
+               Then::hold};
 }
 
 }  // namespace palpate::baxter

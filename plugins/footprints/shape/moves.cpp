@@ -8,8 +8,6 @@
 namespace palpate::footprints {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // Greatest steps; each is made smaller by a factor down to a thirtieth, for posteriors of all widths.
 constexpr double kShift = 0.07;   // metres
 constexpr double kTurn = 1.4;     // radians
@@ -63,11 +61,11 @@ void change_family(Piece& piece) {
 }
 
 /// The labels of one piece that a second piece of a kind could set right.
-std::vector<Target> repairable(const Piece& piece, Outline::Kind kind, const std::vector<Label>& labels) {
+std::vector<Target> repairable(const Piece& piece, Outline::Kind kind, const std::vector<Touch>& touches) {
   std::vector<Target> out;
   const bool adds = kind == Outline::Kind::two;
-  for (const Label& label : labels) {
-    if (label.on == adds && piece.contains(label.place.x, label.place.y) != adds) out.push_back(label.place);
+  for (const Touch& touch : touches) {
+    if (touch.on == adds && piece.contains(touch.place.x, touch.place.y) != adds) out.push_back(touch.place);
   }
   return out;
 }
@@ -87,13 +85,13 @@ double second_correction(const Outline& outline, const OutlinePrior& prior, cons
 }
 
 /// Adds or takes away the second piece, or names the two pieces the other way round.
-double change_kind(Outline& outline, Outline::Kind kind, const OutlinePrior& prior, const std::vector<Label>& labels,
+double change_kind(Outline& outline, Outline::Kind kind, const OutlinePrior& prior, const std::vector<Touch>& touches,
                    Random& random) {
   if (outline.kind == Outline::Kind::two && kind != Outline::Kind::two) {
     std::swap(outline.first, outline.second);
     return 1.0;
   }
-  const std::vector<Target> near = repairable(outline.first, kind, labels);
+  const std::vector<Target> near = repairable(outline.first, kind, touches);
   if (outline.kind == kind) {
     const double correction = second_correction(outline, prior, near);
     outline.kind = Outline::Kind::one;
@@ -112,7 +110,7 @@ double change_kind(Outline& outline, Outline::Kind kind, const OutlinePrior& pri
 
 }  // namespace
 
-Proposal propose(const Outline& from, double density, const OutlinePrior& prior, const std::vector<Label>& labels,
+Proposal propose(const Outline& from, double density, const OutlinePrior& prior, const std::vector<Touch>& touches,
                  Random& random) {
   Proposal out{from, density, 1.0};
   Outline& to = out.outline;
@@ -125,7 +123,7 @@ Proposal propose(const Outline& from, double density, const OutlinePrior& prior,
   if (which < 0.14) {
     // As many of the moves add as take away, for each kind, so that these shares cancel.
     const auto kind = which < 0.08 ? Outline::Kind::two : Outline::Kind::without;
-    out.correction = change_kind(to, kind, prior, labels, random);
+    out.correction = change_kind(to, kind, prior, touches, random);
     out.density = prior.density(to);
     if (out.density <= 0.0) out.correction = 0.0;
     return out;

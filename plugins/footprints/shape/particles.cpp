@@ -105,14 +105,14 @@ double Particles::share_of_one() const {
          static_cast<double>(particles_.size());
 }
 
-double Particles::add(const Target& place, bool on) {
-  labels_.push_back({place, on});
+double Particles::add(const Touch& touch) {
+  touches_.push_back(touch);
   std::vector<double> weights;
   weights.reserve(particles_.size());
   double sum = 0.0;
   double sum_of_squares = 0.0;
   for (Particle& particle : particles_) {
-    const bool right = particle.outline.contains(place.x, place.y) == on;
+    const bool right = particle.outline.contains(touch.place.x, touch.place.y) == touch.on;
     if (!right) ++particle.mistakes;
     const double weight = right ? 1.0 - settings_.mistaken : settings_.mistaken;
     weights.push_back(weight);
@@ -149,7 +149,7 @@ void Particles::resample(const std::vector<double>& weights) {
 
 void Particles::move(Particle& particle) {
   ++tried_;
-  const Proposal proposal = propose(particle.outline, particle.density, prior_, labels_, random_);
+  const Proposal proposal = propose(particle.outline, particle.density, prior_, touches_, random_);
   if (!(proposal.correction > 0.0)) return;
   // Metropolis and Hastings: taken if a uniform number is below the ratio of the likelihoods times the correction. So
   // many mistakes are allowed, and most outlines are given up before all labels are looked at: the latest are the
@@ -157,8 +157,8 @@ void Particles::move(Particle& particle) {
   const double allowed = particle.mistakes + std::log(proposal.correction / (1.0 - random_.uniform())) / log_odds_;
   if (allowed < 0.0) return;
   int mistakes = 0;
-  for (auto label = labels_.rbegin(); label != labels_.rend(); ++label) {
-    mistakes += proposal.outline.contains(label->place.x, label->place.y) != label->on ? 1 : 0;
+  for (auto touch = touches_.rbegin(); touch != touches_.rend(); ++touch) {
+    mistakes += proposal.outline.contains(touch->place.x, touch->place.y) != touch->on ? 1 : 0;
     if (mistakes > allowed) return;
   }
   particle = {proposal.outline, proposal.density, mistakes};

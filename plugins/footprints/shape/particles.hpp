@@ -35,7 +35,7 @@ class Particles {
 
   /// Weighs all outlines by a label, draws as many of them by their weights, and moves each. Returns the probability
   /// that this label had before.
-  double add(const Target& place, bool on);
+  double add(const Touch& touch);
 
   /// Sets `inside` (M) to how many outlines hold each of the places, a lattice of `columns` columns row by row.
   void count_inside(const PointsView& places, int columns, VectorOut inside) const;
@@ -58,7 +58,7 @@ class Particles {
   ParticleSettings settings_;
   Random random_;
   std::vector<Particle> particles_;
-  std::vector<Label> labels_;
+  std::vector<Touch> touches_;
   double log_odds_;  ///< of a right label against a wrong one
   long tried_ = 0;
   long moved_ = 0;

@@ -7,7 +7,6 @@
 namespace palpate::footprints {
 
 double Piece::extent() const {
-  constexpr double kPi = 3.14159265358979323846;
   return (family == Family::box ? 4.0 : kPi) * a * b;
 }
 

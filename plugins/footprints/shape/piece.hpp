@@ -9,6 +9,8 @@
 
 namespace palpate::footprints {
 
+inline constexpr double kPi = 3.14159265358979323846;
+
 /// A box or an ellipse. Lengths in metres, in the frame of the area.
 struct Piece {
   enum class Family { box, ellipse };

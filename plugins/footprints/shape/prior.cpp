@@ -9,16 +9,22 @@
 namespace palpate::footprints {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Whether a piece is large enough that another may be taken from it.
 bool may_lose(const Piece& piece, double smallest) { return piece.a >= smallest; }
 
 }  // namespace
 
-double OutlinePrior::half_axis(double longest, Random& random) const {
+Piece OutlinePrior::draw_form(double longest, Random& random) const {
   const double shortest = 0.5 * settings_.smallest;
-  return shortest * std::pow(longest / shortest, random.uniform());
+  const auto half_axis = [&] { return shortest * std::pow(longest / shortest, random.uniform()); };
+  Piece out;
+  out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
+  const double one = half_axis();
+  const double two = half_axis();
+  out.a = std::max(one, two);
+  out.b = std::min(one, two);
+  out.turn(kPi * random.uniform());
+  return out;
 }
 
 Piece OutlinePrior::draw_piece(Random& random) const {
@@ -29,13 +35,7 @@ Piece OutlinePrior::draw_piece(Random& random) const {
   // What is longer than the diagonal would never fit, so it need not be drawn.
   const double longest = 0.5 * std::min(settings_.largest, std::hypot(width, depth));
   for (int tries = 0; tries < kPatience; ++tries) {
-    Piece out;
-    out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
-    const double one = half_axis(longest, random);
-    const double two = half_axis(longest, random);
-    out.a = std::max(one, two);
-    out.b = std::min(one, two);
-    out.turn(kPi * random.uniform());
+    Piece out = draw_form(longest, random);
     const double reach_x = out.reach_x();
     const double reach_y = out.reach_y();
     if (out.a > settings_.most_slender * out.b) continue;
@@ -49,13 +49,7 @@ Piece OutlinePrior::draw_piece(Random& random) const {
 
 Piece OutlinePrior::draw_second(Outline::Kind kind, const Piece& first, Random& random) const {
   if (kind == Outline::Kind::two) return draw_piece(random);
-  Piece out;
-  out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
-  const double one = half_axis(first.a, random);
-  const double two = half_axis(first.a, random);
-  out.a = std::max(one, two);
-  out.b = std::min(one, two);
-  out.turn(kPi * random.uniform());
+  Piece out = draw_form(first.a, random);
   double u, v;
   do {
     u = 2.0 * random.uniform() - 1.0;

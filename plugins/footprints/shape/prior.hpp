@@ -45,7 +45,8 @@ class OutlinePrior {
 
  private:
   Piece draw_piece(Random& random) const;
-  double half_axis(double longest, Random& random) const;
+  /// Family, half axes up to `longest` and direction, of a piece at the origin.
+  Piece draw_form(double longest, Random& random) const;
   double centre_density(const Piece& piece) const;
   double family(const Piece& piece) const;
 

@@ -60,7 +60,7 @@ class Shape final : public Footprint {
     points_.bottomRows<1>() << touch.place.x, touch.place.y;
     on_.push_back(touch.on);
     if (handed_over_at_ > 0) return;
-    particles_.add(touch.place, touch.on);
+    particles_.add(touch);
     const auto touches = static_cast<int>(on_.size());
     const double unexpected = particles_.mean_mistakes() - mistaken_ * touches;
     if (unexpected > contradictions_) handed_over_at_ = touches;

@@ -20,15 +20,12 @@ constexpr int kPiece = kStripRows * kPanelLines * kLine;              ///< cells
 constexpr int kMeans = 3;  ///< maps that a row is added to, at most
 
 /// What a new row v of the posterior does to the cells of some strips, or of a piece:
-///     mean_k += coefficient_k v,   variance -= v^2,   best = the largest score of a tile of cells afterwards,
-/// where the score is u w with u = max(variance, 0) and w = scale mean_1 + shift.
+///     mean_k += coefficient_k v,   variance -= v^2.
 struct Update {
   int means;
   double coefficient[kMeans];
   double* mean[kMeans];
   double* variance;
-  double scale, shift;
-  double* best;  ///< one a tile; null: not wanted
 };
 
 /// A product C = A B of a few strips: 8 x depth times depth x columns each. The A of a strip has its columns one after
@@ -46,7 +43,7 @@ struct Product {
 
 /// A product on a grid that is its own mirror image: the first `even` rows of B are the left halves of even functions
 /// of the columns, the others of odd ones. So v = E + O on the left and, mirrored, E - O on the right: half of the
-/// work. The cells of a tile's mirror image lie `mirror` cells beyond its own, in the same order; `best` is of both.
+/// work. The cells of a tile's mirror image lie `mirror` cells beyond its own, in the same order.
 struct MirroredProduct {
   Product half;
   int even;

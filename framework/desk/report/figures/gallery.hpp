@@ -39,12 +39,16 @@ struct Progress {
 /// that lies beyond the run's end shows its last tap, those after it are left out.
 Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations);
 
+/// A panel for each of the run's snapshots: the surface seen from the side, or a map of the scores or of u.
+struct PanelRow {
+  enum class Kind { surface, scores, uncertainty };
+  const Progress& run;
+  Kind kind;
+};
+/// Rows below each other, of one run or of several with as many snapshots; `rows` is not empty.
+Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows);
 /// Surfaces above, the strategy's suggestion function below: figures 2 and 3.
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress);
-/// A row of maps for each run, of its scores or of u: figures 4 and 5.
-enum class ComparedMap { scores, uncertainty };
-Figure comparison_figure(const std::string& name, const std::string& title, const std::vector<Progress>& rows,
-                         ComparedMap map);
 
 /// The paper's figures of a sweep; adds to `notes` which job is missing for which.
 std::vector<Figure> paper_figures(const Workshop& workshop, const Sweep& sweep, std::vector<std::string>& notes);

@@ -14,10 +14,11 @@ namespace palpate {
 namespace {
 
 constexpr double kLeft = 70;    // of the first panel: room for an axis
-constexpr double kRight = 120;  // of the last one: room for a scale
+constexpr double kRight = 150;  // of the last one: room for a scale
 constexpr double kMap = 225;    // longer side of a map, pixels
 constexpr double kStep = 312;   // from panel to panel
 constexpr double kHead = 48;    // for the title
+constexpr double kSurface = 200;
 
 int taps_at(int iteration, int initial, int all) {
   // The paper's iteration 1 is the state that its first chosen tap comes from, with the initial taps alone.
@@ -28,38 +29,39 @@ std::string iteration_words(int iteration, const Snapshot& snapshot) {
   return fmt::format("iteration {}, after tap {}\n{}", iteration, snapshot.taps, count_words(snapshot));
 }
 
-/// The largest value of a map over some snapshots, at least `least`.
+/// The least and the largest value of a map over the snapshots of a run.
 template <class Pick>
-double largest(const std::vector<Snapshot>& snapshots, double least, const Pick& pick) {
-  for (const Snapshot& one : snapshots) least = std::max(least, pick(one).maxCoeff());
-  return least;
+std::pair<double, double> extent(const Progress& run, const Pick& pick) {
+  std::pair<double, double> out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Snapshot& one : run.snapshots)
+    out = {std::min(out.first, pick(one).minCoeff()), std::max(out.second, pick(one).maxCoeff())};
+  return out;
 }
 
-/// Colours for the scores of a run: from 0, where nobody would tap.
-Colours score_colours(const Progress& progress) {
-  const double high = largest(
-      progress.snapshots, 0.0, [](const Snapshot& m) -> const auto& { return m.scores; });
-  return {Palette::viridis, 0.0, high > 0.0 ? high : 1.0, fmt::format("score ({})", progress.strategy)};
-}
-
-double least_score(const std::vector<Progress>& rows) {
-  double least = 0.0;
-  for (const Progress& row : rows) {
-    for (const Snapshot& one : row.snapshots) least = std::min(least, one.scores.minCoeff());
+Colours colours_of(const PanelRow& row) {
+  if (row.kind == PanelRow::Kind::uncertainty) return {Palette::cividis, 0.0, 1.0, "u"};
+  if (row.kind == PanelRow::Kind::surface) {
+    const auto [least, most] = extent(
+        row.run, [](const Snapshot& one) -> const auto& { return one.deviation; });
+    return deviation_colours(least, most);
   }
-  return least;
+  // From 0, where nobody would tap.
+  const double high = extent(
+                          row.run, [](const Snapshot& one) -> const auto& { return one.scores; })
+                          .second;
+  return {Palette::viridis, 0.0, high > 0.0 ? high : 1.0, fmt::format("score ({})", row.run.strategy)};
 }
 
-std::string below_zero_words(double least) {
+/// "" where no score is below 0.
+std::string below_zero_words(const std::vector<PanelRow>& rows) {
+  double least = 0.0;
+  for (const PanelRow& row : rows) {
+    if (row.kind != PanelRow::Kind::scores) continue;
+    least = std::min(least, extent(
+                                row.run, [](const Snapshot& one) -> const auto& { return one.scores; })
+                                .first);
+  }
   return least < -0.005 ? fmt::format("scores below 0, to {:.2f}, have the colour of 0", least) : "";
-}
-
-bool any_failed(const std::vector<Snapshot>& snapshots) {
-  return std::any_of(snapshots.begin(), snapshots.end(), [](const Snapshot& one) { return one.failed > 0; });
-}
-
-int sheet_width(std::size_t columns) {
-  return static_cast<int>(kLeft + kStep * static_cast<double>(columns - 1) + kMap + kRight);
 }
 
 /// The name of a panel in those of its blocks, for which gnuplot takes letters, digits and '_'.
@@ -68,6 +70,39 @@ std::string key_of(const Progress& progress, std::size_t column) {
   const std::string allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
   for (char& c : out) c = allowed.find(c) == std::string::npos ? '_' : c;
   return out;
+}
+
+double height_of(const PanelRow& row, const Box& map) {
+  return row.kind == PanelRow::Kind::surface ? kSurface : map.height;
+}
+
+/// The panels of a row below `top`, and the scale of their colours; `map` is the box of the first map.
+void draw_row(Sheet& sheet, const PanelRow& row, double top, const Box& map) {
+  const Progress& run = row.run;
+  const Raster raster(run.candidates, run.area);
+  const Colours colours = colours_of(row);
+  const Relief relief = relief_of(run.snapshots, run.candidates.points, run.area, run.desk);
+  double left = map.left;
+  for (std::size_t i = 0; i < run.snapshots.size(); ++i, left += kStep) {
+    const Snapshot& snapshot = run.snapshots[i];
+    const std::string key = key_of(run, i);
+    if (row.kind == PanelRow::Kind::surface) {
+      sheet.data("surface_" + key, raster.surface(snapshot.surface, snapshot.deviation));
+      Snapshot seen = in_sight(snapshot, run.candidates, run.area);
+      seen.next.reset();  // it stands in the map
+      sheet.taps("seen_" + key, seen);
+      sheet.surface({left - 4, top, map.width + 26, kSurface}, raster, "surface_" + key, "seen_" + key, colours,
+                    relief);
+    } else {
+      const bool of_scores = row.kind == PanelRow::Kind::scores;
+      const std::string block = (of_scores ? "scores_" : "u_") + key;
+      sheet.data(block, raster.matrix(of_scores ? snapshot.scores : snapshot.uncertainty));
+      sheet.taps(key, snapshot);
+      sheet.map({left, top, map.width, map.height}, raster, block, key, colours);
+    }
+  }
+  const double gap = row.kind == PanelRow::Kind::surface ? 48 : 22;  // the axis of heights stands out
+  sheet.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
 }
 
 }  // namespace
@@ -93,90 +128,40 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
   return out;
 }
 
-Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
-  constexpr double kSurface = 200;
-  constexpr double kWords = 56;
-  const std::size_t columns = progress.snapshots.size();
-  const Box first = map_box(progress.area, kLeft, kHead + kWords + kSurface + 58, kMap);
-  Sheet sheet(sheet_width(columns) + 30, static_cast<int>(first.top + first.height + 88));
-  const Raster raster(progress.candidates, progress.area);
-  const auto deviation = [](const Snapshot& m) -> const auto& { return m.deviation; };
-  double least = std::numeric_limits<double>::infinity();
-  for (const Snapshot& one : progress.snapshots) least = std::min(least, one.deviation.minCoeff());
-  const Colours doubt = deviation_colours(least, largest(progress.snapshots, 0.0, deviation));
-  const Colours scores = score_colours(progress);
-  const Relief relief = relief_of(progress.snapshots, progress.candidates.points, progress.area, progress.desk);
-  sheet.text(title, kLeft, 14, 15);
-  for (std::size_t i = 0; i < columns; ++i) {
-    const Snapshot& snapshot = progress.snapshots[i];
-    const std::string key = key_of(progress, i);
-    sheet.data("surface_" + key, raster.surface(snapshot.surface, snapshot.deviation));
-    sheet.data("scores_" + key, raster.matrix(snapshot.scores));
-    sheet.taps(key, snapshot);
-    Snapshot seen = in_sight(snapshot, progress.candidates, progress.area);
-    seen.next.reset();  // it stands in the map
-    sheet.taps("seen_" + key, seen);
+Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows) {
+  constexpr double kWords = 60;  // above the first row of a run
+  constexpr double kBelow = 54;  // a row
+  const std::size_t columns = rows.front().run.snapshots.size();
+  const bool several = &rows.front().run != &rows.back().run;
+  const Box map = map_box(rows.front().run.area, several ? kLeft + 24 : kLeft, 0, kMap);
+  const auto begins_run = [&](std::size_t row) { return row == 0 || &rows[row].run != &rows[row - 1].run; };
+  std::vector<double> tops;
+  double bottom = kHead;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    tops.push_back(bottom + (begins_run(i) ? kWords : 0.0));
+    bottom = tops.back() + height_of(rows[i], map) + kBelow;
   }
-  for (std::size_t i = 0; i < columns; ++i) {
-    const std::string key = key_of(progress, i);
-    const double left = kLeft + kStep * static_cast<double>(i);
-    sheet.text(iteration_words(progress.iterations[i], progress.snapshots[i]), left + 0.5 * first.width, kHead, 11,
-               Sheet::Align::centre);
-    sheet.surface({left - 4, kHead + kWords, first.width + 26, kSurface}, raster, "surface_" + key, "seen_" + key,
-                  doubt, relief);
-    sheet.map({left, first.top, first.width, first.height}, raster, "scores_" + key, key, scores);
+  Sheet sheet(static_cast<int>(map.left + kStep * static_cast<double>(columns - 1) + kMap + kRight),
+              static_cast<int>(bottom + 40));
+  sheet.text(title, map.left, 14, 15);
+  bool failed = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Progress& run = rows[i].run;
+    for (std::size_t k = 0; begins_run(i) && k < columns; ++k) {
+      failed = failed || run.snapshots[k].failed > 0;
+      sheet.text(iteration_words(run.iterations[k], run.snapshots[k]),
+                 map.left + kStep * static_cast<double>(k) + 0.5 * map.width, tops[i] - 52, 11, Sheet::Align::centre);
+    }
+    if (several) sheet.upright(run.strategy, 22, tops[i] + 0.5 * height_of(rows[i], map), 14);
+    draw_row(sheet, rows[i], tops[i], map);
   }
-  const double right = kLeft + kStep * static_cast<double>(columns - 1) + first.width + 22;
-  sheet.bar({right + 26, kHead + kWords + 10, 14, kSurface - 20}, doubt);
-  sheet.bar({right, first.top, 14, first.height}, scores);
-  const double bottom = first.top + first.height + 64;
-  const std::string words = below_zero_words(least_score({progress}));
-  if (!words.empty()) sheet.text(words, 680, bottom - 8, 10);
-  sheet.legend(kLeft + 6, bottom, any_failed(progress.snapshots));
+  if (const std::string words = below_zero_words(rows); !words.empty()) sheet.text(words, 680, bottom + 6, 10);
+  sheet.legend(map.left + 6, bottom + 14, failed);
   return {name, std::move(sheet)};
 }
 
-Figure comparison_figure(const std::string& name, const std::string& title, const std::vector<Progress>& rows,
-                         ComparedMap map) {
-  constexpr double kWords = 62;
-  const std::size_t columns = rows.front().snapshots.size();
-  const Area area = rows.front().area;
-  const Box first = map_box(area, kLeft + 24, kHead + kWords, kMap);
-  const double row_step = first.height + kWords + 48;
-  const double bottom = kHead + row_step * static_cast<double>(rows.size()) + 12;
-  Sheet sheet(sheet_width(columns) + 24, static_cast<int>(bottom + 28));
-  const bool of_scores = map == ComparedMap::scores;
-  sheet.text(title, kLeft + 24, 14, 15);
-  const std::string prefix = of_scores ? "scores_" : "u_";
-  for (const Progress& row : rows) {
-    const Raster raster(row.candidates, area);
-    for (std::size_t i = 0; i < columns; ++i) {
-      sheet.data(prefix + key_of(row, i),
-                 raster.matrix(of_scores ? row.snapshots[i].scores : row.snapshots[i].uncertainty));
-      sheet.taps(key_of(row, i), row.snapshots[i]);
-    }
-  }
-  bool failed = false;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const Progress& row = rows[r];
-    const Raster raster(row.candidates, area);
-    const double top = first.top + row_step * static_cast<double>(r);
-    const Colours colours = of_scores ? score_colours(row) : Colours{Palette::cividis, 0.0, 1.0, "u"};
-    for (std::size_t i = 0; i < columns; ++i) {
-      const double left = first.left + kStep * static_cast<double>(i);
-      sheet.text(iteration_words(row.iterations[i], row.snapshots[i]), left + 0.5 * first.width, top - 48, 11,
-                 Sheet::Align::centre);
-      sheet.map({left, top, first.width, first.height}, raster, prefix + key_of(row, i), key_of(row, i), colours);
-    }
-    sheet.upright(row.strategy, 22, top + 0.5 * first.height, 14);
-    sheet.bar({first.left + kStep * static_cast<double>(columns - 1) + first.width + 22, top, 14, first.height},
-              colours);
-    failed = failed || any_failed(row.snapshots);
-  }
-  const std::string words = of_scores ? below_zero_words(least_score(rows)) : "";
-  if (!words.empty()) sheet.text(words, 680, bottom - 8, 10);
-  sheet.legend(first.left + 6, bottom, failed);
-  return {name, std::move(sheet)};
+Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
+  return panels_figure(name, title, {{progress, PanelRow::Kind::surface}, {progress, PanelRow::Kind::scores}});
 }
 
 namespace {
@@ -250,16 +235,17 @@ std::vector<Figure> paper_figures(const Workshop& workshop, const Sweep& sweep, 
     const auto partner =
         std::find_if(explorers.begin(), explorers.end(), [&](const Job* one) { return finder.alike(*rival, *one); });
     if (partner == explorers.end()) continue;
-    std::vector<Progress> rows;
-    for (const Job* job : {rival, *partner}) {
-      const Recording recording = read_recording(workshop, job_directory(sweep, *job));
-      rows.push_back(progress_of(workshop, recording, {1, 10, 16}));
-    }
-    const std::string seed = finder.seed_words(*rival);
-    figures.push_back(
-        comparison_figure("figure_4", "Object I on the right: where to tap next" + seed, rows, ComparedMap::scores));
-    figures.push_back(
-        comparison_figure("figure_5", "Object I on the right: uncertainty" + seed, rows, ComparedMap::uncertainty));
+    const auto progress = [&](const Job& job) {
+      return progress_of(workshop, read_recording(workshop, job_directory(sweep, job)), {1, 10, 16});
+    };
+    const Progress above = progress(*rival);
+    const Progress below = progress(**partner);
+    const auto add = [&](const char* name, const char* what, PanelRow::Kind kind) {
+      const std::string title = fmt::format("Object I on the right: {}{}", what, finder.seed_words(*rival));
+      figures.push_back(panels_figure(name, title, {{above, kind}, {below, kind}}));
+    };
+    add("figure_4", "where to tap next", PanelRow::Kind::scores);
+    add("figure_5", "uncertainty", PanelRow::Kind::uncertainty);
     break;
   }
   if (figures.empty() || figures.back().name != "figure_5") {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -177,23 +178,20 @@ void Sheet::text(const std::string& words, double x, double top, int points, Ali
   std::size_t begin = 0;
   while (begin <= words.size()) {
     const std::size_t end = std::min(words.find('\n', begin), words.size());
-    texts_ += fmt::format("set label {} at screen {:.5f}, screen {:.5f} {} font ',{}'\n",
-                          gnuplot_text(words.substr(begin, end - begin)), x / width_, 1.0 - y / height_,
-                          align == Align::left ? "left" : "center", points);
+    texts_ += label(words.substr(begin, end - begin), x, y,
+                    fmt::format("{} font ',{}'", align == Align::left ? "left" : "center", points));
     y += 1.6 * points;
     begin = end + 1;
   }
 }
 
 void Sheet::upright(const std::string& words, double x, double middle, int points) {
-  texts_ += fmt::format("set label {} at screen {:.5f}, screen {:.5f} center rotate by 90 font ',{}'\n",
-                        gnuplot_text(words), x / width_, 1.0 - middle / height_, points);
+  texts_ += label(words, x, middle, fmt::format("center rotate by 90 font ',{}'", points));
 }
 
-std::string Sheet::flush_texts() {
-  std::string out;
-  out.swap(texts_);
-  return out;
+std::string Sheet::label(const std::string& words, double x, double y, const std::string& style) const {
+  return fmt::format("set label {} at screen {:.5f}, screen {:.5f} {}\n", gnuplot_text(words), x / width_,
+                     1.0 - y / height_, style);
 }
 
 std::string Sheet::place(const Box& box) const {
@@ -205,7 +203,7 @@ std::string Sheet::place(const Box& box) const {
 }
 
 void Sheet::plot(const Box& box, const std::string& settings, const std::string& clauses) {
-  panels_ += "\nreset\nunset key\n" + place(box) + flush_texts() + settings + clauses + "\n";
+  panels_ += "\nreset\nunset key\n" + place(box) + std::exchange(texts_, "") + settings + clauses + "\n";
 }
 
 std::string Sheet::marks(const std::string& taps, const std::string& columns) const {
@@ -272,12 +270,8 @@ void Sheet::bar(const Box& box, const Colours& colours) {
 void Sheet::legend(double x, double y, bool failed, bool next) {
   std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
   const auto entry = [&](const std::string& style, const std::string& words, double width) {
-    if (!style.empty()) {
-      settings += fmt::format("set label '' at screen {:.5f}, screen {:.5f} point {} front\n", x / width_,
-                              1.0 - y / height_, style);
-    }
-    settings += fmt::format("set label {} at screen {:.5f}, screen {:.5f} left font ',11'\n", gnuplot_text(words),
-                            (x + 14) / width_, 1.0 - y / height_);
+    if (!style.empty()) settings += label("", x, y, "point " + style + " front");
+    settings += label(words, x + 14, y, "left font ',11'");
     x += width;
   };
   entry("pt 7 ps 1.2 lc rgb 'black'", "tap on the object", 165);

@@ -112,7 +112,8 @@ class Sheet {
 
  private:
   std::string place(const Box& box) const;
-  std::string flush_texts();
+  /// gnuplot's label with its middle at a height of `y`; `style` is the rest of the command.
+  std::string label(const std::string& words, double x, double y, const std::string& style) const;
   /// Marks over a panel, as clauses; `columns` "1:2" or "1:2:3".
   std::string marks(const std::string& taps, const std::string& columns) const;
   bool has(const std::string& block) const;

@@ -7,6 +7,7 @@
 #include "report/figures/gallery.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,55 +18,35 @@ namespace {
 constexpr std::size_t kMostGroups = 24;
 constexpr std::size_t kMostValues = 24;  ///< of a key, in a heat map
 constexpr std::size_t kMostDots = 200;   ///< of a group
+constexpr std::size_t kLongestName = 44;
+constexpr const char* kOption = "--figures";
 
-/// Jobs that ended well, under one name.
+/// Jobs of which some ended well, under one name.
 struct Group {
   std::string name;
-  std::vector<const Row*> rows;
+  JobGroup jobs;
+  std::size_t done = 0;
 };
 
 std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   std::vector<Group> groups;
-  for (const JobGroup& one : group_jobs(sweep, results, keys)) {
-    Group group{key_words(keys, one.values, keys.size() > 1), {}};
-    if (group.name.empty()) group.name = "all jobs";
-    for (const JobResult& job : one.jobs) {
-      if (job.row != nullptr && is_done(*job.row)) group.rows.push_back(job.row);
-    }
-    if (!group.rows.empty()) groups.push_back(std::move(group));
+  for (JobGroup& one : group_jobs(sweep, results, keys)) {
+    const auto done = std::count_if(one.jobs.begin(), one.jobs.end(),
+                                    [](const JobResult& job) { return job.row != nullptr && is_done(*job.row); });
+    const std::string name = key_words(keys, one.values, keys.size() > 1);
+    if (done > 0) groups.push_back({name.empty() ? "all jobs" : name, std::move(one), static_cast<std::size_t>(done)});
   }
   return groups;
 }
 
-/// The name in at most three lines, broken behind commas where it can be.
-std::string wrapped(const std::string& name, std::size_t longest) {
-  std::string out;
-  std::size_t begin = 0;
-  for (int line = 0; begin < name.size(); ++line) {
-    std::size_t end = name.size();
-    if (end - begin > longest) {
-      const auto comma = name.rfind(", ", begin + longest - 2);
-      end = comma != std::string::npos && comma > begin ? comma + 2 : begin + longest;
-    }
-    const bool cut = line == 2 && end < name.size();
-    out += (line > 0 ? "\n" : "") + name.substr(begin, end - begin) + (cut ? "..." : "");
-    if (cut) break;
-    begin = end;
-  }
-  return out;
+/// The name in at most three lines.
+std::string in_lines(const std::string& name) {
+  std::vector<std::string> lines = wrapped(name, kLongestName);
+  if (lines.size() > 3) lines[2] += "...";
+  lines.resize(std::min<std::size_t>(lines.size(), 3));
+  return fmt::format("{}", fmt::join(lines, "\n"));
 }
-
-std::vector<double> values_of(const Group& group, const std::string& metric) {
-  std::vector<double> out;
-  for (const Row* row : group.rows) {
-    if (const auto value = number_in(*row, metric, "--figures"); value && std::isfinite(*value)) out.push_back(*value);
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-std::string seeds_words(const Sweep& sweep) { return fmt::format("{} jobs", sweep.jobs.size()); }
 
 /// An axis for these values, with few enough tics for their numbers.
 std::string value_axis(const std::vector<double>& values, double factor) {
@@ -109,12 +90,9 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
       fmt::format("set yrange [{}:0.4]\nset grid x lc rgb '#e4e4e4' lt 1\n", static_cast<double>(groups.size()) + 0.6);
   settings += value_axis(all, scale.factor);
   settings += "set style fill transparent solid 0.35 noborder\n";
-  const Column column = find_column(metric, {metric}, "--figures");
-  settings +=
-      fmt::format("set xlabel {} font ',11' offset 0,0.3\n",
-                  gnuplot_text(scale.title(metric) + (column.better == RecordField::Better::more   ? ", more is better"
-                                                      : column.better == RecordField::Better::less ? ", less is better"
-                                                                                                   : "")));
+  const std::string better = find_column(metric, {metric}, kOption).better_words();
+  settings += fmt::format("set xlabel {} font ',11' offset 0,0.3\n",
+                          gnuplot_text(scale.title(metric) + (better.empty() ? "" : ", " + better)));
   const std::string block = "$boxes_" + metric;
   std::string clauses =
       fmt::format("plot {0} using 2:1:($6-$2):(0) with vectors nohead lw 1.5 lc rgb '#0072b2'", block);
@@ -134,15 +112,16 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   const std::size_t left_out = groups.size() > kMostGroups ? groups.size() - kMostGroups : 0;
   groups.resize(groups.size() - left_out);
   std::size_t longest = 0;
-  for (const Group& group : groups) longest = std::max(longest, std::min<std::size_t>(group.name.size(), 44));
+  for (const Group& group : groups) longest = std::max(longest, std::min(group.name.size(), kLongestName));
   std::vector<std::string> metrics;
   for (const std::string& metric :
        {std::string("on_surface_taps"), main_error(), std::string("footprint_iou"), std::string("robot_seconds")}) {
-    const bool present =
-        std::any_of(groups.begin(), groups.end(), [&](const Group& one) { return !values_of(one, metric).empty(); });
+    const bool present = std::any_of(groups.begin(), groups.end(),
+                                     [&](const Group& one) { return !values_of(one.jobs, metric, kOption).empty(); });
     if (present) metrics.emplace_back(metric);
   }
-  const bool tall = std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.name.size() > 44; });
+  const bool tall =
+      std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.name.size() > kLongestName; });
   const double line = tall ? 52 : 34;
   const double height = line * std::max(2.0, static_cast<double>(groups.size()));
   const double left = 46 + 8.0 * static_cast<double>(longest);
@@ -152,25 +131,24 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
       static_cast<int>(bottom + 44));
   sheet.text(sweep_name(sweep), 24, 14, 15);
   std::string words = "line: 10 % to 90 % of a group's jobs; box: the middle half; bar: median";
-  const bool dots =
-      std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.rows.size() <= kMostDots; });
+  const bool dots = std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.done <= kMostDots; });
   if (dots) words += "; dots: jobs";
   if (left_out > 0) words += fmt::format("; {} more groups are not shown, results.csv has them", left_out);
   sheet.text(words, 24, 42, 11);
   const double step = height / static_cast<double>(std::max<std::size_t>(groups.size(), 1));
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::string name = wrapped(groups[g].name, 44);
+    const std::string name = in_lines(groups[g].name);
     const auto lines = 1 + std::count(name.begin(), name.end(), '\n');
     const double middle = kTop + step * (static_cast<double>(g) + 0.5);
     sheet.text(name, 24, middle - 8.8 * static_cast<double>(lines), 11);
   }
   for (std::size_t m = 0; m < metrics.size(); ++m) {
     std::vector<std::vector<double>> values;
-    for (const Group& group : groups) values.push_back(values_of(group, metrics[m]));
+    for (const Group& group : groups) values.push_back(values_of(group.jobs, metrics[m], kOption));
     draw_boxes(sheet, {left + (kWidth + 40) * static_cast<double>(m), kTop, kWidth, height}, metrics[m], values);
   }
   const auto done = std::count_if(results.begin(), results.end(), [](const Row& row) { return is_done(row); });
-  sheet.text(fmt::format("{}, {} of them done", seeds_words(sweep), done), 24, bottom + 12, 10);
+  sheet.text(fmt::format("{} jobs, {} of them done", sweep.jobs.size(), done), 24, bottom + 12, 10);
   return {"distributions", std::move(sheet)};
 }
 
@@ -211,22 +189,15 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
   const Axis y = axis_of(sweep, keys[0]);
   const Axis x = axis_of(sweep, keys[1]);
   const bool left_out = x.cut || y.cut;
-  std::vector<std::vector<std::vector<double>>> cells(y.values.size(),
-                                                      std::vector<std::vector<double>>(x.values.size()));
+  std::vector<std::vector<double>> cells(y.values.size(), std::vector<double>(x.values.size(), std::nan("")));
+  std::vector<double> means;
   for (const JobGroup& group : group_jobs(sweep, results, {y.key, x.key})) {
     const std::size_t row = y.place(group.values[0]);
     const std::size_t column = x.place(group.values[1]);
-    if (row == y.values.size() || column == x.values.size()) continue;
-    for (const JobResult& job : group.jobs) {
-      if (job.row == nullptr || !is_done(*job.row)) continue;
-      if (const auto value = number_in(*job.row, main_error(), "--figures")) cells[row][column].push_back(*value);
-    }
-  }
-  std::vector<double> means;
-  for (const auto& line : cells) {
-    for (const auto& cell : line) {
-      if (!cell.empty()) means.push_back(estimate_mean(cell).mean);
-    }
+    const std::vector<double> values = values_of(group, main_error(), kOption);
+    if (row == y.values.size() || column == x.values.size() || values.empty()) continue;
+    means.push_back(mean_of(values));
+    cells[row][column] = means.back();
   }
   if (means.empty()) return {};
   const Scale scale = readable_scale(Unit::metre, means);
@@ -237,12 +208,11 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
   std::string numbers;
   for (std::size_t r = 0; r < cells.size(); ++r) {
     for (std::size_t c = 0; c < cells[r].size(); ++c) {
-      const bool empty = cells[r][c].empty();
-      const double mean = empty ? 0.0 : estimate_mean(cells[r][c]).mean;
-      matrix += fmt::format("{}{}", c > 0 ? " " : "", empty ? "NaN" : fmt::format("{:.10g}", mean / scale.factor));
-      if (empty) continue;
-      const bool light = mean / scale.factor > least + 0.6 * (most - least);
-      numbers += fmt::format("{} {} {} {}\n", c, r, scale.number(mean), light ? 0 : 0xffffff);
+      const double mean = cells[r][c] / scale.factor;
+      matrix += fmt::format("{}{}", c > 0 ? " " : "", std::isnan(mean) ? "NaN" : fmt::format("{:.10g}", mean));
+      if (std::isnan(mean)) continue;
+      const bool light = mean > least + 0.6 * (most - least);
+      numbers += fmt::format("{} {} {} {}\n", c, r, scale.number(cells[r][c]), light ? 0 : 0xffffff);
     }
     matrix += "\n";
   }

@@ -8,6 +8,7 @@
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/tap_row.hpp"
+#include "report/curves.hpp"
 #include "report/page/assets.hpp"
 #include "report/page/json_text.hpp"
 #include "report/page/page.hpp"
@@ -22,11 +23,6 @@ namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_there(const fs::path& file) {
-  std::error_code none;
-  return fs::exists(file, none);
-}
 
 std::string json_of_run(const Recording& recording) {
   const ExperimentOptions& options = recording.config.options;
@@ -56,13 +52,9 @@ std::string json_of_moment(const Moment& moment) {
   row.add("failed_taps", result.failed_taps);
   row.add("robot_seconds", result.robot_seconds);
   add_errors(row, result.errors);
-  row.add("largest_deviation", moment.largest_deviation);
   row.add("least_weight", moment.least_weight);
   row.add("most_weight", moment.most_weight);
-  add_process(row, "height_process", result.height_process);
-  add_process(row, "weight_process", result.weight_process);
-  if (result.surface_process) add_process(row, "surface_process", result.surface_process);
-  add_footprint(row, result.footprint);
+  if (result.footprint) row.add("remark", result.footprint->remark);
   if (moment.next) {
     row.add("next.x", moment.next->target.x);
     row.add("next.y", moment.next->target.y);
@@ -74,11 +66,20 @@ std::string json_of_moment(const Moment& moment) {
   return to_json_line(row);
 }
 
-/// The tap and its seconds by phase.
-std::string json_of_times(const TapTimes& times) {
-  std::string out = std::to_string(times.tap);
-  for (const double seconds : times.seconds) out += "," + json_value(seconds);
-  return "[" + out + "]";
+/// A line of a panel, as run_curves.js draws it.
+std::string json_of_curve(const Curve& curve) {
+  return json_object(
+      {{"name", json_quoted(curve.name)}, {"values", json_list_of(curve.values, [](const std::optional<double>& value) {
+                                             return value ? json_value(*value) : std::string("null");
+                                           })}});
+}
+
+std::string json_of_panel(const CurvePanel& panel) {
+  constexpr const char* kAxes[] = {"free", "from_zero", "share", "logarithmic"};  // by CurveAxis
+  return json_object({{"title", json_quoted(panel.title)},
+                      {"unit", json_quoted(panel.unit)},
+                      {"axis", json_quoted(kAxes[static_cast<std::size_t>(panel.axis)])},
+                      {"curves", json_list_of(panel.curves, json_of_curve)}});
 }
 
 /// How a page calls the errors, and in what unit it has them.
@@ -150,8 +151,7 @@ std::string run_page(const Recording& recording, const History& history, const O
       {"taps", json_list_of(recording.rows, to_json_line)},
       {"moments", json_list_of(history.moments, json_of_moment)},
       {"errors", json_list_of(error_fields(), json_of_error)},
-      {"phases", json_texts({kPhaseNames.begin(), kPhaseNames.end()})},
-      {"timings", json_list_of(read_timings(directory).taps, json_of_times)},
+      {"curves", json_list_of(curves_of(recording, history), json_of_panel)},
       {"x", json_numbers(history.x)},
       {"y", json_numbers(history.y)},
       {"config", json_of_config(recording, manifest)},

@@ -15,7 +15,6 @@
 #include <palpate/error.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 namespace palpate {
@@ -59,48 +58,20 @@ std::string json_of_key(const Sweep& sweep, std::size_t key) {
                       {"of_job", json_list_of(of_job, [](std::size_t value) { return std::to_string(value); })}});
 }
 
-/// The value of a cell as a number of JSON, "null" where there is none; none for a text that is no number. As
-/// `palpate pareto` reads cells: flags count, and so do swept values that are plain numbers.
-std::optional<std::string> json_number(const Scalar& value) {
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "1" : "0";
-  const auto* text = std::get_if<std::string>(&value);
-  if (text == nullptr) return json_value(value);
-  if (text->empty()) return "null";
-  double number = 0.0;
-  const char* const end = text->data() + text->size();
-  const auto result = std::from_chars(text->data(), end, number);
-  if (result.ec != std::errc() || result.ptr != end) return {};
-  return json_value(number);
-}
-
-const char* better_name(RecordField::Better better) {
-  switch (better) {
-    case RecordField::Better::less:
-      return "less";
-    case RecordField::Better::more:
-      return "more";
-    case RecordField::Better::neither:
-      break;
-  }
-  return "neither";
-}
-
 /// A column of the results with a number for each job, null where a job has none; none for columns without numbers.
 std::optional<std::string> json_of_column(const std::string& name, const std::vector<const Row*>& rows) {
   std::vector<std::string> numbers;
   bool any = false;
   for (const Row* row : rows) {
-    const Scalar* value = row != nullptr ? row->find(name) : nullptr;
-    const std::optional<std::string> number = value != nullptr ? json_number(*value) : std::string("null");
-    if (!number) return {};
-    any = any || *number != "null";
-    numbers.push_back(*number);
+    const CellNumber number = number_of(row != nullptr ? row->find(name) : nullptr);
+    if (number.is_text) return {};
+    any = any || number.value;
+    numbers.push_back(number.value ? json_value(*number.value) : "null");
   }
   if (!any) return {};
-  const RecordField* field = find_summary_field(name);
-  const auto better = field != nullptr ? field->better : RecordField::Better::neither;
+  const Column column = find_column(name, {name}, "");
   return json_object(
-      {{"name", json_quoted(name)}, {"better", json_quoted(better_name(better))}, {"numbers", json_list(numbers)}});
+      {{"name", json_quoted(name)}, {"better", json_quoted(column.better_words())}, {"numbers", json_list(numbers)}});
 }
 
 std::string json_of_columns(const std::vector<Row>& results, const std::vector<const Row*>& rows) {
@@ -143,9 +114,9 @@ std::string json_of_jobs(const Sweep& sweep, const std::vector<const Row*>& rows
 
 /// The factors of the 95 % intervals of means over 2, 3, ... jobs, as many as a setting may have.
 std::string json_of_factors(std::size_t jobs) {
-  constexpr std::size_t kMost = 2000;  // from here on it changes by less than 1 in 1000
+  constexpr std::size_t kMostJobs = 2000;  // from here on it changes by less than 1 in 1000
   std::vector<std::string> factors;
-  for (std::size_t degrees = 1; degrees < std::min(jobs, kMost); ++degrees)
+  for (std::size_t degrees = 1; degrees < std::min(jobs, kMostJobs); ++degrees)
     factors.push_back(json_value(student_factor(degrees)));
   return json_list(factors);
 }

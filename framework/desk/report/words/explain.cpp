@@ -4,7 +4,6 @@
 #include "experiment/metrics.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
-#include "report/words/evidence.hpp"
 #include "report/words/explain_models.hpp"
 #include "report/words/words.hpp"
 
@@ -33,60 +32,28 @@ class Explanation {
   std::string text() {
     playback_.advance_to(number_ - 1);
     Experiment& experiment = playback_.experiment();
-    const TapBelief& belief = experiment.belief();
-    // All of them, so that the choice describes them whatever the strategy reads.
-    experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
+    // What the choice read, and the height, which was expected whoever read it.
+    experiment.ask(recorded_quantities(row_) | Quantity::height);
     candidate_ = experiment.candidates().nearest(tap_.target.x, tap_.target.y, experiment.scene().area());
-    now_ = experiment.choose_next();
-    const Evidence evidence(row_, computed_row());
 
     page_.heading(fmt::format("Tap {} of {}{}, run {} ({}): {}", number_, recording_.rows.size(),
                               recording_.summary ? "" : " so far", options_.name, recording_.config.id,
                               place_words(tap_.target.x, tap_.target.y)));
     page_.heading("Why there");
-    explain_choice(evidence);
+    explain_choice();
     page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
                               counted(contacts_before(), "contact"), hits_before()));
-    if (!evidence.recorded("height_process.signal") && !evidence.recorded("weight_process.signal") &&
-        !evidence.recorded("p"))
-      page_.say("This choice read no model. What the models would have said:");
-    if (now_) explain_models(page_, evidence, options_, belief, *now_);
+    if (recorded_quantities(row_) == Quantities()) page_.say("This choice read no model.");
+    explain_models(page_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
     page_.heading("What was expected and what was found");
-    explain_expectation(evidence);
+    explain_expectation();
     explain_outcome();
     page_.heading("What it changed");
-    explain_errors(evidence);
-    if (starred_ || evidence.starred())
-      page_.heading("* computed now from the recorded taps; the record does not hold it");
+    explain_errors();
     return page_.text();
   }
 
  private:
-  /// What this program finds at the recorded place, in the fields of a record.
-  Row computed_row() {
-    Experiment& experiment = playback_.experiment();
-    const TapBelief& belief = experiment.belief();
-    TapRecord at = now_ ? *now_ : TapRecord{};
-    // The state is that of any choice now; what is said of a place must be of the recorded one.
-    at.target = tap_.target;
-    at.uncertainty = belief.uncertainty()(candidate_);
-    if (belief.weight_process()) {
-      at.weight = belief.weight()(candidate_);
-      at.exploration = *at.uncertainty * *at.weight;
-    }
-    if (const Footprint* footprint = belief.footprint()) {
-      at.footprint = FootprintState{footprint->numbers(), footprint->remark()};
-      at.probability = belief.probability()(candidate_);
-    }
-    at.predicted = Prediction{belief.height_mean()(candidate_), std::sqrt(belief.height_variance()(candidate_))};
-    at.score.reset();
-    at.ties.reset();
-    at.runner_up.reset();
-    at.runner_up_score.reset();
-    at.errors = experiment.errors();
-    return tap_row(at);
-  }
-
   int contacts_before() const {
     return count_before([](const Contact&) { return true; });
   }
@@ -106,23 +73,22 @@ class Explanation {
 
   // The choice.
 
-  void explain_choice(const Evidence& evidence) {
+  void explain_choice() {
     switch (tap_.source) {
       case Source::initial:
         explain_design();
         break;
       case Source::acquisition:
         page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
-        explain_score(evidence, acquisition_scale());
+        explain_score(acquisition_scale());
         break;
       case Source::fallback:
-        explain_fallback(evidence);
-        explain_score(evidence, 1.0);  // that of u
+        explain_fallback();
+        explain_score(1.0);  // that of u
         break;
     }
-    explain_place(page_, evidence, options_.footprint.type);
+    explain_place(page_, row_, options_.footprint.type);
     explain_repeats();
-    explain_other_choice();
   }
 
   void explain_design() {
@@ -154,15 +120,14 @@ class Explanation {
     return context.create<Acquisition>(options_.acquisition)->prior_scale();
   }
 
-  void explain_fallback(const Evidence& evidence) {
-    const std::string why = evidence.text("why");
+  void explain_fallback() {
+    const std::string why = row_.text("why");
     page_.say(fmt::format("The acquisition, {}, had nothing to go by: {}.", acquisition_words(),
                           why.empty() ? "its scores told no candidate from another" : why));
-    const auto greatest = evidence.number("max_weight");
+    const auto greatest = row_.number("max_weight");
     if (hits_before() == 0 && greatest && *greatest <= 0.0) {
-      page_.say(
-          fmt::format("No tap has hit an object yet: every label is 0, and so the weight w is nowhere above {}{}.",
-                      plain_words(*greatest), evidence.star("max_weight")));
+      page_.say(fmt::format("No tap has hit an object yet: every label is 0, and so the weight w is nowhere above {}.",
+                            plain_words(*greatest)));
     } else if (hits_before() == 0) {
       page_.say("No tap has hit an object yet.");
     }
@@ -185,13 +150,13 @@ class Explanation {
     return static_cast<int>(std::count(out.begin(), out.end(), true));
   }
 
-  void explain_score(const Evidence& evidence, double scale) {
-    const auto score = evidence.number("score");
+  void explain_score(double scale) {
+    const auto score = row_.number("score");
     if (!score) return page_.say("The record holds no score.");
     const int out = left_out();
     const int allowed = playback_.experiment().candidates().size() - out;
-    const double ties = evidence.number("ties").value_or(1.0);
-    const auto second = evidence.number("runner_up.score");
+    const double ties = row_.number("ties").value_or(1.0);
+    const auto second = row_.number("runner_up.score");
     const double best = second ? std::max(*score, *second) : *score;
     const double bound = options_.tie_tolerance * (std::abs(best) + scale);
     std::string text = fmt::format("Its score there is {}", plain_words(*score));
@@ -210,7 +175,7 @@ class Explanation {
     page_.say(text);
     if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
     explain_left_out(out);
-    explain_runner_up(evidence, *score);
+    explain_runner_up(*score);
   }
 
   /// Of scores that tell candidates hardly apart: why the rule had its way all the same.
@@ -233,10 +198,10 @@ class Explanation {
                        : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
   }
 
-  void explain_runner_up(const Evidence& evidence, double score) {
-    const auto x = evidence.number("runner_up.x");
-    const auto y = evidence.number("runner_up.y");
-    const auto second = evidence.number("runner_up.score");
+  void explain_runner_up(double score) {
+    const auto x = row_.number("runner_up.x");
+    const auto y = row_.number("runner_up.y");
+    const auto second = row_.number("runner_up.score");
     if (!x || !y || !second) return page_.say("There is no runner-up.");
     std::string by = "the same";
     if (const double less = score - *second; less != 0.0) {
@@ -260,32 +225,17 @@ class Explanation {
                             fmt::join(before, ", ")));
   }
 
-  void explain_other_choice() {
-    if (!now_) return page_.say("This build would make no tap here: it finds no candidate left.");
-    const Experiment& experiment = playback_.experiment();
-    if (now_->candidate == candidate_) return;
-    page_.say(fmt::format(
-        "From the same taps this build would choose {} instead{}: the run was made by another build or with another "
-        "instruction set, and 'palpate replay' shows where their numbers part.",
-        place_words(experiment.candidates().points(now_->candidate, 0),
-                    experiment.candidates().points(now_->candidate, 1)),
-        now_->score ? fmt::format(", with a score of {}", plain_words(*now_->score)) : ""));
-  }
-
   // The tap.
 
-  void explain_expectation(const Evidence& evidence) {
-    const auto height = evidence.number("predicted.height");
-    const auto deviation = evidence.number("predicted.standard_deviation");
-    if (!height || !deviation) return;
+  void explain_expectation() {
+    const TapBelief& belief = playback_.experiment().belief();
     const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
     if (two_part && hits_before() == 0) return page_.say("Expected: nothing, no tap has been on an object yet.");
-    page_.say(fmt::format("Expected: a height of {}{} with a standard deviation of {}{}{}.", length_words(*height),
-                          evidence.star("predicted.height"), length_words(*deviation),
-                          evidence.star("predicted.standard_deviation"),
+    const double height = belief.height_mean()(candidate_);
+    page_.say(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
+                          length_words(height), length_words(std::sqrt(belief.height_variance()(candidate_))),
                           two_part ? ", if an object is there (the surface process)" : ""));
-    if (!two_part || playback_.experiment().scene().on_surface(tap_.contact.height)) expected_ = *height;
-    star_of_expected_ = evidence.star("predicted.height");
+    if (!two_part || playback_.experiment().scene().on_surface(tap_.contact.height)) expected_ = height;
   }
 
   void explain_outcome() {
@@ -301,8 +251,7 @@ class Explanation {
     std::string text =
         fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
     if (const double more = contact.height - expected_.value_or(contact.height); more != 0.0)
-      text += fmt::format(", {}{} {} than expected", length_words(std::abs(more)), star_of_expected_,
-                          more > 0.0 ? "higher" : "lower");
+      text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
     text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
     const std::optional<bool> truly = row_.flag("true_on_surface");
     if (truly && *truly != on)
@@ -318,42 +267,27 @@ class Explanation {
     page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
   }
 
-  /// The errors after the tap: recorded with the next one, or at the end of the run.
-  Evidence after() {
-    playback_.advance_to(number_);
-    const bool last = number_ == static_cast<int>(recording_.rows.size());
-    const Row nothing;
-    const Row& next = !last                ? recording_.rows[static_cast<std::size_t>(number_)]
-                      : recording_.summary ? *recording_.summary
-                                           : nothing;
-    Row now;
-    add_errors(now, playback_.experiment().errors());
-    return {next, now};
-  }
-
-  void explain_errors(const Evidence& before) {
-    if (playback_.experiment().truth() == nullptr)
+  /// The errors after the tap are recorded with the next one, or at the end of the run.
+  void explain_errors() {
+    if (!recording_.truth_known())
       return page_.say("The truth is not known, so nobody can say by how much the surface is off.");
-    const Evidence then = after();
-    const auto change = [&](const std::string& field, auto words) -> std::string {
-      const auto from = before.number(field);
-      const auto to = then.number(field);
-      if (!from || !to) return {};
-      const std::string old = words(*from);
-      const std::string now = words(*to) + then.star(field);
-      if (words(*to) == old) return "still " + now;
-      return fmt::format("from {}{} to {}", old, before.star(field), now);
-    };
+    const bool last = number_ == static_cast<int>(recording_.rows.size());
+    const Row then = !last ? recording_.rows[static_cast<std::size_t>(number_)] : recording_.summary.value_or(Row{});
     std::vector<std::string> lengths;
     std::vector<std::string> others;
     for (const RecordField& error : error_fields()) {
       const bool length = error.unit == Unit::metre;
-      const std::string words = length ? change(error.name, length_words) : change(error.name, plain_words);
-      if (!words.empty()) (length ? lengths : others).push_back(fmt::format("{} {}", error.label, words));
+      const auto words = length ? length_words : plain_words;
+      const std::string from = number_words(row_, error.name, words);
+      const std::string to = number_words(then, error.name, words);
+      if (from.empty() || to.empty()) continue;
+      const std::string change = from == to ? "still " + to : fmt::format("from {} to {}", from, to);
+      (length ? lengths : others).push_back(fmt::format("{} {}", error.label, change));
     }
     if (!lengths.empty()) page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(lengths, ", ")));
     for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
-    starred_ = then.starred();
+    if (lengths.empty() && others.empty())
+      page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
   }
 
   const Workshop& workshop_;
@@ -364,10 +298,7 @@ class Explanation {
   const PastTap& tap_;
   Playback playback_;
   int candidate_ = 0;
-  std::optional<TapRecord> now_;
   std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
-  std::string star_of_expected_;
-  bool starred_ = false;
   Page page_;
 };
 

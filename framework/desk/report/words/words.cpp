@@ -20,6 +20,11 @@ std::string length_words(double metres) {
 
 std::string place_words(double x, double y) { return fmt::format("x {:.2f} cm, y {:.2f} cm", x * 1e2, y * 1e2); }
 
+std::string number_words(const Row& row, std::string_view field, std::string (*words)(double)) {
+  const std::optional<double> value = row.number(field);
+  return value ? words(*value) : std::string();
+}
+
 std::string counted(long count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }

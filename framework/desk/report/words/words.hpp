@@ -2,7 +2,10 @@
 // Numbers in sentences: lengths in the unit that suits them, and lines that fit a terminal.
 #pragma once
 
+#include "record/row.hpp"
+
 #include <string>
+#include <string_view>
 
 namespace palpate {
 
@@ -14,6 +17,9 @@ std::string length_words(double metres);
 
 /// "x 12.97 cm, y 7.59 cm", as in the table of a run.
 std::string place_words(double x, double y);
+
+/// The number at `field` of a record as `words` has it; "" where there is none.
+std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
 
 /// "1 tap", "3 taps"
 std::string counted(long count, const std::string& noun);

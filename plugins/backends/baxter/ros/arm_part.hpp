@@ -7,15 +7,18 @@
 #include <algorithm>
 #include <string>
 
+#include <fmt/format.h>
 #include <sensor_msgs/JointState.h>
 
 namespace palpate::baxter {
 
 constexpr std::size_t kArm = kJointNames.size();
 
-/// The arm's joints among named ones: all of them, or none; a message with only some of them is malformed.
+/// The arm's joints among named ones.
 struct ArmPart {
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< how many of them there are
+  bool whole = false;     ///< all of them, each with a position; a message with only some of them is malformed
+  std::string words;      ///< what is there, of a message that is malformed
   Joints position = Joints::Zero();
 };
 
@@ -28,12 +31,12 @@ inline ArmPart arm_part(const sensor_msgs::JointState& message) {
     const auto at = static_cast<std::size_t>(found - message.name.begin());
     if (at < message.position.size()) part.position[static_cast<Eigen::Index>(joint)] = message.position[at];
   }
+  part.whole = part.count == kArm && message.position.size() == message.name.size();
+  if (!part.whole) {
+    part.words = fmt::format("{} of the left arm's seven joints, {} names and {} positions", part.count,
+                             message.name.size(), message.position.size());
+  }
   return part;
-}
-
-/// For the words about a message that does not fit.
-inline std::string counts(const sensor_msgs::JointState& message) {
-  return std::to_string(message.name.size()) + " names and " + std::to_string(message.position.size()) + " positions";
 }
 
 }  // namespace palpate::baxter

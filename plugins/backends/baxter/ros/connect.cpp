@@ -3,14 +3,13 @@
 
 #include "baxter/description.hpp"
 #include "baxter/ros/link.hpp"
-
-#include <palpate/error.hpp>
+#include "baxter/words.hpp"
 
 #include <algorithm>
 #include <set>
 #include <thread>
 
-#include <unistd.h>
+#include <boost/asio/ip/host_name.hpp>
 
 namespace palpate::baxter {
 namespace {
@@ -30,21 +29,11 @@ constexpr milliseconds kLook(2);
 
 constexpr const char* kVersionParameter = "/rethink/software_version";
 constexpr const char* kDescriptionParameter = "/robot_description";
+/// All that there is to hear, and where this program is heard.
+constexpr const char* kTopics[] = {kJointTopic,     kEndpointTopic,    kStateTopic,      kCollisionTopic,
+                                   kAvoidanceTopic, kEndEffectorTopic, kSpeedRatioTopic, kCommandTimeoutTopic,
+                                   kCommandTopic,   "/clock"};
 constexpr const char* kOldState = "d7ff2b9fa7d5f688665ce44db4ee2af8";  ///< AssemblyState before 1.2
-
-Error trouble(const std::string& where, const std::string& reason, const std::string& hint) {
-  return Error(where, reason, hint, Error::Kind::run);
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
-  }
-  return text;
-}
-
-std::string address_of(const Place& place) { return place.host + ":" + std::to_string(place.port); }
 
 /// One attempt to join the network.
 class Visit {
@@ -54,15 +43,16 @@ class Visit {
 
   std::unique_ptr<Robot> join() {
     try {
-      expect_all_listed();
-      expect_one_robot_and_its_hosts();
+      const Graph graph = await_all_listed();
+      expect_one_robot(graph);
+      expect_hosts(graph);
       start_node(network_);
       std::unique_ptr<Link> link = make_link(network_, wishes_.commands, tool_mass());
       if (wishes_.commands) expect_no_other_driver();
       expect_all_heard(*link);
       return link;
     } catch (const Unreached& reason) {
-      throw trouble(network_.where(), std::string("the master does not answer any more: ") + reason.what(),
+      throw trouble(network_.where(), fmt::format("the master does not answer any more: {}", reason.what()),
                     "start it again");
     }
   }
@@ -73,23 +63,21 @@ class Visit {
   /// What is missing at the master, as the Error to throw; none if nothing is.
   std::optional<Error> not_listed(const Graph& graph) const {
     std::vector<std::string> missing;
-    for (const Stream& stream : Link::needed()) {
-      if (Graph::of(graph.publishers, stream.topic).empty()) missing.emplace_back(stream.topic);
+    for (const Topic& needed : Link::needed()) {
+      if (Graph::of(graph.publishers, needed.name).empty()) missing.emplace_back(needed.name);
     }
-    const char* baxter = "is it the master of a Baxter?";
-    if (missing.size() == Link::needed().size()) {
-      return trouble(network_.where(), "nobody publishes " + joined(missing), baxter);
-    }
+    const Error nobody =
+        trouble(network_.where(), "nobody publishes " + listed(missing),
+                missing.size() == Link::needed().size() ? "is it the master of a Baxter?"
+                                                        : "the robot may be starting, or a node of it has ended");
+    if (missing.size() == Link::needed().size()) return nobody;
     const auto version = network_.master.parameter(kVersionParameter, until(kTold));
-    if (!version) return trouble(kVersionParameter, "is not set at the master", baxter);
+    if (!version) return trouble(kVersionParameter, "is not set at the master", "is it the master of a Baxter?");
     if (version->rfind("1.2.", 0) != 0) {
       throw trouble(kVersionParameter, "the robot's software is " + *version,
                     "this driver knows 1.2: update the robot");
     }
-    if (!missing.empty()) {
-      return trouble(network_.where(), "nobody publishes " + joined(missing),
-                     "the robot may be starting, or a node of it has ended");
-    }
+    if (!missing.empty()) return nobody;
     if (wishes_.inverse_kinematics && Graph::of(graph.services, kSolverService).empty()) {
       return trouble(kSolverService, "nobody offers this service",
                      "set inverse_kinematics: own, or start the robot again");
@@ -97,11 +85,11 @@ class Visit {
     return {};
   }
 
-  void expect_all_listed() {
+  Graph await_all_listed() const {
     for (;;) {
-      const Graph graph = network_.master.graph(until(kTold));
+      Graph graph = network_.master.graph(until(kTold));
       const std::optional<Error> missing = not_listed(graph);
-      if (!missing) return;
+      if (!missing) return graph;
       if (Steady::now() > until(kListed)) throw *missing;
       std::this_thread::sleep_for(kAskAgain);
     }
@@ -111,26 +99,21 @@ class Visit {
   static void expect_one_robot(const Graph& graph) {
     const auto& nodes = Graph::of(graph.publishers, kStateTopic);
     if (nodes.size() < 2) return;
-    throw trouble(kStateTopic, "comes from more than one node, " + joined(nodes),
+    throw trouble(kStateTopic, "comes from more than one node, " + listed(nodes),
                   "end what is no robot; rosnode cleanup removes what has ended already");
   }
 
   /// roscpp looks names up while it subscribes, for as long as that takes; so it is done here before.
-  void expect_one_robot_and_its_hosts() const {
-    const Graph graph = network_.master.graph(until(kTold));
-    std::vector<std::string> topics;
-    for (const Stream& stream : Link::needed()) topics.emplace_back(stream.topic);
-    topics.insert(topics.end(), {kCollisionTopic, kAvoidanceTopic, kEndEffectorTopic, kSpeedRatioTopic,
-                                 kCommandTimeoutTopic, kCommandTopic, "/clock"});
+  void expect_hosts(const Graph& graph) const {
     std::set<std::string> found;
-    for (const std::string& topic : topics) {
+    for (const char* topic : kTopics) {
       for (const std::string& node : Graph::of(graph.publishers, topic)) {
         const auto place = place_of(node);
         if (!place || !found.insert(place->host).second) continue;
         try {
           look_up(place->host, place->port, within(kLookUp, until(kTold)));
         } catch (const Unreached& reason) {
-          throw unknown_host(topic, node, *place, reason);
+          throw unreachable(topic, node, *place, reason);
         }
       }
     }
@@ -139,14 +122,6 @@ class Visit {
   std::optional<Place> place_of(const std::string& node) const {
     const auto uri = network_.master.node(node, until(kTold));
     return uri ? parse_uri(*uri, "http") : std::nullopt;
-  }
-
-  static Error unknown_host(const std::string& topic, const std::string& node, const Place& place,
-                            const Unreached& reason) {
-    return trouble(topic,
-                   "its publisher " + node + " is on the host " + place.host + ", which does not resolve here (" +
-                       reason.what() + ")",
-                   "add it to /etc/hosts, or install libnss-mdns for names in .local");
   }
 
   /// Beyond the flange, kg. The robot's own description is kept up to date: with what is mounted, and with what it has
@@ -188,9 +163,14 @@ class Visit {
     }
   }
 
+  /// Of Link::needed(), which have brought something.
+  static std::array<bool, 3> heard(Link& link) {
+    const Snapshot seen = link.read();
+    return {seen.joints.has_value(), seen.endpoint.has_value(), seen.state.has_value()};
+  }
+
   bool all_heard(Link& link) const {
-    const auto heard = link.heard();
-    return link.clock_runs() && std::all_of(heard.begin(), heard.end(), [](bool yes) { return yes; }) &&
+    return link.clock_runs() && heard(link) == std::array{true, true, true} &&
            (!wishes_.commands || link.listened_to());
   }
 
@@ -200,54 +180,56 @@ class Visit {
                      "start what simulates the time, or delete the parameter and start all nodes again");
     }
     const Graph graph = network_.master.graph(until(kTold));
-    const auto heard = link.heard();
-    for (std::size_t i = 0; i < heard.size(); ++i) {
-      if (!heard[i]) return why_silent(Link::needed()[i], graph, link.read().malformed);
+    const auto came = heard(link);
+    for (std::size_t i = 0; i < came.size(); ++i) {
+      if (!came[i]) return why_silent(Link::needed()[i], graph, link.read().malformed);
     }
     return why_nobody_listens(graph);
   }
 
-  Error why_silent(const Stream& stream, const Graph& graph, const std::string& malformed) const {
-    const auto& nodes = Graph::of(graph.publishers, stream.topic);
+  Error why_silent(const Topic& needed, const Graph& graph, const std::string& malformed) const {
     std::optional<Error> why;
     std::vector<std::string> mute;
-    for (const std::string& node : nodes) {
+    for (const std::string& node : Graph::of(graph.publishers, needed.name)) {
       const auto place = place_of(node);
       if (!place) continue;
       try {
-        const Offer offer = ask_publisher(*place, stream.topic, within(kOnePublisher, until(kTold)));
-        if (offer.md5 != stream.md5) return other_message(stream, node, offer);
+        const Offer offer = ask_publisher(*place, needed.name, within(kOnePublisher, until(kTold)));
+        if (offer.md5 != needed.md5) return other_message(needed, node, offer);
         mute.push_back(node);
       } catch (const Unreached& reason) {
-        why = unreachable(stream.topic, node, *place, reason);
+        why = unreachable(needed.name, node, *place, reason);
       }
     }
     if (!malformed.empty()) return trouble(network_.where(), malformed, "is it a Baxter?");
     if (mute.empty() && why) return *why;
-    return trouble(stream.topic, joined(mute) + " publishes it, but nothing that is needed has come",
+    return trouble(needed.name, listed(mute) + " publishes it, but nothing that is needed has come",
                    "look at it with rostopic echo; the robot may be starting");
   }
 
-  static Error other_message(const Stream& stream, const std::string& node, const Offer& offer) {
-    const bool old = offer.md5 == kOldState;
-    return trouble(
-        stream.topic,
-        node + " sends " + offer.type + " with md5 sum " + offer.md5 + ", this driver knows " + stream.type + " with " +
-            stream.md5,
-        old ? "which came with the robot's software 1.2: update the robot" : "the robot's software must be 1.2");
+  static Error other_message(const Topic& needed, const std::string& node, const Offer& offer) {
+    return trouble(needed.name,
+                   fmt::format("{} sends {} with md5 sum {}, this driver knows {} with {}", node, offer.type, offer.md5,
+                               needed.type, needed.md5),
+                   offer.md5 == kOldState ? "which came with the robot's software 1.2: update the robot"
+                                          : "the robot's software must be 1.2");
   }
 
   static Error unreachable(const std::string& topic, const std::string& node, const Place& place,
                            const Unreached& reason) {
+    const std::string publisher = "its publisher " + node;
     switch (reason.why()) {
       case Unreached::Why::name:
-        return unknown_host(topic, node, place, reason);
+        return trouble(
+            topic,
+            fmt::format("{} is on the host {}, which does not resolve here ({})", publisher, place.host, reason.what()),
+            "add it to /etc/hosts, or install libnss-mdns for names in .local");
       case Unreached::Why::refused:
-        return trouble(topic, "its publisher " + node + " is not at " + address_of(place) + " (" + reason.what() + ")",
+        return trouble(topic, fmt::format("{} is not at {}:{} ({})", publisher, place.host, place.port, reason.what()),
                        "start it again, or remove what is left of it with rosnode cleanup");
       default:
         return trouble(topic,
-                       "its publisher " + node + " at " + address_of(place) + " does not answer: " + reason.what(),
+                       fmt::format("{} at {}:{} does not answer: {}", publisher, place.host, place.port, reason.what()),
                        "check that no firewall lies between, or start it again");
     }
   }
@@ -258,15 +240,10 @@ class Visit {
       return trouble(kCommandTopic, "nobody listens to it",
                      "the robot may be starting; set dry_run: true to do without");
     }
-    std::string name = network_.own_name;
-    if (name.empty()) {
-      char host[256] = "";
-      gethostname(host, sizeof host - 1);
-      name = host;
-    }
+    const std::string name = network_.own_name.empty() ? boost::asio::ip::host_name() : network_.own_name;
     return trouble(
         kCommandTopic,
-        joined(nodes) + " listens to it but has not come to this machine, which it is told to find as " + name,
+        listed(nodes) + " listens to it but has not come to this machine, which it is told to find as " + name,
         "set ROS_IP to this machine's address on the robot's network");
   }
 

@@ -25,7 +25,8 @@ struct Wishes {
 std::unique_ptr<Robot> connect(const Wishes& wishes);
 
 /// Publishes latched in frame `base`: palpate/surface (PointCloud2 with x, y, z, intensity = standard deviation) and
-/// palpate/taps (MarkerArray: taps on and off the object, the area, the next target). Needs a connection.
-std::unique_ptr<View> make_view(const PlaceOptions& place, const Area& area, double desk);
+/// palpate/taps (MarkerArray: taps on and off the object, the area, the next target). `robot` is what connect() has
+/// made.
+std::unique_ptr<View> make_view(Robot& robot, const PlaceOptions& place, const Area& area, double desk);
 
 }  // namespace palpate::baxter

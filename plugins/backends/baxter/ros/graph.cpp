@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/graph.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
 #include <xmlrpcpp/XmlRpcException.h>
 #include <xmlrpcpp/XmlRpcValue.h>
+#include <boost/algorithm/string/find.hpp>
+#include <boost/endian/conversion.hpp>
 
 namespace palpate::baxter {
 namespace {
@@ -20,30 +21,27 @@ constexpr const char* kCaller = "/palpate";
 constexpr std::size_t kLongest = 4'000'000;  ///< bytes of an answer; a whole network's description has some 10'000
 constexpr std::size_t kDeepest = 64;         ///< elements within elements; that description has 17
 
-// ---- XML-RPC: one question, one answer, over a connection of its own ----
+Unreached no_ros() { return {Why::nonsense, "what answers there is no ROS"}; }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
+// ---- XML-RPC: one question, one answer, over a connection of its own ----
 
 /// The body of an answer over HTTP.
 std::string http_body(Wire& wire, Deadline deadline) {
+  constexpr const char* kLength = "\r\ncontent-length:";
   std::string text;
   std::size_t head = std::string::npos;
   while ((head = text.find("\r\n\r\n")) == std::string::npos) {
     const std::string some = wire.receive_some(4096, deadline);
     text += some;
     if (some.empty() || std::string("HTTP/").compare(0, text.size(), text, 0, 5) != 0 || text.size() > kLongest) {
-      throw Unreached(Why::nonsense, "what answers there is no ROS");
+      throw no_ros();
     }
   }
-  const std::string header = lower(text.substr(0, head + 2));
   std::string body = text.substr(head + 4);
-  const std::size_t field = header.find("\r\ncontent-length:");
-  if (field == std::string::npos) throw Unreached(Why::nonsense, "what answers there is no ROS");
-  const std::size_t length = std::strtoul(header.c_str() + field + std::strlen("\r\ncontent-length:"), nullptr, 10);
-  if (length > kLongest) throw Unreached(Why::nonsense, "what answers there is no ROS");
+  text.resize(head + 2);
+  const auto field = boost::algorithm::ifind_first(text, kLength);
+  const std::size_t length = field ? std::strtoul(&*field.begin() + std::strlen(kLength), nullptr, 10) : kLongest + 1;
+  if (length > kLongest) throw no_ros();
   if (body.size() < length) body += wire.receive(length - body.size(), deadline);
   return body;
 }
@@ -76,7 +74,7 @@ XmlRpcValue read_answer(const std::string& xml) {
   XmlRpcValue parts;
   if (start == std::string::npos || xml.find("<fault>") != std::string::npos || !is_sound(xml) ||
       !parts.fromXml(xml, &offset) || parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
-    throw Unreached(Why::nonsense, "what answers there is no ROS");
+    throw no_ros();
   }
   if (static_cast<int>(parts[0]) != 1) return {};
   return parts[2];
@@ -95,31 +93,14 @@ std::string ask(const Address& address, const std::string& method, const std::ve
   return http_body(wire, deadline);
 }
 
-XmlRpcValue call(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
-                 Deadline deadline) {
-  return read_answer(ask(address, method, arguments, deadline));
-}
-
-/// The same, with what the library throws at answers of another form.
+/// What `read` makes of an answer, with what the library throws at those of another form.
 template <class Read>
-auto understood(const Read& read) {
+auto understood(const std::string& xml, const Read& read) {
   try {
-    return read();
+    XmlRpcValue answer = read_answer(xml);
+    return read(answer);
   } catch (const XmlRpc::XmlRpcException& exception) {
     throw Unreached(Why::nonsense, "its answer makes no sense: " + exception.getMessage());
-  }
-}
-
-std::optional<std::string> text_of(XmlRpcValue value) {
-  switch (value.getType()) {
-    case XmlRpcValue::TypeString:
-      return static_cast<std::string>(value);
-    case XmlRpcValue::TypeBoolean:
-      return static_cast<bool>(value) ? "true" : "false";
-    case XmlRpcValue::TypeInt:
-      return static_cast<int>(value) != 0 ? "true" : "false";
-    default:
-      return {};
   }
 }
 
@@ -135,23 +116,18 @@ Graph::Nodes nodes_of(XmlRpcValue& list) {
 // ---- TCPROS: a header each way, then messages ----
 
 std::string number(std::size_t value) {
-  const auto bits = static_cast<std::uint32_t>(value);
-  std::string bytes;
-  for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((bits >> shift) & 0xffU);
-  return bytes;
+  const std::uint32_t bits = boost::endian::native_to_little(static_cast<std::uint32_t>(value));
+  return {reinterpret_cast<const char*>(&bits), sizeof bits};
 }
 
 std::size_t number_at(const std::string& bytes, std::size_t at) {
-  std::uint32_t bits = 0;
-  for (unsigned i = 0; i < 4; ++i)
-    bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-  return bits;
+  return boost::endian::load_little_u32(reinterpret_cast<const unsigned char*>(bytes.data() + at));
 }
 
 /// A number and as many bytes.
 std::string receive_block(Wire& wire, Deadline deadline) {
   const std::size_t length = number_at(wire.receive(4, deadline), 0);
-  if (length > kLongest) throw Unreached(Why::nonsense, "what answers there is no ROS");
+  if (length > kLongest) throw no_ros();
   return wire.receive(length, deadline);
 }
 
@@ -165,7 +141,7 @@ Header exchange_headers(Wire& wire, const Header& ours, Deadline deadline) {
   Header theirs;
   for (std::size_t at = 0; at + 4 <= answer.size();) {
     const std::size_t length = number_at(answer, at);
-    if (length > answer.size() - at - 4) throw Unreached(Why::nonsense, "what answers there is no ROS");
+    if (length > answer.size() - at - 4) throw no_ros();
     const std::string field = answer.substr(at + 4, length);
     const std::size_t equals = field.find('=');
     if (equals != std::string::npos) theirs[field.substr(0, equals)] = field.substr(equals + 1);
@@ -197,13 +173,13 @@ const std::vector<std::string>& Graph::of(const Nodes& nodes, std::string_view n
   return found == nodes.end() ? nobody : found->second;
 }
 
-void Master::greet(Deadline deadline) const {
-  understood([&] { return call(address_, "getPid", {XmlRpcValue(kCaller)}, deadline); });
+int Master::greet(Deadline deadline) const {
+  return understood(ask(address_, "getPid", {XmlRpcValue(kCaller)}, deadline),
+                    [](XmlRpcValue& pid) { return static_cast<int>(pid); });
 }
 
 Graph read_graph(const std::string& xml) {
-  return understood([&] {
-    XmlRpcValue state = read_answer(xml);
+  return understood(xml, [](XmlRpcValue& state) {
     return Graph{nodes_of(state[0]), nodes_of(state[1]), nodes_of(state[2])};
   });
 }
@@ -212,35 +188,24 @@ Graph Master::graph(Deadline deadline) const {
   return read_graph(ask(address_, "getSystemState", {XmlRpcValue(kCaller)}, deadline));
 }
 
-std::optional<std::string> Master::parameter(const std::string& name, Deadline deadline) const {
-  return understood([&] {
-    return text_of(call(address_, "getParam", {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline));
-  });
-}
-
-std::optional<std::string> Master::node(const std::string& name, Deadline deadline) const {
-  return understood([&] {
-    return text_of(call(address_, "lookupNode", {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline));
-  });
-}
-
-std::optional<std::string> Master::service(const std::string& name, Deadline deadline) const {
-  return understood([&] {
-    return text_of(call(address_, "lookupService", {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline));
-  });
+std::optional<std::string> Master::told(const char* method, const std::string& name, Deadline deadline) const {
+  return understood(ask(address_, method, {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline),
+                    [](XmlRpcValue& value) -> std::optional<std::string> {
+                      if (value.getType() != XmlRpcValue::TypeString) return {};
+                      return static_cast<std::string&>(value);
+                    });
 }
 
 Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadline) {
-  return understood([&] {
-    XmlRpcValue protocols;
-    protocols[0][0] = std::string("TCPROS");
-    XmlRpcValue way = call(look_up(node.host, node.port, deadline), "requestTopic",
-                           {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
+  XmlRpcValue protocols;
+  protocols[0][0] = std::string("TCPROS");
+  const std::string xml = ask(look_up(node.host, node.port, deadline), "requestTopic",
+                              {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
+  return understood(xml, [&](XmlRpcValue& way) {
     if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3) {
       throw Unreached(Why::nonsense, "it says that it does not publish it");
     }
-    const Address address = look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline);
-    Wire wire(address, deadline);
+    Wire wire(look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline), deadline);
     Header answer = exchange_headers(
         wire, {{"callerid", kCaller}, {"topic", topic}, {"md5sum", "*"}, {"type", "*"}, {"message_definition", ""}},
         deadline);
@@ -252,7 +217,7 @@ std::string call_service(const Address& address, const std::string& name, const 
                          const std::string& request, Deadline deadline) {
   Wire wire(address, deadline);
   exchange_headers(wire, {{"callerid", kCaller}, {"service", name}, {"md5sum", md5}, {"persistent", "0"}}, deadline);
-  wire.send(number(request.size()) + request, deadline);
+  wire.send(request, deadline);
   const bool served = wire.receive(1, deadline)[0] != 0;
   std::string answer = receive_block(wire, deadline);
   if (!served) throw Unreached(Why::nonsense, "the service failed" + (answer.empty() ? answer : ": " + answer));

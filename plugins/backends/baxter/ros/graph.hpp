@@ -41,17 +41,25 @@ class Master {
  public:
   explicit Master(const Address& address) : address_(address) {}
 
-  /// Whether it is one: asks for its process.
-  void greet(Deadline deadline) const;
+  /// Whether it is one: its process.
+  int greet(Deadline deadline) const;
   Graph graph(Deadline deadline) const;
-  /// A parameter as text, booleans as "true" and "false"; none if it is not set or is neither.
-  std::optional<std::string> parameter(const std::string& name, Deadline deadline) const;
+  /// A parameter; none if it is not set or is no text.
+  std::optional<std::string> parameter(const std::string& name, Deadline deadline) const {
+    return told("getParam", name, deadline);
+  }
   /// Where a node can be asked; none if the master does not know it.
-  std::optional<std::string> node(const std::string& name, Deadline deadline) const;
+  std::optional<std::string> node(const std::string& name, Deadline deadline) const {
+    return told("lookupNode", name, deadline);
+  }
   /// Where a service is; none if nobody offers it.
-  std::optional<std::string> service(const std::string& name, Deadline deadline) const;
+  std::optional<std::string> service(const std::string& name, Deadline deadline) const {
+    return told("lookupService", name, deadline);
+  }
 
  private:
+  std::optional<std::string> told(const char* method, const std::string& name, Deadline deadline) const;
+
   Address address_;
 };
 
@@ -65,7 +73,8 @@ struct Offer {
 /// Throws Unreached.
 Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadline);
 
-/// Calls a service once: `request` and the result are messages as ROS serialises them. Throws Unreached; what the
+/// Calls a service once: `request` and the result are messages as ROS serialises them, the request with its length
+/// before it. Throws Unreached; what the
 /// service says when it fails is in its words.
 std::string call_service(const Address& address, const std::string& name, const std::string& md5,
                          const std::string& request, Deadline deadline);

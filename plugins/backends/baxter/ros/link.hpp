@@ -2,6 +2,7 @@
 // Between connect(), which knows what to wait for and what to say when it does not come, and roscpp's side.
 #pragma once
 
+#include "baxter/ros/bag.hpp"
 #include "baxter/ros/connect.hpp"
 #include "baxter/ros/graph.hpp"
 #include "baxter/ros/node.hpp"
@@ -13,8 +14,8 @@
 namespace palpate::baxter {
 
 /// A topic of the robot.
-struct Stream {
-  const char* topic;
+struct Topic {
+  const char* name;
   const char* type;
   const char* md5;
 };
@@ -33,9 +34,10 @@ constexpr const char* kSolverService = "/ExternalTools/left/PositionKinematicsNo
 /// The robot, perhaps not yet heard in full.
 class Link : public Robot {
  public:
-  /// The streams without which nothing goes: joints, endpoint, state; and whether each has brought something.
-  static const std::array<Stream, 3>& needed();
-  virtual std::array<bool, 3> heard() = 0;
+  /// The streams without which nothing goes: joints, endpoint, state.
+  static const std::array<Topic, 3>& needed();
+  /// What is written of them, and of what is shown.
+  virtual std::shared_ptr<Bag> bag() = 0;
   virtual bool clock_runs() = 0;   ///< protocol time is known
   virtual bool listened_to() = 0;  ///< somebody receives the set-points
 };

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/node.hpp"
 
-#include <palpate/error.hpp>
+#include "baxter/words.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <future>
 #include <memory>
 #include <optional>
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
@@ -35,37 +31,21 @@ constexpr milliseconds kLookUp(1000);
 constexpr milliseconds kAnswer(2000);
 constexpr milliseconds kFarewell(500);
 
-Error trouble(const std::string& where, const std::string& reason, const std::string& hint) {
-  return Error(where, reason, hint, Error::Kind::run);
-}
-
 /// Empty if it is not set: roscpp takes the one for the other.
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
+/// Whether a server can be there.
 bool is_own_address(const std::string& text) {
-  in_addr wanted4{};
-  in6_addr wanted6{};
-  const bool is4 = inet_pton(AF_INET, text.c_str(), &wanted4) == 1;
-  if (!is4 && inet_pton(AF_INET6, text.c_str(), &wanted6) != 1) return false;
-  if (is4 && (ntohl(wanted4.s_addr) >> 24) == 127) return true;  // the whole block is this machine
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return true;  // not known, so not wrong
-  bool found = false;
-  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-    if (entry->ifa_addr == nullptr) continue;
-    if (is4 && entry->ifa_addr->sa_family == AF_INET) {
-      const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
-      found = found || address->sin_addr.s_addr == wanted4.s_addr;
-    } else if (!is4 && entry->ifa_addr->sa_family == AF_INET6) {
-      const auto* address = reinterpret_cast<const sockaddr_in6*>(entry->ifa_addr);
-      found = found || std::memcmp(&address->sin6_addr, &wanted6, sizeof wanted6) == 0;
-    }
-  }
-  freeifaddrs(list);
-  return found;
+  namespace asio = boost::asio;
+  boost::system::error_code error;
+  const Address address(asio::ip::make_address(text, error), 0);
+  if (error || address.address().is_unspecified() || address.address().is_multicast()) return false;
+  asio::io_context io;
+  asio::ip::tcp::socket(io, address.protocol()).bind(address, error);
+  return !error;
 }
 
 /// By what name the others on the network reach this machine. Throws Error.
@@ -83,7 +63,7 @@ std::string own_name(Deadline deadline) {
     try {
       look_up(name, 1, within(kLookUp, deadline));
     } catch (const Unreached& reason) {
-      throw trouble("ROS_HOSTNAME=" + name, std::string("does not resolve (") + reason.what() + ")",
+      throw trouble("ROS_HOSTNAME=" + name, fmt::format("does not resolve ({})", reason.what()),
                     "set ROS_IP to this machine's address instead");
     }
   }
@@ -98,7 +78,7 @@ class Nothing : public XmlRpc::XmlRpcErrorHandler {
 /// roscpp from the first connection to the end of the process.
 class Node {
  public:
-  explicit Node(const Network& network) : uri_(network.uri), address_(network.address) {
+  explicit Node(const Network& joined) : network(joined) {
     // What roscpp has to tell is told by connect(), the watch and the record; what is left is that something comes back
     // again, in the middle of palpate's own lines.
     ROSCONSOLE_AUTOINIT;
@@ -112,7 +92,7 @@ class Node {
                 ros::init_options::NoSigintHandler | ros::init_options::AnonymousName | ros::init_options::NoRosout);
       ros::start();
     } catch (const std::exception& exception) {
-      throw trouble(network.where(), std::string("roscpp does not start: ") + exception.what(),
+      throw trouble(network.where(), fmt::format("roscpp does not start: {}", exception.what()),
                     "check the variables ROS_*");
     }
   }
@@ -127,12 +107,7 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  const std::string& uri() const { return uri_; }
-  const Address& address() const { return address_; }
-
- private:
-  std::string uri_;
-  Address address_;
+  const Network network;
 };
 
 /// The process' node, for those who may not start it.
@@ -152,25 +127,24 @@ Network find_network(Deadline deadline) {
   const std::optional<Place> place = parse_uri(uri, "http");
   if (!place) throw trouble(where, "is not of the form http://host:port", "as in http://011305P0001.local:11311");
   const std::string name = own_name(deadline);
-  const std::string at = place->host + ":" + std::to_string(place->port);
+  const std::string at = fmt::format("{}:{}", place->host, place->port);
   try {
-    const Address address = look_up(place->host, place->port, within(kLookUp, deadline));
-    const Master master(address);
+    const Master master(look_up(place->host, place->port, within(kLookUp, deadline)));
     master.greet(within(kAnswer, deadline));
-    return {uri, address, master, name};
+    return {uri, master, name};
   } catch (const Unreached& reason) {
     switch (reason.why()) {
       case Unreached::Why::name:
-        throw trouble(where, "the name " + place->host + " does not resolve (" + reason.what() + ")",
+        throw trouble(where, fmt::format("the name {} does not resolve ({})", place->host, reason.what()),
                       "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
       case Unreached::Why::refused:
-        throw trouble(where, std::string("no master at ") + at + " (" + reason.what() + ")",
+        throw trouble(where, fmt::format("no master at {} ({})", at, reason.what()),
                       "start the robot, or mend the variable");
       case Unreached::Why::silent:
-        throw trouble(where, at + " does not answer within " + std::to_string(kAnswer.count() / 1000) + " s",
+        throw trouble(where, fmt::format("{} does not answer within {} s", at, kAnswer.count() / 1000),
                       "check that the robot is on and that no firewall lies between");
       default:
-        throw trouble(where, at + " is no ROS master: " + reason.what(), "mend the variable");
+        throw trouble(where, fmt::format("{} is no ROS master: {}", at, reason.what()), "mend the variable");
     }
   }
 }
@@ -178,8 +152,8 @@ Network find_network(Deadline deadline) {
 void start_node(const Network& network) {
   static const Node node(network);
   running = &node;
-  if (node.uri() != network.uri) {
-    throw trouble(network.where(), "this process has been a node of " + node.uri() + " and cannot change",
+  if (node.network.uri != network.uri) {
+    throw trouble(network.where(), "this process has been a node of " + node.network.uri + " and cannot change",
                   "start another one");
   }
   if (!ros::ok()) {
@@ -193,7 +167,7 @@ std::string node_name() { return ros::this_node::getName(); }
 void forget_silent_master() {
   if (running == nullptr) return;
   try {
-    Master(running->address()).greet(Steady::now() + kFarewell);
+    running->network.master.greet(Steady::now() + kFarewell);
   } catch (const Unreached&) {
     point_roscpp_at("http://127.0.0.1:9");  // discard: nobody listens there
   }
@@ -210,7 +184,7 @@ void give_up(const std::function<void()>& connections) {
   const ros::PollManagerPtr& thread = ros::PollManager::instance();
   const auto listener = thread->addPollThreadListener(once);
   std::future<void> ended = done.get_future();
-  while (ended.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+  while (ended.wait_for(milliseconds(100)) != std::future_status::ready) {
     if (!ros::ok()) once();  // nothing is heard there any more
   }
   thread->removePollThreadListener(listener);

@@ -13,7 +13,6 @@ namespace palpate::baxter {
 /// The network that the environment names, with a master that has answered.
 struct Network {
   std::string uri;  ///< of the master
-  Address address;
   Master master;
   std::string own_name;  ///< what others reach this machine by, if the environment says; else empty
 

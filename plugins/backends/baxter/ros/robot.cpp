@@ -4,10 +4,10 @@
 #include "baxter/ros/link.hpp"
 #include "baxter/ros/pulse.hpp"
 #include "baxter/ros/solver.hpp"
+#include "baxter/words.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <csignal>
 #include <mutex>
 #include <thread>
 
@@ -17,12 +17,12 @@
 #include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
-#include <pthread.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
+#include <boost/algorithm/string/trim.hpp>
 
 namespace palpate::baxter {
 namespace {
@@ -82,29 +82,19 @@ class RosRobot final : public Link {
   RosRobot(const Network& network, bool commands, std::optional<double> tool_mass)
       : bag_(std::make_shared<Bag>()), solver_(network.master), pulse_(steady_seconds()) {
     latest_.end_effector.mass = tool_mass;
-    set_current_bag(bag_);
     handle_.setCallbackQueue(&queue_);
-    subscribe<sensor_msgs::JointState>(kJointTopic, &RosRobot::on_joints);
-    subscribe<msgs::EndpointState>(kEndpointTopic, &RosRobot::on_endpoint);
-    subscribe<msgs::AssemblyState>(kStateTopic, &RosRobot::on_state);
-    subscribe<msgs::CollisionDetectionState>(kCollisionTopic, &RosRobot::on_collision);
-    subscribe<msgs::CollisionAvoidanceState>(kAvoidanceTopic, &RosRobot::on_avoidance);
-    subscribe<msgs::EndEffectorProperties>(kEndEffectorTopic, &RosRobot::on_end_effector);
-    subscribe<std_msgs::Float64>(kSpeedRatioTopic, &RosRobot::on_speed_ratio);
-    subscribe<std_msgs::Float64>(kCommandTimeoutTopic, &RosRobot::on_command_timeout);
+    listen();
     if (commands) {
-      subscribe<msgs::JointCommand>(kCommandTopic, &RosRobot::on_command);
+      // Whoever else sends set-points drives the same arm elsewhere.
+      subscribe<msgs::JointCommand>(kCommandTopic, [](const auto&, const Heard& heard, Snapshot& latest) {
+        add_once(latest.commanders, heard.sender);
+      });
       command_publisher_ = handle_.advertise<msgs::JointCommand>(kCommandTopic, 1);
       command_.mode = msgs::JointCommand::POSITION_MODE;
       command_.names.assign(kJointNames.begin(), kJointNames.end());
       command_.command.resize(kArm);
     }
-    // Signals are for the threads that were there before.
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    spinner_ = std::thread([this] { spin(); });
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    spinner_ = deaf_thread([this] { spin(); });
   }
 
   ~RosRobot() override {
@@ -158,119 +148,99 @@ class RosRobot final : public Link {
 
   Answer solve(const Pose& gripper, const Joints& seed) override { return solver_.solve(gripper, seed); }
 
-  std::array<bool, 3> heard() override {
-    const std::lock_guard lock(mutex_);
-    return {latest_.joints.has_value(), latest_.endpoint.has_value(), latest_.state.has_value()};
-  }
+  std::shared_ptr<Bag> bag() override { return bag_; }
 
   bool clock_runs() override { return !ros::Time::now().isZero(); }
-  /// This program listens, too: see on_command().
+  /// This program listens, too.
   bool listened_to() override { return command_publisher_.getNumSubscribers() > 1; }
 
  private:
-  template <class Message>
-  using Event = ros::MessageEvent<const Message>;
+  /// Of a message: who sent it, and when it came.
+  struct Heard {
+    std::string sender;
+    double received;
 
-  template <class Message>
-  void subscribe(const char* topic, void (RosRobot::*take)(const Event<Message>&, Snapshot&)) {
-    const boost::function<void(const Event<Message>&)> heard = [this, topic, take](const Event<Message>& event) {
+    /// That of a stream's next reading.
+    template <class Message, class Reading>
+    Arrival next(const Message& message, const std::optional<Reading>& latest) const {
+      return {received, message.header.stamp.toSec(), (latest ? latest->count : 0) + 1};
+    }
+  };
+
+  /// `take`, called with the message, its Heard and what is the latest, keeps what there is to keep.
+  template <class Message, class Take>
+  void subscribe(const char* topic, const Take& take) {
+    using Event = ros::MessageEvent<const Message>;
+    const boost::function<void(const Event&)> heard = [this, topic, take](const Event& event) {
       if (event.getPublisherName() == ros::this_node::getName()) return;
       // Before a simulated clock was heard nothing has an age, and what was latched comes then and never again.
-      const bool timed = !event.getReceiptTime().isZero();
-      if (timed) {
+      if (!event.getReceiptTime().isZero()) {
         bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
       } else if (traits::HasHeader<Message>::value || std::is_same_v<Message, msgs::AssemblyState>) {
         return;
       }
       const std::lock_guard lock(mutex_);
-      (this->*take)(event, latest_);
+      take(*event.getConstMessage(), Heard{event.getPublisherName(), clock_.received(event.getReceiptTime())}, latest_);
     };
-    subscribers_.push_back(handle_.subscribe<const Event<Message>&>(topic, kBacklog, heard, ros::VoidConstPtr(),
-                                                                    ros::TransportHints().tcpNoDelay()));
+    subscribers_.push_back(handle_.subscribe<const Event&>(topic, kBacklog, heard, ros::VoidConstPtr(),
+                                                           ros::TransportHints().tcpNoDelay()));
   }
 
-  /// That of a stream's next message.
-  template <class Message>
-  Arrival arrival(const Event<Message>& event, long before) const {
-    return {clock_.received(event.getReceiptTime()), event.getConstMessage()->header.stamp.toSec(), before + 1};
-  }
-  template <class Reading>
-  static long count_of(const std::optional<Reading>& latest) {
-    return latest ? latest->count : 0;
+  void listen() {
+    subscribe<sensor_msgs::JointState>(kJointTopic, take_joints);
+    subscribe<msgs::EndpointState>(
+        kEndpointTopic, [](const msgs::EndpointState& message, const Heard& heard, Snapshot& latest) {
+          const auto& at = message.pose.position;
+          const auto& turn = message.pose.orientation;
+          const auto& force = message.wrench.force;
+          latest.endpoint = EndpointReading{heard.next(message, latest.endpoint),
+                                            {{at.x, at.y, at.z}, {turn.w, turn.x, turn.y, turn.z}},
+                                            {force.x, force.y, force.z}};
+        });
+    subscribe<msgs::AssemblyState>(kStateTopic, take_state);
+    subscribe<msgs::CollisionDetectionState>(
+        kCollisionTopic, [](const auto& message, const Heard& heard, Snapshot& latest) {
+          latest.collision = CollisionReading{heard.next(message, latest.collision), message.collision_state != 0};
+        });
+    subscribe<msgs::CollisionAvoidanceState>(
+        kAvoidanceTopic, [](const auto& message, const Heard& heard, Snapshot& latest) {
+          latest.avoidance =
+              AvoidanceReading{heard.next(message, latest.avoidance), message.other_arm != 0, message.collision_object};
+        });
+    subscribe<msgs::EndEffectorProperties>(kEndEffectorTopic, [](const auto& message, const Heard&, Snapshot& latest) {
+      latest.end_effector.product = boost::trim_copy(message.manufacturer + " " + message.product);
+    });
+    for (const auto& [topic, setting] : {std::pair(kSpeedRatioTopic, &Snapshot::speed_ratio),
+                                         std::pair(kCommandTimeoutTopic, &Snapshot::command_timeout)}) {
+      subscribe<std_msgs::Float64>(topic, [kept = setting](const auto& message, const Heard& heard, Snapshot& latest) {
+        latest.*kept = Setting{message.data, heard.sender};
+      });
+    }
   }
 
-  void on_joints(const Event<sensor_msgs::JointState>& event, Snapshot& latest) {
-    const sensor_msgs::JointState& message = *event.getConstMessage();
+  static void take_joints(const sensor_msgs::JointState& message, const Heard& heard, Snapshot& latest) {
     const ArmPart part = arm_part(message);
     if (part.count == 0) return;  // the gripper's, or the other arm's
-    if (part.count != kArm || message.position.size() != message.name.size()) {
-      malformed(latest, std::string(kJointTopic) + " has " + std::to_string(part.count) +
-                            " of the left arm's seven joints, " + counts(message));
-      return;
-    }
-    latest.joints = JointReading{arrival(event, count_of(latest.joints)), part.position};
-    add_once(latest.joint_senders, event.getPublisherName());
+    if (!part.whole) return malformed(latest, fmt::format("{} has {}", kJointTopic, part.words));
+    latest.joints = JointReading{heard.next(message, latest.joints), part.position};
+    add_once(latest.joint_senders, heard.sender);
   }
 
-  void on_endpoint(const Event<msgs::EndpointState>& event, Snapshot& latest) {
-    const msgs::EndpointState& message = *event.getConstMessage();
-    const auto& position = message.pose.position;
-    const auto& turn = message.pose.orientation;
-    const auto& force = message.wrench.force;
-    latest.endpoint = EndpointReading{arrival(event, count_of(latest.endpoint)),
-                                      {{position.x, position.y, position.z}, {turn.w, turn.x, turn.y, turn.z}},
-                                      {force.x, force.y, force.z}};
-  }
-
-  void on_state(const Event<msgs::AssemblyState>& event, Snapshot& latest) {
-    const msgs::AssemblyState& message = *event.getConstMessage();
-    add_once(latest.state_senders, event.getPublisherName());
+  static void take_state(const msgs::AssemblyState& message, const Heard& heard, Snapshot& latest) {
+    add_once(latest.state_senders, heard.sender);
     if (message.estop_button > msgs::AssemblyState::ESTOP_BUTTON_RELEASED ||
         message.estop_source > msgs::AssemblyState::ESTOP_SOURCE_BRAIN) {
-      malformed(latest, std::string(kStateTopic) + " has estop_button " + std::to_string(message.estop_button) +
-                            " and estop_source " + std::to_string(message.estop_source));
-      return;
+      return malformed(latest, fmt::format("{} has estop_button {} and estop_source {}", kStateTopic,
+                                           message.estop_button, message.estop_source));
     }
-    StateReading state;
-    state.received = clock_.received(event.getReceiptTime());
-    state.count = count_of(latest.state) + 1;
-    state.ready = message.ready != 0;
-    state.enabled = message.enabled != 0;
-    state.stopped = message.stopped != 0;
-    state.error = message.error != 0;
-    state.estop_button = static_cast<StateReading::Button>(message.estop_button);
-    state.estop_source = static_cast<StateReading::Source>(message.estop_source);
-    latest.state = state;
-  }
-
-  void on_collision(const Event<msgs::CollisionDetectionState>& event, Snapshot& latest) {
-    latest.collision =
-        CollisionReading{arrival(event, count_of(latest.collision)), event.getConstMessage()->collision_state != 0};
-  }
-
-  void on_avoidance(const Event<msgs::CollisionAvoidanceState>& event, Snapshot& latest) {
-    const msgs::CollisionAvoidanceState& message = *event.getConstMessage();
-    latest.avoidance =
-        AvoidanceReading{arrival(event, count_of(latest.avoidance)), message.other_arm != 0, message.collision_object};
-  }
-
-  void on_end_effector(const Event<msgs::EndEffectorProperties>& event, Snapshot& latest) {
-    const msgs::EndEffectorProperties& message = *event.getConstMessage();
-    const bool both = !message.manufacturer.empty() && !message.product.empty();
-    latest.end_effector.product = message.manufacturer + (both ? " " : "") + message.product;
-  }
-
-  void on_speed_ratio(const Event<std_msgs::Float64>& event, Snapshot& latest) {
-    latest.speed_ratio = Setting{event.getConstMessage()->data, event.getPublisherName()};
-  }
-
-  void on_command_timeout(const Event<std_msgs::Float64>& event, Snapshot& latest) {
-    latest.command_timeout = Setting{event.getConstMessage()->data, event.getPublisherName()};
-  }
-
-  /// Whoever else sends set-points drives the same arm elsewhere.
-  void on_command(const Event<msgs::JointCommand>& event, Snapshot& latest) {
-    add_once(latest.commanders, event.getPublisherName());
+    latest.state = StateReading{heard.received,
+                                message.ready != 0,
+                                message.enabled != 0,
+                                message.stopped != 0,
+                                message.error != 0,
+                                static_cast<StateReading::Button>(message.estop_button),
+                                static_cast<StateReading::Source>(message.estop_source),
+                                (latest.state ? latest.state->count : 0) + 1};
   }
 
   static void malformed(Snapshot& latest, const std::string& words) {
@@ -291,8 +261,8 @@ class RosRobot final : public Link {
     const auto there = [&] {
       const std::lock_guard lock(mutex_);
       const double enough = ros::Time::now().toSec() - kAlmostNow;
-      return latest_.joints && latest_.joints->received >= enough && latest_.endpoint &&
-             latest_.endpoint->received >= enough && latest_.state && latest_.state->received >= enough;
+      const auto came = [&](const auto& latest) { return latest && latest->received >= enough; };
+      return came(latest_.joints) && came(latest_.endpoint) && came(latest_.state);
     };
     while (!there() && Steady::now() - begin < kCatchUp) std::this_thread::sleep_for(kSimulatedNap);
   }
@@ -314,15 +284,14 @@ class RosRobot final : public Link {
 
 }  // namespace
 
-const std::array<Stream, 3>& Link::needed() {
-  using JointState = sensor_msgs::JointState;
-  using EndpointState = msgs::EndpointState;
-  using AssemblyState = msgs::AssemblyState;
-  static const std::array<Stream, 3> streams = {
-      Stream{kJointTopic, traits::datatype<JointState>(), traits::md5sum<JointState>()},
-      Stream{kEndpointTopic, traits::datatype<EndpointState>(), traits::md5sum<EndpointState>()},
-      Stream{kStateTopic, traits::datatype<AssemblyState>(), traits::md5sum<AssemblyState>()}};
-  return streams;
+const std::array<Topic, 3>& Link::needed() {
+  const auto topic = [](const char* name, auto message) {
+    return Topic{name, traits::datatype(message), traits::md5sum(message)};
+  };
+  static const std::array<Topic, 3> topics = {topic(kJointTopic, sensor_msgs::JointState()),
+                                              topic(kEndpointTopic, msgs::EndpointState()),
+                                              topic(kStateTopic, msgs::AssemblyState())};
+  return topics;
 }
 
 std::unique_ptr<Link> make_link(const Network& network, bool commands, std::optional<double> tool_mass) {

@@ -5,15 +5,19 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
-#include <sys/socket.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 
 namespace palpate::baxter {
 
 using Steady = std::chrono::steady_clock;
 using Deadline = Steady::time_point;
+using Address = boost::asio::ip::tcp::endpoint;
 
 /// The earlier of `deadline` and `longest` from now.
 Deadline within(std::chrono::milliseconds longest, Deadline deadline);
@@ -34,10 +38,8 @@ class Unreached : public std::runtime_error {
   Why why_;
 };
 
-struct Address {
-  sockaddr_storage storage{};
-  socklen_t length = 0;
-};
+/// A thread that hears no signals: they are for those that were there before.
+std::thread deaf_thread(const std::function<void()>& run);
 
 /// The address of a host by its name or number. Throws Unreached (`name`), also when the answer takes too long.
 Address look_up(const std::string& host, int port, Deadline deadline);
@@ -46,9 +48,6 @@ Address look_up(const std::string& host, int port, Deadline deadline);
 class Wire {
  public:
   Wire(const Address& address, Deadline deadline);
-  Wire(const Wire&) = delete;
-  Wire& operator=(const Wire&) = delete;
-  ~Wire();
 
   void send(const std::string& bytes, Deadline deadline);
 
@@ -59,9 +58,11 @@ class Wire {
   std::string receive_some(std::size_t most, Deadline deadline);
 
  private:
-  void wait(short events, Deadline deadline) const;
+  template <class Begin>
+  std::size_t finish(Deadline deadline, const Begin& begin);
 
-  int socket_ = -1;
+  boost::asio::io_context io_;
+  boost::asio::ip::tcp::socket socket_{io_};
 };
 
 }  // namespace palpate::baxter

@@ -17,16 +17,6 @@ namespace msgs = baxter_core_msgs;
 /// For an answer, with room in the promised second.
 constexpr std::chrono::milliseconds kSolve(900);
 
-/// ROS' bytes of a message, without the length before them.
-template <class Message>
-std::string bytes_of(const Message& message) {
-  std::string bytes(ros::serialization::serializationLength(message), '\0');
-  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
-                                     static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, message);
-  return bytes;
-}
-
 }  // namespace
 
 std::string Solver::answer(const std::string& request, Deadline deadline) {
@@ -72,7 +62,9 @@ Robot::Answer Solver::solve(const Pose& gripper, const Joints& seed) {
   };
   msgs::SolvePositionIKResponse response;
   try {
-    std::string bytes = answer(bytes_of(request), Steady::now() + kSolve);
+    const ros::SerializedMessage asked = ros::serialization::serializeMessage(request);
+    std::string bytes =
+        answer({reinterpret_cast<const char*>(asked.buf.get()), asked.num_bytes}, Steady::now() + kSolve);
     ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
                                        static_cast<std::uint32_t>(bytes.size()));
     ros::serialization::deserialize(stream, response);
@@ -84,12 +76,9 @@ Robot::Answer Solver::solve(const Pose& gripper, const Joints& seed) {
   if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
     return trouble("its answer has not one part for one pose");
   }
-  const sensor_msgs::JointState& joints = response.joints[0];
   if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
-  const ArmPart part = arm_part(joints);
-  if (part.count != kArm || joints.position.size() != joints.name.size()) {
-    return trouble("its answer has " + std::to_string(part.count) + " of the seven joints, " + counts(joints));
-  }
+  const ArmPart part = arm_part(response.joints[0]);
+  if (!part.whole) return trouble("its answer has " + part.words);
   return {part.position, {}};
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "baxter/ros/bag.hpp"
-#include "baxter/ros/connect.hpp"
-#include "baxter/ros/node.hpp"
+#include "baxter/ros/link.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <optional>
+#include <tuple>
 
 #include <ros/node_handle.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -24,19 +23,10 @@ constexpr double kArrowLength = 0.08;  ///< above the desk, where the arm goes n
 constexpr double kArrowWidth = 0.006;
 constexpr const char* kFrame = "base";
 
-std_msgs::ColorRGBA colour(float red, float green, float blue) {
-  std_msgs::ColorRGBA result;
-  result.r = red;
-  result.g = green;
-  result.b = blue;
-  result.a = 1.0F;
-  return result;
-}
-
 class RosView final : public View {
  public:
-  RosView(const PlaceOptions& place, const Area& area, double desk)
-      : place_(place), turn_(place.rotation), area_(area), desk_(desk), bag_(current_bag()) {
+  RosView(std::shared_ptr<Bag> bag, const PlaceOptions& place, const Area& area, double desk)
+      : frame_(place.frame()), area_(area), desk_(desk), bag_(std::move(bag)) {
     surface_publisher_ = handle_.advertise<sensor_msgs::PointCloud2>(kSurface, 1, true);
     taps_publisher_ = handle_.advertise<MarkerArray>(kTaps, 1, true);
     show_taps();
@@ -89,15 +79,16 @@ class RosView final : public View {
   static constexpr const char* kTaps = "palpate/taps";
 
   geometry_msgs::Point in_base(double x, double y, double z) const {
+    const Eigen::Vector3d at = frame_ * Eigen::Vector3d(x, y, z);
     geometry_msgs::Point point;
-    point.x = place_.corner[0] + std::cos(turn_) * x - std::sin(turn_) * y;
-    point.y = place_.corner[1] + std::sin(turn_) * x + std::cos(turn_) * y;
-    point.z = place_.height + z;
+    point.x = at.x();
+    point.y = at.y();
+    point.z = at.z();
     return point;
   }
 
   /// One marker a namespace, always with the same id, so that each message replaces the one before.
-  static Marker marker(const char* name, int type, double width, const std_msgs::ColorRGBA& color,
+  static Marker marker(const char* name, int type, double width, const std::array<float, 3>& color,
                        std::vector<geometry_msgs::Point> points) {
     Marker result;
     result.header.frame_id = kFrame;
@@ -107,7 +98,8 @@ class RosView final : public View {
     result.action = points.empty() ? Marker::DELETE : Marker::ADD;
     result.pose.orientation.w = 1.0;
     result.scale.x = result.scale.y = result.scale.z = width;
-    result.color = color;
+    std::tie(result.color.r, result.color.g, result.color.b) = std::tie(color[0], color[1], color[2]);
+    result.color.a = 1.0F;
     result.points = std::move(points);
     return result;
   }
@@ -115,14 +107,14 @@ class RosView final : public View {
   void show_taps() {
     MarkerArray array;
     array.markers.push_back(
-        marker("area", Marker::LINE_STRIP, kLineWidth, colour(0.8F, 0.8F, 0.8F),
+        marker("area", Marker::LINE_STRIP, kLineWidth, {0.8F, 0.8F, 0.8F},
                {in_base(0, 0, desk_), in_base(area_.width, 0, desk_), in_base(area_.width, area_.depth, desk_),
                 in_base(0, area_.depth, desk_), in_base(0, 0, desk_)}));
-    array.markers.push_back(marker("on object", Marker::SPHERE_LIST, kTapSize, colour(0.1F, 0.7F, 0.2F), on_));
-    array.markers.push_back(marker("off object", Marker::CUBE_LIST, kTapSize, colour(0.3F, 0.4F, 0.8F), off_));
+    array.markers.push_back(marker("on object", Marker::SPHERE_LIST, kTapSize, {0.1F, 0.7F, 0.2F}, on_));
+    array.markers.push_back(marker("off object", Marker::CUBE_LIST, kTapSize, {0.3F, 0.4F, 0.8F}, off_));
     std::vector<geometry_msgs::Point> arrow;
     if (next_) arrow = {in_base(next_->x, next_->y, desk_ + kArrowLength), in_base(next_->x, next_->y, desk_)};
-    Marker next = marker("next", Marker::ARROW, kArrowWidth, colour(0.9F, 0.5F, 0.1F), arrow);
+    Marker next = marker("next", Marker::ARROW, kArrowWidth, {0.9F, 0.5F, 0.1F}, arrow);
     next.scale.y = 2 * kArrowWidth;  // of the head
     next.scale.z = 4 * kArrowWidth;  // its length
     array.markers.push_back(next);
@@ -132,11 +124,10 @@ class RosView final : public View {
   template <class Message>
   void publish(ros::Publisher& publisher, const Message& message) {
     publisher.publish(message);
-    if (bag_) bag_->write_own(publisher.getTopic(), message, true);
+    bag_->write_own(publisher.getTopic(), message, true);
   }
 
-  PlaceOptions place_;
-  double turn_;
+  Eigen::Isometry3d frame_;
   Area area_;
   double desk_;
   std::shared_ptr<Bag> bag_;
@@ -149,8 +140,8 @@ class RosView final : public View {
 
 }  // namespace
 
-std::unique_ptr<View> make_view(const PlaceOptions& place, const Area& area, double desk) {
-  return std::make_unique<RosView>(place, area, desk);
+std::unique_ptr<View> make_view(Robot& robot, const PlaceOptions& place, const Area& area, double desk) {
+  return std::make_unique<RosView>(dynamic_cast<Link&>(robot).bag(), place, area, desk);
 }
 
 }  // namespace palpate::baxter

@@ -41,7 +41,7 @@ function story(data, moment, drawn) {
   } else {
     out.push("No candidate is left. ");
   }
-  if (moment.footprint?.remark) out.push(`The footprint, ${data.run.footprint}, says: ${moment.footprint.remark}. `);
+  if (moment.remark) out.push(`The footprint, ${data.run.footprint}, says: ${moment.remark}. `);
   if (moment.least_weight < -1e-6 || moment.most_weight > 1 + 1e-6) {
     out.push(`w leaves [0, 1] here: ${shown(moment.least_weight, 3)} to ${shown(moment.most_weight, 3)}; its colours end at 0 and 1.`);
   }
@@ -57,7 +57,6 @@ class Slider {
     this.panels = mapPanels(data, maps);
     // The surface shows it by its colours, where there is one.
     if (!this.surface.spatial) this.panels.unshift(this.surface.deviationPanel());
-    this.curves = curves(data);
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });
     this.truth = element("input", { type: "checkbox", id: "truth" });
@@ -108,7 +107,7 @@ class Slider {
       await Plotly.react(`map_${id}`, traces, layout({ ...planeAxes(this.data), margin: { l: 44, r: 4, t: 6, b: 40 }, showlegend: false }), kPlotConfig);
     }
     const here = { type: "line", x0: moment.taps, x1: moment.taps, yref: "paper", y0: 0, y1: 1, line: { color: "#999999", width: 1, dash: "dot" } };
-    await Promise.all(this.curves.map((one, i) => Plotly.relayout(`curve_${i}`, { shapes: [here] })));
+    await Promise.all(this.data.curves.map((one, i) => Plotly.relayout(`curve_${i}`, { shapes: [here] })));
     document.body.dataset.drawn = String(moment.taps);  // for whoever waits for the picture
   }
 }
@@ -133,12 +132,12 @@ function drawRun(data, bytes) {
     element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, foreign(title)))),
     element("p", { class: "sub" }, `Dots: taps on the object, crosses: off it, squares: no contact; the star would be tapped next. Arrow keys move the slider.${thinned}`),
     element("h2", {}, "By tap"),
-    element("div", { class: "row small" }, ...slider.curves.map(({ title }, i) => figure(`curve_${i}`, title))),
+    element("div", { class: "row small" }, ...data.curves.map(({ title }, i) => figure(`curve_${i}`, title))),
     section("Config", table(["key", "value", "where it was said"], data.config.map((line) => line.map(foreign)))),
     section("Made by", table(["", ""], data.build.filter(([, value]) => value !== "").map((line) => line.map(foreign)))),
     element("footer", {}, `palpate ${data.version}; method: Sun and Min 2021, arXiv:2110.09593; drawn with plotly.js (MIT).`),
   );
-  slider.curves.forEach((one, i) => Plotly.newPlot(`curve_${i}`, curveTraces(one, data), curveLayout(one), kPlotConfig));
+  data.curves.forEach((one, i) => drawCurves(`curve_${i}`, one, data.moments.map((moment) => moment.taps)));
   slider.listen();
   return slider.show();
 }

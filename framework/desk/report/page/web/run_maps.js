@@ -64,29 +64,35 @@ function hover(tap) {
   return `tap ${tap.tap}: ${plain(found)}`;
 }
 
-/// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt; a star is next.
-function marks(data, moment) {
-  const { on, off, failed } = tapsUntil(data.taps, moment.taps);
-  const trace = (taps, name, marker) => ({
-    type: "scatter",
+/// What would be tapped next, as a list of one or none; with the word that is its hover.
+const nextOf = (moment) => (moment.next ? [{ ...moment.next, word: `next, tap ${moment.taps + 1}` }] : []);
+
+/// Marks in the plane or, `lift` centimetres above what the taps touched, in space.
+function markTrace(taps, name, marker, lift = null) {
+  return {
+    type: lift === null ? "scatter" : "scatter3d",
     mode: "markers",
     name,
     x: taps.map((tap) => tap.x * kCentimetres),
     y: taps.map((tap) => tap.y * kCentimetres),
-    text: taps.map(hover),
+    ...(lift === null ? {} : { z: taps.map((tap) => tap.height * kCentimetres + lift) }),
+    text: taps.map((tap) => tap.word ?? hover(tap)),
     hovertemplate: "%{text}<extra></extra>",
     marker,
-  });
-  const line = (colour, width) => ({ color: colour, width });
-  const next = moment.next ? [moment.next] : [];
-  const star = trace(next, "next", { symbol: "star", size: 15, color: "#e8112d", line: line("#ffffff", 1.2) });
-  star.text = next.map(() => `next, tap ${moment.taps + 1}`);
+  };
+}
+
+const edge = (color, width) => ({ color, width });
+
+/// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt; a star is next.
+function marks(data, moment) {
+  const { on, off, failed } = tapsUntil(data.taps, moment.taps);
   return [
-    trace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: line("#000000", 1.6) }),
-    trace(off, "off the object", { symbol: "x-thin", size: 9, line: line("#ffffff", 4) }),
-    { ...trace(off, "off the object", { symbol: "x-thin", size: 8, line: line("#000000", 1.8) }), showlegend: false },
-    trace(failed, "no contact", { symbol: "square", size: 8, line: line("#000000", 1), color: "#e69f00" }),
-    star,
+    markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
+    markTrace(off, "off the object", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
+    { ...markTrace(off, "off the object", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }), showlegend: false },
+    markTrace(failed, "no contact", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
+    markTrace(nextOf(moment), "next", { symbol: "star", size: 15, color: "#e8112d", line: edge("#ffffff", 1.2) }),
   ];
 }
 
@@ -202,26 +208,13 @@ class SurfaceView {
     };
     const { on, off } = tapsUntil(this.data.taps, moment.taps);
     const lift = this.lift();
-    const points = (taps, name, marker) => ({
-      type: "scatter3d",
-      mode: "markers",
-      name,
-      x: taps.map((tap) => tap.x * kCentimetres),
-      y: taps.map((tap) => tap.y * kCentimetres),
-      z: taps.map((tap) => tap.height * kCentimetres + lift),
-      text: taps.map(hover),
-      hovertemplate: "%{text}<extra></extra>",
-      marker,
-    });
-    const next = moment.next ? [{ ...moment.next, height: this.heightAt(frame, moment.next) / kCentimetres }] : [];
-    const star = points(next, "next", { symbol: "diamond", size: 6, color: "#e8112d", line: { color: "#ffffff", width: 1 } });
-    star.text = next.map(() => `next, tap ${moment.taps + 1}`);
+    const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres }));
     const out = [
       surface,
       this.pins([...on, ...off, ...next], lift),
-      points(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: { color: "#000000", width: 2 } }),
-      points(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }),
-      star,
+      markTrace(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: edge("#000000", 2) }, lift),
+      markTrace(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }, lift),
+      markTrace(next, "next", { symbol: "diamond", size: 6, color: "#e8112d", line: edge("#ffffff", 1) }, lift),
     ];
     if (this.withTruth && this.truth) out.push(this.wireframe());
     return out;

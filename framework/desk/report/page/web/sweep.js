@@ -51,7 +51,7 @@ class FrontPanel {
     };
     const x = rangeOf(values("cost"), kept("cost"));
     const y = values("error").length > 0 ? rangeOf(values("error"), kept("error")) : rangeOf([0, 1], []);
-    const edge = this.sweep.better(choice.error) === "more" ? y.low : y.high;
+    const edge = this.sweep.moreIsBetter(choice.error) ? y.low : y.high;
     const more = {
       xaxis: axis(judged(this.sweep, choice.cost), { type: x.type, range: x.range, exponentformat: "power" }),
       yaxis: axis(judged(this.sweep, choice.error), { type: y.type, range: y.range, exponentformat: "power" }),
@@ -124,7 +124,7 @@ class FrontPanel {
     const edged = runs.failed.filter(({ error }) => error === null).length;
     const open = settings.filter((one) => !one.complete).length;
     const empty = this.sweep.groups(this.sweep.settings).length - settings.length;
-    const end = this.sweep.better(choice.error) === "more" ? "lower" : "upper";
+    const end = this.sweep.moreIsBetter(choice.error) ? "lower" : "upper";
     const text = ["Means over the seeds with 95 % intervals; numbered: no other setting is at least as good in both."];
     if (open > 0) text.push(`Not compared, for jobs that failed, have not ended or lack a value: ${many(open, "setting")}.`);
     if (empty > 0) text.push(`Without any value: ${many(empty, "setting")}.`);
@@ -304,7 +304,7 @@ function drawPanels(sweep, choice) {
   const columns = [...sweep.columns.keys()];
   const keys = sweep.keys.map((key) => key.name);
   const errors = columns.filter((name) => name !== "coverage_95"); // best at 0.95, neither small nor large
-  const costs = errors.filter((name) => sweep.better(name) !== "more");
+  const costs = errors.filter((name) => !sweep.moreIsBetter(name));
   const cells = new CellsPanel(sweep);
   const groups = new GroupsPanel(sweep);
   const parallel = new ParallelPanel(sweep, hasWebGL());

@@ -56,8 +56,8 @@ class SweepData {
     return this.jobs.filter((job) => job.state === state).length;
   }
 
-  better(column) {
-    return this.columns.get(column)?.better ?? "neither";
+  moreIsBetter(column) {
+    return this.columns.get(column)?.better === "more is better";
   }
 
   /// The number of a job in the unit in which it is shown, or null.
@@ -127,21 +127,6 @@ function estimate(values, factors) {
   return { count, mean, deviation: Math.sqrt(squares / (count - 1)), half: factor * Math.sqrt(squares / (count - 1) / count) };
 }
 
-/// Which of some points no other is at least as good as in both and better in one. Less is better; equal points are
-/// on the front together.
-function nonDominated(points) {
-  const order = points.map((_, i) => i).sort((a, b) => points[a].cost - points[b].cost || points[a].loss - points[b].loss);
-  const front = points.map(() => false);
-  let last = null;
-  for (const i of order) {
-    const twin = last && points[i].cost === last.cost && points[i].loss === last.loss;
-    if (last && !twin && !(points[i].loss < last.loss)) continue;
-    front[i] = true;
-    last = points[i];
-  }
-  return front;
-}
-
 /// The settings, all keys but the seed, with their means of cost and error over the jobs that are done and have both:
 /// {words, jobs, cost, error, complete, front}, in the order of cost. As `palpate pareto` has it, only settings all of
 /// whose jobs have both are compared; `front` counts from 1.
@@ -154,7 +139,7 @@ function settingsOf(sweep, cost, error) {
     const times = (value) => (value === null ? null : value * factor);
     return { ...of, mean: times(of.mean), deviation: times(of.deviation), half: times(of.half) };
   };
-  const sign = sweep.better(error) === "more" ? -1 : 1;
+  const sign = sweep.moreIsBetter(error) ? -1 : 1;
   const settings = sweep.groups(sweep.settings).map(({ jobs }) => {
     const valued = jobs.filter((job) => job.state === "done" && raw(cost, job) !== null && raw(error, job) !== null);
     const over = (column) => estimate(valued.map((job) => raw(column, job)), factors);
@@ -171,11 +156,15 @@ function settingsOf(sweep, cost, error) {
   });
   const valued = settings.filter((one) => one.cost.count > 0);
   valued.sort((a, b) => a.point.cost - b.point.cost || a.point.loss - b.point.loss);
-  const complete = valued.filter((one) => one.complete);
+  // One is beaten if one before it is at most as large in loss, but for its twins.
+  let last = null;
   let number = 0;
-  nonDominated(complete.map((one) => one.point)).forEach((on, i) => {
-    if (on) complete[i].front = ++number;
-  });
+  for (const one of valued.filter(({ complete }) => complete)) {
+    const twin = last && one.point.cost === last.cost && one.point.loss === last.loss;
+    if (last && !twin && !(one.point.loss < last.loss)) continue;
+    one.front = ++number;
+    last = one.point;
+  }
   return valued;
 }
 

@@ -20,10 +20,9 @@ function placesAxis(title, names, more = {}, most = 36, room = 25) {
 
 const namesOf = (key) => key.order.map((value) => key.values[value] || kNoValue);
 const titleOf = (name) => plain(brief(withUnit(name), 60));
-const kWays = { less: "less is better", more: "more is better", neither: "" };
 
 function judged(sweep, column) {
-  const way = kWays[sweep.better(column)];
+  const way = sweep.columns.get(column).better;
   return way ? `${titleOf(column)}, ${way}` : titleOf(column);
 }
 

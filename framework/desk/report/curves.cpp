@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "report/curves.hpp"
+
+#include "config/quantity.hpp"
+#include "record/fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+/// What `get` has of every moment.
+template <class Get>
+Curve curve_of(const History& history, const std::string& name, const Get& get) {
+  Curve curve{name, {}};
+  for (const Moment& moment : history.moments) curve.values.push_back(get(moment));
+  return curve;
+}
+
+void add_errors_to(std::vector<CurvePanel>& panels, const History& history) {
+  CurvePanel lengths{"Error of the reconstruction, rms", "cm", CurveAxis::from_zero, {}};
+  std::vector<CurvePanel> shares;
+  for (const RecordField& error : error_fields()) {
+    const bool is_length = error.unit == Unit::metre;
+    Curve curve = curve_of(history, is_length ? error.label : "", [&](const Moment& moment) {
+      Row row;
+      add_errors(row, moment.result.errors);
+      std::optional<double> value = row.number(error.name);
+      if (value && is_length) *value *= 100.0;
+      return value;
+    });
+    if (!is_length) shares.push_back({error.label, "", CurveAxis::share, {}});
+    (is_length ? lengths : shares.back()).curves.push_back(std::move(curve));
+  }
+  panels.push_back(std::move(lengths));
+  std::move(shares.begin(), shares.end(), std::back_inserter(panels));
+}
+
+struct NamedState {
+  const char* name;
+  std::optional<ProcessState> RunResult::*state;
+};
+constexpr std::array<NamedState, 3> kStates{{{"heights", &RunResult::height_process},
+                                             {"labels", &RunResult::weight_process},
+                                             {"object", &RunResult::surface_process}}};
+
+using NamedNumbers = std::vector<std::pair<std::string, double>>;
+
+NamedNumbers parameters_of(const std::optional<ProcessState>& state) {
+  if (!state) return {};
+  NamedNumbers out{{"signal", state->settings.signal}, {"noise", state->settings.noise}};
+  for (const KernelParameter& one : state->kernel) out.emplace_back(one.name, one.value);
+  return out;
+}
+
+NamedNumbers numbers_of(const std::optional<FootprintState>& state) {
+  NamedNumbers out;
+  if (state) {
+    for (const FootprintNumber& one : state->numbers) out.emplace_back(one.name, one.value);
+  }
+  for (auto& [name, value] : out) std::replace(name.begin(), name.end(), '_', ' ');
+  return out;
+}
+
+/// A curve for each name that the last moment has.
+template <class NumbersAt>
+std::vector<Curve> named_curves(const History& history, const NumbersAt& numbers_at) {
+  std::vector<Curve> out;
+  for (const auto& [name, last] : numbers_at(history.moments.back())) {
+    out.push_back(curve_of(history, name, [&, wanted = name](const Moment& moment) -> std::optional<double> {
+      for (const auto& [known, value] : numbers_at(moment)) {
+        if (known == wanted) return value;
+      }
+      return std::nullopt;
+    }));
+  }
+  return out;
+}
+
+std::vector<Curve> likelihoods(const History& history) {
+  std::vector<Curve> out;
+  for (const NamedState& one : kStates) {
+    out.push_back(curve_of(history, one.name, [&](const Moment& moment) {
+      const std::optional<ProcessState>& state = moment.result.*one.state;
+      return state ? std::optional(state->log_marginal_likelihood) : std::nullopt;
+    }));
+  }
+  return out;
+}
+
+/// Milliseconds by phase. Not every tap has a line: one during which the program was killed has none.
+std::vector<Curve> times(const Recording& recording, const History& history) {
+  std::vector<Curve> out;
+  for (const char* phase : kPhaseNames) out.push_back({phase, {}});
+  for (Curve& curve : out) curve.values.resize(history.moments.size());
+  for (const TapTimes& tap : read_timings(recording.directory).taps) {
+    const auto moment = static_cast<std::size_t>(tap.tap);
+    if (moment >= history.moments.size()) continue;
+    for (std::size_t i = 0; i < kPhases; ++i) out[i].values[moment] = 1e3 * tap.seconds[i];
+  }
+  return out;
+}
+
+/// Leaves out what the axis cannot show, and takes a linear one where a logarithmic one is not needed.
+void fit_axis(CurvePanel& panel) {
+  if (panel.axis == CurveAxis::logarithmic) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (Curve& curve : panel.curves) {
+      for (std::optional<double>& value : curve.values) {
+        if (value && !(*value > 0.0)) value.reset();
+        least = std::min(least, value.value_or(least));
+        most = std::max(most, value.value_or(most));
+      }
+    }
+    constexpr double kMostLinear = 20.0;
+    if (most <= kMostLinear * least) panel.axis = CurveAxis::from_zero;
+  }
+  const auto empty = [](const Curve& curve) {
+    return std::none_of(curve.values.begin(), curve.values.end(), [](const auto& value) { return value.has_value(); });
+  };
+  panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(), empty), panel.curves.end());
+}
+
+}  // namespace
+
+std::vector<CurvePanel> curves_of(const Recording& recording, const History& history) {
+  std::vector<CurvePanel> panels;
+  const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
+    panels.push_back({std::move(title), unit, axis, std::move(curves)});
+  };
+  const auto one = [&](const auto& get) { return std::vector<Curve>{curve_of(history, "", get)}; };
+  add_errors_to(panels, history);
+  add("Largest standard deviation of a height", "cm", CurveAxis::from_zero,
+      one([](const Moment& moment) { return 100.0 * moment.largest_deviation; }));
+  add("Share of the taps on the object", "", CurveAxis::share, one([](const Moment& moment) {
+        const RunResult& result = moment.result;
+        return moment.taps > 0 ? std::optional(static_cast<double>(result.on_surface_taps) / moment.taps)
+                               : std::nullopt;
+      }));
+  add("Log marginal likelihood", "nat", CurveAxis::free, likelihoods(history));
+  for (const NamedState& state : kStates) {
+    add(fmt::format("Hyperparameters, {} (SI units)", state.name), "", CurveAxis::logarithmic,
+        named_curves(history, [&](const Moment& moment) { return parameters_of(moment.result.*state.state); }));
+  }
+  add(fmt::format("What footprint/{} tells", recording.config.options.footprint.type), "", CurveAxis::free,
+      named_curves(history, [](const Moment& moment) { return numbers_of(moment.result.footprint); }));
+  add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
+  if (history.moments.back().result.robot_seconds > 0.0)
+    add("Robot time so far", "s", CurveAxis::from_zero,
+        one([](const Moment& moment) { return moment.result.robot_seconds; }));
+  for (CurvePanel& panel : panels) fit_axis(panel);
+  const auto is_empty = [](const CurvePanel& panel) { return panel.curves.empty(); };
+  panels.erase(std::remove_if(panels.begin(), panels.end(), is_empty), panels.end());
+  return panels;
+}
+
+}  // namespace palpate

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// What is drawn of a run over its taps: the panels of `figures/curves.png` and of its page, which show the same
+// numbers.
+#pragma once
+
+#include "report/history.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Values at every moment of a history, none where there is none.
+struct Curve {
+  std::string name;  ///< "" of the only one of a panel
+  std::vector<std::optional<double>> values;
+};
+
+enum class CurveAxis {
+  free,
+  from_zero,
+  share,        ///< from 0 to 1
+  logarithmic,  ///< where the values differ much
+};
+
+/// Curves with one axis; there is at least one, each with at least one value that the axis can show.
+struct CurvePanel {
+  std::string title;
+  std::string unit;  ///< "" for none
+  CurveAxis axis = CurveAxis::from_zero;
+  std::vector<Curve> curves;
+
+  std::string full_title() const { return unit.empty() ? title : title + " [" + unit + "]"; }
+};
+
+/// Errors, what is not known, shares, likelihoods, hyperparameters, what the footprint tells, times; what the run has
+/// not is left out. Of a damaged timings.csv it takes the lines before the damage.
+std::vector<CurvePanel> curves_of(const Recording& recording, const History& history);
+
+}  // namespace palpate

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: MIT
-#include "baxter/available.hpp"
-
-namespace palpate::baxter {
-
-bool available() { return true; }
-
-}  // namespace palpate::baxter

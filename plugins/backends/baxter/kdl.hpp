@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Baxter's numbers in KDL's words.
+#pragma once
+
+#include "baxter/left_arm.hpp"
+#include "baxter/robot.hpp"
+
+#include <kdl/frames.hpp>
+#include <kdl/jntarray.hpp>
+
+namespace palpate::baxter {
+
+inline KDL::Frame frame(const description::Step& step) {
+  return {KDL::Rotation::RPY(step.roll, step.pitch, step.yaw), KDL::Vector(step.x, step.y, step.z)};
+}
+
+inline KDL::JntArray array_of(const Joints& joints) {
+  KDL::JntArray out(7);
+  out.data = joints;
+  return out;
+}
+
+}  // namespace palpate::baxter

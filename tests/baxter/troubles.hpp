@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What goes wrong in a tap, and what is to come of it: in one process and over ROS.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+namespace palpate::test {
+
+struct Trouble {
+  const char* name;
+  const char* fault;    ///< as the robot of the tests takes it
+  const char* reason;   ///< of the tap
+  bool raised = false;  ///< the arm, to the height of travel; else it stays where it is
+  bool ends_run = true;
+};
+
+inline void PrintTo(const Trouble& trouble, std::ostream* out) { *out << trouble.fault; }
+
+inline std::string name_of(const Trouble& trouble) { return trouble.name; }
+
+inline constexpr Trouble kTroubles[] = {
+    {"EmergencyStop", "estop", "the emergency stop is pressed"},
+    {"ErrorFlag", "error", "the robot reports an error and is disabled"},
+    {"Squish", "squish", "the arm's own reflex stopped it", true},
+    {"FrozenEndpoint", "freeze_endpoint", "the same force to the last digit"},
+    {"KilledEndpoint", "kill_endpoint", "endpoint_state of the left arm did not come"},
+    {"KilledJoints", "kill_joints", "joint_states of the left arm did not come"},
+    {"KilledState", "kill_state", "/robot/state did not come"},
+    {"StaleStamps", "stale_stamps", "its data are stale"},
+    {"SecondState", "second_state", "comes from more than one node"},
+    {"ForceIsNoNumber", "nan_wrench", "no number"},
+    {"ForceIsZero", "zero_wrench", "a force of exactly zero"},
+    {"BiasUp", "bias=8", "its zero moved during the tap", true, false},
+    {"BiasFarUp", "bias=20", "more than force_stop allows", true},
+    {"BiasDown", "bias=-12", "the force fell by more than the threshold", true},
+    {"DroppedCommands", "drop_commands=5", "the arm does not follow"},
+    {"JumpOfTheJoints", "jump_joints=0.3", "/robot/joint_states jumped by"},
+    {"FrozenClock", "freeze_clock", "the clock of the robot's network stands still"},
+};
+
+}  // namespace palpate::test

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Models are built and recorded for those who said that they read them, and for nobody else.
+#include "record/row.hpp"
+#include "record/tap_row.hpp"
+#include "support/runs.hpp"
+#include "support/testing.hpp"
+
+#include <set>
+#include <stdexcept>
+
+namespace palpate::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
+  Prepared prepared("paper/object_i.yaml", {"acquisition=uncertainty"});
+  const TapBelief& belief = prepared.experiment.belief();
+  int weight_seen = 0;
+  int height_seen = 0;
+  prepared.journal.recording = [&](const TapRecord&) {
+    weight_seen += belief.weight_process() ? 1 : 0;
+    height_seen += belief.height_process() ? 1 : 0;
+  };
+  prepared.run();
+  EXPECT_EQ(weight_seen, 0);
+  EXPECT_EQ(height_seen, 14) << "of 17 taps, the 14 chosen by score need the height process";
+  prepared.experiment.result();
+  EXPECT_NE(belief.weight_process().process, nullptr)
+      << "the truth-based metrics want the outline, once, after the last tap";
+}
+
+TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
+  const Finished run("paper/object_i.yaml", {"acquisition=random"});
+  EXPECT_EQ(run.experiment.belief().height_process().process, nullptr);
+  EXPECT_EQ(run.experiment.belief().weight_process().process, nullptr);
+  EXPECT_FALSE(run.taps.back().max_standard_deviation.has_value());
+  EXPECT_FALSE(run.taps.back().errors.rmse.has_value());
+}
+
+TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
+  const auto readers = [](const Words& words) {
+    Words out;
+    const Prepared prepared("paper/object_i.yaml", words);
+    for (const ModelReader& one : prepared.experiment.readers()) out.push_back(one.model + ": " + one.who);
+    const TapBelief& belief = prepared.experiment.belief();
+    EXPECT_FALSE(belief.height_process() || belief.weight_process());
+    return out;
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(readers({}), ElementsAre("height process: acquisition weighted", "weight process: acquisition weighted",
+                                       "height process: fallback uncertainty, from its first use on"));
+  EXPECT_THAT(readers({"acquisition=random", "fallback=none"}), ElementsAre());
+  EXPECT_THAT(readers({"acquisition=outline", "fallback=none"}),
+              ElementsAre("height process: acquisition outline", "weight process: acquisition outline"))
+      << "two outputs of one process";
+  EXPECT_THAT(readers({"acquisition=outline", "fallback=none", "weight.noise=1e-3"}),
+              ElementsAre("weight process: acquisition outline"));
+  EXPECT_THAT(readers({"acquisition=outline", "footprint=shape", "fallback=none", "surface=two_part",
+                       "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
+              ElementsAre("footprint shape: acquisition outline", "height process: stop.max_standard_deviation",
+                          "surface process: stop.expected_rmse", "footprint shape: stop.expected_rmse"));
+  EXPECT_THAT(readers({"acquisition=random", "fallback=none", "backend.motion.adaptive_hover={clearance: 2cm}"}),
+              ElementsAre("height process: backend simulator"));
+}
+
+TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
+  for (const Words& words :
+       std::vector<Words>{{},
+                          {"acquisition=random"},
+                          {"acquisition=outline"},
+                          {"acquisition=outline", "weight.noise=1e-3"},
+                          {"acquisition=uncertainty", "surface=two_part"},
+                          {"acquisition=inside", "footprint=shape", "surface=two_part"},
+                          {"acquisition=random", "surface=two_part", "stop.expected_rmse=1mm"},
+                          {"acquisition=random", "surface=two_part", "backend.motion.adaptive_hover={}"}}) {
+    Words all = words;
+    all.insert(all.end(), {"fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
+    Prepared prepared("paper/object_i.yaml", all);
+    std::set<std::string> named;
+    for (const ModelReader& one : prepared.experiment.readers()) named.insert(one.model);
+    prepared.run();
+    const TapRecord& last = prepared.taps.back();
+    std::set<std::string> recorded;
+    if (last.height_process) recorded.insert("height process");
+    if (last.weight_process) recorded.insert("weight process");
+    if (last.surface_process) recorded.insert("surface process");
+    if (last.footprint) recorded.insert("footprint shape");
+    EXPECT_EQ(recorded, named) << (words.empty() ? "weighted" : words.front());
+  }
+}
+
+TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
+  for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=outline"}) {
+    const Words words{acquisition, "surface=two_part"};
+    Finished alone("paper/object_i.yaml", words);
+    Prepared followed("paper/object_i.yaml", words);
+    std::vector<Errors> errors;
+    followed.journal.announcing = [&](const TapRecord&) { errors.push_back(followed.experiment.errors()); };
+    followed.run();
+    ASSERT_EQ(followed.taps.size(), alone.taps.size());
+    for (std::size_t i = 0; i < alone.taps.size(); ++i) {
+      EXPECT_EQ(to_json_line(tap_row(followed.taps[i])), to_json_line(tap_row(alone.taps[i]))) << acquisition;
+      ASSERT_TRUE(errors[i].rmse && errors[i].footprint_iou);
+      EXPECT_LT(*errors[i].rmse, 1.0);
+    }
+    const RunResult result = followed.experiment.result();
+    EXPECT_EQ(*result.errors.rmse, *alone.experiment.result().errors.rmse);
+    EXPECT_EQ(result.interventions, alone.experiment.result().interventions);
+    EXPECT_FALSE(alone.taps.back().errors.rmse.has_value()) << "nobody reads the surface for the strategy";
+  }
+}
+
+TEST(Belief, ThatNobodyAskedForOrThatIsOldIsNotRead) {
+  Prepared prepared("paper/object_i.yaml", {"taps=4"});
+  const TapBelief& belief = prepared.experiment.belief();
+  EXPECT_THROW(belief.weight(), std::logic_error);
+  prepared.experiment.ask(Quantity::weight);
+  EXPECT_NO_THROW(belief.weight());
+  prepared.journal.announcing = [&](const TapRecord&) { EXPECT_NO_THROW(belief.weight()); };
+  prepared.journal.recording = [&](const TapRecord&) {
+    EXPECT_THROW(belief.weight(), std::logic_error) << "the models have not taken in the tap yet";
+  };
+  prepared.run();
+}
+
+TEST(Experiment, APreviewTellsWhatTheModelsExpectAndBuildsNone) {
+  Prepared prepared("paper/object_i.yaml", {"taps=4"}, scripted({contact_at(0.09)}));
+  const TapBelief& belief = prepared.experiment.belief();
+  std::vector<Preview> previews;
+  std::vector<bool> built;
+  double mean = 0.0;
+  prepared.journal.permitting = [&](const TapRecord& tap) {
+    built.push_back(static_cast<bool>(belief.height_process()));
+    previews.push_back(prepared.experiment.preview(tap));
+    EXPECT_EQ(static_cast<bool>(belief.height_process()), built.back());
+    if (built.back()) mean = belief.height_mean()(tap.candidate);
+    return true;
+  };
+  prepared.run();
+  ASSERT_EQ(built, (std::vector<bool>{false, false, false, true})) << "three initial taps need no model";
+  EXPECT_FALSE(previews[2].expected.has_value());
+  ASSERT_TRUE(previews[3].expected.has_value());
+  EXPECT_EQ(previews[3].expected->height, mean);
+  EXPECT_GT(previews[3].expected->standard_deviation, 0.0);
+}
+
+}  // namespace
+}  // namespace palpate::test
