@@ -6,9 +6,7 @@
 
 namespace palpate::footprints {
 
-double Piece::extent() const {
-  return (family == Family::box ? 4.0 : kPi) * a * b;
-}
+double Piece::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
 std::pair<double, double> Piece::cut(double py) const {
   const double dy = py - y;
