@@ -5,8 +5,6 @@
 
 #include <palpate/random.hpp>
 
-#include <dlfcn.h>
-
 namespace palpate::test {
 namespace {
 
@@ -109,12 +107,6 @@ TEST_F(MeshInAFile, IsPlacedAtRandomWhollyInside) {
       EXPECT_NEAR(mesh->height(at, 0.4 - at), exact->height(at, 0.4 - at), 1e-5);
     }
   }
-}
-
-TEST(MeshPlugin, StaysLoadedWhenItsHostGoesBecauseThreadsOfItsLibrariesRunOn) {
-  const fs::path file = plugin_folder() / "shape/mesh.so";
-  ASSERT_EQ(PluginHost({plugin_folder()}).loaded({{"shape", "mesh"}}).front().file, file);
-  EXPECT_NE(::dlopen(file.c_str(), RTLD_NOW | RTLD_NOLOAD), nullptr);
 }
 
 }  // namespace
