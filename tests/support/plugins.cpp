@@ -8,10 +8,17 @@
 #include "support/filled.hpp"
 #include "support/support.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <filesystem>
+#include <set>
+#include <system_error>
 
 namespace palpate::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The smallest options that hold a plugin.
 struct Holder : Options {
@@ -56,10 +63,21 @@ const PluginHost& contract_host() {
 }
 
 std::vector<std::string> plugins_under_contract(const std::string& kind) {
+  std::set<std::string> files;
+  std::error_code none;
+  for (const fs::path& folder : PluginHost::search_path(plugin_folder())) {
+    for (const auto& entry : fs::directory_iterator(folder / kind, none)) {
+      files.insert(entry.path().stem().string());
+    }
+  }
+  // Of a program that runs one case, most of the time would go into looking at plugins of others.
+  const std::string cases = GTEST_FLAG_GET(filter);
   std::vector<std::string> names;
-  for (const PluginListing& row : contract_host().list(kind, "")) {
-    if (row.trouble.empty() && needs_options(kind, row.name)) continue;
-    names.push_back(row.name);
+  for (const std::string& name : files) {
+    if (cases.find('*') == std::string::npos && cases.find(test_name(name)) == std::string::npos) continue;
+    const std::vector<PluginListing> rows = contract_host().list(kind, name);
+    if (rows.empty() || (rows.front().trouble.empty() && needs_options(kind, name))) continue;
+    names.push_back(name);
   }
   return names;
 }
