@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/compare_report.hpp"
-#include "analysis/means_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/sweep_display.hpp"
 #include "config/hash.hpp"
+#include "config/trouble.hpp"
 #include "launch/children.hpp"
 #include "record/files.hpp"
 #include "record/resolved.hpp"
@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 
 namespace palpate::cli {
 namespace {
@@ -47,7 +46,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
                                                         const std::vector<int>& taps, std::optional<int> workers) {
   const EarlierResults earlier(sweep, taps);
   const std::vector<std::size_t>& missing = earlier.missing();
-  const int together = workers.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  const int together = workers.value_or(cores());
   SweepLine line(false);
   SweepProgress progress;
   progress.jobs = static_cast<int>(missing.size());
@@ -103,8 +102,6 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
 }  // namespace
 
 int compare(Program& program, const CompareArguments& arguments) {
-  if (!is_sweep(arguments.directory))
-    throw Error(arguments.directory, "is not the directory of a sweep", "it has no manifest.jsonl");
   const Sweep sweep = read_sweep(arguments.directory);
   const auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
@@ -117,12 +114,9 @@ int compare(Program& program, const CompareArguments& arguments) {
   const std::string condition = arguments.where.value_or("");
   for (const Comparison& one : *comparisons) {
     const fs::path file = table_file(sweep, one, condition);
-    try {
-      write_file(file, to_csv(compare_rows(one, condition)));
-      fmt::print(stderr, "table: {}\n", file.string());
-    } catch (const Error& trouble) {  // what was asked for is on stdout
-      fmt::print(stderr, "no table was left: {}\n", trouble.what());
-    }
+    const auto trouble = trouble_in([&] { write_file(file, to_csv(compare_rows(one, condition))); });
+    // No reason to fail: what was asked for is on stdout.
+    fmt::print(stderr, "{}: {}\n", trouble ? "no table was left" : "table", trouble ? trouble->what() : file.string());
   }
   return kDone;
 }

@@ -76,8 +76,10 @@ constexpr int kMany = 1000000;
 void add_run(CommandLine& line) {
   CLI::App* sub = line.add(
       "run", "Run one experiment",
-      [&line](Program& program, Needs& needs) { need_run(program, line.run.config, line.run.overrides, needs); }, run,
-      line.run);
+      [&line](Program& program, Needs& needs) {
+        need_config(program, line.run.config, line.run.overrides, false, needs);
+      },
+      run, line.run);
   sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->required();
   sub->add_option("OVERRIDE", line.run.overrides,
                   "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
@@ -156,7 +158,10 @@ void add_rest(CommandLine& line) {
 
   sub = line.add(
       "validate", "Check configs, run nothing",
-      [&line](Program& program, Needs& needs) { need_configs(program, line.configs, needs); }, validate, line.configs);
+      [&line](Program& program, Needs& needs) {
+        for (const std::string& config : line.configs) need_config(program, config, {}, true, needs);
+      },
+      validate, line.configs);
   sub->add_option("CONFIG", line.configs, "YAML files")->required();
 
   sub = line.add("plugins", "List plugins, or the options of one", with(need_listing, line.plugin), plugins,
@@ -295,15 +300,7 @@ int run_main(int argc, char** argv) {
 }
 
 int exit_status(Error::Kind kind) {
-  switch (kind) {
-    case Error::Kind::usage:
-      return kUsage;
-    case Error::Kind::run:
-      return kFailed;
-    case Error::Kind::busy:
-      return kBusy;
-  }
-  return kFailed;
+  return kind == Error::Kind::usage ? kUsage : kind == Error::Kind::busy ? kBusy : kFailed;
 }
 
 }  // namespace

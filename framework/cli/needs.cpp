@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/needs.hpp"
 
+#include "config/trouble.hpp"
 #include "record/run_directory.hpp"
-
-#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
@@ -27,15 +26,7 @@ class Listener final : public PluginSource {
   Needs& needs_;
 };
 
-/// Goes as far as the config is sound.
-template <class Work>
-void listen(const Work& work) {
-  try {
-    work();
-  } catch (const Error&) {  // the command itself will say it
-  }
-}
-
+/// What is wrong with the config ends the hearing, and the command itself says it.
 void hear(const Program& program, const Tree& config, Needs& needs) {
   resolve_experiment(config, Listener(program.host, needs));
 }
@@ -44,27 +35,20 @@ void hear(const Program& program, const Tree& config, Needs& needs) {
 
 void need_everything(Program&, Needs& needs) { needs.whole = needs.every_plugin = true; }
 
-void need_run(Program& program, const std::string& config, const std::vector<std::string>& overrides, Needs& needs) {
-  listen([&] {
+void need_config(Program& program, const std::string& config, const std::vector<std::string>& overrides, bool sweeps,
+                 Needs& needs) {
+  trouble_in([&] {
     std::vector<Override> read;
     for (const std::string& text : overrides) read.push_back(parse_override(text));
-    hear(program, program.composer.compose(config, read), needs);
+    const Tree tree = program.composer.compose(config, read);
+    if (sweeps && tree.find("sweep") != nullptr) need_everything(program, needs);
+    hear(program, tree, needs);
   });
-}
-
-void need_configs(Program& program, const std::vector<std::string>& configs, Needs& needs) {
-  for (const std::string& config : configs) {
-    listen([&] {
-      const Tree tree = program.composer.compose(config, {});
-      if (tree.find("sweep") != nullptr) need_everything(program, needs);
-      hear(program, tree, needs);
-    });
-  }
 }
 
 void need_record(Program& program, const std::string& directory, Needs& needs) {
   if (is_sweep(directory)) return need_everything(program, needs);
-  listen([&] { hear(program, read_run_config(directory), needs); });
+  trouble_in([&] { hear(program, read_run_config(directory), needs); });
 }
 
 void need_whole(Program& program, const std::string& directory, Needs& needs) {

@@ -21,10 +21,9 @@ struct Needs {
 // Each of these adds to `needs` what a command takes, and throws nothing: what is wrong with a config the command says.
 // Plugins that only plugins name come to light once those are built.
 
-/// The plugins that a config names, by itself or because they are defaults.
-void need_run(Program& program, const std::string& config, const std::vector<std::string>& overrides, Needs& needs);
-/// The same, and everything where one of them is a sweep.
-void need_configs(Program& program, const std::vector<std::string>& configs, Needs& needs);
+/// The plugins that a config names, by itself or because they are defaults; with `sweeps`, everything where it is one.
+void need_config(Program& program, const std::string& config, const std::vector<std::string>& overrides, bool sweeps,
+                 Needs& needs);
 /// What a run named; everything for a sweep.
 void need_record(Program& program, const std::string& directory, Needs& needs);
 /// That, and the program with every command.
