@@ -71,7 +71,7 @@ struct LaunchArguments {
   std::optional<int> jobs_per_task;
   bool wait = false;
 };
-/// Throws Error for options that do not go together.
+/// Throws Error for options that do not go together, and where no JUnit file can be made.
 void check_launch(const LaunchArguments& launch);
 
 struct SweepArguments {

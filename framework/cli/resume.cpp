@@ -28,11 +28,11 @@ void check_launch(const LaunchArguments& launch) {
     throw Error("command line", "--junit: there is no result before the jobs have ended",
                 "add --wait, or give it to 'palpate resume' afterwards");
   }
+  check_junit(launch.junit);
 }
 
 int resume(Program& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
-  check_junit(arguments.launch.junit);
   if (is_sweep(arguments.directory)) return resume_sweep(program, arguments);
   if (!arguments.jobs.empty()) {
     throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");

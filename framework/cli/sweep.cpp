@@ -216,7 +216,6 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   check_sbatch_words(arguments.launch.sbatch);
-  check_junit(arguments.launch.junit);
   bool one_at_a_time = false;
   std::optional<SweepDraft> draft;
   if (!arguments.list) draft.emplace(arguments.runs);

@@ -237,6 +237,14 @@ void check_values(const Comparison& made, const Sweep& sweep) {
 
 }  // namespace
 
+std::vector<double> Comparison::means() const {
+  std::vector<double> out;
+  for (const ComparedGroup& group : groups) {
+    if (group.mean.count > 0) out.push_back(group.mean.mean);
+  }
+  return out;
+}
+
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query) {
   if (results.empty()) {
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");

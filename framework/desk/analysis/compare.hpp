@@ -57,7 +57,10 @@ struct Comparison {
   std::vector<std::string> apart;
   std::vector<ComparedGroup> groups;  ///< in the order of the sweep
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
-  std::size_t compared = 0;           ///< groups; those that the condition leaves out whole are in no pair
+  /// Of the groups that have one.
+  std::vector<double> means() const;
+
+  std::size_t compared = 0;  ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
   bool ratios = false;            ///< asked for
   std::optional<int> after_taps;  ///< the jobs as they were after so many taps; none: as they ended

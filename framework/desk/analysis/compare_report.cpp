@@ -17,12 +17,8 @@ namespace {
 using Better = RecordField::Better;
 using Lines = std::vector<std::vector<std::string>>;
 
-Scale scale_of(const Comparison& comparison) {
-  std::vector<double> means;
-  for (const ComparedGroup& group : comparison.groups) {
-    if (group.mean.count > 0) means.push_back(group.mean.mean);
-  }
-  return readable_scale(comparison.metric.unit, means);
+std::string keys_text(const std::vector<std::string>& keys) {
+  return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
 /// In the unit of the groups, but fine enough for two digits of the narrowest interval.
@@ -58,9 +54,8 @@ std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
 std::string group_table(const Comparison& comparison, const Scale& scale) {
   const bool numbers = numbered(comparison);
   const bool some_left_out = comparison.left_out.all() > 0;
-  Lines lines{{numbers ? "#" : "", one_line(fmt::format("{}", fmt::join(comparison.by, ", "))), "jobs",
-               some_left_out ? "left out" : "", "failed", "unfinished", "no value", "n", "mean [95 % interval]",
-               "median", "10 % to 90 %"}};
+  Lines lines{{numbers ? "#" : "", keys_text(comparison.by), "jobs", some_left_out ? "left out" : "", "failed",
+               "unfinished", "no value", "n", "mean [95 % interval]", "median", "10 % to 90 %"}};
   for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
     const ComparedGroup& one = comparison.groups[i];
     const bool any = one.mean.count > 0;
@@ -121,10 +116,6 @@ std::string pair_table(const Comparison& comparison, const Scale& scale) {
                      pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
   }
   return aligned(lines, "lrrrrrrrr");
-}
-
-std::string keys_text(const std::vector<std::string>& keys) {
-  return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
 /// Where the mean and the majority of the pairs point in different directions, neither is the answer.
@@ -190,7 +181,7 @@ std::string remarks(const Comparison& comparison) {
 }  // namespace
 
 std::string compare_tables(const Comparison& comparison) {
-  const Scale scale = scale_of(comparison);
+  const Scale scale = readable_scale(comparison.metric.unit, comparison.means());
   const std::string better = comparison.metric.better_words();
   std::string out = fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
                                 comparison.after_taps ? fmt::format(" after {} taps", *comparison.after_taps) : "",

@@ -19,9 +19,8 @@ constexpr int kDigits = 2;
 Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
-    for (const ComparedGroup& group : comparisons[i].groups) {
-      if (group.mean.count > 0) means.push_back(group.mean.mean);
-    }
+    const std::vector<double> more = comparisons[i].means();
+    means.insert(means.end(), more.begin(), more.end());
   }
   return readable_scale(comparisons[first].metric.unit, means, kDigits);
 }
