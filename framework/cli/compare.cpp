@@ -10,8 +10,6 @@
 #include "record/resolved.hpp"
 #include "sweep/earlier_results.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,12 +20,6 @@ namespace palpate::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-Condition read_condition(const std::string& text) {
-  Tree tree = Tree::scalar(text, true);
-  tree.place.file = std::make_shared<const std::string>("command line: --where");
-  return Condition(tree);
-}
 
 /// Beside results.csv. Comparisons on other conditions, or after fewer taps, have files of their own.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
@@ -71,7 +63,11 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
   std::optional<Condition> where;
-  if (arguments.where) where.emplace(read_condition(*arguments.where));
+  if (arguments.where) {
+    Tree text = Tree::scalar(*arguments.where, true);
+    text.place.file = std::make_shared<const std::string>("command line: --where");
+    where.emplace(text);
+  }
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::vector<Row>& results, std::optional<int> after_taps) {
     for (const std::string& metric : arguments.metrics) {

@@ -6,7 +6,6 @@
 #include "sweep/sweep.hpp"
 
 #include <chrono>
-#include <cstddef>
 #include <string>
 #include <vector>
 
