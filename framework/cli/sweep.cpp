@@ -22,6 +22,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -65,12 +66,23 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
 int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted) {
   const Sweep& sweep = campaign.sweep;
   const std::vector<std::optional<Row>> summaries = write_results(sweep);
-  const auto initial_taps = [&](std::size_t job) -> std::optional<int> {
-    const std::optional<ResolvedConfig> config = readable_config(campaign, job);
-    if (!config) return std::nullopt;
+  // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and a config is read
+  // once for all of them.
+  std::map<std::vector<std::string>, std::optional<int>> known;
+  const auto initial_taps = [&](std::size_t job) {
+    std::vector<std::string> deciding;
+    for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
+      const std::string first = first_key(sweep.keys[i]);
+      if (first == kStrategy || first == "initial" || first == "taps") deciding.push_back(sweep.jobs[job].values[i]);
+    }
+    std::optional<int>& taps = known[deciding];
+    const std::optional<ResolvedConfig> config = taps ? std::nullopt : readable_config(campaign, job);
     // All taps until the first hit are the search's: its dead starts are those that never hit.
-    const ExperimentOptions& options = config->options;
-    return static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+    if (config) {
+      const ExperimentOptions& options = config->options;
+      taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+    }
+    return taps;
   };
   fmt::print("{}", sweep_table(sweep, sweep_results(sweep, summaries), initial_taps));
   print_failures(sweep, end.failures);
