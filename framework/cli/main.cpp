@@ -74,10 +74,7 @@ constexpr int kMany = 1000000;
 
 void add_run(CommandLine& line) {
   CLI::App* sub = line.add(
-      "run", "Run one experiment",
-      [&line](Program& program, Needs& needs) {
-        need_config(program, line.run.config, line.run.overrides, false, needs);
-      },
+      "run", "Run one experiment", [&line](Needs& needs) { needs.config(line.run.config, line.run.overrides, false); },
       run, line.run);
   sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->required();
   sub->add_option("OVERRIDE", line.run.overrides,

@@ -66,23 +66,29 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
 int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted) {
   const Sweep& sweep = campaign.sweep;
   const std::vector<std::optional<Row>> summaries = write_results(sweep);
-  // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and a config is read
-  // once for all of them.
-  std::map<std::vector<std::string>, std::optional<int>> known;
-  const auto initial_taps = [&](std::size_t job) {
-    std::vector<std::string> deciding;
+  // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and the first of their
+  // configs that can be read tells it for all of them.
+  const auto deciding = [&](const Job& job) {
+    std::vector<std::string> values;
     for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
       const std::string first = first_key(sweep.keys[i]);
-      if (first == kStrategy || first == "initial" || first == "taps") deciding.push_back(sweep.jobs[job].values[i]);
+      if (first == kStrategy || first == "initial" || first == "taps") values.push_back(job.values[i]);
     }
-    std::optional<int>& taps = known[deciding];
-    const std::optional<ResolvedConfig> config = taps ? std::nullopt : readable_config(campaign, job);
-    // All taps until the first hit are the search's: its dead starts are those that never hit.
-    if (config) {
+    return values;
+  };
+  std::map<std::vector<std::string>, std::optional<int>> known;
+  const auto initial_taps = [&](std::size_t job) {
+    const std::vector<std::string> values = deciding(sweep.jobs[job]);
+    const auto [taps, is_new] = known.try_emplace(values);
+    for (std::size_t other = 0; is_new && !taps->second && other < sweep.jobs.size(); ++other) {
+      if (deciding(sweep.jobs[other]) != values) continue;
+      const std::optional<ResolvedConfig> config = readable_config(campaign, other);
+      if (!config) continue;
+      // All taps until the first hit are the search's: its dead starts are those that never hit.
       const ExperimentOptions& options = config->options;
-      taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+      taps->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
     }
-    return taps;
+    return taps->second;
   };
   fmt::print("{}", sweep_table(sweep, sweep_results(sweep, summaries), initial_taps));
   print_failures(sweep, end.failures);
