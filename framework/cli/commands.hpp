@@ -43,14 +43,17 @@ struct RunArguments {
 };
 int run(Program& program, const RunArguments& arguments);
 
-/// What is shown of a run and of what was expected of it.
+/// How a run is watched, and what is shown of it and of what was expected of it.
 struct RunOutput {
-  bool table = false;  ///< the result in a few lines on stdout
+  bool table = false;  ///< a line a tap and the result in a few on stdout
   bool json = false;   ///< summary.json on stdout
   std::string junit;   ///< a file, "" for none
+  bool step = false;   ///< every tap is asked for
 };
-/// Runs `action`, shows its report and judges it by the config. Returns the exit status.
-int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action);
+/// Has `action` run it, with who shows each tap and who is asked before, shows its report and judges it by the config.
+/// Returns the exit status.
+using RunAction = std::function<RunReport(Journal* display, Supervisor* step)>;
+int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
 
 /// A launcher that is not this machine.
 constexpr const char* kSlurm = "slurm";
@@ -68,7 +71,7 @@ struct LaunchArguments {
   std::optional<int> jobs_per_task;
   bool wait = false;
 };
-/// Throws Error for options that do not go together.
+/// Throws Error for options that do not go together, and where no JUnit file can be made.
 void check_launch(const LaunchArguments& launch);
 
 struct SweepArguments {
@@ -92,6 +95,8 @@ int resume(Program& program, const ResumeArguments& arguments);
 
 int status(Program& program, const std::string& directory);
 int replay(Program& program, const std::string& directory);
+/// For commands that read one run: throws Error for the directory of a sweep, saying which of its folders are runs.
+void check_one_run(const std::filesystem::path& directory);
 int validate(Program& program, const std::vector<std::string>& configs);
 int plugins(Program& program, const std::string& what, bool json);
 int schema(Program& program);

@@ -1,34 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/compare_report.hpp"
-#include "analysis/means_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/sweep_display.hpp"
 #include "config/hash.hpp"
+#include "config/trouble.hpp"
 #include "launch/children.hpp"
 #include "record/files.hpp"
 #include "record/resolved.hpp"
 #include "sweep/earlier_results.hpp"
-
-#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 
 namespace palpate::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-Condition read_condition(const std::string& text) {
-  Tree tree = Tree::scalar(text, true);
-  tree.place.file = std::make_shared<const std::string>("command line: --where");
-  return Condition(tree);
-}
 
 /// Beside results.csv. Comparisons on other conditions, or after fewer taps, have files of their own.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
@@ -47,7 +38,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
                                                         const std::vector<int>& taps, std::optional<int> workers) {
   const EarlierResults earlier(sweep, taps);
   const std::vector<std::size_t>& missing = earlier.missing();
-  const int together = workers.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  const int together = workers.value_or(cores());
   SweepLine line(false);
   SweepProgress progress;
   progress.jobs = static_cast<int>(missing.size());
@@ -72,7 +63,11 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
   std::optional<Condition> where;
-  if (arguments.where) where.emplace(read_condition(*arguments.where));
+  if (arguments.where) {
+    Tree text = Tree::scalar(*arguments.where, true);
+    text.place.file = std::make_shared<const std::string>("command line: --where");
+    where.emplace(text);
+  }
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::vector<Row>& results, std::optional<int> after_taps) {
     for (const std::string& metric : arguments.metrics) {
@@ -103,8 +98,6 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
 }  // namespace
 
 int compare(Program& program, const CompareArguments& arguments) {
-  if (!is_sweep(arguments.directory))
-    throw Error(arguments.directory, "is not the directory of a sweep", "it has no manifest.jsonl");
   const Sweep sweep = read_sweep(arguments.directory);
   const auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
@@ -117,12 +110,9 @@ int compare(Program& program, const CompareArguments& arguments) {
   const std::string condition = arguments.where.value_or("");
   for (const Comparison& one : *comparisons) {
     const fs::path file = table_file(sweep, one, condition);
-    try {
-      write_file(file, to_csv(compare_rows(one, condition)));
-      fmt::print(stderr, "table: {}\n", file.string());
-    } catch (const Error& trouble) {  // what was asked for is on stdout
-      fmt::print(stderr, "no table was left: {}\n", trouble.what());
-    }
+    const auto trouble = trouble_in([&] { write_file(file, to_csv(compare_rows(one, condition))); });
+    // No reason to fail: what was asked for is on stdout.
+    fmt::print(stderr, "{}: {}\n", trouble ? "no table was left" : "table", trouble ? trouble->what() : file.string());
   }
   return kDone;
 }

@@ -17,6 +17,20 @@ std::string scaled(const std::optional<double>& value, double scale, const char*
   return value ? fmt::format(fmt::runtime(format), *value * scale) : "-";
 }
 
+/// What had to be done about rounding, in one line; empty when nothing was.
+std::string numerics_line(const Row& row) {
+  std::string line;
+  const auto add = [&](const char* kind, const char* words) {
+    const std::string count = row.cell(std::string("interventions.") + kind);
+    if (count != "0" && !count.empty()) line += fmt::format(fmt::runtime(words), line.empty() ? "" : ", ", count);
+  };
+  add("jitter", "{}jitter was raised {} times");
+  add("pivoted", "{}the covariance was pivoted {} times");
+  add("set_aside", "{}{} taps were set aside");
+  add("fit_failed", "{}{} fits failed");
+  return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
+}
+
 }  // namespace
 
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}
@@ -55,24 +69,6 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
 }
 
 void mention(const std::string& text, std::FILE* where) { std::fputs(text.c_str(), where); }
-
-namespace {
-
-/// What had to be done about rounding, in one line; empty when nothing was.
-std::string numerics_line(const Row& row) {
-  std::string line;
-  const auto add = [&](const char* kind, const char* words) {
-    const std::string count = row.cell(std::string("interventions.") + kind);
-    if (count != "0" && !count.empty()) line += fmt::format(fmt::runtime(words), line.empty() ? "" : ", ", count);
-  };
-  add("jitter", "{}jitter was raised {} times");
-  add("pivoted", "{}the covariance was pivoted {} times");
-  add("set_aside", "{}{} taps were set aside");
-  add("fit_failed", "{}{} fits failed");
-  return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
-}
-
-}  // namespace
 
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;

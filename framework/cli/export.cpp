@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
-#include "cli/one_run.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
 #include "report/exchange/exchange.hpp"
@@ -42,7 +41,8 @@ void mention_state(const Recording& recording) {
 }  // namespace
 
 int export_run(Program& program, const ExportArguments& arguments) {
-  const Recording recording = read_one_run(program, arguments.directory);
+  check_one_run(arguments.directory);
+  const Recording recording = read_recording(program.workshop, arguments.directory);
   Playback playback(program.workshop, recording);
   playback.advance_to(static_cast<int>(recording.taps.size()));
   const ReconstructedSurface surface = reconstruct(playback.experiment());

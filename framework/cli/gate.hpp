@@ -3,7 +3,6 @@
 #pragma once
 
 #include "record/gate.hpp"
-#include "record/resolved.hpp"
 
 #include <string>
 #include <vector>

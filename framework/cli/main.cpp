@@ -22,23 +22,21 @@ namespace palpate::cli {
 namespace {
 
 /// What a command takes; see needs.hpp.
-using Need = std::function<void(Program&, Needs&)>;
+using Need = std::function<void(Needs&)>;
 
-/// What to do once the command line is understood.
-struct Action {
-  std::function<int(Program&)> perform;
-  Need need;
-};
-
-/// What `need` adds for a word of the command line.
-Need with(void (*need)(Program&, const std::string&, Needs&), const std::string& word) {
-  return [need, &word](Program& program, Needs& needs) { need(program, word, needs); };
+/// The program with every command, and what the run or the sweep in `directory` takes.
+Need all_about(const std::string& directory) {
+  return [&directory](Needs& needs) {
+    needs.whole();
+    needs.record(directory);
+  };
 }
 
 /// The commands with what they are called with.
 struct CommandLine {
   CLI::App& app;
-  Action action;  ///< of the command that was named
+  std::function<int(Program&)> perform;  ///< the command that was named, once the command line is understood
+  Need need;
   RunArguments run;
   SweepArguments sweep;
   ResumeArguments resume;
@@ -56,11 +54,12 @@ struct CommandLine {
 
   /// The arguments are read when the command is performed.
   template <class... Parameters, class... Arguments>
-  CLI::App* add(const char* name, const char* help, Need need, int (*perform)(Program&, Parameters...),
+  CLI::App* add(const char* name, const char* help, const Need& takes, int (*command)(Program&, Parameters...),
                 const Arguments&... arguments) {
     CLI::App* sub = app.add_subcommand(name, help);
-    sub->callback([=, &arguments..., need = std::move(need)] {
-      action = {[perform, &arguments...](Program& program) { return perform(program, arguments...); }, need};
+    sub->callback([=, &arguments...] {
+      perform = [command, &arguments...](Program& program) { return command(program, arguments...); };
+      need = takes;
     });
     return sub;
   }
@@ -75,9 +74,8 @@ constexpr int kMany = 1000000;
 
 void add_run(CommandLine& line) {
   CLI::App* sub = line.add(
-      "run", "Run one experiment",
-      [&line](Program& program, Needs& needs) { need_run(program, line.run.config, line.run.overrides, needs); }, run,
-      line.run);
+      "run", "Run one experiment", [&line](Needs& needs) { needs.config(line.run.config, line.run.overrides, false); },
+      run, line.run);
   sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->required();
   sub->add_option("OVERRIDE", line.run.overrides,
                   "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
@@ -120,8 +118,8 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
 }
 
 void add_sweep(CommandLine& line) {
-  CLI::App* sub =
-      line.add("sweep", "Run many experiments: every combination of some values", need_everything, sweep, line.sweep);
+  CLI::App* sub = line.add("sweep", "Run many experiments: every combination of some values", &Needs::everything, sweep,
+                           line.sweep);
   sub->add_option("CONFIG", line.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
   sub->add_option("AXIS", line.sweep.axes,
                   "what to vary: seed=range(0,10), acquisition=weighted,random, "
@@ -133,8 +131,9 @@ void add_sweep(CommandLine& line) {
 }
 
 void add_resume(CommandLine& line) {
-  CLI::App* sub = line.add("resume", "Carry on a broken run or sweep", with(need_record, line.resume.directory), resume,
-                           line.resume);
+  CLI::App* sub = line.add(
+      "resume", "Carry on a broken run or sweep", [&line](Needs& needs) { needs.record(line.resume.directory); },
+      resume, line.resume);
   sub->add_option("DIR", line.resume.directory, "its directory")->required();
   sub->add_flag("--retry-failed", line.resume.retry_failed, "carry on what failed, too");
   sub->add_flag("--force", line.resume.force, "carry on what another build began");
@@ -147,26 +146,33 @@ void add_resume(CommandLine& line) {
 void add_rest(CommandLine& line) {
   CLI::App* sub = line.add(
       "status", "Where a run or a sweep stands",
-      [&line](Program&, Needs& needs) { needs.whole = is_sweep(line.directory); }, status, line.directory);
+      [&line](Needs& needs) {
+        if (is_sweep(line.directory)) needs.whole();
+      },
+      status, line.directory);
   sub->add_option("DIR", line.directory, "its directory")->required();
 
-  sub = line.add("replay", "Send recorded taps through the same models and compare every number",
-                 with(need_record, line.directory), replay, line.directory);
+  sub = line.add(
+      "replay", "Send recorded taps through the same models and compare every number",
+      [&line](Needs& needs) { needs.record(line.directory); }, replay, line.directory);
   sub->add_option("DIR", line.directory, "the run's directory")->required();
 
   sub = line.add(
       "validate", "Check configs, run nothing",
-      [&line](Program& program, Needs& needs) { need_configs(program, line.configs, needs); }, validate, line.configs);
+      [&line](Needs& needs) {
+        for (const std::string& config : line.configs) needs.config(config, {}, true);
+      },
+      validate, line.configs);
   sub->add_option("CONFIG", line.configs, "YAML files")->required();
 
-  sub = line.add("plugins", "List plugins, or the options of one", with(need_listing, line.plugin), plugins,
-                 line.plugin, line.json);
+  sub = line.add(
+      "plugins", "List plugins, or the options of one", [&line](Needs& needs) { needs.listing(line.plugin); }, plugins,
+      line.plugin, line.json);
   sub->add_option("PLUGIN", line.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
   sub->add_flag("--json", line.json, "as JSON");
 
-  sub = line.add(
-      "pareto", "What accuracy costs: the settings of a sweep that none beats in both",
-      [](Program&, Needs& needs) { needs.whole = true; }, pareto, line.pareto);
+  sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
+                 pareto, line.pareto);
   sub->add_option("DIR", line.pareto.directory, "the sweep's directory")->required();
   sub->add_option("--cost", line.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")
       ->required();
@@ -174,19 +180,13 @@ void add_rest(CommandLine& line) {
   sub->add_option("--within", line.pareto.within,
                   "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm");
 
-  line.add(
-      "schema", "Print the JSON Schema of config files, for editors",
-      [](Program&, Needs& needs) { needs.every_plugin = true; }, schema);
+  line.add("schema", "Print the JSON Schema of config files, for editors", &Needs::every_plugin, schema);
 }
 
 void add_compare(CommandLine& line) {
   CLI::App* sub = line.add(
       "compare", "Groups of a sweep's jobs, with intervals and paired tests",
-      [&line](Program&, Needs& needs) {
-        needs.whole = true;
-        needs.every_plugin = !line.compare.at.empty();
-      },
-      compare, line.compare);
+      [&line](Needs& needs) { line.compare.at.empty() ? needs.whole() : needs.everything(); }, compare, line.compare);
   sub->add_option("DIR", line.compare.directory, "the sweep's directory")->required();
   const auto list = [&](const char* name, auto& values, const char* help) {
     return sub->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
@@ -212,18 +212,18 @@ void add_compare(CommandLine& line) {
 
 void add_about_one(CommandLine& line) {
   CLI::App* sub = line.add("report", "A run or a sweep as one HTML page, and as pictures",
-                           with(need_whole, line.report.directory), report, line.report);
+                           all_about(line.report.directory), report, line.report);
   sub->add_option("DIR", line.report.directory, "its directory")->required();
   sub->add_flag("--figures", line.report.figures, "PNG of the same panels, too, by gnuplot");
   sub->add_flag("--paper", line.report.paper, "laid out as the figures of the paper");
 
-  sub = line.add("explain", "Why a run made a tap where it made it, in words", with(need_whole, line.directory),
-                 explain, line.directory, line.tap);
+  sub = line.add("explain", "Why a run made a tap where it made it, in words", all_about(line.directory), explain,
+                 line.directory, line.tap);
   sub->add_option("RUN", line.directory, "the run's directory")->required();
   sub->add_option("TAP", line.tap, "the number of the tap, from 1")->required();
 
   sub = line.add("export", "Write the surface and the taps of a run for other programs",
-                 with(need_whole, line.exported.directory), export_run, line.exported);
+                 all_about(line.exported.directory), export_run, line.exported);
   sub->add_option("RUN", line.exported.directory, "the run's directory")->required();
   sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
       ->check(CLI::Validator(
@@ -259,15 +259,15 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
   throw Error("", trouble.what(), "see palpate --help");
 }
 
-int perform(const Action& action, bool asked, int argc, char** argv) {
+int perform(const CommandLine& line, bool asked, int argc, char** argv) {
   const Installation installation = find_installation();
   const PluginHost host(PluginHost::search_path(installation.plugins));
   Composer composer(installation.configs, config_keys());
   Program program{installation, host, composer, {host, installation, {argv, argv + argc}, &interrupted}};
-  if (!asked) return action.perform(program);
-  Needs needs;
-  action.need(program, needs);
-  print_needs(program, needs);
+  if (!asked) return line.perform(program);
+  Needs needs(program);
+  line.need(needs);
+  needs.print();
   return kDone;
 }
 
@@ -291,19 +291,11 @@ int run_main(int argc, char** argv) {
     return usage_error(app, trouble, argc > 1 ? argv[1] : "");
   }
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
-  return perform(line.action, asked, argc, argv);
+  return perform(line, asked, argc, argv);
 }
 
 int exit_status(Error::Kind kind) {
-  switch (kind) {
-    case Error::Kind::usage:
-      return kUsage;
-    case Error::Kind::run:
-      return kFailed;
-    case Error::Kind::busy:
-      return kBusy;
-  }
-  return kFailed;
+  return kind == Error::Kind::usage ? kUsage : kind == Error::Kind::busy ? kBusy : kFailed;
 }
 
 }  // namespace

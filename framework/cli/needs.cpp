@@ -1,91 +1,51 @@
 // SPDX-License-Identifier: MIT
 #include "cli/needs.hpp"
 
+#include "config/trouble.hpp"
 #include "record/run_directory.hpp"
-
-#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 namespace palpate::cli {
-namespace {
 
-/// Hears which plugins a config names. What is not built is silent about its options.
-class Listener final : public PluginSource {
- public:
-  Listener(const PluginHost& host, Needs& needs) : host_(host), needs_(needs) {}
-  bool is_silent(const std::string& kind, const std::string& name) const override {
-    needs_.plugins.emplace(kind, name);
-    return !host_.has(kind, name);
-  }
-  void describe(const std::string& kind, const std::string& name, Fields& fields) const override {
-    host_.describe(kind, name, fields);
-  }
-
- private:
-  const PluginHost& host_;
-  Needs& needs_;
-};
-
-/// Goes as far as the config is sound.
-template <class Work>
-void listen(const Work& work) {
-  try {
-    work();
-  } catch (const Error&) {  // the command itself will say it
-  }
-}
-
-void hear(const Program& program, const Tree& config, Needs& needs) {
-  resolve_experiment(config, Listener(program.host, needs));
-}
-
-}  // namespace
-
-void need_everything(Program&, Needs& needs) { needs.whole = needs.every_plugin = true; }
-
-void need_run(Program& program, const std::string& config, const std::vector<std::string>& overrides, Needs& needs) {
-  listen([&] {
+void Needs::config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps) {
+  trouble_in([&] {
     std::vector<Override> read;
     for (const std::string& text : overrides) read.push_back(parse_override(text));
-    hear(program, program.composer.compose(config, read), needs);
+    const Tree tree = program_.composer.compose(file, read);
+    if (sweeps && tree.find("sweep") != nullptr) everything();
+    resolve_experiment(tree, *this);
   });
 }
 
-void need_configs(Program& program, const std::vector<std::string>& configs, Needs& needs) {
-  for (const std::string& config : configs) {
-    listen([&] {
-      const Tree tree = program.composer.compose(config, {});
-      if (tree.find("sweep") != nullptr) need_everything(program, needs);
-      hear(program, tree, needs);
-    });
+void Needs::record(const std::string& directory) {
+  if (is_sweep(directory)) return everything();
+  trouble_in([&] { resolve_experiment(read_run_config(directory), *this); });
+}
+
+void Needs::listing(const std::string& what) {
+  for (const auto& [kind, name] : plugins_of_build(program_.installation.plugins)) {
+    if (what.empty() || what == kind || what == kind + "/" + name) plugins_.emplace(kind, name);
   }
 }
 
-void need_record(Program& program, const std::string& directory, Needs& needs) {
-  if (is_sweep(directory)) return need_everything(program, needs);
-  listen([&] { hear(program, read_run_config(directory), needs); });
-}
-
-void need_whole(Program& program, const std::string& directory, Needs& needs) {
-  needs.whole = true;
-  need_record(program, directory, needs);
-}
-
-void need_listing(Program& program, const std::string& what, Needs& needs) {
-  for (const auto& [kind, name] : plugins_of_build(program.installation.plugins)) {
-    if (what.empty() || what == kind || what == kind + "/" + name) needs.plugins.emplace(kind, name);
-  }
-}
-
-void print_needs(const Program& program, const Needs& needs) {
-  const auto known = plugins_of_build(program.installation.plugins);
+void Needs::print() const {
+  const auto known = plugins_of_build(program_.installation.plugins);
   if (known.empty()) return;
-  if (needs.whole) fmt::print("palpate_whole\n");
-  if (needs.every_plugin) fmt::print("palpate_plugins\n");
-  for (const auto& [kind, name] : needs.plugins) {
+  if (whole_) fmt::print("palpate_whole\n");
+  if (every_plugin_) fmt::print("palpate_plugins\n");
+  for (const auto& [kind, name] : plugins_) {
     if (known.count({kind, name}) != 0) fmt::print("palpate_{}_{}\n", kind, name);
   }
+}
+
+bool Needs::is_silent(const std::string& kind, const std::string& name) const {
+  plugins_.emplace(kind, name);
+  return !program_.host.has(kind, name);
+}
+
+void Needs::describe(const std::string& kind, const std::string& name, Fields& fields) const {
+  program_.host.describe(kind, name, fields);
 }
 
 }  // namespace palpate::cli

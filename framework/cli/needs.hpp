@@ -12,29 +12,38 @@
 
 namespace palpate::cli {
 
-struct Needs {
-  bool whole = false;                                     ///< the program with every command
-  bool every_plugin = false;                              ///< of this build
-  std::set<std::pair<std::string, std::string>> plugins;  ///< kind and name
+/// Gathers what a command takes; it is a source of plugins that notes for which ones it is asked. No member throws:
+/// what is wrong with a config the command says. Plugins that only plugins name come to light once those are built.
+class Needs final : public PluginSource {
+ public:
+  explicit Needs(Program& program) : program_(program) {}
+
+  /// The program with every command.
+  void whole() { whole_ = true; }
+  /// All of this build.
+  void every_plugin() { every_plugin_ = true; }
+  /// Both: what the jobs of a sweep name is only known once it is planned.
+  void everything() { whole_ = every_plugin_ = true; }
+  /// The plugins that a config names, by itself or because they are defaults; with `sweeps`, everything where it is
+  /// one.
+  void config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps);
+  /// What a run named; everything for a sweep.
+  void record(const std::string& directory);
+  /// The plugins that `palpate plugins` lists: "", KIND or KIND/NAME.
+  void listing(const std::string& what);
+
+  /// Prints the targets of the build, one a line. Nothing where the program is installed and has all.
+  void print() const;
+
+  /// What is not built is silent about its options.
+  bool is_silent(const std::string& kind, const std::string& name) const override;
+  void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
+
+ private:
+  Program& program_;
+  bool whole_ = false;
+  bool every_plugin_ = false;
+  mutable std::set<std::pair<std::string, std::string>> plugins_;  ///< kind and name
 };
-
-// Each of these adds to `needs` what a command takes, and throws nothing: what is wrong with a config the command says.
-// Plugins that only plugins name come to light once those are built.
-
-/// The plugins that a config names, by itself or because they are defaults.
-void need_run(Program& program, const std::string& config, const std::vector<std::string>& overrides, Needs& needs);
-/// The same, and everything where one of them is a sweep.
-void need_configs(Program& program, const std::vector<std::string>& configs, Needs& needs);
-/// What a run named; everything for a sweep.
-void need_record(Program& program, const std::string& directory, Needs& needs);
-/// That, and the program with every command.
-void need_whole(Program& program, const std::string& directory, Needs& needs);
-/// The plugins that `palpate plugins` lists: "", KIND or KIND/NAME.
-void need_listing(Program& program, const std::string& what, Needs& needs);
-/// Both: what the jobs of a sweep name is only known once it is planned.
-void need_everything(Program& program, Needs& needs);
-
-/// Prints the targets of the build, one a line. Nothing where the program is installed and has all.
-void print_needs(const Program& program, const Needs& needs);
 
 }  // namespace palpate::cli

@@ -19,12 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string title_of(const std::string& name, const Pareto& pareto) {
-  int least = pareto.settings.front().counts.jobs;
-  int most = least;
-  for (const Setting& one : pareto.settings) {
-    least = std::min(least, one.counts.jobs);
-    most = std::max(most, one.counts.jobs);
-  }
+  std::vector<int> jobs;
+  for (const Setting& one : pareto.settings) jobs.push_back(one.counts.all());
+  const auto [fewest, largest] = std::minmax_element(jobs.begin(), jobs.end());
+  const auto [least, most] = std::pair(*fewest, *largest);
   const std::string seeds = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
   return fmt::format("{}: {} settings, {} seed{} each; bars: 95 % intervals of the means", name, pareto.settings.size(),
                      seeds, most == 1 ? "" : "s");
@@ -60,14 +58,12 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
   fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
              fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
   fmt::print("# {}; {}; {} seeds, of which this is the first.\n{}", error_words(pareto, chosen),
-             cost_words(pareto, chosen), chosen.counts.jobs, to_yaml(config));
+             cost_words(pareto, chosen), chosen.counts.all(), to_yaml(config));
 }
 
 }  // namespace
 
 int pareto(Program&, const ParetoArguments& arguments) {
-  if (!is_sweep(arguments.directory))
-    throw Error(arguments.directory, "is not the directory of a sweep", "it has no manifest.jsonl");
   const Sweep sweep = read_sweep(arguments.directory);
   const Pareto pareto = make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error);
   const bool asked = arguments.within.has_value();

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
-#include "cli/one_run.hpp"
+#include "record/run_directory.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 namespace palpate::cli {
+
+void check_one_run(const std::filesystem::path& directory) {
+  if (!is_sweep(directory)) return;
+  throw Error(directory.string(), "is a sweep of many runs",
+              "give one of them: " + (directory / "jobs" / "<id>").string());
+}
 
 int replay(Program& program, const std::string& directory) {
   constexpr std::size_t kShown = 10;

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
-#include "cli/display.hpp"
 #include "cli/gate.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/step.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
-#include <memory>
 #include <utility>
 
 namespace palpate::cli {
@@ -32,11 +28,11 @@ void check_launch(const LaunchArguments& launch) {
     throw Error("command line", "--junit: there is no result before the jobs have ended",
                 "add --wait, or give it to 'palpate resume' afterwards");
   }
+  check_junit(launch.junit);
 }
 
 int resume(Program& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
-  check_junit(arguments.launch.junit);
   if (is_sweep(arguments.directory)) return resume_sweep(program, arguments);
   if (!arguments.jobs.empty()) {
     throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");
@@ -45,13 +41,10 @@ int resume(Program& program, const ResumeArguments& arguments) {
     throw Error("command line", "--launcher slurm: " + arguments.directory + " is no sweep", "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
-  listen_for_interrupts();
-  const std::unique_ptr<Step> step = Step::when(arguments.step, config.options, program.workshop.interrupted);
-  std::unique_ptr<Journal> display;
-  if (!arguments.launch.quiet) display = std::make_unique<TapTable>(config.options.taps);
-  return conclude_run(config, {!arguments.launch.quiet, false, arguments.launch.junit}, [&] {
-    return resume_run(program.workshop, arguments.directory, {arguments.retry_failed, arguments.force}, display.get(),
-                      step.get());
+  const RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
+  return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
+    const ResumeOptions options{arguments.retry_failed, arguments.force};
+    return resume_run(program.workshop, arguments.directory, options, display, step);
   });
 }
 

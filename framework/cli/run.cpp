@@ -5,10 +5,9 @@
 #include "cli/interrupt.hpp"
 #include "cli/step.hpp"
 #include "config/expand.hpp"
+#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/run_directory.hpp"
-
-#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
@@ -37,8 +36,10 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
   }
 }
 
-/// What `trouble` is about may be an override that is meant for `palpate sweep`: many values of a key.
-void refuse_axes(const std::vector<Override>& overrides, const std::vector<std::string>& texts, const Error& trouble) {
+/// What `trouble` is about may be an override that is meant for `palpate sweep`, many values of a key: then it is said
+/// so.
+Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector<std::string>& texts,
+                       const Error& trouble) {
   const auto mentions = [&](const std::string& text) { return trouble.reason().find(text) != std::string::npos; };
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const Override& one = overrides[i];
@@ -47,24 +48,24 @@ void refuse_axes(const std::vector<Override>& overrides, const std::vector<std::
     // A comma between digits is more often that of a number.
     if (!about || mentions("decimal comma")) continue;
     if (parse_axis(texts[i]).values.size() < 2) continue;
-    throw Error(trouble.where(), fmt::format("{} has several values, and a run takes one", one.path),
-                "'palpate sweep' runs all of them");
+    return Error(trouble.where(), fmt::format("{} has several values, and a run takes one", one.path),
+                 "'palpate sweep' runs all of them");
   }
+  return trouble;
 }
 
 /// The models that taps will be chosen from, with who reads them; in comments, as what is printed is a config.
 void print_models(const Program& program, const ResolvedConfig& config) {
-  try {
-    std::map<std::string, std::string> models;
+  std::map<std::string, std::string> models;
+  const std::optional<Error> trouble = trouble_in([&] {
     for (const ModelReader& one : readers_of(program.workshop, config)) {
       std::string& who = models[one.model];
       who += (who.empty() ? "" : ", ") + one.who;
     }
-    if (!models.empty()) fmt::print("# models that taps are chosen from, and who reads them:\n");
-    for (const auto& [model, who] : models) fmt::print("#   {}: {}\n", model, who);
-  } catch (const Error& trouble) {
-    fmt::print("# this config cannot be run: {}\n", trouble.what());
-  }
+  });
+  if (trouble) fmt::print("# this config cannot be run: {}\n", trouble->what());
+  if (!models.empty()) fmt::print("# models that taps are chosen from, and who reads them:\n");
+  for (const auto& [model, who] : models) fmt::print("#   {}: {}\n", model, who);
 }
 
 void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
@@ -83,13 +84,11 @@ int run(Program& program, const RunArguments& arguments) {
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
   Tree composed;
   ResolvedConfig config;
-  try {
+  const std::optional<Error> trouble = trouble_in([&] {
     composed = program.composer.compose(arguments.config, overrides);
     config = resolve_experiment(composed, program.host);
-  } catch (const Error& trouble) {
-    refuse_axes(overrides, arguments.overrides, trouble);
-    throw;
-  }
+  });
+  if (trouble) throw in_words_of_axes(overrides, arguments.overrides, *trouble);
   if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
     fmt::print(stderr, "{}: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n",
                sweep->place.text());
@@ -109,29 +108,27 @@ int run(Program& program, const RunArguments& arguments) {
     return kDone;
   }
   check_junit(arguments.junit);
-  listen_for_interrupts();
-  const std::unique_ptr<Step> step = Step::when(arguments.step, config.options, program.workshop.interrupted);
-  const bool table = !arguments.quiet && !arguments.json;
-  std::unique_ptr<Journal> display;
-  if (table) display = std::make_unique<TapTable>(config.options.taps);
-  return conclude_run(config, {table, arguments.json, arguments.junit}, [&] {
-    return start_run(program.workshop, config, directory, arguments.force, display.get(), step.get());
+  const RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
+  return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
+    return start_run(program.workshop, config, directory, arguments.force, display, step);
   });
 }
 
-int conclude_run(const ResolvedConfig& config, const RunOutput& output, const std::function<RunReport()>& action) {
+int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
+                const RunAction& action) {
+  listen_for_interrupts();
+  const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.workshop.interrupted);
+  std::unique_ptr<Journal> display;
+  if (output.table) display = std::make_unique<TapTable>(config.options.taps);
   const GateOutput gate{config.options.name, output.junit, output.table};
   RunReport report;
-  try {
-    report = action();
-  } catch (const Error& trouble) {
-    // A run that failed is a result, too: continuous integration shall see it as one.
-    if (trouble.kind() == Error::Kind::run) {
-      const std::vector<RunOutcome> runs{outcome_of(config.id, {}, trouble.what())};
-      write_junit(judge(config.expectations, runs), runs, gate);
-    }
-    throw;
+  const std::optional<Error> trouble = trouble_in([&] { report = action(display.get(), step.get()); });
+  // A run that failed is a result, too: continuous integration shall see it as one.
+  if (trouble && trouble->kind() == Error::Kind::run) {
+    const std::vector<RunOutcome> runs{outcome_of(config.id, {}, trouble->what())};
+    write_junit(judge(config.expectations, runs), runs, gate);
   }
+  if (trouble) throw *trouble;
   if (output.json) fmt::print("{}", to_json_text(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;

@@ -7,6 +7,7 @@
 #include "record/json.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace palpate::cli {
 namespace {
@@ -22,64 +23,51 @@ std::vector<FieldDescription::CaseDescription> plugins_of(const PluginHost& host
   return out;
 }
 
+Tree of_type(const char* type, const char* description = nullptr) {
+  Tree out = Tree::map();
+  if (description != nullptr) out.at("description") = Tree::quote(description);
+  out.at("type") = Tree::quote(type);
+  return out;
+}
+
+Tree any_of(std::vector<Tree> schemas) {
+  Tree out = Tree::map();
+  out.at("anyOf") = Tree::list(std::move(schemas));
+  return out;
+}
+
 /// A group of a kind: its name as plain text, or the options of one of its plugins. The type may be left to a group
 /// named under `defaults`, so it is not required.
 Tree kind_schema(const PluginHost& host, const std::string& kind) {
-  Tree any = Tree::list();
-  Tree name = Tree::map();
-  name.at("type") = Tree::quote("string");
-  name.at("description") = Tree::quote("the name of a group file or of a plugin");
-  any.items.push_back(std::move(name));
+  std::vector<Tree> any{of_type("string")};
+  any.front().at("description") = Tree::quote("the name of a group file or of a plugin");
   for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
     Tree plugin = schema_of(one.fields);
     plugin.at("title") = Tree::quote(kind + "/" + one.name);
     plugin.at("description") = Tree::quote(one.meaning);
     plugin.at("properties").at("type").at("const") = Tree::quote(one.name);
-    any.items.push_back(std::move(plugin));
+    any.push_back(std::move(plugin));
   }
-  Tree out = Tree::map();
-  out.at("anyOf") = std::move(any);
-  return out;
+  return any_of(std::move(any));
 }
 
 /// `expect:`: fields of the summary and their statistics, with a comparison or several.
 void expect_schema(Tree& expect) {
   std::string fields = kFailedRuns;
   for (const RecordField& field : summary_fields()) fields += "|" + field.name;
-  std::string statistics;
-  for (const std::string& name : statistic_names()) statistics += (statistics.empty() ? "" : "|") + name;
   // A dot is any character to a pattern, which is near enough for an editor.
-  const std::string keys = fmt::format("^(({0})|({1})\\(({0})\\))$", fields, statistics);
-  Tree either = Tree::list();
-  for (const char* type : {"string", "boolean", "array"}) {
-    Tree one = Tree::map();
-    one.at("type") = Tree::quote(type);
-    either.items.push_back(std::move(one));
-  }
-  Tree group = Tree::map();
-  group.at("type") = Tree::quote("string");
+  const std::string keys = fmt::format("^(({0})|({1})\\(({0})\\))$", fields, fmt::join(statistic_names(), "|"));
   expect.at("type") = Tree::quote("object");
-  expect.at("patternProperties").at(keys).at("anyOf") = std::move(either);
+  expect.at("patternProperties").at(keys) = any_of({of_type("string"), of_type("boolean"), of_type("array")});
   expect.at("additionalProperties") = Tree::scalar("false");
-  Tree any = Tree::list();
-  any.items = {std::move(group), std::move(expect)};
-  expect = Tree::map();
-  expect.at("anyOf") = std::move(any);
-}
-
-Tree of_type(const char* type, const char* description) {
-  Tree out = Tree::map();
-  out.at("description") = Tree::quote(description);
-  out.at("type") = Tree::quote(type);
-  return out;
+  expect = any_of({of_type("string"), expect});
 }
 
 /// `defaults:`: groups with their names.
 void defaults_schema(Tree& defaults) {
   defaults.at("type") = Tree::quote("array");
-  Tree& item = defaults.at("items");
-  item.at("type") = Tree::quote("object");
-  item.at("additionalProperties").at("type") = Tree::quote("string");
+  Tree& item = defaults.at("items") = of_type("object");
+  item.at("additionalProperties") = of_type("string");
   item.at("minProperties") = Tree::scalar("1");
   item.at("maxProperties") = Tree::scalar("1");
 }
@@ -92,21 +80,19 @@ void sweep_schema(Tree& sweep) {
   blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), log(1cm,5cm,8)");
   blocks.at("zip") = of_type("object", "side by side: values of equal number");
   blocks.at("list") = of_type("array", "settings one after the other, each a little grid");
-  blocks.at("list").at("items").at("type") = Tree::quote("object");
+  blocks.at("list").at("items") = of_type("object");
   Tree& sobol = blocks.at("sobol") = of_type("object", "quasi-random points of continuous ranges");
   sobol.at("additionalProperties") = Tree::scalar("false");
-  sobol.at("required") = Tree::list();
-  sobol.at("required").items = {Tree::quote("samples"), Tree::quote("keys")};
+  sobol.at("required") = Tree::list({Tree::quote("samples"), Tree::quote("keys")});
   Tree& samples = sobol.at("properties").at("samples") = of_type("integer", "how many points");
   samples.at("minimum") = Tree::scalar("1");
   samples.at("maximum") = Tree::scalar("100000");
   Tree& keys = sobol.at("properties").at("keys") = of_type("object", "ranges: uniform(0.1 mm, 1 mm), log(1cm, 10cm)");
-  keys.at("additionalProperties").at("type") = Tree::quote("string");
+  keys.at("additionalProperties") = of_type("string");
   const char* const condition = "combinations for which it does not hold are dropped: taps >= 12 and not kernel == rbf";
   Tree several = of_type("array", "all of which have to hold");
-  several.at("items").at("type") = Tree::quote("string");
-  blocks.at("where").at("anyOf") = Tree::list();
-  blocks.at("where").at("anyOf").items = {of_type("string", condition), std::move(several)};
+  several.at("items") = of_type("string");
+  blocks.at("where") = any_of({of_type("string", condition), several});
 }
 
 }  // namespace
@@ -120,8 +106,7 @@ int schema(Program& program) {
   defaults_schema(properties.at("defaults"));
   sweep_schema(properties.at("sweep"));
   expect_schema(properties.at("expect"));
-  Tree& definitions = out.at("definitions");
-  definitions = Tree::map();
+  Tree& definitions = out.at("definitions") = Tree::map();
   for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);
   out.at("$schema") = Tree::quote("http://json-schema.org/draft-07/schema#");
   out.at("title") = Tree::quote("palpate experiment");

@@ -21,15 +21,8 @@ namespace {
 constexpr int kGlance = 100;  // ms
 
 std::string who_chose(const TapRecord& tap) {
-  switch (tap.source) {
-    case Source::initial:
-      return "one of the initial taps";
-    case Source::acquisition:
-      return "chosen by the acquisition";
-    case Source::fallback:
-      break;
-  }
-  return "a fallback: " + tap.why;
+  if (tap.source == Source::fallback) return "a fallback: " + tap.why;
+  return tap.source == Source::initial ? "one of the initial taps" : "chosen by the acquisition";
 }
 
 }  // namespace

@@ -1,33 +1,228 @@
 // SPDX-License-Identifier: MIT
-#include "cli/campaign.hpp"
+// The commands about many runs: to begin them, to carry them on, to look at them.
+#include "analysis/sweep_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/sweep_display.hpp"
+#include "config/trouble.hpp"
+#include "launch/children.hpp"
+#include "launch/job.hpp"
+#include "launch/local_launcher.hpp"
 #include "launch/slurm_launcher.hpp"
+#include "record/files.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/split.hpp>
 
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <map>
 #include <optional>
-#include <string>
+#include <set>
 
 namespace palpate::cli {
 namespace {
 
-void print_jobs(const Sweep& sweep) {
-  for (const Job& job : sweep.jobs) {
-    fmt::print("{}  {}", job.index, job.id);
-    for (std::size_t i = 0; i < job.values.size(); ++i) {
-      if (!job.values[i].empty()) fmt::print("  {}={}", sweep.keys[i], job.values[i]);
+/// A sweep that is begun or carried on.
+struct Campaign {
+  const Program& program;
+  const Sweep& sweep;
+  LocalLauncher::Configs config_of;  ///< of a job
+  ResumeOptions options;
+  const LaunchArguments& launch;
+  std::vector<std::size_t> only;  ///< these jobs; none for all
+  bool one_at_a_time = false;     ///< a job's backend moves what exists only once
+};
+
+/// Those that are to run, as far as they are missing.
+std::vector<std::size_t> jobs_of(const Campaign& campaign) {
+  return campaign.only.empty() ? all_jobs(campaign.sweep) : campaign.only;
+}
+
+/// Some jobs of many, as a task of a cluster runs them: what is said of the whole is said elsewhere.
+int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted) {
+  const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
+                                    [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
+  if (complete) write_results(sweep);
+  print_failures(sweep, end.failures);
+  if (interrupted) return kInterrupted;
+  if (!end.failures.empty()) return kFailed;
+  return end.open.empty() ? kDone : kBusy;
+}
+
+/// The config of a job; none of a damaged one, which the job itself says, and costs itself alone.
+std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::size_t job) {
+  std::optional<ResolvedConfig> config;
+  trouble_in([&] { config = campaign.config_of(job); });
+  return config;
+}
+
+int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted) {
+  const Sweep& sweep = campaign.sweep;
+  const std::vector<std::optional<Row>> summaries = write_results(sweep);
+  // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and the first of their
+  // configs that can be read tells it for all of them.
+  const auto deciding = [&](const Job& job) {
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
+      const std::string first = first_key(sweep.keys[i]);
+      if (first == kStrategy || first == "initial" || first == "taps") values.push_back(job.values[i]);
     }
-    fmt::print("\n");
+    return values;
+  };
+  std::map<std::vector<std::string>, std::optional<int>> known;
+  const auto initial_taps = [&](std::size_t job) {
+    const std::vector<std::string> values = deciding(sweep.jobs[job]);
+    const auto [taps, is_new] = known.try_emplace(values);
+    for (std::size_t other = 0; is_new && !taps->second && other < sweep.jobs.size(); ++other) {
+      if (deciding(sweep.jobs[other]) != values) continue;
+      const std::optional<ResolvedConfig> config = readable_config(campaign, other);
+      if (!config) continue;
+      // All taps until the first hit are the search's: its dead starts are those that never hit.
+      const ExperimentOptions& options = config->options;
+      taps->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+    }
+    return taps->second;
+  };
+  fmt::print("{}", sweep_table(sweep, sweep_results(sweep, summaries), initial_taps));
+  print_failures(sweep, end.failures);
+  const std::string directory = sweep.directory.string();
+  if (!end.failures.empty()) fmt::print("try them again: palpate resume --retry-failed {}\n", directory);
+  const bool open = interrupted || !end.open.empty();
+  fmt::print("{} {}\n", open ? "carry on: palpate resume" : "record:", directory);
+  if (interrupted) return kInterrupted;
+  // What is expected stands in every job's config, and is judged of all: the first that can be read will do.
+  std::optional<ResolvedConfig> config;
+  for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(campaign, job);
+  if (!config) throw Error(sweep.directory.string(), "no job has a config.yaml that can be read", "put them back");
+  const bool all_hold = conclude(config->expectations, outcomes_of(sweep, summaries),
+                                 {config->options.name, campaign.launch.junit, true});
+  return sweep_status(config->expectations, all_hold, !end.failures.empty() || !end.open.empty());
+}
+
+/// Jobs at a time on this machine or, on a cluster, in a task: one where only one can be.
+int workers_of(const Campaign& campaign) {
+  if (campaign.one_at_a_time) return 1;
+  const bool on_slurm = campaign.launch.launcher == kSlurm;
+  return campaign.launch.workers.value_or(on_slurm ? 1 : cores());
+}
+
+/// conduct(), with a line of progress.
+void conduct_shown(const Campaign& campaign, Launcher& launcher, const Standing& begun) {
+  SweepLine line(campaign.launch.quiet);
+  conduct(launcher, campaign.sweep, begun, campaign.program.workshop.interrupted,
+          [&](const SweepProgress& progress) { line.show(progress); });
+}
+
+/// "1000 jobs".
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// Submits what is open to Slurm. Then it says how to go on and returns false or, with --wait, waits for the end
+/// and returns true.
+bool run_on_slurm(const Campaign& campaign, const Standing& begun) {
+  const LaunchArguments& launch = campaign.launch;
+  const SlurmOptions options{launch.partition,
+                             launch.time,
+                             launch.account,
+                             launch.sbatch,
+                             launch.jobs_per_task.value_or(1),
+                             workers_of(campaign),
+                             campaign.one_at_a_time,
+                             launch.attempts,
+                             campaign.options};
+  std::string ids;
+  SlurmLauncher launcher(campaign.program.installation.program, campaign.sweep, options, [&](const SlurmArray& array) {
+    fmt::print("array {}: {}, {}, logs in {}\n", array.id, counted(static_cast<std::size_t>(array.tasks), "task"),
+               counted(static_cast<std::size_t>(array.jobs), "job"), array.logs.string());
+    std::fflush(stdout);
+    ids += fmt::format(" {}", array.id);
+  });
+  if (campaign.program.workshop.interrupted->load()) return true;  // before anything was submitted
+  if (launch.wait) {
+    // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
+    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+    conduct_shown(campaign, launcher, begun);
+    return true;
+  }
+  launcher.submit(begun.open);
+  const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
+  fmt::print("look: palpate status {}\n", directory);
+  fmt::print("carry on what is missing then: palpate resume {} --launcher slurm\n", directory);
+  fmt::print("stop: scancel{}\n", ids);
+  return false;
+}
+
+/// Throws Error if a job that is to run, or with `done_too` one that is done, was begun by another build, unless that
+/// is forced: before the first job runs. Notes whether only one may run at a time.
+void check_builds(Campaign& campaign, bool done_too) {
+  for (const std::size_t job : jobs_of(campaign)) {
+    const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
+    if (!done_too && read_ending(directory).state == RunStatus::State::done) continue;
+    const std::optional<ResolvedConfig> config = readable_config(campaign, job);
+    if (!config) continue;
+    campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
+    bool elsewhere = false;
+    trouble_in([&] { elsewhere = is_of_another_build(campaign.program.workshop, *config, directory); });
+    if (elsewhere && !campaign.options.force) check_build(campaign.program.workshop, *config, directory);
   }
 }
 
-/// "1000 jobs". How long they take the line of progress says, once some have been measured.
-std::string size_words(const Sweep& sweep) {
-  return fmt::format("{} job{}", sweep.jobs.size(), sweep.jobs.size() == 1 ? "" : "s");
+/// Runs what is missing, prints the result and judges it. Returns the exit status.
+int run_campaign(const Campaign& campaign) {
+  const Sweep& sweep = campaign.sweep;
+  const LaunchArguments& launch = campaign.launch;
+  check_locks(sweep.directory);
+  listen_for_interrupts();
+  const bool whole = campaign.only.empty();
+  const std::vector<std::size_t> jobs = jobs_of(campaign);
+  Standing begun = standing_of(sweep, jobs);
+  if (campaign.options.retry_failed) try_again(begun, launch.attempts);
+  if (campaign.one_at_a_time && begun.open.size() > 1 && !launch.quiet) {
+    mention("one job at a time: the backend has but one thing to move\n");
+  }
+  if (launch.launcher == kSlurm) {
+    if (!begun.open.empty() && !run_on_slurm(campaign, begun)) return kDone;
+  } else {
+    LocalLauncher launcher(campaign.program.workshop, sweep, campaign.config_of,
+                           {workers_of(campaign), campaign.options, launch.attempts, whole});
+    conduct_shown(campaign, launcher, begun);
+  }
+  const Standing end = standing_of(sweep, jobs);
+  const bool interrupted = campaign.program.workshop.interrupted->load();
+  return whole ? conclude_whole(campaign, end, interrupted) : conclude_part(sweep, end, interrupted);
+}
+
+/// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
+std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
+  const auto refuse = [&] {
+    return Error("command line", fmt::format("--jobs: '{}' is not understood", text),
+                 fmt::format("write 0-7,12, from 0 to {}", count - 1));
+  };
+  const auto number = [&](const std::string& word) {
+    const char* const end = word.data() + word.size();
+    std::size_t out = 0;
+    const auto read = std::from_chars(word.data(), end, out);
+    if (read.ec != std::errc() || read.ptr != end || out >= count) throw refuse();
+    return out;
+  };
+  std::set<std::size_t> jobs;
+  std::vector<std::string> parts;
+  for (const std::string& part : boost::split(parts, text, boost::is_any_of(","))) {
+    const auto dash = part.find('-');
+    const std::size_t first = number(part.substr(0, dash));
+    const std::size_t last = dash == std::string::npos ? first : number(part.substr(dash + 1));
+    if (last < first) throw refuse();
+    for (std::size_t job = first; job <= last; ++job) jobs.insert(job);
+  }
+  return {jobs.begin(), jobs.end()};
 }
 
 }  // namespace
@@ -39,7 +234,6 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   check_sbatch_words(arguments.launch.sbatch);
-  check_junit(arguments.launch.junit);
   bool one_at_a_time = false;
   std::optional<SweepDraft> draft;
   if (!arguments.list) draft.emplace(arguments.runs);
@@ -49,20 +243,58 @@ int sweep(Program& program, const SweepArguments& arguments) {
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                     });
   const auto config_of = [&](std::size_t job) { return planned_config(plan, program.host, job); };
-  Campaign campaign{plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
+  Campaign campaign{program, plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
   if (arguments.list) {
-    print_jobs(plan.sweep);
-    if (!arguments.launch.quiet) mention(size_words(plan.sweep) + "\n");
+    for (const Job& job : plan.sweep.jobs) {
+      fmt::print("{}  {}{}\n", job.index, job.id, values_text(plan.sweep, job, "  "));
+    }
+    if (!arguments.launch.quiet) mention(counted(plan.sweep.jobs.size(), "job") + "\n");
     return kDone;
   }
   const bool is_new = draft->publish(plan);
   draft.reset();
-  if (!is_new) check_builds(program, campaign, true);
+  if (!is_new) check_builds(campaign, true);
   if (!arguments.launch.quiet) {
-    mention(fmt::format("{} in {}{}\n", size_words(plan.sweep), plan.sweep.directory.string(),
+    mention(fmt::format("{} in {}{}\n", counted(plan.sweep.jobs.size(), "job"), plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: what is missing is run"));
   }
-  return run_campaign(program, campaign);
+  return run_campaign(campaign);
+}
+
+int resume_sweep(Program& program, const ResumeArguments& arguments) {
+  check_sbatch_words(arguments.launch.sbatch);
+  const ResumeOptions options{arguments.retry_failed, arguments.force};
+  if (arguments.step) {
+    throw Error("command line", "--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
+  }
+  const Sweep sweep = read_sweep(arguments.directory);
+  const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
+  Campaign campaign{program, sweep, config_of, options, arguments.launch, {}, false};
+  if (!arguments.jobs.empty()) campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
+  if (!arguments.jobs.empty() && arguments.launch.jobs_per_task.value_or(1) > 1) {
+    throw Error("command line", "--jobs and --jobs-per-task do not go together: a task carries on all of its jobs",
+                "leave one of them out");
+  }
+  if (!arguments.jobs.empty() && !arguments.launch.junit.empty()) {
+    throw Error("command line", "--jobs and --junit do not go together: what is expected is judged of the whole sweep",
+                "leave one of them out");
+  }
+  check_builds(campaign, false);
+  return run_campaign(campaign);
+}
+
+/// From the jobs' directories alone: whoever runs them, a scheduler or a process that has died, is not asked.
+int status_of_sweep(Program&, const std::string& directory) {
+  const Sweep sweep = read_sweep(directory);
+  Standing now = standing_of(sweep, all_jobs(sweep), true);
+  fmt::print("{} jobs", sweep.jobs.size());
+  for (const auto state : {RunStatus::State::done, RunStatus::State::running, RunStatus::State::failed,
+                           RunStatus::State::unfinished, RunStatus::State::absent}) {
+    fmt::print(", {} {}", now.counts[state], state_name(state));
+  }
+  fmt::print("\n");
+  print_failures(sweep, now.failures);
+  return kDone;
 }
 
 }  // namespace palpate::cli

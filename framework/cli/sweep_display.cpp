@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/sweep_display.hpp"
 
-#include "analysis/sweep_table.hpp"
 #include "cli/display.hpp"
 
 #include <fmt/format.h>
@@ -59,30 +58,25 @@ void SweepLine::show(const SweepProgress& progress) {
   mention((terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
 }
 
+std::string values_text(const Sweep& sweep, const Job& job, const char* gap) {
+  std::string out;
+  for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
+    if (!job.values[i].empty()) out += fmt::format("{}{}={}", gap, sweep.keys[i], job.values[i]);
+  }
+  return out;
+}
+
 void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures) {
   constexpr std::size_t kMostLines = 20;
   for (std::size_t i = 0; i < failures.size() && i < kMostLines; ++i) {
     const SweepFailure& one = failures[i];
     const Job& job = sweep.jobs[one.job];
-    std::string values;
-    for (std::size_t key = 0; key < sweep.keys.size(); ++key) {
-      if (!job.values[key].empty()) values += fmt::format(" {}={}", sweep.keys[key], job.values[key]);
-    }
-    fmt::print("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values, one.attempts, one.reason);
+    fmt::print("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values_text(sweep, job, " "),
+               one.attempts, one.reason);
   }
   if (failures.size() > kMostLines) {
     fmt::print("and {} more failed, results.csv has all reasons\n", failures.size() - kMostLines);
   }
-}
-
-void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
-                 const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
-  fmt::print("{}", sweep_table(sweep, results, initial_taps));
-  print_failures(sweep, report.failures);
-  if (!report.failures.empty())
-    fmt::print("try them again: palpate resume --retry-failed {}\n", sweep.directory.string());
-  const bool open = report.interrupted || report.unfinished > 0;
-  fmt::print("{} {}\n", open ? "carry on: palpate resume" : "record:", sweep.directory.string());
 }
 
 }  // namespace palpate::cli

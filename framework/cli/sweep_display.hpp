@@ -6,9 +6,7 @@
 #include "sweep/sweep.hpp"
 
 #include <chrono>
-#include <cstddef>
-#include <functional>
-#include <optional>
+#include <string>
 #include <vector>
 
 namespace palpate::cli {
@@ -28,11 +26,10 @@ class SweepLine {
   std::chrono::steady_clock::time_point shown_;
 };
 
+/// What a job has of the swept keys, each behind a `gap`: " taps=17 seed=3".
+std::string values_text(const Sweep& sweep, const Job& job, const char* gap);
+
 /// A line a failed job with its keys and its reason; of very many, the first.
 void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failures);
-
-/// The table, the failures and the place of a sweep; `initial_taps` as sweep_table() asks for them.
-void print_sweep(const Sweep& sweep, const std::vector<Row>& results, const SweepReport& report,
-                 const std::function<std::optional<int>(std::size_t job)>& initial_taps);
 
 }  // namespace palpate::cli

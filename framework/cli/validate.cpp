@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
-
-#include <palpate/error.hpp>
+#include "config/trouble.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +15,7 @@ int validate(Program& program, const std::vector<std::string>& configs) {
   std::vector<std::pair<std::FILE*, std::string>> said;
   for (const std::string& file : configs) {
     // All files are looked at, so that one run of the command shows every file that needs a hand.
-    try {
+    const std::optional<Error> trouble = trouble_in([&] {
       const Tree tree = program.composer.compose(file, {});
       if (tree.find("sweep") != nullptr) {
         said.emplace_back(stdout, fmt::format("{}: valid, a sweep of {} jobs\n", file, jobs_of_sweep(program, file)));
@@ -26,10 +25,10 @@ int validate(Program& program, const std::vector<std::string>& configs) {
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
         said.emplace_back(stdout, fmt::format("{}: valid, id {}\n", file, config.id));
       }
-    } catch (const Error& trouble) {
-      said.emplace_back(stderr, std::string(trouble.what()) + "\n");
-      ++bad;
-    }
+    });
+    if (!trouble) continue;
+    said.emplace_back(stderr, std::string(trouble->what()) + "\n");
+    ++bad;
   }
   for (const auto& [where, line] : said) fmt::print(where, "{}", line);
   return bad == 0 ? kDone : kUsage;

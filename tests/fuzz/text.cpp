@@ -46,9 +46,9 @@ void words(const std::string& bytes) {
   attempt([&] { parse_override(bytes); });
   attempt([&] {
     const SweepDescription sweep(nullptr, parse_sweep_words({bytes}));
-    if (sweep.size() == 0) return;
-    overrides_of(sweep.at(0));
-    overrides_of(sweep.at(sweep.size() - 1));
+    if (sweep.combinations().empty()) return;
+    overrides_of(sweep.combinations().front());
+    overrides_of(sweep.combinations().back());
     sweep.written();
   });
   attempt([&] {

@@ -136,19 +136,19 @@ TEST(Compare, CountsFailedUnfinishedAndValuelessJobsAndLeavesThemOutOfTheMean) {
                                      {"b", "k", 4, 0.2},
                                      {"b", "k", 6, 0.2}})
                               .by({"acquisition"});
-  EXPECT_EQ(made.groups[0].counts.jobs, 5);
-  EXPECT_EQ(made.groups[0].counts.failed, 1);
-  EXPECT_EQ(made.groups[0].counts.unfinished, 1);
-  EXPECT_EQ(made.groups[0].counts.without_value, 1);
+  EXPECT_EQ(made.groups[0].counts.all(), 5);
+  EXPECT_EQ(made.groups[0].counts.of(Fate::failed), 1);
+  EXPECT_EQ(made.groups[0].counts.of(Fate::unfinished), 1);
+  EXPECT_EQ(made.groups[0].counts.of(Fate::without_value), 1);
   EXPECT_EQ(made.groups[0].mean.count, 2U);
   EXPECT_DOUBLE_EQ(made.groups[0].mean.mean, 0.2);
   EXPECT_EQ(made.groups[1].mean.count, 5U);
   const ComparedPair& pair = made.pairs[0];
   EXPECT_EQ(pair.difference.count, 1U);
-  EXPECT_EQ(pair.lost.failed, 1);
-  EXPECT_EQ(pair.lost.unfinished, 1);
-  EXPECT_EQ(pair.lost.without_value, 1);
-  EXPECT_EQ(pair.lost.without_partner, 2) << "seeds 5 and 6";
+  EXPECT_EQ(pair.lost.of(Fate::failed), 1);
+  EXPECT_EQ(pair.lost.of(Fate::unfinished), 1);
+  EXPECT_EQ(pair.lost.of(Fate::without_value), 1);
+  EXPECT_EQ(pair.lost.of(Fate::without_partner), 2) << "seeds 5 and 6";
   EXPECT_THAT(compare_tables(made),
               HasSubstr("b - a: pairs lost: 2 without a counterpart, 1 unfinished, 1 failed, 1 without a value\n"));
 }
@@ -206,7 +206,7 @@ TEST(Compare, GroupsWithoutACommonJobHaveNoPairAndNoP) {
   const Comparison made = MadeSweep({{"a", "k", 1, 0.1}, {"b", "m", 1, 0.2}}).by({"acquisition"});
   EXPECT_EQ(made.pairs[0].difference.count, 0U);
   EXPECT_FALSE(made.pairs[0].test.p);
-  EXPECT_EQ(made.pairs[0].lost.without_partner, 2);
+  EXPECT_EQ(made.pairs[0].lost.of(Fate::without_partner), 2);
   EXPECT_THAT(compare_tables(made), HasSubstr("b - a           0     2                     -               0/0/0  -"));
 }
 
@@ -228,7 +228,7 @@ TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
 TEST(Compare, AJobThatASweepHoldsTwiceIsPairedWithItsLike) {
   const Comparison made =
       MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 1, 0.1}, {"b", "k", 1, 0.3}, {"b", "k", 1, 0.3}}).by({"acquisition"});
-  EXPECT_EQ(made.groups[0].counts.jobs, 2);
+  EXPECT_EQ(made.groups[0].counts.all(), 2);
   EXPECT_EQ(made.pairs[0].difference.count, 2U);
 }
 
@@ -236,13 +236,13 @@ TEST(CompareWhere, LeavesJobsOutAndCountsThemAndThePairsThatItBreaks) {
   std::vector<MadeJob> jobs{{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}, {"a", "k", 3, 0.4}, {"a", "k", 4, {}, "failed"},
                             {"b", "k", 1, 0.1}, {"b", "k", 2, 0.4}, {"b", "k", 3, 0.4}, {"b", "k", 4, {}, "absent"}};
   const Comparison made = MadeSweep(jobs).by({"acquisition"}, "rmse_m", {}, "rmse_m <= 30 cm");
-  EXPECT_EQ(made.left_out, 5);
-  EXPECT_EQ(made.groups[0].counts.left_out, 2);
-  EXPECT_EQ(made.groups[0].counts.failed, 0);
-  EXPECT_EQ(made.groups[1].counts.left_out, 3);
+  EXPECT_EQ(made.left_out.all(), 5);
+  EXPECT_EQ(made.groups[0].counts.of(Fate::left_out), 2);
+  EXPECT_EQ(made.groups[0].counts.of(Fate::failed), 0);
+  EXPECT_EQ(made.groups[1].counts.of(Fate::left_out), 3);
   EXPECT_EQ(made.groups[1].mean.count, 1U);
   EXPECT_EQ(made.pairs[0].difference.count, 1U);
-  EXPECT_EQ(made.pairs[0].lost.left_out, 1) << "seed 2; seeds 3 and 4 are left out whole";
+  EXPECT_EQ(made.pairs[0].lost.of(Fate::left_out), 1) << "seed 2; seeds 3 and 4 are left out whole";
   EXPECT_EQ(made.pairs[0].lost.all(), 1);
   const std::string tables = compare_tables(made);
   EXPECT_THAT(tables, HasSubstr("--where leaves out 5 of 8 jobs, of which 1 failed, 1 unfinished\n"));
@@ -253,15 +253,15 @@ TEST(CompareWhere, OnASweptKeyKnowsJobsThatHaveNotEnded) {
   const Comparison made =
       MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 9.0, "absent"}, {"a", "m", 1, 0.3}, {"b", "k", 1, 0.2}})
           .by({"acquisition"}, "rmse_m", {}, "kernel == k");
-  EXPECT_EQ(made.left_out, 1);
-  EXPECT_EQ(made.groups[0].counts.unfinished, 1);
+  EXPECT_EQ(made.left_out.all(), 1);
+  EXPECT_EQ(made.groups[0].counts.of(Fate::unfinished), 1);
 }
 
 TEST(CompareWhere, AGroupThatItLeavesOutWholeIsCountedAndComparedWithNone) {
   const MadeSweep made(two_by_two(5));
   const Comparison three = made.by({"acquisition", "kernel"}, "rmse_m", {}, "acquisition != a or kernel != rbf");
   EXPECT_EQ(three.groups.size(), 4U);
-  EXPECT_EQ(three.groups[0].counts.left_out, 5);
+  EXPECT_EQ(three.groups[0].counts.of(Fate::left_out), 5);
   ASSERT_EQ(three.pairs.size(), 3U);
   for (const ComparedPair& pair : three.pairs) {
     EXPECT_NE(pair.second, 0U);

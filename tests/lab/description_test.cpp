@@ -28,8 +28,7 @@ std::string shown(const SweepDescription& description, const std::map<std::strin
     const auto found = base.find(name);
     return found != base.end() ? std::optional(found->second) : std::nullopt;
   };
-  for (std::size_t i = 0; i < description.size(); ++i) {
-    const Combination combination = description.at(i);
+  for (const Combination& combination : description.combinations()) {
     if (!description.wanted(combination, value_of)) continue;
     for (const SweptValue& one : combination) out += one.axis->key + "=" + value_text(one.value()) + " ";
     if (!out.empty()) out.back() = ';';
@@ -60,9 +59,9 @@ TEST(List, TakesItsItemsOneAfterTheOtherEachAGridOfItsOwn) {
 
 TEST(List, HasACombinationThatSaysNothingForAnEmptyItem) {
   const SweepDescription description = described(" {list: [{}, {a: 1}]}");
-  ASSERT_EQ(description.size(), 2U);
-  EXPECT_TRUE(description.at(0).empty());
-  EXPECT_EQ(description.at(1).size(), 1U);
+  ASSERT_EQ(description.combinations().size(), 2U);
+  EXPECT_TRUE(description.combinations()[0].empty());
+  EXPECT_EQ(description.combinations()[1].size(), 1U);
 }
 
 TEST(Blocks, MultiplyInTheOrderInWhichTheyAreWritten) {
@@ -84,17 +83,18 @@ TEST(Blocks, AreNothingWhenEmpty) {
   EXPECT_EQ(shown(described(" {grid: {a: [1]}, zip: {}, list: [], sobol: {}, where: []}")), "a=1; ");
 }
 
-TEST(Blocks, CountWithoutBeingMade) {
+TEST(Blocks, MakeEachCombinationOnce) {
   const SweepDescription description =
       described(" {list: [{a: [1, 2, 3]}, {b: [1, 2]}], zip: {c: [1, 2], d: [1, 2]}, grid: {e: 'range(0,7)'}}");
-  EXPECT_EQ(description.size(), (3U + 2U) * 2U * 7U);
+  EXPECT_EQ(description.combinations().size(), (3U + 2U) * 2U * 7U);
   std::set<std::string> different;
-  for (std::size_t i = 0; i < description.size(); ++i) {
+  for (std::size_t i = 0; i < description.combinations().size(); ++i) {
     std::string text;
-    for (const SweptValue& one : description.at(i)) text += one.axis->key + "=" + value_text(one.value()) + " ";
+    for (const SweptValue& one : description.combinations()[i])
+      text += one.axis->key + "=" + value_text(one.value()) + " ";
     different.insert(text);
   }
-  EXPECT_EQ(different.size(), description.size());
+  EXPECT_EQ(different.size(), description.combinations().size());
 }
 
 TEST(Where, KeepsTheCombinationsForWhichItHolds) {
@@ -262,7 +262,7 @@ TEST(Description, RefusesMoreThanAMillionCombinations) {
             "c.yaml:1:46: b: the sweep has more than ");
   EXPECT_EQ(refused(" {list: [{a: 'range(0,500000)'}, {a: 'range(0,500001)'}]}").substr(0, 40),
             "c.yaml:1:44: a: the sweep has more than ");
-  EXPECT_EQ(described("", {"a=range(0,1000)", "b=range(0,1000)"}).size(), 1000000U);
+  EXPECT_EQ(described("", {"a=range(0,1000)", "b=range(0,1000)"}).combinations().size(), 1000000U);
 }
 
 TEST(Words, AddToTheGridAndTakeThePlaceOfItsKeys) {
@@ -278,7 +278,7 @@ TEST(Words, TakeAKeyOutOfTheOtherBlocks) {
       << "items that differed by it alone are one";
   const std::string sobol = " {sobol: {samples: 2, keys: {a: 'uniform(0,1)', b: 'uniform(0,1)'}}}";
   EXPECT_EQ(described(sobol, {"a=7"}).keys(), (std::vector<std::string>{"b", "a"}));
-  EXPECT_EQ(described(sobol, {"a=7", "b=8"}).size(), 1U);
+  EXPECT_EQ(described(sobol, {"a=7", "b=8"}).combinations().size(), 1U);
 }
 
 TEST(Words, ReplaceWholeBlocks) {
@@ -288,7 +288,9 @@ TEST(Words, ReplaceWholeBlocks) {
   EXPECT_EQ(shown(described(" {list: [{a: 1}]}", {"sweep.list=[{a: 2}, {b: x}]", "c=3"})), "a=2 c=3; b=x c=3; ");
   EXPECT_EQ(shown(described("", {"sweep.zip={taps: [12, 17], candidates.count: [24, 47]}"})),
             "taps=12 candidates.count=24; taps=17 candidates.count=47; ");
-  EXPECT_EQ(described("", {"sweep.sobol={samples: 16, keys: {kernel.length_scale: 'log(1cm,10cm)'}}"}).size(), 16U);
+  EXPECT_EQ(
+      described("", {"sweep.sobol={samples: 16, keys: {kernel.length_scale: 'log(1cm,10cm)'}}"}).combinations().size(),
+      16U);
 }
 
 TEST(Words, RefuseBlocksThatThereAreNot) {
@@ -329,7 +331,7 @@ TEST(WrittenDescription, ReadsBackAsTheSameCombinations) {
 TEST(Overrides, HoldChoicesAboveOptionsAndBothAboveTheConfig) {
   const SweepDescription description =
       described(" {grid: {kernel: [rbf], backend.motion.type: [paper], kernel.length_scale: [1 cm]}}");
-  const std::vector<Override> overrides = overrides_of(description.at(0));
+  const std::vector<Override> overrides = overrides_of(description.combinations()[0]);
   ASSERT_EQ(overrides.size(), 3U);
   EXPECT_GT(overrides[0].value.layer, overrides[2].value.layer);
   EXPECT_GT(overrides[1].value.layer, overrides[2].value.layer);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Means of several metrics and numbers of taps, as Markdown.
-#include "analysis/means_table.hpp"
+#include "analysis/compare_report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,7 @@ ComparedGroup group(const std::string& name, std::size_t count, double mean) {
   ComparedGroup out;
   out.name = name;
   out.values = {name};
-  out.counts.jobs = 4;
-  out.counts.without_value = 4 - static_cast<int>(count);
+  for (std::size_t job = 0; job < 4; ++job) out.counts.add(job < count ? Fate::counted : Fate::without_value);
   out.mean.count = count;
   out.mean.mean = mean;
   return out;
@@ -48,9 +47,9 @@ TEST(MeansTable, OfJobsAsTheyEndedHasNoTaps) {
 
 TEST(MeansTable, SaysWhatIsInNoMeanAndLeavesOutWhatIsLeftOut) {
   Comparison one = comparison("rmse_m", Unit::metre, {}, {group("bold", 4, 0.02), group("shy", 4, 0.03)});
-  one.groups[0].counts.failed = 2;
-  one.groups[0].counts.unfinished = 1;
-  one.groups[1].counts.left_out = 4;
+  for (const Fate fate : {Fate::failed, Fate::failed, Fate::unfinished}) one.groups[0].counts.add(fate);
+  one.groups[1].counts = {};
+  for (int job = 0; job < 4; ++job) one.groups[1].counts.add(Fate::left_out);
   EXPECT_EQ(means_table({one}),
             "| strategy | rmse_m [mm] |\n|---|---:|\n| bold | 20 |\n"
             "\n2 jobs failed and 1 have not ended: they are in no mean.\n");

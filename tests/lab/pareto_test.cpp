@@ -103,7 +103,7 @@ TEST(Pareto, GroupsOverTheSeedAndNamesOnlyTheKeysThatDiffer) {
   EXPECT_EQ(pareto.keys, (std::vector<std::string>{"acquisition", "taps"}));
   ASSERT_EQ(pareto.settings.size(), 2U);
   const Setting& a = setting(pareto, "acquisition=a");
-  EXPECT_EQ(a.counts.jobs, 2);
+  EXPECT_EQ(a.counts.all(), 2);
   EXPECT_EQ(a.first_job, 0U);
   EXPECT_DOUBLE_EQ(a.cost.mean, 11.0);
   EXPECT_DOUBLE_EQ(a.error.mean, 0.04);

@@ -211,7 +211,7 @@ TEST_F(FakeSlurm, SeesNoSettingsOfTheUsersThatWouldChangeWhatItPrints) {
 
 TEST_F(FakeSlurm, LetsTasksRunOneAtATimeThoughTheArrayIsSplit) {
   SlurmOptions options;
-  options.tasks_at_once = 1;
+  options.one_at_a_time = true;
   launcher(options).submit({8, 9, 10, 11, 24});
   EXPECT_THAT(calls("sbatch"),
               ElementsAre(AllOf(HasSubstr("--array=0-1%1 "), ::testing::Not(HasSubstr("--dependency"))),

@@ -32,13 +32,12 @@ TEST(SlurmLimits, RefuseWhatSaysNothingOfThem) {
 }
 
 TEST(SlurmNodes, AreReadByPartitionAndGarbageIsSkipped) {
-  const auto nodes = slurm::parse_nodes("CLUSTER: far\nsweep*|8\nsweep*|64\nlong|128\n\n|4\nodd|8+\nodd|-2\na|b|3\n");
-  ASSERT_EQ(nodes.size(), 3U);
-  EXPECT_EQ(nodes[0].partition, "sweep");
-  EXPECT_TRUE(nodes[0].is_default);
-  EXPECT_EQ(nodes[1].cpus, 64);
-  EXPECT_EQ(nodes[2].partition, "long");
-  EXPECT_FALSE(nodes[2].is_default);
+  const char* const lines = "CLUSTER: far\nsweep*|8\nsweep*|64\nsweep*|9\nlong|128\n\n|4\nodd|8+\nodd|-2\na|b|3\n";
+  EXPECT_EQ(slurm::parse_most_cpus(lines, ""), 64);
+  EXPECT_EQ(slurm::parse_most_cpus(lines, "sweep"), 64);
+  EXPECT_EQ(slurm::parse_most_cpus(lines, "long"), 128);
+  for (const char* unknown : {"odd", "a", "sweep*", "nowhere"})
+    EXPECT_EQ(slurm::parse_most_cpus(lines, unknown), 0) << unknown;
 }
 
 TEST(SlurmQueue, IsReadByTaskAndGarbageIsSkipped) {

@@ -68,14 +68,6 @@ JobValue value_of_job(const Row* row, const std::string& column, const std::stri
   return value ? JobValue{Fate::counted, *value} : JobValue{Fate::without_value};
 }
 
-void JobCounts::add(Fate fate) {
-  ++jobs;
-  left_out += fate == Fate::left_out ? 1 : 0;
-  failed += fate == Fate::failed ? 1 : 0;
-  unfinished += fate == Fate::unfinished ? 1 : 0;
-  without_value += fate == Fate::without_value ? 1 : 0;
-}
-
 bool is_done(const Row& row) { return row.text("status") == "done"; }
 
 }  // namespace palpate

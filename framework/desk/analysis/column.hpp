@@ -7,6 +7,8 @@
 
 #include <palpate/options.hpp>
 
+#include <array>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,8 +39,15 @@ CellNumber number_of(const Scalar* cell);
 /// That of a row. Throws Error, of the command line, for other text.
 std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option);
 
-/// What became of a job of which a column is asked.
-enum class Fate { counted, left_out, unfinished, failed, without_value };
+/// What became of a job of which a column is asked. Where a pair of jobs is, it has the fate that stands first.
+enum class Fate {
+  left_out,  ///< by a condition, which fails where it asks for what a job has not
+  without_partner,
+  unfinished,
+  failed,
+  without_value,  ///< done, but the column is null
+  counted
+};
 
 struct JobValue {
   Fate fate = Fate::counted;
@@ -48,15 +57,16 @@ struct JobValue {
 /// The value of a job by its row, null for one that has not ended. Throws Error as number_in().
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option);
 
-/// Some jobs by what became of them. What is left out counts as that alone, however it ended.
-struct JobCounts {
-  int jobs = 0;
-  int left_out = 0;  ///< by a condition, which fails where it asks for what a job has not
-  int failed = 0;
-  int unfinished = 0;
-  int without_value = 0;  ///< done, but the column is null
+/// Some jobs, or pairs of them, by what became of each. What is left out counts as that alone, however it ended.
+class FateCounts {
+ public:
+  void add(Fate fate) { ++counts_.at(static_cast<std::size_t>(fate)); }
+  int of(Fate fate) const { return counts_.at(static_cast<std::size_t>(fate)); }
+  int all() const { return std::accumulate(counts_.begin(), counts_.end(), 0); }
+  bool all_are(Fate fate) const { return of(fate) == all(); }
 
-  void add(Fate fate);
+ private:
+  std::array<int, 6> counts_{};
 };
 
 /// Whether the row is that of a run that ended well.

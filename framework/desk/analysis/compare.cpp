@@ -48,7 +48,7 @@ void check_keys(const Sweep& sweep, const CompareQuery& query) {
     }
     if (!contains(sweep.keys, *key)) {
       throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
-                  suggestion(*key, others(sweep.keys, {"seed"})));
+                  suggestion(*key, setting_keys(sweep)));
     }
     if (std::find(query.by.begin(), key, *key) != key) {
       throw Error("command line", fmt::format("--by: '{}' is named twice", *key), "name it once");
@@ -61,40 +61,12 @@ void check_keys(const Sweep& sweep, const CompareQuery& query) {
   }
 }
 
-/// Which jobs the condition keeps.
-class Filter {
- public:
-  Filter(const Sweep& sweep, const Values& columns, const Condition* where)
-      : sweep_(sweep), columns_(columns), where_(where) {
-    for (const std::string& key : sweep.keys) {
-      if (!contains(columns_, key)) columns_.push_back(key);
-    }
-  }
-
-  bool keeps(const Job& job, const Row* row) const {
-    if (where_ == nullptr) return true;
-    return where_->holds(
-        [&](const std::string& name) -> std::optional<std::string> {
-          if (!contains(columns_, name)) return {};
-          if (contains(sweep_.keys, name)) return value_of(sweep_, job, name);
-          const Scalar* value = row != nullptr ? row->find(name) : nullptr;
-          return value != nullptr ? text_of(name, *value) : std::string();
-        },
-        columns_);
-  }
-
- private:
-  /// As it would be written in a config, with its unit: conditions know no other lengths.
-  static std::string text_of(const std::string& name, const Scalar& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return *text;
-    if (const auto* number = std::get_if<double>(&value)) return write_quantity(*number, unit_of_column(name));
-    return csv_cell(value);
-  }
-
-  const Sweep& sweep_;
-  Values columns_;
-  const Condition* where_;
-};
+/// What a condition sees in a column: as it would be written in a config, with its unit, as it knows no other lengths.
+std::string text_of(const std::string& name, const Scalar& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* number = std::get_if<double>(&value)) return write_quantity(*number, unit_of_column(name));
+  return csv_cell(value);
+}
 
 /// A list may hold the same job more than once: each is the counterpart of its like.
 void insert(Outcomes& outcomes, Values pairing, const JobValue& outcome) {
@@ -105,17 +77,25 @@ void insert(Outcomes& outcomes, Values pairing, const JobValue& outcome) {
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, Comparison& out) {
-  const Filter filter(sweep, columns, query.where);
+  Values names = columns;
+  for (const std::string& key : others(sweep.keys, columns)) names.push_back(key);
+  const auto keeps = [&](const Job& job, const Row* row) {
+    const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<std::string> {
+      if (contains(sweep.keys, name)) return value_of(sweep, job, name);
+      if (!contains(columns, name)) return std::nullopt;
+      const Scalar* value = row != nullptr ? row->find(name) : nullptr;
+      return value != nullptr ? text_of(name, *value) : std::string();
+    };
+    return query.where == nullptr || query.where->holds(value_in_job, names);
+  };
   const Values paired = others(sweep.keys, query.by);
   std::vector<Collected> groups;
   for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
     groups.push_back({group.values, {}});
     for (const auto& [job, row] : group.jobs) {
       JobValue outcome = value_of_job(row, query.metric, "--metric");
-      if (!filter.keeps(*job, row)) {
-        ++out.left_out;
-        out.left_out_failed += outcome.fate == Fate::failed ? 1 : 0;
-        out.left_out_unfinished += outcome.fate == Fate::unfinished ? 1 : 0;
+      if (!keeps(*job, row)) {
+        out.left_out.add(outcome.fate);
         outcome = {Fate::left_out};
       }
       Values pairing;
@@ -153,20 +133,10 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   return out;
 }
 
-/// Counts a pair that is not complete; null is a job that the group does not have.
-void count_lost(LostPairs& lost, const JobValue* a, const JobValue* b) {
-  const auto either = [&](Fate fate) { return (a != nullptr && a->fate == fate) || (b != nullptr && b->fate == fate); };
-  if (either(Fate::left_out)) {
-    if (a != nullptr && b != nullptr && a->fate != b->fate) ++lost.left_out;
-  } else if (a == nullptr || b == nullptr) {
-    ++lost.without_partner;
-  } else if (either(Fate::unfinished)) {
-    ++lost.unfinished;
-  } else if (either(Fate::failed)) {
-    ++lost.failed;
-  } else {
-    ++lost.without_value;
-  }
+/// None where the group has no such job.
+JobValue value_at(const Outcomes& outcomes, const Values& pairing) {
+  const auto found = outcomes.find(pairing);
+  return found != outcomes.end() ? found->second : JobValue{Fate::without_partner};
 }
 
 ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second, bool ratio) {
@@ -178,19 +148,19 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   std::vector<double> values_a;
   std::vector<double> values_b;
   std::vector<double> differences;
-  for (const auto& [pairing, outcome] : a) {
-    const auto partner = b.find(pairing);
-    const JobValue* other = partner != b.end() ? &partner->second : nullptr;
-    if (other == nullptr || outcome.fate != Fate::counted || other->fate != Fate::counted) {
-      count_lost(out.lost, &outcome, other);
-      continue;
+  const auto add = [&](const JobValue& one, const JobValue& other) {
+    const Fate fate = std::min(one.fate, other.fate);
+    if (fate == Fate::counted) {
+      values_a.push_back(one.value);
+      values_b.push_back(other.value);
+      differences.push_back(one.value - other.value);
+    } else if (fate != Fate::left_out || std::max(one.fate, other.fate) > Fate::without_partner) {
+      out.lost.add(fate);
     }
-    values_a.push_back(outcome.value);
-    values_b.push_back(other->value);
-    differences.push_back(outcome.value - other->value);
-  }
+  };
+  for (const auto& [pairing, outcome] : a) add(outcome, value_at(b, pairing));
   for (const auto& [pairing, outcome] : b) {
-    if (a.find(pairing) == a.end()) count_lost(out.lost, nullptr, &outcome);
+    if (a.count(pairing) == 0) add({Fate::without_partner}, outcome);
   }
   out.difference = bootstrap_mean(differences);
   if (ratio) out.ratio = bootstrap_ratio(values_a, values_b);
@@ -221,7 +191,7 @@ std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::s
   Values names;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (without_blanks(groups[i].name) == without_blanks(name)) {
-      if (groups[i].counts.left_out < groups[i].counts.jobs) return i;
+      if (!groups[i].counts.all_are(Fate::left_out)) return i;
       throw Error("command line", fmt::format("--baseline: --where leaves out all of '{}'", name),
                   "name another group");
     }
@@ -248,18 +218,16 @@ void find_apart(const Outcomes& a, const Outcomes& b, std::set<std::size_t>& apa
 
 /// Throws Error if nothing is left to compare, with the reason.
 void check_values(const Comparison& made, const Sweep& sweep) {
-  JobCounts all;
-  std::size_t values = 0;
+  int without_value = 0;
   for (const ComparedGroup& group : made.groups) {
-    all.without_value += group.counts.without_value;
-    values += group.mean.count;
+    if (group.mean.count > 0) return;
+    without_value += group.counts.of(Fate::without_value);
   }
-  if (values > 0) return;
-  if (made.left_out == made.jobs) {
+  if (made.left_out.all() == made.jobs) {
     throw Error("command line", fmt::format("--where: leaves none of the {} jobs", made.jobs),
                 "results.csv, or results_at_N.csv with --at, has the values it is compared with");
   }
-  if (all.without_value == 0) {
+  if (without_value == 0) {
     throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");
   }
   const RecordField* field = find_summary_field(made.metric.name);
@@ -268,6 +236,14 @@ void check_values(const Comparison& made, const Sweep& sweep) {
 }
 
 }  // namespace
+
+std::vector<double> Comparison::means() const {
+  std::vector<double> out;
+  for (const ComparedGroup& group : groups) {
+    if (group.mean.count > 0) out.push_back(group.mean.mean);
+  }
+  return out;
+}
 
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query) {
   if (results.empty()) {
@@ -285,7 +261,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   check_values(out, sweep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (out.groups[i].counts.left_out < out.groups[i].counts.jobs) kept.push_back(i);
+    if (!out.groups[i].counts.all_are(Fate::left_out)) kept.push_back(i);
   }
   const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : kept.front();
   out.compared = kept.size();
@@ -301,7 +277,8 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   adjust(out.pairs);
   std::set<std::size_t> apart;
   for (const ComparedPair& pair : out.pairs) {
-    if (pair.lost.without_partner > 0) find_apart(groups[pair.first].outcomes, groups[pair.second].outcomes, apart);
+    if (pair.lost.of(Fate::without_partner) > 0)
+      find_apart(groups[pair.first].outcomes, groups[pair.second].outcomes, apart);
   }
   const Values paired = others(sweep.keys, query.by);
   for (const std::size_t place : apart) out.apart.push_back(paired[place]);

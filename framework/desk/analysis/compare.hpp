@@ -30,29 +30,19 @@ struct CompareQuery {
 struct ComparedGroup {
   std::string name;  ///< its values, in the order of the keys: "weighted, rbf"; "(none)" of a key that its jobs lack
   std::vector<std::string> values;  ///< the same one by one
-  JobCounts counts;
+  FateCounts counts;
   MeanEstimate mean;  ///< over the jobs that have a value; interval by the bootstrap
   double median = 0.0;
   double low_10 = 0.0;  ///< the values that 10 % and 90 % of the jobs stay below
   double high_90 = 0.0;
 };
 
-/// Why a job of one group has no counterpart with a value in the other. Where several reasons apply the first counts.
-struct LostPairs {
-  int left_out = 0;         ///< one of the two, by the condition; pairs that it leaves out whole are not counted
-  int without_partner = 0;  ///< the other group has no such job
-  int unfinished = 0;
-  int failed = 0;
-  int without_value = 0;
-
-  int all() const { return left_out + without_partner + unfinished + failed + without_value; }
-};
-
 /// What `first` has more than `second`, over the pairs of jobs in which both have a value.
 struct ComparedPair {
   std::size_t first = 0;  ///< indices in Comparison::groups
   std::size_t second = 0;
-  LostPairs lost;
+  /// Pairs that are not complete. Of what the condition leaves out those count of which it keeps one job.
+  FateCounts lost;
   MeanEstimate difference;
   std::optional<RatioEstimate> ratio;  ///< mean of the first over that of the second; if asked for, and it makes sense
   SignedRank test;
@@ -67,14 +57,15 @@ struct Comparison {
   std::vector<std::string> apart;
   std::vector<ComparedGroup> groups;  ///< in the order of the sweep
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
-  std::size_t compared = 0;           ///< groups; those that the condition leaves out whole are in no pair
+  /// Of the groups that have one.
+  std::vector<double> means() const;
+
+  std::size_t compared = 0;  ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
   bool ratios = false;            ///< asked for
   std::optional<int> after_taps;  ///< the jobs as they were after so many taps; none: as they ended
   int jobs = 0;                   ///< of the sweep
-  int left_out = 0;               ///< of them, by the condition
-  int left_out_failed = 0;        ///< of those
-  int left_out_unfinished = 0;    ///< of those
+  FateCounts left_out;            ///< of them, by the condition: what else became of those
 };
 
 /// Of more groups only those pairs are compared that have the first one in them, unless a baseline is named.

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace palpate {
@@ -16,12 +17,8 @@ namespace {
 using Better = RecordField::Better;
 using Lines = std::vector<std::vector<std::string>>;
 
-Scale scale_of(const Comparison& comparison) {
-  std::vector<double> means;
-  for (const ComparedGroup& group : comparison.groups) {
-    if (group.mean.count > 0) means.push_back(group.mean.mean);
-  }
-  return readable_scale(comparison.metric.unit, means);
+std::string keys_text(const std::vector<std::string>& keys) {
+  return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
 /// In the unit of the groups, but fine enough for two digits of the narrowest interval.
@@ -56,17 +53,17 @@ std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
 
 std::string group_table(const Comparison& comparison, const Scale& scale) {
   const bool numbers = numbered(comparison);
-  Lines lines{{numbers ? "#" : "", one_line(fmt::format("{}", fmt::join(comparison.by, ", "))), "jobs",
-               comparison.left_out > 0 ? "left out" : "", "failed", "unfinished", "no value", "n",
-               "mean [95 % interval]", "median", "10 % to 90 %"}};
+  const bool some_left_out = comparison.left_out.all() > 0;
+  Lines lines{{numbers ? "#" : "", keys_text(comparison.by), "jobs", some_left_out ? "left out" : "", "failed",
+               "unfinished", "no value", "n", "mean [95 % interval]", "median", "10 % to 90 %"}};
   for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
     const ComparedGroup& one = comparison.groups[i];
     const bool any = one.mean.count > 0;
+    const auto count = [&](Fate fate) { return std::to_string(one.counts.of(fate)); };
     lines.push_back(
-        {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.jobs),
-         comparison.left_out > 0 ? std::to_string(one.counts.left_out) : "", std::to_string(one.counts.failed),
-         std::to_string(one.counts.unfinished), std::to_string(one.counts.without_value),
-         std::to_string(one.mean.count),
+        {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()),
+         some_left_out ? count(Fate::left_out) : "", count(Fate::failed), count(Fate::unfinished),
+         count(Fate::without_value), std::to_string(one.mean.count),
          any ? fmt::format("{} {}", scale.number(one.mean.mean), scale.interval(one.mean.interval)) : "-",
          any ? short_number(scale, one.median) : "-",
          any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
@@ -99,9 +96,8 @@ std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const Si
 /// "0.85 [0.79, 0.91]"
 std::string ratio_text(const ComparedPair& pair) {
   if (!pair.ratio) return "-";
-  const auto& ends = pair.ratio->interval;
-  return fmt::format("{:.3f} {}", pair.ratio->ratio,
-                     ends ? fmt::format("[{:.3f}, {:.3f}]", ends->low, ends->high) : "[-]");
+  const auto number = [](double value) { return fmt::format("{:.3f}", value); };
+  return number(pair.ratio->ratio) + " " + interval_text(pair.ratio->interval, number);
 }
 
 std::string pair_table(const Comparison& comparison, const Scale& scale) {
@@ -111,21 +107,15 @@ std::string pair_table(const Comparison& comparison, const Scale& scale) {
                fmt::format("{}/equal/{}", words.up, words.down), "p", many ? "p (Holm)" : "", "effect"}};
   for (const ComparedPair& pair : comparison.pairs) {
     const auto [up, down] = sides(comparison, pair.test);
-    const auto& ends = pair.difference.interval;
-    const std::string interval =
-        ends ? fmt::format("[{}, {}]", scale.difference(ends->low), scale.difference(ends->high)) : "[-]";
-    lines.push_back(
-        {pair_name(comparison, pair), std::to_string(pair.difference.count), std::to_string(pair.lost.all()),
-         pair.difference.count > 0 ? fmt::format("{} {}", scale.difference(pair.difference.mean), interval) : "-",
-         comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
-         p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
-         pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
+    const auto number = [&](double value) { return scale.difference(value); };
+    const std::string mean = number(pair.difference.mean) + " " + interval_text(pair.difference.interval, number);
+    lines.push_back({pair_name(comparison, pair), std::to_string(pair.difference.count),
+                     std::to_string(pair.lost.all()), pair.difference.count > 0 ? mean : "-",
+                     comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
+                     p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
+                     pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
   }
   return aligned(lines, "lrrrrrrrr");
-}
-
-std::string keys_text(const std::vector<std::string>& keys) {
-  return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
 /// Where the mean and the majority of the pairs point in different directions, neither is the answer.
@@ -141,16 +131,23 @@ std::string contrary_note(const Comparison& comparison, const ComparedPair& pair
                      pair.difference.count);
 }
 
+/// Why a pair may not be complete.
+struct Loss {
+  Fate fate;
+  const char* column;
+  const char* words;
+};
+constexpr std::array<Loss, 5> kLosses{{{Fate::left_out, "lost_left_out", "with one job that --where leaves out"},
+                                       {Fate::without_partner, "lost_without_partner", "without a counterpart"},
+                                       {Fate::unfinished, "lost_unfinished", "unfinished"},
+                                       {Fate::failed, "lost_failed", "failed"},
+                                       {Fate::without_value, "lost_without_value", "without a value"}}};
+
 std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
   std::vector<std::string> reasons;
-  const auto add = [&](int count, const char* why) {
-    if (count > 0) reasons.push_back(fmt::format("{} {}", count, why));
-  };
-  add(pair.lost.left_out, "with one job that --where leaves out");
-  add(pair.lost.without_partner, "without a counterpart");
-  add(pair.lost.unfinished, "unfinished");
-  add(pair.lost.failed, "failed");
-  add(pair.lost.without_value, "without a value");
+  for (const Loss& one : kLosses) {
+    if (const int count = pair.lost.of(one.fate); count > 0) reasons.push_back(fmt::format("{} {}", count, one.words));
+  }
   if (reasons.empty()) return {};
   return fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), fmt::join(reasons, ", "));
 }
@@ -158,12 +155,11 @@ std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
 std::string remarks(const Comparison& comparison) {
   std::string out;
   const std::size_t groups = comparison.compared;
-  if (comparison.left_out > 0) {
-    out += fmt::format("--where leaves out {} of {} jobs", comparison.left_out, comparison.jobs);
+  if (const FateCounts& left_out = comparison.left_out; left_out.all() > 0) {
+    out += fmt::format("--where leaves out {} of {} jobs", left_out.all(), comparison.jobs);
     std::vector<std::string> ends;
-    if (comparison.left_out_failed > 0) ends.push_back(fmt::format("{} failed", comparison.left_out_failed));
-    if (comparison.left_out_unfinished > 0)
-      ends.push_back(fmt::format("{} unfinished", comparison.left_out_unfinished));
+    if (const int failed = left_out.of(Fate::failed); failed > 0) ends.push_back(fmt::format("{} failed", failed));
+    if (const int open = left_out.of(Fate::unfinished); open > 0) ends.push_back(fmt::format("{} unfinished", open));
     if (!ends.empty()) out += fmt::format(", of which {}", fmt::join(ends, ", "));
     out += "\n";
   }
@@ -185,7 +181,7 @@ std::string remarks(const Comparison& comparison) {
 }  // namespace
 
 std::string compare_tables(const Comparison& comparison) {
-  const Scale scale = scale_of(comparison);
+  const Scale scale = readable_scale(comparison.metric.unit, comparison.means());
   const std::string better = comparison.metric.better_words();
   std::string out = fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
                                 comparison.after_taps ? fmt::format(" after {} taps", *comparison.after_taps) : "",
@@ -260,16 +256,10 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     row.add("minus", comparison.groups[one.second].name);
     add_estimate(row, one.difference);
     if (comparison.ratios) {
-      const std::optional<MeanInterval> ends = one.ratio ? one.ratio->interval : std::nullopt;
       row.add("ratio", one.ratio ? std::optional(one.ratio->ratio) : std::nullopt);
-      row.add("ratio_low_95", ends ? std::optional(ends->low) : std::nullopt);
-      row.add("ratio_high_95", ends ? std::optional(ends->high) : std::nullopt);
+      add_interval(row, "ratio_", one.ratio ? one.ratio->interval : std::nullopt);
     }
-    row.add("lost_left_out", one.lost.left_out);
-    row.add("lost_without_partner", one.lost.without_partner);
-    row.add("lost_unfinished", one.lost.unfinished);
-    row.add("lost_failed", one.lost.failed);
-    row.add("lost_without_value", one.lost.without_value);
+    for (const Loss& loss : kLosses) row.add(loss.column, one.lost.of(loss.fate));
     row.add("higher", static_cast<std::int64_t>(one.test.higher));
     row.add("equal", static_cast<std::int64_t>(one.test.equal));
     row.add("lower", static_cast<std::int64_t>(one.test.lower));

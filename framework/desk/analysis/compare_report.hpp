@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A comparison for people, as tables with a word on how to read them, and for programs, as rows.
+// A comparison for people, as tables with a word on how to read them or one of the means alone, and for programs, as
+// rows.
 #pragma once
 
 #include "analysis/compare.hpp"
@@ -14,6 +15,12 @@ std::string compare_tables(const Comparison& comparison);
 
 /// What the intervals, p and effects of such tables mean.
 std::string compare_legend(const std::vector<Comparison>& comparisons);
+
+/// Means of several metrics in one table, as Markdown, what a paper or a README shows of a sweep: a row a group and
+/// number of taps, a column a metric, in one readable unit each; below it, what is not in the means.
+/// `comparisons` have the same groups; those with the same `after_taps` stand together, each with the same metrics in
+/// the same order.
+std::string means_table(const std::vector<Comparison>& comparisons);
 
 /// A row a group, then a row a pair, in SI units. `where` is the condition as it was written, "" for none.
 std::vector<Row> compare_rows(const Comparison& comparison, const std::string& where);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/means_table.hpp"
+#include "analysis/compare_report.hpp"
 
 #include "analysis/readable.hpp"
 
@@ -19,9 +19,8 @@ constexpr int kDigits = 2;
 Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
-    for (const ComparedGroup& group : comparisons[i].groups) {
-      if (group.mean.count > 0) means.push_back(group.mean.mean);
-    }
+    const std::vector<double> more = comparisons[i].means();
+    means.insert(means.end(), more.begin(), more.end());
   }
   return readable_scale(comparisons[first].metric.unit, means, kDigits);
 }
@@ -53,7 +52,8 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
     const RecordField* field = find_summary_field(name);
     bool lacks = false;
     for (std::size_t i = metric; i < comparisons.size(); i += metrics) {
-      for (const ComparedGroup& group : comparisons[i].groups) lacks = lacks || group.counts.without_value > 0;
+      for (const ComparedGroup& group : comparisons[i].groups)
+        lacks = lacks || group.counts.of(Fate::without_value) > 0;
     }
     if (!lacks) continue;
     out +=
@@ -63,8 +63,8 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
   int failed = 0;
   int unfinished = 0;
   for (const ComparedGroup& group : comparisons.front().groups) {
-    failed += group.counts.failed;
-    unfinished += group.counts.unfinished;
+    failed += group.counts.of(Fate::failed);
+    unfinished += group.counts.of(Fate::unfinished);
   }
   if (failed + unfinished > 0)
     out += fmt::format("{} jobs failed and {} have not ended: they are in no mean.\n", failed, unfinished);
@@ -84,8 +84,7 @@ std::string means_table(const std::vector<Comparison>& comparisons) {
   for (std::size_t block = 0; block < comparisons.size(); block += metrics) {
     const Comparison& first = comparisons[block];
     for (std::size_t i = 0; i < first.groups.size(); ++i) {
-      const JobCounts& counts = first.groups[i].counts;
-      if (counts.left_out == counts.jobs) continue;
+      if (first.groups[i].counts.all_are(Fate::left_out)) continue;
       std::vector<std::string> cells;
       for (const std::string& value : first.groups[i].values) cells.push_back(cell(value));
       if (first.after_taps) cells.push_back(std::to_string(*first.after_taps));

@@ -35,7 +35,7 @@ Setting make_setting(const JobGroup& group, const Column& cost, const Column& er
   for (const JobResult& one : group.jobs) {
     const JobValue paid = value_of_job(one.row, cost.name, "--cost");
     const JobValue missed = value_of_job(one.row, error.name, "--error");
-    const Fate fate = paid.fate == Fate::counted ? missed.fate : paid.fate;
+    const Fate fate = std::min(paid.fate, missed.fate);
     out.counts.add(fate);
     if (fate != Fate::counted) continue;
     costs.push_back(paid.value);
@@ -86,8 +86,8 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
     for (const std::string& key : differing) values.push_back(value_of(sweep, *group.jobs.front().job, key));
     setting.name = key_words(differing, values, true);
     if (setting.name.empty()) setting.name = "the only setting";
-    pareto.jobs += setting.counts.jobs;
-    pareto.unfinished += setting.counts.unfinished;
+    pareto.jobs += setting.counts.all();
+    pareto.unfinished += setting.counts.of(Fate::unfinished);
     pareto.settings.push_back(std::move(setting));
   }
   std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {

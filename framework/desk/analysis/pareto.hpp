@@ -18,7 +18,7 @@ struct Setting {
   std::vector<std::string> values;  ///< one for each of Pareto::keys
   std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
-  JobCounts counts;                 ///< without a value: of cost or error
+  FateCounts counts;                ///< without a value: of cost or error
   MeanEstimate cost;                ///< over the jobs that are done and have both values
   MeanEstimate error;
   /// Its number on the front, from 1 in the order of cost; 0 if it is not on it: another complete one is at least as
@@ -27,7 +27,7 @@ struct Setting {
 
   /// Whether every job has both values. Others are shown, but the front is made, and the cheapest chosen, without them:
   /// the mean of the jobs that went well says nothing about those that did not.
-  bool complete() const { return counts.jobs > 0 && static_cast<std::size_t>(counts.jobs) == error.count; }
+  bool complete() const { return counts.all_are(Fate::counted); }
 };
 
 struct Pareto {

@@ -8,31 +8,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace palpate {
 namespace {
 
-using Pick = std::function<const MeanEstimate&(const Setting&)>;
-const MeanEstimate& cost_of(const Setting& setting) { return setting.cost; }
-const MeanEstimate& error_of(const Setting& setting) { return setting.error; }
+using Pick = MeanEstimate Setting::*;
 
-Scale scale_of(const Pareto& pareto, const Column& key, const Pick& pick) {
+Scale scale_of(const Pareto& pareto, const Column& key, Pick pick) {
   std::vector<double> means;
   for (const Setting& setting : pareto.settings) {
-    if (pick(setting).count > 0) means.push_back(pick(setting).mean);
+    if ((setting.*pick).count > 0) means.push_back((setting.*pick).mean);
   }
   return readable_scale(key.unit, means);
 }
 
 std::string note_of(const Setting& setting) {
   std::string note;
-  const auto add = [&](int count, const char* what) {
-    if (count > 0) note += fmt::format("{}{} of {} {}", note.empty() ? "" : ", ", count, setting.counts.jobs, what);
+  const FateCounts& counts = setting.counts;
+  const auto add = [&](Fate fate, const char* what) {
+    if (counts.of(fate) == 0) return;
+    note += fmt::format("{}{} of {} {}", note.empty() ? "" : ", ", counts.of(fate), counts.all(), what);
   };
-  add(setting.counts.failed, "failed");
-  add(setting.counts.unfinished, "unfinished");
-  add(setting.counts.without_value, "without a value");
+  add(Fate::failed, "failed");
+  add(Fate::unfinished, "unfinished");
+  add(Fate::without_value, "without a value");
   return note;
 }
 
@@ -51,12 +50,12 @@ std::string error_text(const Setting& setting, const Scale& scale) {
 }  // namespace
 
 std::string pareto_table(const Pareto& pareto) {
-  const Scale cost = scale_of(pareto, pareto.cost, cost_of);
-  const Scale error = scale_of(pareto, pareto.error, error_of);
+  const Scale cost = scale_of(pareto, pareto.cost, &Setting::cost);
+  const Scale error = scale_of(pareto, pareto.error, &Setting::error);
   std::vector<std::vector<std::string>> lines{
       {"front", "setting", "jobs", cost.title(pareto.cost.name), error.title(pareto.error.name), ""}};
   for (const Setting& one : pareto.settings) {
-    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, std::to_string(one.counts.jobs),
+    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, std::to_string(one.counts.all()),
                      cost_text(one, cost), error_text(one, error), note_of(one)});
   }
   std::string out = aligned(lines, "rlrrrl");
@@ -85,20 +84,18 @@ std::vector<Row> pareto_rows(const Pareto& pareto) {
 }
 
 std::string error_words(const Pareto& pareto, const Setting& setting) {
-  const Scale scale = scale_of(pareto, pareto.error, error_of);
-  return fmt::format("{} {}{}", pareto.error.name, error_text(setting, scale),
-                     scale.unit.empty() ? "" : " " + scale.unit);
+  const Scale scale = scale_of(pareto, pareto.error, &Setting::error);
+  return pareto.error.name + " " + scale.with_unit(error_text(setting, scale));
 }
 
 std::string cost_words(const Pareto& pareto, const Setting& setting) {
-  const Scale scale = scale_of(pareto, pareto.cost, cost_of);
-  return fmt::format("{} {}{}", pareto.cost.name, cost_text(setting, scale),
-                     scale.unit.empty() ? "" : " " + scale.unit);
+  const Scale scale = scale_of(pareto, pareto.cost, &Setting::cost);
+  return pareto.cost.name + " " + scale.with_unit(cost_text(setting, scale));
 }
 
 std::string bound_words(const Pareto& pareto, double bound) {
-  const Scale scale = scale_of(pareto, pareto.error, error_of);
-  return fmt::format("{:.6g}{}", bound / scale.factor, scale.unit.empty() ? "" : " " + scale.unit);
+  const Scale scale = scale_of(pareto, pareto.error, &Setting::error);
+  return scale.with_unit(fmt::format("{:.6g}", bound / scale.factor));
 }
 
 namespace {
@@ -123,14 +120,14 @@ struct PlotAxis {
   }
 };
 
-PlotAxis plot_axis(const Pareto& pareto, const Column& key, const Pick& pick, const std::optional<double>& line) {
+PlotAxis plot_axis(const Pareto& pareto, const Column& key, Pick pick, const std::optional<double>& line) {
   constexpr double kLogarithmicFrom = 20.0;
   PlotAxis axis;
   axis.scale = scale_of(pareto, key, pick);
   std::vector<double> means;
   std::vector<double> ends;
   for (const Setting& one : pareto.settings) {
-    const MeanEstimate& estimate = pick(one);
+    const MeanEstimate& estimate = one.*pick;
     if (estimate.count == 0) continue;
     means.push_back(estimate.mean / axis.scale.factor);
     for (const double end : {PlotAxis::interval_or_mean(estimate).low, PlotAxis::interval_or_mean(estimate).high})
@@ -202,8 +199,8 @@ std::string front_list(const Pareto& pareto, const Setting* chosen) {
 
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen) {
-  const PlotAxis x = plot_axis(pareto, pareto.cost, cost_of, {});
-  const PlotAxis y = plot_axis(pareto, pareto.error, error_of, bound);
+  const PlotAxis x = plot_axis(pareto, pareto.cost, &Setting::cost, {});
+  const PlotAxis y = plot_axis(pareto, pareto.error, &Setting::error, bound);
   std::string front;
   std::string others;
   std::string incomplete;
@@ -218,8 +215,10 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   std::string out;
   std::string plots;
   const auto plot = [&](const std::string& clause) { plots += (plots.empty() ? "plot " : ", \\\n  ") + clause; };
-  const auto block = [&](const char* name, const std::string& lines) {
+  const auto draw = [&](const std::string& name, const std::string& lines, const std::vector<std::string>& clauses) {
+    if (lines.empty()) return;
     out += fmt::format("${} << END\n{}END\n", name, lines);
+    for (const std::string& clause : clauses) plot("$" + name + " using " + clause);
   };
   out += fmt::format("set title {} font ',14'\n", gnuplot_text(title));
   out += fmt::format(
@@ -233,31 +232,20 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   out +=
       fmt::format("set key at screen {}, screen 0.21 left Left reverse samplen 2 spacing 1.4 font ',11'\n", kListLeft);
   out += front_list(pareto, chosen);
-  if (!incomplete.empty()) {
-    block("incomplete", incomplete);
-    plot(
-        "$incomplete using 1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' "
-        "title 'not compared: jobs failed or missing'");
-  }
-  if (!others.empty()) {
-    block("others", others);
-    plot("$others using 1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'");
-  }
+  draw("incomplete", incomplete,
+       {"1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' title 'not compared: jobs failed or missing'"});
+  draw("others", others, {"1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'"});
   if (bound) {
     plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '#c1440e' title {}", *bound / y.scale.factor,
                      gnuplot_text((pareto.more_is_better() ? "wanted: at least " : "wanted: at most ") +
                                   bound_words(pareto, *bound))));
   }
-  if (!front.empty()) {
-    block("front", front);
-    plot("$front using 1:4 with steps lw 2 lc rgb '#0b5394' title 'front: dominated by none'");
-    plot("$front using 1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '#0b5394' notitle");
-    plot("$front using 1:4 with points pt 7 ps 2.4 lc rgb '#0b5394' notitle");
-  }
-  if (!choice.empty()) {
-    block("choice", choice);
-    plot("$choice using 1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'");
-  }
+  draw("front", front,
+       {"1:4 with steps lw 2 lc rgb '#0b5394' title 'front: dominated by none'",
+        "1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '#0b5394' notitle",
+        "1:4 with points pt 7 ps 2.4 lc rgb '#0b5394' notitle"});
+  draw("choice", choice,
+       {"1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'"});
   if (!front.empty()) plot("$front using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle");
   return out + plots + "\n";
 }

@@ -18,10 +18,14 @@ std::string Scale::difference(double value) const {
 }
 
 std::string Scale::interval(const std::optional<MeanInterval>& ends) const {
-  return ends ? fmt::format("[{}, {}]", number(ends->low), number(ends->high)) : "[-]";
+  return interval_text(ends, [&](double end) { return number(end); });
 }
 
 std::string Scale::title(const std::string& name) const { return name + (unit.empty() ? "" : " [" + unit + "]"); }
+
+std::string interval_text(const std::optional<MeanInterval>& ends, const std::function<std::string(double)>& number) {
+  return ends ? fmt::format("[{}, {}]", number(ends->low), number(ends->high)) : "[-]";
+}
 
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits) {
   double largest = 0.0;
@@ -69,18 +73,21 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t longest) {
 }
 
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate) {
-  const auto& ends = estimate.interval;
   row.add(prefix + "mean", estimate.count > 0 ? std::optional(estimate.mean) : std::nullopt);
+  add_interval(row, prefix, estimate.interval);
+}
+
+void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends) {
   row.add(prefix + "low_95", ends ? std::optional(ends->low) : std::nullopt);
   row.add(prefix + "high_95", ends ? std::optional(ends->high) : std::nullopt);
 }
 
-void add_counts(Row& row, const JobCounts& counts, bool left_out) {
-  row.add("jobs", counts.jobs);
-  if (left_out) row.add("left_out", counts.left_out);
-  row.add("failed", counts.failed);
-  row.add("unfinished", counts.unfinished);
-  row.add("without_value", counts.without_value);
+void add_counts(Row& row, const FateCounts& counts, bool left_out) {
+  row.add("jobs", counts.all());
+  if (left_out) row.add("left_out", counts.of(Fate::left_out));
+  row.add("failed", counts.of(Fate::failed));
+  row.add("unfinished", counts.of(Fate::unfinished));
+  row.add("without_value", counts.of(Fate::without_value));
 }
 
 std::string one_line(std::string text) {

@@ -8,6 +8,7 @@
 
 #include <palpate/options.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,9 +26,14 @@ struct Scale {
   std::string difference(double value) const;
   /// "[3.02, 3.40]", "[-]" where there is none.
   std::string interval(const std::optional<MeanInterval>& ends) const;
+  /// "5 mm"
+  std::string with_unit(const std::string& number) const { return number + (unit.empty() ? "" : " " + unit); }
   /// "robot_seconds [s]"
   std::string title(const std::string& name) const;
 };
+
+/// "[3.02, 3.40]" of ends that `number` writes, "[-]" where there are none.
+std::string interval_text(const std::optional<MeanInterval>& ends, const std::function<std::string(double)>& number);
 
 /// For values of these sizes: millimetres and milliseconds if all are below one, and `digits` digits of the smallest
 /// that is not 0, but at most four decimals.
@@ -42,8 +48,10 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t longest);
 
 /// Adds `prefix`mean and the ends of its interval, null where there are none.
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate);
+/// The same of the ends alone.
+void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends);
 /// Adds how many jobs there are and what became of them, on request with those that a condition leaves out.
-void add_counts(Row& row, const JobCounts& counts, bool left_out = false);
+void add_counts(Row& row, const FateCounts& counts, bool left_out = false);
 
 /// The text with blanks for control characters: one line, whatever stood in a config.
 std::string one_line(std::string text);

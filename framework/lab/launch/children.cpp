@@ -12,6 +12,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,8 @@ constexpr const char* kDone = ".";
 constexpr const char* kTrouble = "!";
 
 }  // namespace
+
+int cores() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 bool in_children(std::size_t count, int workers, const std::function<void(std::size_t)>& work,
                  const std::atomic<bool>* interrupted, const std::function<void(std::size_t)>& progress) {

@@ -8,6 +8,9 @@
 
 namespace palpate {
 
+/// Of this machine, at least 1.
+int cores();
+
 /// Calls `work` for every number below `count`, in up to `workers` processes forked from this one, which die with it.
 /// `progress` (may be null) hears after each how many are done. Returns whether all are: false once `interrupted` (may
 /// be null) is set. Throws Error, of kind `run`, with what the first of them could not do; the others are then ended.

@@ -5,14 +5,13 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
+#include <numeric>
+
 namespace palpate {
 namespace {
 
 constexpr double kPollSeconds = 0.5;
-
-RunStatus::State state_of(const Sweep& sweep, std::size_t job) {
-  return read_ending(job_directory(sweep, sweep.jobs[job])).state;
-}
 
 /// Whether the sweep's folder is no longer there. A file system that cannot tell just now has not lost it.
 bool is_gone(const Sweep& sweep) {
@@ -22,33 +21,53 @@ bool is_gone(const Sweep& sweep) {
 
 }  // namespace
 
-Missing find_missing(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool retry_failed, int most_attempts) {
-  Missing out;
+std::vector<std::size_t> all_jobs(const Sweep& sweep) {
+  std::vector<std::size_t> jobs(sweep.jobs.size());
+  std::iota(jobs.begin(), jobs.end(), std::size_t{0});
+  return jobs;
+}
+
+Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool running) {
+  Standing out;
   for (const std::size_t job : jobs) {
-    const RunStatus::State state = state_of(sweep, job);
-    const bool again = state == RunStatus::State::failed && retry_failed &&
-                       attempts_of(job_directory(sweep, sweep.jobs[job])) < most_attempts;
-    if (state == RunStatus::State::done) {
-      ++out.done;
-    } else if (state == RunStatus::State::failed && !again) {
-      ++out.failed;
-    } else {
-      out.jobs.push_back(job);
+    const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
+    RunStatus status = read_ending(directory);
+    if (running && status.state != RunStatus::State::done) {
+      const bool held = is_running(directory);
+      // Who ended between the two questions has written meanwhile what the first one missed.
+      if (!held) status = read_ending(directory);
+      if (held) status.state = RunStatus::State::running;
+    }
+    ++out.counts[status.state];
+    if (status.state == RunStatus::State::failed) {
+      out.failures.push_back({job, attempts_of(directory), status.stop_reason});
+    } else if (status.state != RunStatus::State::done && status.state != RunStatus::State::running) {
+      out.open.push_back(job);
     }
   }
   return out;
 }
 
-void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, const std::atomic<bool>* interrupted,
+void try_again(Standing& standing, int most_attempts) {
+  std::vector<SweepFailure>& failures = standing.failures;
+  const auto again = std::stable_partition(failures.begin(), failures.end(),
+                                           [&](const SweepFailure& one) { return one.attempts >= most_attempts; });
+  for (auto one = again; one != failures.end(); ++one) standing.open.push_back(one->job);
+  failures.erase(again, failures.end());
+  std::sort(standing.open.begin(), standing.open.end());
+}
+
+void conduct(Launcher& launcher, const Sweep& sweep, const Standing& begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress) {
   SweepProgress counts;
-  counts.done = missing.done;
-  counts.failed = missing.failed;
-  counts.before = missing.done + missing.failed;
-  counts.jobs = counts.before + static_cast<int>(missing.jobs.size());
+  const auto ended_well = begun.counts.find(RunStatus::State::done);
+  counts.done = ended_well != begun.counts.end() ? ended_well->second : 0;
+  counts.failed = static_cast<int>(begun.failures.size());
+  counts.before = counts.done + counts.failed;
+  counts.jobs = counts.before + static_cast<int>(begun.open.size());
   bool gone = false;
   bool cancelled = false;
-  launcher.submit(missing.jobs);
+  launcher.submit(begun.open);
   Launcher::State state;
   do {
     gone = gone || is_gone(sweep);
@@ -63,10 +82,11 @@ void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, con
       continue;
     }
     for (const std::size_t job : state.returned) {
-      const RunStatus::State now = state_of(sweep, job);
+      const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
+      const RunStatus::State now = read_ending(directory).state;
       const bool done = now == RunStatus::State::done;
       // Where not even a failure could be recorded, as on a full disk, there is none to be read.
-      const bool lost = !done && !cancelled && !is_running(job_directory(sweep, sweep.jobs[job]));
+      const bool lost = !done && !cancelled && !is_running(directory);
       counts.done += done ? 1 : 0;
       counts.failed += now == RunStatus::State::failed || lost ? 1 : 0;
     }
@@ -77,20 +97,6 @@ void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, con
   throw Error(sweep.directory.string(), "was moved or removed while its jobs were under way",
               "where it was moved to, 'palpate resume' carries on; otherwise begin it again with 'palpate sweep'",
               Error::Kind::run);
-}
-
-SweepReport report_on(const Sweep& sweep, const std::vector<std::size_t>& jobs) {
-  SweepReport report;
-  for (const std::size_t job : jobs) {
-    const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-    const RunStatus status = read_ending(directory);
-    if (status.state == RunStatus::State::failed) {
-      report.failures.push_back({job, attempts_of(directory), status.stop_reason});
-    } else if (status.state != RunStatus::State::done) {
-      ++report.unfinished;
-    }
-  }
-  return report;
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,30 +30,26 @@ struct SweepFailure {
   std::string reason;
 };
 
-struct SweepReport {
-  std::vector<SweepFailure> failures;  ///< of all jobs in question, in their order
-  int unfinished = 0;                  ///< jobs that nobody ended
-  bool interrupted = false;
+/// Where some jobs of a sweep stand, by their directories.
+struct Standing {
+  std::map<RunStatus::State, int> counts;
+  std::vector<std::size_t> open;       ///< neither done nor failed, nor known to be running
+  std::vector<SweepFailure> failures;  ///< both in the order of the jobs
 };
 
-/// Which jobs to run.
-struct Missing {
-  std::vector<std::size_t> jobs;  ///< neither done nor, unless they may be tried again, failed
-  int done = 0;
-  int failed = 0;  ///< that stay so
-};
+/// All of a sweep, as indices into Sweep::jobs.
+std::vector<std::size_t> all_jobs(const Sweep& sweep);
 
-/// Looks through `jobs` (indices into Sweep::jobs). Failed ones are missing, too, when they are to be tried again and
-/// were begun fewer than `most_attempts` times.
-Missing find_missing(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool retry_failed, int most_attempts);
+/// Looks through `jobs`. Who has them in hand is asked only for `running` ones to be told from others.
+Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool running = false);
 
-/// Has `launcher` run what is `missing` of `jobs` and waits until it has none in its hands, or until `interrupted`,
-/// when it cancels them. `progress` is called when something changed and at least every half second. Throws Error where
-/// the sweep's directory is moved or removed meanwhile, when it has cancelled them.
-void conduct(Launcher& launcher, const Sweep& sweep, const Missing& missing, const std::atomic<bool>* interrupted,
+/// Makes those failed jobs open again that were begun fewer than `most_attempts` times.
+void try_again(Standing& standing, int most_attempts);
+
+/// Has `launcher` run what is open, where jobs stand as in `begun`, and waits until it has none in its hands, or until
+/// `interrupted`, when it cancels them. `progress` is called when something changed and at least every half second.
+/// Throws Error where the sweep's directory is moved or removed meanwhile, when it has cancelled them.
+void conduct(Launcher& launcher, const Sweep& sweep, const Standing& begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress);
-
-/// What has become of `jobs`, from their directories.
-SweepReport report_on(const Sweep& sweep, const std::vector<std::size_t>& jobs);
 
 }  // namespace palpate

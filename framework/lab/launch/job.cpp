@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/job.hpp"
 
+#include "config/trouble.hpp"
 #include "record/build_info.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
@@ -62,12 +63,10 @@ class Attempt {
 
 /// None if another process has it in hand.
 std::optional<RunDirectory> hold(const fs::path& directory) {
-  try {
-    return std::optional<RunDirectory>(std::in_place, directory);
-  } catch (const Error& trouble) {  // to be told from what is wrong with the folder
-    if (trouble.kind() != Error::Kind::busy) throw;
-    return std::nullopt;
-  }
+  std::optional<RunDirectory> held;
+  const std::optional<Error> trouble = trouble_in([&] { held.emplace(directory); });
+  if (trouble && trouble->kind() != Error::Kind::busy) throw *trouble;
+  return held;
 }
 
 /// Its reason is kept unless the job has ended for another one.
@@ -87,14 +86,15 @@ JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig(
   std::error_code none;
   JobEnd end = JobEnd::failed;
   std::optional<Attempt> attempt;
-  try {
+  const std::optional<Error> trouble = trouble_in([&] {
     const ResolvedConfig config = config_of();
     attempt.emplace(directory, read_record(directory).taps);
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
-  } catch (const Error& trouble) {  // which ends the job alone, not the sweep
-    if (!fs::exists(directory / "config.yaml", none)) throw;
+  });
+  if (trouble) {  // ends the job alone, not the sweep
+    if (!fs::exists(directory / "config.yaml", none)) throw *trouble;
     // What failed before the run could begin has left no summary.
-    write_failure(directory, trouble.what());
+    write_failure(directory, trouble->what());
   }
   if (attempt) attempt->end(end == JobEnd::done ? "done" : end == JobEnd::failed ? "failed" : "interrupted");
   return end;

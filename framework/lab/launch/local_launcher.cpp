@@ -96,15 +96,13 @@ void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
     later_.push_back(job);
     return;
   }
-  if (!cancelled_ && !is_borne_out(job, end)) {
+  const bool ended = end == JobEnd::done || end == JobEnd::failed;
+  const bool known = ended || end == JobEnd::unrecorded || end == JobEnd::busy || end == JobEnd::interrupted;
+  // A plugin that calls exit(), with 0 or 1, too, leaves no result behind.
+  if (!cancelled_ && (!known || (ended && !has_ended(directory_of(job))))) {
     record_failure(directory_of(job), fmt::format("its process ended with status {}", WEXITSTATUS(wait_status)));
   }
   state.returned.push_back(job);
-}
-
-bool LocalLauncher::is_borne_out(std::size_t job, JobEnd end) const {
-  if (end == JobEnd::done || end == JobEnd::failed) return has_ended(directory_of(job));
-  return end == JobEnd::unrecorded || end == JobEnd::busy || end == JobEnd::interrupted;
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {

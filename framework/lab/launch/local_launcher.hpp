@@ -50,8 +50,6 @@ class LocalLauncher final : public Launcher {
   /// In the child.
   JobEnd run(std::size_t job) const;
   void conclude(std::size_t job, int wait_status, State& state);
-  /// Whether an exit status is a job's own: a plugin that calls exit(0) or exit(1) leaves no result behind.
-  bool is_borne_out(std::size_t job, JobEnd end) const;
   void was_killed(std::size_t job, int signal, State& state);
   std::filesystem::path directory_of(std::size_t job) const { return job_directory(sweep_, sweep_.jobs[job]); }
 

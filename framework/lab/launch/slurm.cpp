@@ -84,17 +84,16 @@ int parse_most_tasks(const std::string& config) {
   return std::clamp(setting(config, "max_array_tasks").value_or(*indices), 1, *indices);
 }
 
-std::vector<Nodes> parse_nodes(const std::string& lines) {
-  std::vector<Nodes> out;
+int parse_most_cpus(const std::string& lines, const std::string& partition) {
+  int most = 0;
   for (const std::string& line : parts_of(lines)) {
     const std::vector<std::string> cells = parts_of(line, '|');
-    const std::optional<int> cpus = cells.size() == 2 ? whole_number(cells[1]) : std::nullopt;
-    if (!cpus || cells[0].empty()) continue;
-    Nodes nodes{cells[0], cells[0].back() == '*', *cpus};
-    if (nodes.is_default) nodes.partition.pop_back();
-    out.push_back(std::move(nodes));
+    if (cells.size() != 2) continue;
+    const bool is_default = !cells[0].empty() && cells[0].back() == '*';
+    const std::string name = is_default ? cells[0].substr(0, cells[0].size() - 1) : cells[0];
+    if (partition.empty() ? is_default : name == partition) most = std::max(most, whole_number(cells[1]).value_or(0));
   }
-  return out;
+  return most;
 }
 
 std::vector<Task> parse_queue(const std::string& lines) {
@@ -131,11 +130,7 @@ std::string words_of(const std::string& output) {
 int most_tasks() { return parse_most_tasks(ask({"scontrol", "show", "config"})); }
 
 int most_cpus(const std::string& partition) {
-  int most = 0;
-  for (const Nodes& nodes : parse_nodes(ask({"sinfo", "--noheader", "--exact", "--format=%P|%c"}))) {
-    if (partition.empty() ? nodes.is_default : nodes.partition == partition) most = std::max(most, nodes.cpus);
-  }
-  return most;
+  return parse_most_cpus(ask({"sinfo", "--noheader", "--exact", "--format=%P|%c"}), partition);
 }
 
 int submit(const std::vector<std::string>& words) {
@@ -157,29 +152,23 @@ void cancel(const std::vector<int>& arrays) {
 }
 
 std::optional<std::vector<Task>> Watch::look(double seconds) {
-  const auto now = Clock::now();
-  if (!query_ && now < next_) {
-    const double pause = std::min(seconds, std::chrono::duration<double>(next_ - now).count());
-    ::poll(nullptr, 0, static_cast<int>(1000.0 * pause) + 1);
-    return std::nullopt;
-  }
   if (!query_) {
+    const double pause = std::chrono::duration<double>(next_ - Clock::now()).count();
+    if (pause > 0.0) {
+      ::poll(nullptr, 0, static_cast<int>(1000.0 * std::min(seconds, pause)) + 1);
+      return std::nullopt;
+    }
     query_ = start({"squeue", "--noheader", "--array", fmt::format("--user={}", ::geteuid()), "--format=%F|%K|%t"});
-    next_ = now + kPause;
+    next_ = Clock::now() + kPause;
   }
   ChildProcess::listen({query_.get()}, seconds);
-  if (!query_->ended()) {
-    if (now < next_ + std::chrono::seconds(static_cast<int>(kPatience))) return std::nullopt;
-    trouble_ = fmt::format("has not answered for {:.0f} s", kPatience);
-    query_.reset();
-    return std::nullopt;
-  }
+  const bool late = Clock::now() >= next_ + std::chrono::seconds(static_cast<int>(kPatience));
+  if (!query_->ended() && !late) return std::nullopt;
   const std::unique_ptr<ChildProcess> query = std::move(query_);
-  if (query->status() != 0) {
-    trouble_ = words_of(query->said());
-    return std::nullopt;
-  }
   trouble_.clear();
+  if (!query->ended()) trouble_ = fmt::format("has not answered for {:.0f} s", kPatience);
+  if (query->ended() && query->status() != 0) trouble_ = words_of(query->said());
+  if (!trouble_.empty()) return std::nullopt;
   answered_ = Clock::now();
   return parse_queue(query->said());
 }

@@ -17,14 +17,9 @@ namespace palpate::slurm {
 /// Error when it says nothing of arrays, or takes none.
 int parse_most_tasks(const std::string& config);
 
-/// The nodes of a partition that are alike.
-struct Nodes {
-  std::string partition;
-  bool is_default = false;  ///< of the cluster: where jobs go that name none
-  int cpus = 0;             ///< each has
-};
-/// From lines "PARTITION*|CPUS"; other lines are skipped.
-std::vector<Nodes> parse_nodes(const std::string& lines);
+/// The most CPUs that a node of `partition` has, from lines "PARTITION|CPUS"; other lines are skipped. The cluster's
+/// default one, where jobs go that name none, has an asterisk behind it, and is meant by "".
+int parse_most_cpus(const std::string& lines, const std::string& partition);
 
 /// A task in the queue: it waits, runs, or is about to be gone.
 struct Task {

@@ -135,8 +135,7 @@ fs::path SlurmLauncher::make_folder() const {
 std::vector<std::string> SlurmLauncher::words_for(std::size_t first, std::size_t count, const fs::path& folder) const {
   // Behind the user's words, so that one of those without its value takes nothing away unnoticed.
   std::vector<std::string> words = options_.more;
-  const std::string beside = options_.tasks_at_once > 0 ? fmt::format("%{}", options_.tasks_at_once) : "";
-  words.push_back(fmt::format("--array=0-{}{}", count - 1, beside));
+  words.push_back(fmt::format("--array=0-{}{}", count - 1, options_.one_at_a_time ? "%1" : ""));
   words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
   // A percent sign begins a placeholder of Slurm's.
   words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
@@ -145,7 +144,7 @@ std::vector<std::string> SlurmLauncher::words_for(std::size_t first, std::size_t
   if (!options_.time.empty()) words.push_back("--time=" + options_.time);
   if (!options_.account.empty()) words.push_back("--account=" + options_.account);
   // The limit is each array's own: one begins when the other has ended.
-  if (options_.tasks_at_once > 0 && !arrays_.empty())
+  if (options_.one_at_a_time && !arrays_.empty())
     words.push_back(fmt::format("--dependency=afterany:{}", arrays_.back()));
   words.push_back((folder / kScript).string());
   words.push_back(std::to_string(first));

@@ -23,8 +23,8 @@ struct SlurmOptions {
   std::string partition, time, account;  ///< passed on as given; "" for the cluster's own choice
   std::vector<std::string> more;         ///< words for sbatch, each with its dashes
   int jobs_per_task = 1;
-  int workers = 1;        ///< jobs of a task at a time, each with a core of its own
-  int tasks_at_once = 0;  ///< of all arrays together; 0 for as many as the cluster gives
+  int workers = 1;             ///< jobs of a task at a time, each with a core of its own
+  bool one_at_a_time = false;  ///< tasks, of all arrays together
   int most_attempts = 3;
   ResumeOptions resume;  ///< for every job
 };

@@ -20,18 +20,10 @@ using Formula = Condition::Formula;
 constexpr const char* kHowTo = "write it like taps >= 12 and not surface == two_part";
 constexpr int kMaxDepth = 100;
 
-/// A word, a quoted text, a sign of comparison or a parenthesis.
-struct Token {
-  enum class Kind { word, quoted, sign, open, close };
-  Kind kind;
-  std::string text;
-};
-
 bool is_sign(char c) { return std::string_view("=!<>&|").find(c) != std::string_view::npos; }
 bool is_space(char c) { return std::string_view(" \t\n\r").find(c) != std::string_view::npos; }
-bool ends_word(char c) {
-  return is_sign(c) || is_space(c) || std::string_view("()'\"").find(c) != std::string_view::npos;
-}
+bool is_quote(char c) { return c == '\'' || c == '"'; }
+bool ends_word(char c) { return is_sign(c) || is_space(c) || is_quote(c) || c == '(' || c == ')'; }
 
 /// What people write who think of another language, and what it is here.
 std::string meant_by(const std::string& sign) {
@@ -58,10 +50,8 @@ class Reader {
   Formula read() {
     if (tokens_.empty()) throw refuse("it is empty");
     Formula out = any(0);
-    if (next_ < tokens_.size()) {
-      const bool closes = tokens_[next_].kind == Token::Kind::close;
-      throw refuse(closes ? "a ')' without '('" : fmt::format("'{}' is not expected there", tokens_[next_].text));
-    }
+    if (at(")")) throw refuse("a ')' without '('");
+    if (next_ < tokens_.size()) throw refuse(fmt::format("'{}' is not expected there", shown()));
     return out;
   }
 
@@ -77,34 +67,38 @@ class Reader {
       const char c = text_[i];
       const std::size_t first = i++;
       if (is_space(c)) continue;
-      if (c == '(' || c == ')') {
-        tokens_.push_back({c == '(' ? Token::Kind::open : Token::Kind::close, std::string(1, c)});
-      } else if (c == '\'' || c == '"') {
+      if (is_quote(c)) {
         const auto end = text_.find(c, i);
         if (end == std::string::npos) throw refuse("a quote is not closed", "close it");
-        tokens_.push_back({Token::Kind::quoted, text_.substr(i, end - i)});
+        tokens_.push_back(text_.substr(first, end - first));
         i = end + 1;
       } else {
-        while (i < text_.size() && (is_sign(c) ? is_sign(text_[i]) : !ends_word(text_[i]))) ++i;
-        tokens_.push_back({is_sign(c) ? Token::Kind::sign : Token::Kind::word, text_.substr(first, i - first)});
+        const bool alone = c == '(' || c == ')';
+        while (!alone && i < text_.size() && (is_sign(c) ? is_sign(text_[i]) : !ends_word(text_[i]))) ++i;
+        tokens_.push_back(text_.substr(first, i - first));
       }
     }
   }
 
-  bool at(Token::Kind kind) const { return next_ < tokens_.size() && tokens_[next_].kind == kind; }
-
-  bool at_word(const char* word) const { return at(Token::Kind::word) && tokens_[next_].text == word; }
+  bool at(const char* token) const { return next_ < tokens_.size() && tokens_[next_] == token; }
+  bool at_sign() const { return next_ < tokens_.size() && is_sign(tokens_[next_].front()); }
+  bool at_quoted() const { return next_ < tokens_.size() && is_quote(tokens_[next_].front()); }
 
   /// Whether a value may go on here: no word of the language.
   bool at_value() const {
-    return at(Token::Kind::quoted) || (at(Token::Kind::word) && !at_word("and") && !at_word("or") && !at_word("not"));
+    constexpr std::array<const char*, 5> kOthers{"and", "or", "not", "(", ")"};
+    return next_ < tokens_.size() && !at_sign() &&
+           std::none_of(kOthers.begin(), kOthers.end(), [&](const char* one) { return at(one); });
   }
 
-  bool take(const char* word) {
-    const bool there = at_word(word);
+  bool take(const char* token) {
+    const bool there = at(token);
     next_ += there ? 1 : 0;
     return there;
   }
+
+  /// The next token as it is read: of a quoted text what stands in the quotes.
+  std::string shown() const { return tokens_[next_].substr(at_quoted() ? 1 : 0); }
 
   /// Parts with `word` between them: one that comes out as `decides` decides for all.
   Formula joined(bool decides, const char* word, Formula (Reader::*part)(int), int depth) {
@@ -126,39 +120,35 @@ class Reader {
     if (take("not")) {
       return [inner = one(depth + 1)](const auto& holds) { return !inner(holds); };
     }
-    if (!at(Token::Kind::open)) return comparison();
-    ++next_;
+    if (!take("(")) return comparison();
     Formula out = any(depth + 1);
-    if (!at(Token::Kind::close)) throw refuse("a '(' is not closed", "close it");
-    ++next_;
+    if (!take(")")) throw refuse("a '(' is not closed", "close it");
     return out;
   }
 
   Formula comparison() {
-    if (at(Token::Kind::sign)) {
-      throw refuse(fmt::format("'{}' is not expected there", tokens_[next_].text), meant_by(tokens_[next_].text));
-    }
+    if (at_sign()) throw refuse(fmt::format("'{}' is not expected there", shown()), meant_by(shown()));
     if (!at_value()) throw refuse("a comparison is missing");
-    const bool is_name = at(Token::Kind::word) && (tokens_[next_].text[0] < '0' || tokens_[next_].text[0] > '9');
     Condition::Comparison out;
-    out.name = tokens_[next_++].text;
-    if (!is_name) throw refuse(fmt::format("'{}' is no name", out.name), "write the name first: taps >= 12");
-    if (!at(Token::Kind::sign)) throw refuse(fmt::format("behind '{}' a comparison is missing", out.name));
-    out.sign = tokens_[next_++].text;
+    out.name = shown();
+    if (at_quoted() || (out.name[0] >= '0' && out.name[0] <= '9'))
+      throw refuse(fmt::format("'{}' is no name", out.name), "write the name first: taps >= 12");
+    ++next_;
+    if (!at_sign()) throw refuse(fmt::format("behind '{}' a comparison is missing", out.name));
+    out.sign = tokens_[next_++];
     constexpr std::array<const char*, 6> kSigns{"==", "!=", "<", "<=", ">", ">="};
-    if (std::find(kSigns.begin(), kSigns.end(), out.sign) == kSigns.end()) {
+    if (std::find(kSigns.begin(), kSigns.end(), out.sign) == kSigns.end())
       throw refuse(fmt::format("'{}' is no comparison", out.sign), meant_by(out.sign));
-    }
     if (!at_value()) throw refuse(fmt::format("behind '{} {}' a value is missing", out.name, out.sign));
-    out.quoted = at(Token::Kind::quoted);
-    out.value = tokens_[next_++].text;
+    out.quoted = at_quoted();
+    out.value = shown();
+    ++next_;
     // A number and its unit are two words.
-    while (!out.quoted && at(Token::Kind::word) && at_value()) out.value += " " + tokens_[next_++].text;
-    if (at(Token::Kind::sign)) {
-      const std::string& sign = tokens_[next_].text;
-      const bool joins = sign[0] == '&' || sign[0] == '|';
-      throw refuse(fmt::format("'{}' is not expected there", sign),
-                   joins ? meant_by(sign) : "join two comparisons by 'and'");
+    while (!out.quoted && !at_quoted() && at_value()) out.value += " " + tokens_[next_++];
+    if (at_sign()) {
+      const bool joins = shown()[0] == '&' || shown()[0] == '|';
+      throw refuse(fmt::format("'{}' is not expected there", shown()),
+                   joins ? meant_by(shown()) : "join two comparisons by 'and'");
     }
     comparisons_.push_back(std::move(out));
     return [number = comparisons_.size() - 1](const auto& holds) { return holds(number); };
@@ -167,7 +157,7 @@ class Reader {
   const std::string& text_;
   std::string place_;
   Condition::Comparisons& comparisons_;
-  std::vector<Token> tokens_;
+  std::vector<std::string> tokens_;  ///< a word, a sign, a parenthesis, or a quoted text behind its first quote
   std::size_t next_ = 0;
 };
 

@@ -45,6 +45,18 @@ bool is_empty(const Tree& block) {
   return (block.is_map() && block.entries.empty()) || (block.kind == Tree::Kind::list && block.items.empty());
 }
 
+/// Each of `slower` with each of `faster` behind it.
+std::vector<Combination> product(const std::vector<Combination>& slower, const std::vector<Combination>& faster) {
+  std::vector<Combination> out;
+  for (const Combination& slow : slower) {
+    for (const Combination& fast : faster) {
+      out.push_back(slow);
+      out.back().insert(out.back().end(), fast.begin(), fast.end());
+    }
+  }
+  return out;
+}
+
 /// Every key of a map with its values.
 std::vector<Axis> read_axes(const Tree& described, const std::string& name, const char* hint) {
   if (!described.is_map()) {
@@ -119,16 +131,9 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words) {
   return out;
 }
 
-std::size_t SweepDescription::Part::size() const {
-  if (together && !axes.empty()) return axes.front().values.size();
-  std::size_t product = 1;
-  for (const Axis& axis : axes) product *= axis.values.size();
-  return product;
-}
-
 SweepDescription::Block SweepDescription::read_block(const std::string& name, const Tree& described) {
   const std::string full = "sweep." + name;
-  Block block{name, {}, {}};
+  Block block{name, {}};
   if (name == "list") {
     const char* const hint = "write [{key: value}, {key: value, other: [value, value]}]";
     if (described.kind != Tree::Kind::list) {
@@ -176,18 +181,19 @@ SweepDescription::SweepDescription(const Tree* config, const SweepWords& words)
     const bool many = entry.value.kind == Tree::Kind::list;
     for (const Tree& one : many ? entry.value.items : std::vector<Tree>{entry.value}) where_.emplace_back(one);
   }
-  check_keys();
-  count();
+  list_keys();
+  combine();
 }
 
-void SweepDescription::check_keys() const {
+void SweepDescription::list_keys() {
   std::map<std::string, std::pair<const Axis*, const Block*>> seen;
   for (const Block& block : blocks_) {
     for (const Part& part : block.parts) {
       for (const Axis& axis : part.axes) {
         check_key(axis);
         const auto [twin, is_new] = seen.try_emplace(axis.key, &axis, &block);
-        if (is_new || twin->second.second == &block) continue;
+        if (is_new) keys_.push_back(axis.key);
+        if (twin->second.second == &block) continue;
         throw Error(place_of(axis).text(),
                     fmt::format("'{}' stands in sweep.{} and, at {}, in sweep.{}", axis.key, block.name,
                                 place_of(*twin->second.first).text(), twin->second.second->name),
@@ -197,53 +203,31 @@ void SweepDescription::check_keys() const {
   }
 }
 
-void SweepDescription::count() {
-  std::size_t all = 1;
-  std::set<std::string> known;
-  const auto check = [&](std::size_t combinations, const Axis& axis) {
-    if (combinations * all <= kMaxCombinations) return;
-    throw Error(place_of(axis).text(), fmt::format("{}: the sweep has more than a million jobs", axis.key),
-                "take fewer values");
-  };
-  for (Block& block : blocks_) {
-    std::size_t end = 0;
-    for (const Part& part : block.parts) {
-      std::size_t product = 1;
-      for (const Axis& axis : part.axes) {
-        if (known.insert(axis.key).second) keys_.push_back(axis.key);
-        product = part.together ? axis.values.size() : product * axis.values.size();
-        check(end + product, axis);
-      }
-      end += product;
-      block.ends.push_back(end);
-    }
-    all *= end;
-  }
-}
-
-std::size_t SweepDescription::size() const {
-  std::size_t all = 1;
-  for (const Block& block : blocks_) all *= block.size();
-  return all;
-}
-
-Combination SweepDescription::at(std::size_t number) const {
-  Combination out;
-  std::size_t slower = size();
+void SweepDescription::combine() {
+  combinations_ = {{}};
   for (const Block& block : blocks_) {
-    const std::size_t faster = slower / block.size();  // combinations of the blocks behind this one
-    const std::size_t index = number % slower / faster;
-    slower = faster;
-    const auto end = std::upper_bound(block.ends.begin(), block.ends.end(), index);
-    const Part& part = block.parts[static_cast<std::size_t>(end - block.ends.begin())];
-    const std::size_t within = index - (*end - part.size());
-    std::size_t left = part.size();
-    for (const Axis& axis : part.axes) {
-      if (!part.together) left /= axis.values.size();
-      out.push_back({&axis, part.together ? within : within / left % axis.values.size()});
+    std::vector<Combination> own;
+    for (const Part& part : block.parts) {
+      std::vector<Combination> rows{{}};
+      for (const Axis& axis : part.axes) {
+        const std::size_t size = part.together ? axis.values.size() : rows.size() * axis.values.size();
+        if ((own.size() + size) * combinations_.size() > kMaxCombinations) {
+          throw Error(place_of(axis).text(), fmt::format("{}: the sweep has more than a million jobs", axis.key),
+                      "take fewer values");
+        }
+        if (part.together) {
+          rows.resize(size);
+          for (std::size_t digit = 0; digit < size; ++digit) rows[digit].push_back({&axis, digit});
+        } else {
+          std::vector<Combination> values;
+          for (std::size_t digit = 0; digit < axis.values.size(); ++digit) values.push_back({{&axis, digit}});
+          rows = product(rows, values);
+        }
+      }
+      own.insert(own.end(), rows.begin(), rows.end());
     }
+    combinations_ = product(combinations_, own);
   }
-  return out;
 }
 
 /// Whether what `name` stands for is decided by a choice: kernel.alpha by kernel, scene.objects.0.length by its type,

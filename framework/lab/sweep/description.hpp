@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a sweep varies, as the config's `sweep:` and the words behind `palpate sweep` describe it: which keys take which
-// values together. Nothing is known here of what the keys mean; combinations are numbered, and made when asked for.
+// values together. Nothing is known here of what the keys mean.
 #pragma once
 
 #include "config/compose.hpp"
@@ -51,12 +51,13 @@ class SweepDescription {
   /// among them leaves zip, sobol and list and goes to the grid, where it takes the place of that key. Throws Error for
   /// what is not understood, and for more than a million combinations.
   SweepDescription(const Tree* config, const SweepWords& words);
+  SweepDescription(const SweepDescription&) = delete;  // combinations point at its axes
+  SweepDescription& operator=(const SweepDescription&) = delete;
 
   /// All swept keys, in the order in which they are laid over a config.
   const std::vector<std::string>& keys() const { return keys_; }
-  /// How many combinations there are, whatever `where` says of them.
-  std::size_t size() const;
-  Combination at(std::size_t number) const;
+  /// All of them, whatever `where` says. They live as long as the description.
+  const std::vector<Combination>& combinations() const { return combinations_; }
 
   /// Whether `where` keeps a combination. `base` tells what the config says of names that the combination does not.
   /// Throws Error for a name that nobody knows, or that depends on a swept choice: kernel.alpha where kernel is swept.
@@ -72,25 +73,23 @@ class SweepDescription {
   struct Part {
     std::vector<Axis> axes;
     bool together = false;
-    std::size_t size() const;
   };
   /// Parts one after the other.
   struct Block {
     std::string name;
     std::vector<Part> parts;
-    std::vector<std::size_t> ends;  ///< number of combinations of the first part, of the first two, ...
-    std::size_t size() const { return ends.back(); }
   };
 
   static Block read_block(const std::string& name, const Tree& described);
-  void check_keys() const;
-  void count();
+  void list_keys();
+  void combine();
   bool depends(const std::string& name, const std::string& choice) const;
 
   Tree written_;
   std::vector<Block> blocks_;
   std::vector<Condition> where_;
   std::vector<std::string> keys_;
+  std::vector<Combination> combinations_;
 };
 
 /// What a combination lays over the config. A group or a type is laid on a higher layer than all options, so that

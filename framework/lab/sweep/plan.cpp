@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/plan.hpp"
 
+#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/session.hpp"
 #include "sweep/description.hpp"
-#include "sweep/written_config.hpp"
 
 #include <palpate/error.hpp>
 
@@ -27,15 +27,6 @@ namespace {
 /// As many configs are kept: enough for a sweep whose seeds run slowest over the settings of a usual one.
 constexpr std::size_t kMostKept = 64;
 
-/// The config without any combination; none if it is no whole config, as when all that it lacks is swept.
-std::optional<ResolvedConfig> resolve_alone(const Tree& base, const PluginSource& plugins) {
-  try {
-    return resolve_experiment(base, plugins);
-  } catch (const Error&) {  // what is wrong with it beside that, its jobs say
-    return std::nullopt;
-  }
-}
-
 /// A combination but for its seed: of each axis which value, the first for any seed.
 using Settings = std::vector<std::pair<const Axis*, std::size_t>>;
 
@@ -45,25 +36,25 @@ struct Resolved {
   std::vector<std::string> values;  ///< one a key
 };
 
+/// What has become of a swept key in the jobs so far.
+struct KeyUse {
+  const Axis* asker = nullptr;  ///< once a job sets it
+  bool takes_part = false;
+  std::set<std::string> siblings;  ///< options that stand where the key would
+};
+
 /// Makes the jobs one by one.
 class Planner {
  public:
   /// `shared` is what all jobs lay over `file` before their combination.
-  Planner(Composer& composer, const PluginHost& host, const fs::path& file, const SweepDescription& description,
+  Planner(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<std::string>& keys,
           const std::vector<Override>& shared)
-      : composer_(composer),
-        host_(host),
-        file_(file),
-        description_(description),
-        shared_(shared),
-        keys_(description.keys()),
-        takes_part_(keys_.size()),
-        asker_(keys_.size()),
-        siblings_(keys_.size()) {
+      : composer_(composer), host_(host), file_(file), shared_(shared), keys_(keys), uses_(keys.size()) {
     for (std::size_t i = 0; i < keys_.size(); ++i) key_numbers_.emplace(keys_[i], i);
   }
 
-  void add(std::size_t number, const Combination& combination, const JobSink& sink) {
+  /// `combination` must outlive this.
+  void add(const Combination& combination, const JobSink& sink) {
     const Tree* seed = nullptr;
     Settings settings;
     for (const SweptValue& one : combination) {
@@ -85,18 +76,17 @@ class Planner {
     }
     sink(job, *resolved.config);
     jobs_.push_back(std::move(job));
-    combinations_.push_back(number);
+    combinations_.push_back(&combination);
     configs_.push_back({many_ ? nullptr : resolved.config, seed != nullptr ? *seed : Tree()});
   }
 
   /// Throws Error for a key that no job has.
   void finish() {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-      if (takes_part_[i] || asker_[i] == nullptr) continue;
-      const std::string scope = keys_[i].substr(0, keys_[i].rfind('.') + 1);
-      const std::string hint = suggestion(keys_[i].substr(scope.size()), {siblings_[i].begin(), siblings_[i].end()});
-      throw Error(asker_[i]->values.front().place.text(),
-                  fmt::format("no job of the sweep has an option '{}'", keys_[i]),
+      const auto& [asker, takes_part, siblings] = uses_[i];
+      if (takes_part || asker == nullptr) continue;
+      const std::string hint = suggestion(last_key(keys_[i]), {siblings.begin(), siblings.end()});
+      throw Error(asker->values.front().place.text(), fmt::format("no job of the sweep has an option '{}'", keys_[i]),
                   hint.empty() ? "take it away" : hint);
     }
   }
@@ -119,12 +109,12 @@ class Planner {
     for (const SweptValue& setting : combination) {
       const std::size_t key = key_numbers_.at(setting.axis->key);
       said[key] = true;
-      asker_[key] = setting.axis;
+      uses_[key].asker = setting.axis;
       if (is_left_out(setting.axis->key, composed, out.config->notes)) {
         note_siblings(key, out.config->notes);
         continue;
       }
-      takes_part_[key] = true;
+      uses_[key].takes_part = true;
       out.values[key] = value_text(setting.value());
     }
     // Where other combinations set a key and this one does not, the table says what this one has there.
@@ -151,7 +141,7 @@ class Planner {
     const std::string scope = keys_[key].substr(0, keys_[key].rfind('.') + 1);
     for (const ResolveNotes::Origin& one : notes.origins) {
       const std::string rest = one.path.compare(0, scope.size(), scope) == 0 ? one.path.substr(scope.size()) : "";
-      if (!rest.empty() && rest != "type" && rest.find('.') == std::string::npos) siblings_[key].insert(rest);
+      if (!rest.empty() && rest != "type" && rest.find('.') == std::string::npos) uses_[key].siblings.insert(rest);
     }
   }
 
@@ -166,7 +156,7 @@ class Planner {
   bool differs_by_what_is_left_out(std::size_t twin, const Job& job, const Combination& combination) const {
     if (jobs_[twin].values != job.values) return false;
     bool any = false;
-    const Combination other = description_.at(combinations_[twin]);
+    const Combination& other = *combinations_[twin];
     for (const Combination* one : {&combination, &other}) {
       for (const SweptValue& setting : *one) {
         const bool left_out =
@@ -196,20 +186,86 @@ class Planner {
   Composer& composer_;
   const PluginHost& host_;
   const fs::path& file_;
-  const SweepDescription& description_;
   const std::vector<Override>& shared_;
   const std::vector<std::string>& keys_;
   std::vector<Job> jobs_;
-  std::vector<std::size_t> combinations_;  ///< of each job: its number in the description
+  std::vector<const Combination*> combinations_;  ///< of each job
   std::unordered_map<std::string, std::size_t> key_numbers_;
   std::unordered_map<std::string, std::size_t> seen_;  ///< the job of each id
   std::map<Settings, Resolved> resolved_;
   std::vector<PlannedConfig> configs_;
-  bool many_ = false;  ///< more than can be kept
-  std::vector<bool> takes_part_;
-  std::vector<const Axis*> asker_;               ///< of each key, once a job sets it
-  std::vector<std::set<std::string>> siblings_;  ///< options that stand where the key would
+  bool many_ = false;         ///< more than can be kept
+  std::vector<KeyUse> uses_;  ///< of each key
 };
+
+/// Top-level keys, in the order in which a resolved config has them.
+std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
+  std::vector<std::string> out;
+  for (const Tree* tree : {&resolved, &base}) {
+    for (const Tree::Entry& entry : tree->entries) {
+      if (base.find(entry.key) == nullptr || entry.key == "name" || entry.key == "sweep") continue;
+      if (std::find(out.begin(), out.end(), entry.key) == out.end()) out.push_back(entry.key);
+    }
+  }
+  return out;
+}
+
+/// Whether what stands below the top-level key depends on what is chosen in a combination.
+bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
+  return std::any_of(swept.begin(), swept.end(), [&](const std::string& key) {
+    if (key == kStrategy) return true;
+    for (const std::string& heir : config_keys().heirs_of(key)) {
+      if (first_key(heir) == top) return true;
+    }
+    return first_key(key) == top && is_choice(key);
+  });
+}
+
+void erase_path(Tree& tree, const std::string& path) {
+  const auto dot = path.rfind('.');
+  Tree* parent = dot == std::string::npos ? &tree : const_cast<Tree*>(tree.find_path(path.substr(0, dot)));
+  if (parent != nullptr) parent->erase(path.substr(dot == std::string::npos ? 0 : dot + 1));
+}
+
+/// A config from which `palpate sweep` makes the same jobs again. What the sweep leaves alone stands there in full,
+/// groups included; where it chooses groups or types, there stands what `file` itself says, because what a group brings
+/// must not outlive another choice. `base` is `file` composed without any combination, `alone` the same
+/// resolved, if it is a whole config; `first` the first job, whose order of keys is taken.
+Tree written_config(const std::filesystem::path& file, const Tree& base, const std::optional<ResolvedConfig>& alone,
+                    const SweepDescription& description, const ResolvedConfig& first) {
+  const Tree own = read_yaml(file);
+  // Without the options that its own plugins leave out.
+  Tree settled = base;
+  if (alone) {
+    for (const ResolveNotes::Origin& one : alone->notes.dropped) erase_path(settled, one.path);
+  }
+  const auto is_own = [&](const std::string& top) {
+    return top != "expect" && (!alone || is_touched(top, description.keys()));
+  };
+  Tree out = Tree::map();
+  const Tree* name = base.find("name");
+  out.at("name") = Tree::scalar(name != nullptr ? name->text : first.options.name, true);
+  // What of the groups below is a strategy's cannot be told any more: where any of it is needed all of it is.
+  const bool needs_strategy = !alone || std::any_of(description.keys().begin(), description.keys().end(), is_choice);
+  Tree kept = Tree::list();
+  if (const Tree* defaults = own.find("defaults")) {
+    for (const Tree& item : defaults->items) {
+      const std::string group = first_key(item.entries.front().key);
+      if (group == kStrategy ? needs_strategy : is_own(group)) kept.items.push_back(item);
+    }
+  }
+  if (const Tree* strategy = own.find(kStrategy); strategy != nullptr && needs_strategy) {
+    kept.items.push_back(Tree::map());
+    kept.items.back().at(kStrategy) = *strategy;
+  }
+  if (!kept.items.empty()) out.at("defaults") = std::move(kept);
+  for (const std::string& top : ordered_keys(base, first.tree)) {
+    const Tree* said = is_own(top) ? own.find(top) : settled.find(top);
+    if (said != nullptr) out.at(top) = *said;
+  }
+  out.at("sweep") = description.written();
+  return out;
+}
 
 }  // namespace
 
@@ -228,7 +284,10 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
     shared.back().value.set_layer(kGroupLayer);
   }
 
-  const std::optional<ResolvedConfig> alone = resolve_alone(base, host);
+  // The config without any combination; none if it is no whole config, as when all that it lacks is swept. What is
+  // wrong with it beside that, its jobs say.
+  std::optional<ResolvedConfig> alone;
+  trouble_in([&] { alone = resolve_experiment(base, host); });
   const Condition::Values base_value = [&](const std::string& name) -> std::optional<std::string> {
     if (first_key(name) == "sweep") return std::nullopt;
     const Tree* found = base.find_path(name);
@@ -236,18 +295,17 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
     return found != nullptr ? std::optional(condition_text(*found)) : std::nullopt;
   };
   std::optional<ResolvedConfig> first;
-  Planner planner(composer, host, file, description, shared);
-  for (std::size_t number = 0; number < description.size(); ++number) {
-    const Combination combination = description.at(number);
+  Planner planner(composer, host, file, description.keys(), shared);
+  for (const Combination& combination : description.combinations()) {
     if (!description.wanted(combination, base_value)) continue;
-    planner.add(number, combination, [&](const Job& job, const ResolvedConfig& config) {
+    planner.add(combination, [&](const Job& job, const ResolvedConfig& config) {
       if (!first) first = config;
       if (sink) sink(job, config);
     });
   }
   if (!first) {
     throw Error(description.where_place(),
-                fmt::format("sweep.where: it holds for none of the {} combinations", description.size()),
+                fmt::format("sweep.where: it holds for none of the {} combinations", description.combinations().size()),
                 "ask for less, or sweep other values");
   }
   planner.finish();

@@ -87,6 +87,8 @@ std::string sweep_name(const Sweep& sweep) {
 }
 
 Sweep read_sweep(const fs::path& directory) {
+  if (!is_sweep(directory))
+    throw Error(directory.string(), "is not the directory of a sweep", "it has no manifest.jsonl");
   Sweep sweep{directory, {}, {}};
   const fs::path file = directory / "manifest.jsonl";
   const JsonLines lines = read_json_lines(file);

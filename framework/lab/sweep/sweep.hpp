@@ -43,8 +43,8 @@ std::string sweep_id(const Tree& config, const Sweep& sweep);
 /// called.
 std::string manifest_text(const Sweep& sweep, const std::string& id);
 
-/// Reads the manifest of a sweep. Throws Error when it is damaged, or when config or manifest are not those that it
-/// began with.
+/// Reads the manifest of a sweep. Throws Error where there is none, when it is damaged, or when config or manifest are
+/// not those that it began with.
 Sweep read_sweep(const std::filesystem::path& directory);
 
 /// What it is called: as all its jobs are if that was said on the command line, else as its config says.

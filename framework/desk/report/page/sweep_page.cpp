@@ -22,15 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a swept value stands among those of its key, if it is a quantity; its unit tells whether two compare.
-std::optional<AnyQuantity> quantity_of(const std::string& text) {
-  try {
-    return any_quantity(text);
-  } catch (const Error&) {  // a length of 1e999 m, say: no number to sort by, but a text like others
-    return {};
-  }
-}
-
 /// A swept key: its values in the order of the sweep, where they stand as numbers if all are of one dimension, and for
 /// each job which of them it has.
 std::string json_of_key(const Sweep& sweep, std::size_t key) {
@@ -46,7 +37,7 @@ std::string json_of_key(const Sweep& sweep, std::size_t key) {
   std::optional<Unit> unit;
   bool all = true;
   for (const std::string& value : values) {
-    const std::optional<AnyQuantity> number = quantity_of(value);
+    const std::optional<AnyQuantity> number = any_quantity(value);
     numbers.push_back(number ? json_value(number->value) : "null");
     if (value.empty()) continue;  // where the plugin has no such option
     all = all && number && (!unit || *unit == number->unit);
