@@ -3,24 +3,18 @@
 // it is computed again from the recorded taps, so that runs need not store their maps.
 #pragma once
 
-#include "record/recording.hpp"
-#include "report/page/packed_maps.hpp"
+#include "report/snapshot.hpp"
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace palpate {
 
-/// After `taps` taps.
-struct Moment {
-  int taps = 0;
-  RunResult result;                ///< what summary.json would say if the run had ended here
-  std::optional<TapRecord> next;   ///< what would be tapped next; absent if no candidate is left
-  double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres
-  /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.
-  std::optional<double> least_weight, most_weight;
+/// One quantity over the candidates at several moments; all frames have the same number of cells.
+struct MapSeries {
+  std::string name;
+  std::vector<Eigen::VectorXf> frames;
 };
 
 struct History {

@@ -25,11 +25,8 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   const TapBelief& belief = experiment.belief();
   Snapshot out;
   out.taps = playback.taps();
-  for (int i = 0; i < out.taps; ++i) {
+  for (int i = 0; i < out.taps; ++i)
     out.marks.push_back(mark_of(recording.taps[static_cast<std::size_t>(i)], i + 1, experiment.scene()));
-    const TapMark::Kind kind = out.marks.back().kind;
-    ++(kind == TapMark::Kind::on ? out.on : kind == TapMark::Kind::off ? out.off : out.failed);
-  }
   out.next = experiment.choose_next();
   out.scores = experiment.scores();
   experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
@@ -38,10 +35,13 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   out.uncertainty = belief.uncertainty();
   if (belief.footprint_is_weight()) {
     out.weight = belief.weight();
+    out.least_weight = belief.weight_mean().minCoeff();
+    out.most_weight = belief.weight_mean().maxCoeff();
   } else {
     out.probability = belief.probability();
   }
   out.largest_deviation = std::sqrt(belief.all_taps_variance().maxCoeff());
+  out.result = experiment.result();
   return out;
 }
 
@@ -54,9 +54,9 @@ std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recordin
   return out;
 }
 
-std::string count_words(const Snapshot& snapshot) {
-  std::string out = fmt::format("{} on the object, {} on the desk", snapshot.on, snapshot.off);
-  if (snapshot.failed > 0) out += fmt::format(", {} failed", snapshot.failed);
+std::string count_words(const RunResult& result) {
+  std::string out = fmt::format("{} on the object, {} on the desk", result.on_surface_taps, result.off_surface_taps);
+  if (result.failed_taps > 0) out += fmt::format(", {} failed", result.failed_taps);
   return out;
 }
 

@@ -22,23 +22,27 @@ struct TapMark {
   double height = 0.0;  ///< metres; the desk's where nothing was touched
 };
 
-/// A run after its first `taps` taps. The maps have one value for each candidate.
-struct Snapshot {
+/// A run after its first `taps` taps.
+struct Moment {
   int taps = 0;
-  int on = 0;  ///< taps on an object, on the desk, without a contact
-  int off = 0;
-  int failed = 0;
-  std::vector<TapMark> marks;     ///< of these taps, in their order
-  std::optional<TapRecord> next;  ///< that would be chosen now; none if no candidate is left
-  Eigen::VectorXd surface;        ///< as reconstructed, metres
-  Eigen::VectorXd deviation;      ///< standard deviation of the height, metres
-  Eigen::VectorXd uncertainty;    ///< u
+  RunResult result;                ///< what summary.json would say if the run had ended here
+  std::optional<TapRecord> next;   ///< what would be tapped next; absent if no candidate is left
+  double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres
+  /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.
+  std::optional<double> least_weight, most_weight;
+};
+
+/// The same with what was believed. The maps have one value for each candidate.
+struct Snapshot : Moment {
+  std::vector<TapMark> marks;   ///< of these taps, in their order
+  Eigen::VectorXd surface;      ///< as reconstructed, metres
+  Eigen::VectorXd deviation;    ///< standard deviation of the height, metres
+  Eigen::VectorXd uncertainty;  ///< u
   /// What speaks for an object, one of the two: w, as the strategy reads it, where the footprint is the weight, or
   /// else the footprint's p. The other is empty.
   Eigen::VectorXd weight;
   Eigen::VectorXd probability;
-  Eigen::VectorXd scores;          ///< what the strategy gives each candidate
-  double largest_deviation = 0.0;  ///< of the height process, all taps seen, metres
+  Eigen::VectorXd scores;  ///< what the strategy gives each candidate
   bool has_weight() const { return weight.size() > 0; }
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, where there is w
 };
@@ -50,6 +54,6 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording);
 std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
 
 /// "7 on the object, 10 on the desk, 1 failed"; what there is none of but the first two is left out.
-std::string count_words(const Snapshot& snapshot);
+std::string count_words(const RunResult& result);
 
 }  // namespace palpate

@@ -75,11 +75,12 @@ void draw(Sheet& sheet, const Box& box, double top, const CurvePanel& panel, int
 
 }  // namespace
 
-Figure curves_figure(const Recording& recording, const History& history, const Snapshot& last) {
+Figure curves_figure(const Recording& recording, const History& history) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;
   if (const std::optional<Error> trouble = read_timings(recording.directory).trouble) throw Error(*trouble);
+  const RunResult& last = history.moments.back().result;
   const std::vector<CurvePanel> panels = curves_of(recording, history);
   const int count = static_cast<int>(panels.size());
   const int columns = std::clamp(count, 1, kColumns);

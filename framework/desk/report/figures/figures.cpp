@@ -38,10 +38,11 @@ std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Fi
 Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history) {
   Playback playback(workshop, recording);
   const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
-  const Experiment& experiment = playback.experiment();
+  const Ground ground = ground_of(playback.experiment());
+  const ExperimentOptions& options = recording.config.options;
   return {write_gallery(recording.directory / "figures",
-                        {surface_figure(recording, experiment, last), maps_figure(recording, experiment, last),
-                         curves_figure(recording, history, last)}),
+                        {surface_figure(options, ground, last), maps_figure(options, ground, last),
+                         curves_figure(recording, history)}),
           {}};
 }
 

@@ -20,30 +20,27 @@ struct Figure {
   Sheet sheet;
 };
 
-Figure surface_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last);
-Figure maps_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last);
+Figure surface_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last);
+Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last);
 /// Curves over the taps. What the run has not is left out. Throws Error for a damaged timings.csv.
-Figure curves_figure(const Recording& recording, const History& history, const Snapshot& last);
+Figure curves_figure(const Recording& recording, const History& history);
 
 /// What a figure of the paper shows of one run.
 struct Progress {
   std::string strategy;
   std::vector<int> iterations;
   std::vector<Snapshot> snapshots;  ///< one for each iteration
-  Candidates candidates;
-  Area area;
-  double desk = 0.0;  ///< metres
+  Ground ground;
 };
 
 /// The run after these iterations of the paper: k is the state after k taps beyond the initial ones but one. The first
 /// that lies beyond the run's end shows its last tap, those after it are left out.
 Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations);
 
-/// A panel for each of the run's snapshots: the surface seen from the side, or a map of the scores or of u.
+/// A panel for each of the run's snapshots: the surface seen from the side, or the map of the scores or of u.
 struct PanelRow {
-  enum class Kind { surface, scores, uncertainty };
   const Progress& run;
-  Kind kind;
+  Eigen::VectorXd Snapshot::*map;
 };
 /// Rows below each other, of one run or of several with as many snapshots; `rows` is not empty.
 Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows);

@@ -52,6 +52,26 @@ constexpr int kBarSteps = 128;
 
 }  // namespace
 
+const std::vector<std::string>& palette_stops(Palette palette) {
+  static const std::vector<std::string> viridis{
+      "#440154", "#481568", "#482677", "#453781", "#3f4788", "#39558c", "#32648e", "#2d718e", "#287d8e", "#238a8d",
+      "#1f968b", "#20a386", "#29af7f", "#3cbc75", "#56c667", "#74d055", "#94d840", "#b8de29", "#dce318", "#fde725"};
+  static const std::vector<std::string> cividis{"#00204d", "#00336f", "#39486b", "#575c6d", "#707173",
+                                                "#8a8779", "#a69d75", "#c4b56c", "#e4cf5b", "#ffea46"};
+  return palette == Palette::viridis ? viridis : cividis;
+}
+
+std::string gnuplot_palette(Palette palette) {
+  std::string out = "set palette defined (";
+  const std::vector<std::string>& stops = palette_stops(palette);
+  for (std::size_t i = 0; i < stops.size(); ++i) out += fmt::format("{}{} '{}'", i > 0 ? ", " : "", i, stops[i]);
+  return out + ")\n";
+}
+
+Ground ground_of(const Experiment& experiment) {
+  return {experiment.candidates(), experiment.scene().area(), experiment.scene().desk()};
+}
+
 Colours deviation_colours(double least, double most) {
   constexpr double kFloor = 1e-6;       // a micrometre: below it nothing is measured
   constexpr double kWorthRatios = 5.0;  // from here on a linear scale hides the lower half of them
@@ -68,13 +88,16 @@ Box map_box(const Area& area, double left, double top, double side) {
   return {left, top, scale * area.width, scale * area.depth};
 }
 
-Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk) {
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground) {
   // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
   const auto up = [&](double x, double y, double height) {
-    const double back = (y - 0.5 * area.depth) * std::cos(kTurn) - (x - 0.5 * area.width) * std::sin(kTurn);
-    return back * std::cos(kTilt) + (height - desk) * std::sin(kTilt);
+    const double back =
+        (y - 0.5 * ground.area.depth) * std::cos(kTurn) - (x - 0.5 * ground.area.width) * std::sin(kTurn);
+    return back * std::cos(kTilt) + (height - ground.desk) * std::sin(kTilt);
   };
-  Relief out{desk, desk, desk + 0.01, up(0.0, area.depth, desk), up(0.0, area.depth, desk)};
+  const double desk = ground.desk;
+  const double far = up(0.0, ground.area.depth, desk);
+  Relief out{desk, desk, desk + 0.01, far, far};
   const auto include = [&](double x, double y, double height) {
     out.low = std::min(out.low, height);
     out.top = std::max(out.top, height);
@@ -82,13 +105,16 @@ Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidate
     out.below = std::max(out.below, -up(x, y, height));
   };
   for (const Snapshot& one : snapshots) {
-    for (Eigen::Index i = 0; i < one.surface.size(); ++i) include(candidates(i, 0), candidates(i, 1), one.surface(i));
+    for (Eigen::Index i = 0; i < one.surface.size(); ++i)
+      include(ground.candidates.points(i, 0), ground.candidates.points(i, 1), one.surface(i));
     for (const TapMark& mark : one.marks) include(mark.x, mark.y, mark.height);
   }
   return out;
 }
 
-Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const Area& area) {
+Snapshot in_sight(const Snapshot& snapshot, const Ground& ground) {
+  const Area& area = ground.area;
+  const Candidates& candidates = ground.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
   // A tap lies on the surface, and its mark reaches above it: what is higher by less hides nothing.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
@@ -107,16 +133,16 @@ Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const 
   return out;
 }
 
-Raster::Raster(const Candidates& candidates, const Area& area)
-    : candidates_(candidates),
-      area_(area),
-      columns_(std::clamp(candidates.columns, 2, kMostDrawn)),  // gnuplot's images have two at least
-      rows_(std::clamp(candidates.rows, 2, kMostDrawn)) {}
+Raster::Raster(const Ground& ground)
+    : ground_(ground),
+      columns_(std::clamp(ground.candidates.columns, 2, kMostDrawn)),  // gnuplot's images have two at least
+      rows_(std::clamp(ground.candidates.rows, 2, kMostDrawn)) {}
 
 Eigen::Index Raster::index(int column, int row) const {
-  const int from_column = static_cast<int>((column + 0.5) * candidates_.columns / columns_);
-  const int from_row = static_cast<int>((row + 0.5) * candidates_.rows / rows_);
-  return static_cast<Eigen::Index>(from_row) * candidates_.columns + from_column;
+  const Candidates& all = ground_.candidates;
+  const int from_column = static_cast<int>((column + 0.5) * all.columns / columns_);
+  const int from_row = static_cast<int>((row + 0.5) * all.rows / rows_);
+  return static_cast<Eigen::Index>(from_row) * all.columns + from_column;
 }
 
 std::string Raster::matrix(const Eigen::VectorXd& values) const {
@@ -130,9 +156,8 @@ std::string Raster::matrix(const Eigen::VectorXd& values) const {
 }
 
 std::string Raster::matrix_columns() const {
-  const double dx = 100.0 * area_.width / columns_;
-  const double dy = 100.0 * area_.depth / rows_;
-  return fmt::format("({0} * (column(1) + 0.5)):({1} * (column(2) + 0.5)):3", dx, dy);
+  return fmt::format("({0} * (column(1) + 0.5)):({1} * (column(2) + 0.5)):3", 100.0 * area().width / columns_,
+                     100.0 * area().depth / rows_);
 }
 
 std::string Raster::surface(const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) const {
@@ -140,8 +165,10 @@ std::string Raster::surface(const Eigen::VectorXd& height, const Eigen::VectorXd
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       const Eigen::Index i = index(column, row);
-      out += fmt::format("{} {} {} {}\n", number(100.0 * x(column)), number(100.0 * y(row)), number(100.0 * height(i)),
-                         number(100.0 * deviation(i)));
+      const double x = (column + 0.5) * area().width / columns_;
+      const double y = (row + 0.5) * area().depth / rows_;
+      for (const double metres : {x, y, height(i)}) out += number(100.0 * metres) + " ";
+      out += number(100.0 * deviation(i)) + "\n";
     }
     out += "\n";
   }

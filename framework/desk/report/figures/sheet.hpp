@@ -4,13 +4,21 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "report/figures/palette.hpp"
 #include "report/snapshot.hpp"
 
 #include <string>
 #include <vector>
 
 namespace palpate {
+
+/// What all snapshots of a run share.
+struct Ground {
+  Candidates candidates;
+  Area area;
+  double desk = 0.0;  ///< metres
+};
+
+Ground ground_of(const Experiment& experiment);
 
 /// A rectangle of the picture, pixels from its upper left corner.
 struct Box {
@@ -19,6 +27,19 @@ struct Box {
   double width = 0.0;
   double height = 0.0;
 };
+
+/// The colours of maps: even steps in lightness, so that equal differences look equal, also in grey and to people who
+/// see two colours alike.
+enum class Palette {
+  viridis,  ///< dark blue over green to yellow: where to tap
+  cividis,  ///< dark blue over grey to yellow: what is not known
+};
+
+/// Evenly spaced stops from the lowest value to the highest, each "#rrggbb".
+const std::vector<std::string>& palette_stops(Palette palette);
+
+/// gnuplot's `set palette`, one line.
+std::string gnuplot_palette(Palette palette);
 
 /// What the colours of some panels mean.
 struct Colours {
@@ -35,16 +56,16 @@ struct Colours {
 Colours deviation_colours(double least, double most);
 
 /// The snapshot without the marks that the surface hides when it is seen from the side.
-Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const Area& area);
+Snapshot in_sight(const Snapshot& snapshot, const Ground& ground);
 
 /// Where candidates are drawn: their cells over the area, every cell once unless there are more than a picture can
 /// show.
 class Raster {
  public:
-  /// `candidates` must outlive it.
-  Raster(const Candidates& candidates, const Area& area);
+  /// `ground` must outlive it.
+  explicit Raster(const Ground& ground);
 
-  const Area& area() const { return area_; }
+  const Area& area() const { return ground_.area; }
   /// Rows of `values`, the lowest y first.
   std::string matrix(const Eigen::VectorXd& values) const;
   /// gnuplot's columns that place the matrix, in centimetres.
@@ -53,12 +74,9 @@ class Raster {
   std::string surface(const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) const;
 
  private:
-  double x(int column) const { return (column + 0.5) * area_.width / columns_; }
-  double y(int row) const { return (row + 0.5) * area_.depth / rows_; }
   Eigen::Index index(int column, int row) const;
 
-  const Candidates& candidates_;
-  Area area_;
+  const Ground& ground_;
   int columns_;
   int rows_;
 };
@@ -73,7 +91,7 @@ struct Relief {
 };
 
 /// What these snapshots of one experiment need to be drawn alike.
-Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk);
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground);
 
 class Sheet {
  public:

@@ -10,21 +10,16 @@
 
 namespace palpate {
 
-/// One quantity over the candidates at several moments; all frames have the same number of cells.
-struct MapSeries {
-  std::string name;
-  std::vector<Eigen::VectorXf> frames;
-};
-
-/// The bytes of some series, one behind the other, and what a script needs to unpack them.
+/// One quantity over the candidates at several moments, and what a script needs to unpack it.
 struct PackedMaps {
+  double least = 0.0;
+  double most = 0.0;
   std::string bytes;
-  std::string json;  ///< a list of {name, least, most, frames}
 };
 
-/// Packs every series. A cell becomes a whole number from 0, for the least of all frames of its series, to 65535, for
-/// the most: it is off by at most 1 / 131070 of that range. Then, a frame at a time, the steps from cell to cell modulo
-/// 65536, first all their low bytes and then all their high bytes. Cells are finite.
-PackedMaps pack_maps(const std::vector<MapSeries>& series);
+/// Packs frames of as many cells each, which are finite. A cell becomes a whole number from 0, for the least of all
+/// frames, to 65535, for the most: it is off by at most 1 / 131070 of that range. Then, a frame at a time, the steps
+/// from cell to cell modulo 65536, first all their low bytes and then all their high bytes.
+PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
 
 }  // namespace palpate
