@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The pieces of a page: what is packed comes out again by other hands, and text stays data.
 #include "report/page/page.hpp"
-#include "report/page/packed_maps.hpp"
+#include "report/page/run_page.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>

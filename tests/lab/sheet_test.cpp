@@ -45,39 +45,39 @@ std::vector<std::vector<double>> numbers_in(const std::string& text) {
   return out;
 }
 
-TEST(RasterTest, HasEveryCellOnceWithTheLowestRowFirst) {
+TEST(MatrixTest, HasEveryCellOnceWithTheLowestRowFirst) {
   const Area area{0.3, 0.2};
   const Ground ground{grid_by_spacing(area, 0.1), area};  // 3 x 2
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(6, 1, 6);
-  EXPECT_EQ(Raster(ground).matrix(values), "1 2 3\n4 5 6\n");
-  EXPECT_EQ(Raster(ground).surface(values / 100, values / 1000),
+  EXPECT_EQ(matrix_of(ground, values), "1 2 3\n4 5 6\n");
+  EXPECT_EQ(surface_of(ground, values / 100, values / 1000),
             "5 5 1 0.1\n15 5 2 0.2\n25 5 3 0.3\n\n5 15 4 0.4\n15 15 5 0.5\n25 15 6 0.6\n\n");
-  EXPECT_EQ(Raster(ground).matrix_columns(), "(10 * (column(1) + 0.5)):(10 * (column(2) + 0.5)):3");
+  EXPECT_EQ(matrix_columns(ground), "(10 * (column(1) + 0.5)):(10 * (column(2) + 0.5)):3");
 }
 
-TEST(RasterTest, ThinsOutWhatNoPictureShowsAndStillCoversTheArea) {
+TEST(MatrixTest, ThinsOutWhatNoPictureShowsAndStillCoversTheArea) {
   const Area area{1.0, 1.0};
   const Ground ground{grid_by_count(area, 1000), area};
-  const auto rows = numbers_in(Raster(ground).matrix(ground.candidates.points.col(0)));
+  const auto rows = numbers_in(matrix_of(ground, ground.candidates.points.col(0)));
   ASSERT_LT(rows.size(), 300U);
   const auto count = static_cast<double>(rows.size());
   for (std::size_t i = 0; i < rows[0].size(); ++i)
     EXPECT_NEAR(rows[0][i], (static_cast<double>(i) + 0.5) / count, 0.51 / 1000) << "the candidate nearest to the cell";
 }
 
-TEST(RasterTest, ASingleCandidateFillsTheArea) {
+TEST(MatrixTest, ASingleCandidateFillsTheArea) {
   const Area area{0.1, 0.1};
   const Ground ground{grid_by_count(area, 1), area};
-  EXPECT_EQ(Raster(ground).matrix(Eigen::VectorXd::Constant(1, 7.0)), "7 7\n7 7\n");
+  EXPECT_EQ(matrix_of(ground, Eigen::VectorXd::Constant(1, 7.0)), "7 7\n7 7\n");
 }
 
-TEST(RasterTest, WhatIsNotFiniteIsAGapAndNoWord) {
+TEST(MatrixTest, WhatIsNotFiniteIsAGapAndNoWord) {
   const Area area{0.2, 0.2};
   const Ground ground{grid_by_count(area, 2), area};
   Eigen::VectorXd values = Eigen::VectorXd::Zero(4);
   values(1) = std::nan("");
   values(2) = HUGE_VAL;
-  EXPECT_EQ(Raster(ground).matrix(values), "0 NaN\nNaN 0\n");
+  EXPECT_EQ(matrix_of(ground, values), "0 NaN\nNaN 0\n");
 }
 
 Snapshot flat_moment(double height) {
@@ -132,9 +132,8 @@ TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
   sheet.taps("a", snapshot);
   const Area area{0.1, 0.1};
   const Ground ground{grid_by_count(area, 2), area};
-  const Raster raster(ground);
-  sheet.data("m", raster.matrix(Eigen::VectorXd::Zero(4)));
-  sheet.map({50, 50, 200, 200}, raster, "m", "a", {Palette::viridis, 0, 1, "e"});
+  sheet.data("m", matrix_of(ground, Eigen::VectorXd::Zero(4)));
+  sheet.map({50, 50, 200, 200}, ground, "m", "a", {Palette::viridis, 0, 1, "e"});
   const std::string script = sheet.script();
   EXPECT_THAT(script, HasSubstr("$on_a << END\n1 2 3 1\nEND\n"));
   EXPECT_THAT(script, HasSubstr("$failed_a << END\n4 5 0 2\nEND\n"));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 #include "record/run_directory.hpp"
-#include "report/figures/gallery.hpp"
+#include "report/figures/figures.hpp"
+#include "report/figures/sheet.hpp"
 
 #include <palpate/error.hpp>
 
@@ -15,6 +16,19 @@
 namespace palpate {
 namespace {
 
+/// What a figure of the paper shows of one run.
+struct Progress {
+  std::string strategy;
+  std::vector<int> iterations;
+  std::vector<Snapshot> snapshots;  ///< one for each iteration
+  Ground ground;
+};
+
+/// A panel for each of the run's snapshots: the surface seen from the side, or the map of the scores or of u.
+struct PanelRow {
+  const Progress& run;
+  Eigen::VectorXd Snapshot::*map;
+};
 constexpr double kLeft = 70;    // of the first panel: room for an axis
 constexpr double kRight = 150;  // of the last one: room for a scale
 constexpr double kMap = 225;    // longer side of a map, pixels
@@ -69,7 +83,6 @@ double height_of(const PanelRow& row, const Box& map) { return is_surface(row) ?
 /// The panels of a row below `top`, and the scale of their colours; `map` is the box of the first map.
 void draw_row(Sheet& sheet, const PanelRow& row, double top, const Box& map) {
   const Progress& run = row.run;
-  const Raster raster(run.ground);
   const Colours colours = colours_of(row);
   const Relief relief = relief_of(run.snapshots, run.ground);
   double left = map.left;
@@ -77,25 +90,25 @@ void draw_row(Sheet& sheet, const PanelRow& row, double top, const Box& map) {
     const Snapshot& snapshot = run.snapshots[i];
     const std::string key = key_of(run, i);
     if (is_surface(row)) {
-      sheet.data("surface_" + key, raster.surface(snapshot.surface, snapshot.deviation));
+      sheet.data("surface_" + key, surface_of(run.ground, snapshot.surface, snapshot.deviation));
       Snapshot seen = in_sight(snapshot, run.ground);
       seen.next.reset();  // it stands in the map
       sheet.taps("seen_" + key, seen);
-      sheet.surface({left - 4, top, map.width + 26, kSurface}, raster, "surface_" + key, "seen_" + key, colours,
+      sheet.surface({left - 4, top, map.width + 26, kSurface}, run.ground, "surface_" + key, "seen_" + key, colours,
                     relief);
     } else {
       const std::string block = (is_scores(row) ? "scores_" : "u_") + key;
-      sheet.data(block, raster.matrix(snapshot.*row.map));
+      sheet.data(block, matrix_of(run.ground, snapshot.*row.map));
       sheet.taps(key, snapshot);
-      sheet.map({left, top, map.width, map.height}, raster, block, key, colours);
+      sheet.map({left, top, map.width, map.height}, run.ground, block, key, colours);
     }
   }
   const double gap = is_surface(row) ? 48 : 22;  // the axis of heights stands out
   sheet.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
 }
 
-}  // namespace
-
+/// The run after these iterations of the paper: k is the state after k taps beyond the initial ones but one. The first
+/// that lies beyond the run's end shows its last tap, those after it are left out.
 Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());
   const auto initial = static_cast<int>(std::count_if(
@@ -114,6 +127,7 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
           ground_of(playback.experiment())};
 }
 
+/// Rows below each other, of one run or of several with as many snapshots; `rows` is not empty.
 Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows) {
   constexpr double kWords = 60;  // above the first row of a run
   constexpr double kBelow = 54;  // a row
@@ -146,11 +160,10 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   return {name, std::move(sheet)};
 }
 
+/// Surfaces above, the strategy's suggestion function below: figures 2 and 3.
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
   return panels_figure(name, title, {{progress, &Snapshot::surface}, {progress, &Snapshot::scores}});
 }
-
-namespace {
 
 constexpr const char* kAllOfThem = "configs/paper/figures.yaml has them all";
 
@@ -177,8 +190,7 @@ std::string titled(const std::string& title, const Sweep& sweep, const Job& job)
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
 
-}  // namespace
-
+/// The paper's figures of a sweep; adds to `notes` which job is missing for which.
 std::vector<Figure> paper_figures(const Workshop& workshop, const Sweep& sweep, std::vector<std::string>& notes) {
   std::vector<Figure> figures;
   const auto progress = [&](const Job& job, const std::vector<int>& iterations) {
@@ -234,6 +246,22 @@ std::vector<Figure> paper_figures(const Workshop& workshop, const Sweep& sweep, 
                 kAllOfThem);
   }
   return figures;
+}
+
+}  // namespace
+
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording) {
+  const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
+  return {write_gallery(recording.directory / "figures",
+                        {progress_figure("paper_progress", recording.config.options.name, progress)}),
+          {}};
+}
+
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
+  Figures out;
+  const std::vector<Figure> figures = paper_figures(workshop, sweep, out.notes);
+  out.pictures = write_gallery(sweep.directory / "figures", figures);
+  return out;
 }
 
 }  // namespace palpate

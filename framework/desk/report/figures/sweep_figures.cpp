@@ -4,7 +4,10 @@
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
-#include "report/figures/gallery.hpp"
+#include "report/figures/figures.hpp"
+#include "report/figures/sheet.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,7 +28,7 @@ constexpr const char* kOption = "--figures";
 struct Group {
   std::string name;
   JobGroup jobs;
-  std::size_t done = 0;
+  std::ptrdiff_t done = 0;
 };
 
 std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results) {
@@ -35,7 +38,7 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
     const auto done = std::count_if(one.jobs.begin(), one.jobs.end(),
                                     [](const JobResult& job) { return job.row != nullptr && is_done(*job.row); });
     const std::string name = key_words(keys, one.values, keys.size() > 1);
-    if (done > 0) groups.push_back({name.empty() ? "all jobs" : name, std::move(one), static_cast<std::size_t>(done)});
+    if (done > 0) groups.push_back({name.empty() ? "all jobs" : name, std::move(one), done});
   }
   return groups;
 }
@@ -103,8 +106,6 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
   sheet.plot(box, settings, clauses);
 }
 
-}  // namespace
-
 Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results) {
   constexpr double kTop = 86;
   constexpr double kWidth = 250;
@@ -152,8 +153,6 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   return {"distributions", std::move(sheet)};
 }
 
-namespace {
-
 /// A swept key and its values, in the order of the sweep, as many as are shown.
 struct Axis {
   std::string key;
@@ -181,8 +180,7 @@ std::string tics(const std::vector<std::string>& values) {
   return "(" + out + ")";
 }
 
-}  // namespace
-
+/// Of two swept keys but the seed that have two values or more; empty where there are none.
 std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   if (keys.size() < 2) return {};
@@ -257,6 +255,17 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
   std::vector<Figure> out;
   out.push_back({"heat_map", std::move(sheet)});
   return out;
+}
+
+}  // namespace
+
+Figures write_sweep_figures(const Sweep& sweep) {
+  const std::vector<Row> results = sweep_results(sweep);
+  if (std::none_of(results.begin(), results.end(), is_done))
+    throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
+  std::vector<Figure> figures{distributions_figure(sweep, results)};
+  for (Figure& one : heat_maps(sweep, results)) figures.push_back(std::move(one));
+  return {write_gallery(sweep.directory / "figures", figures), {}};
 }
 
 }  // namespace palpate

@@ -16,7 +16,7 @@ extern "C" const char palpate_asset_sweep[];
 
 namespace palpate {
 
-/// A page that runs `script` (behind the common one) on the data and on maps as bytes (packed_maps.hpp).
+/// A page that runs `script` (behind the common one) on the data and on maps as bytes.
 std::string make_page(std::string_view script, const Json& data, const std::string& maps);
 
 /// Compressed by gzip; equal bytes for equal input.

@@ -10,7 +10,6 @@
 #include "record/tap_row.hpp"
 #include "report/curves.hpp"
 #include "report/page/json.hpp"
-#include "report/page/packed_maps.hpp"
 #include "report/page/page.hpp"
 #include "report/page/warnings.hpp"
 
@@ -18,6 +17,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <unordered_map>
@@ -43,42 +44,6 @@ Json json_of_run(const Recording& recording) {
           {"desk", options.scene.desk},
           {"truth", recording.truth_known()}};
 }
-
-Json json_of_moment(const Moment& moment) {
-  const RunResult& result = moment.result;
-  Row errors;
-  add_errors(errors, result.errors);
-  Json out = errors;
-  out.update({{"taps", moment.taps},
-              {"on_surface_taps", result.on_surface_taps},
-              {"off_surface_taps", result.off_surface_taps},
-              {"failed_taps", result.failed_taps},
-              {"robot_seconds", result.robot_seconds},
-              {"least_weight", moment.least_weight},
-              {"most_weight", moment.most_weight},
-              {"remark", result.footprint ? result.footprint->remark : ""}});
-  if (moment.next) {
-    out["next"] = {{"x", moment.next->target.x},
-                   {"y", moment.next->target.y},
-                   {"source", source_name(moment.next->source)},
-                   {"score", moment.next->score},
-                   {"ties", moment.next->ties}};
-  }
-  return out;
-}
-
-Json json_of_panel(const CurvePanel& panel) {
-  constexpr const char* kAxes[] = {"free", "from_zero", "share", "logarithmic"};  // by CurveAxis
-  Json curves = Json::array();
-  for (const Curve& curve : panel.curves) curves.push_back({{"name", curve.name}, {"values", curve.values}});
-  return {{"title", panel.title},
-          {"unit", panel.unit},
-          {"axis", kAxes[static_cast<std::size_t>(panel.axis)]},
-          {"curves", curves}};
-}
-
-/// How a page calls the errors, and in what unit it has them.
-Json json_of_error(const RecordField& field) { return {field.name, field.label, unit_symbol(field.unit)}; }
 
 /// The config as lines of path, value and origin: that of the manifest, which knows the files behind config.yaml.
 Json json_of_config(const Recording& recording, const Tree& manifest) {
@@ -109,15 +74,68 @@ Json json_of_build(const Tree& manifest) {
   return lines;
 }
 
-/// A list of what `get` makes of each.
-template <class Item, class Get>
-Json json_of_each(const std::vector<Item>& items, const Get& get) {
-  Json out = Json::array();
-  for (const Item& one : items) out.push_back(get(one));
-  return out;
+}  // namespace
+
+static void to_json(Json& out, const Moment& moment) {
+  const RunResult& result = moment.result;
+  Row errors;
+  add_errors(errors, result.errors);
+  out = errors;
+  out.update({{"taps", moment.taps},
+              {"on_surface_taps", result.on_surface_taps},
+              {"off_surface_taps", result.off_surface_taps},
+              {"failed_taps", result.failed_taps},
+              {"robot_seconds", result.robot_seconds},
+              {"least_weight", moment.least_weight},
+              {"most_weight", moment.most_weight},
+              {"remark", result.footprint ? result.footprint->remark : ""}});
+  if (moment.next) {
+    out["next"] = {{"x", moment.next->target.x},
+                   {"y", moment.next->target.y},
+                   {"source", source_name(moment.next->source)},
+                   {"score", moment.next->score},
+                   {"ties", moment.next->ties}};
+  }
 }
 
-}  // namespace
+static void to_json(Json& out, const Curve& curve) { out = {{"name", curve.name}, {"values", curve.values}}; }
+
+static void to_json(Json& out, const CurvePanel& panel) {
+  constexpr const char* kAxes[] = {"free", "from_zero", "share", "logarithmic"};  // by CurveAxis
+  out = {{"title", panel.title},
+         {"unit", panel.unit},
+         {"axis", kAxes[static_cast<std::size_t>(panel.axis)]},
+         {"curves", panel.curves}};
+}
+
+/// How a page calls an error, and in what unit it has it.
+static void to_json(Json& out, const RecordField& error) { out = {error.name, error.label, unit_symbol(error.unit)}; }
+
+PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
+  constexpr double kMost = 65535.0;
+  float least = frames.front().minCoeff();
+  float most = least;
+  for (const Eigen::VectorXf& frame : frames) {
+    least = std::min(least, frame.minCoeff());
+    most = std::max(most, frame.maxCoeff());
+  }
+  PackedMaps out{least, most, {}};
+  const double scale = out.most > out.least ? kMost / (out.most - out.least) : 0.0;
+  for (const Eigen::VectorXf& frame : frames) {
+    std::string high;
+    std::uint16_t before = 0;
+    for (const float cell : frame) {
+      const double value = scale * (static_cast<double>(cell) - out.least);
+      const auto level = static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, kMost)));
+      const auto step = static_cast<std::uint16_t>(level - before);
+      out.bytes += static_cast<char>(step & 0xFFU);
+      high += static_cast<char>(step >> 8U);
+      before = level;
+    }
+    out.bytes += high;
+  }
+  return out;
+}
 
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
   const fs::path& directory = recording.directory;
@@ -126,9 +144,9 @@ std::string run_page(const Recording& recording, const History& history, const O
   data.update({{"version", kVersion},
                {"summary", recording.summary},
                {"taps", recording.rows},
-               {"moments", json_of_each(history.moments, json_of_moment)},
-               {"errors", json_of_each(error_fields(), json_of_error)},
-               {"curves", json_of_each(curves_of(recording, history), json_of_panel)},
+               {"moments", history.moments},
+               {"errors", error_fields()},
+               {"curves", curves_of(recording, history)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
                {"config", json_of_config(recording, manifest)},
@@ -148,8 +166,9 @@ std::string run_page(const Recording& recording, const History& history, const O
     std::string bytes;
     for (const MapSeries& one : history.maps) {
       std::vector<Eigen::VectorXf> frames;
-      for (const int moment : shown) frames.push_back(one.frames[static_cast<std::size_t>(moment)]);
-      if (one.frames.size() == 1) frames = one.frames;
+      if (one.frames.size() == 1) frames = one.frames;  // of all moments
+      for (std::size_t i = 0; i < shown.size() && one.frames.size() > 1; ++i)
+        frames.push_back(one.frames[static_cast<std::size_t>(shown[i])]);
       const PackedMaps packed = pack_maps(frames);
       described.push_back(
           {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
