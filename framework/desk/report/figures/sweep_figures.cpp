@@ -28,7 +28,7 @@ constexpr const char* kOption = "--figures";
 struct Group {
   std::string name;
   JobGroup jobs;
-  std::ptrdiff_t done = 0;
+  std::size_t done = 0;
 };
 
 std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results) {
@@ -38,7 +38,7 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
     const auto done = std::count_if(one.jobs.begin(), one.jobs.end(),
                                     [](const JobResult& job) { return job.row != nullptr && is_done(*job.row); });
     const std::string name = key_words(keys, one.values, keys.size() > 1);
-    if (done > 0) groups.push_back({name.empty() ? "all jobs" : name, std::move(one), done});
+    if (done > 0) groups.push_back({name.empty() ? "all jobs" : name, std::move(one), static_cast<std::size_t>(done)});
   }
   return groups;
 }
