@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The pieces of a page: what is packed comes out again by other hands, and text stays data.
 #include "report/page/page.hpp"
-#include "report/page/packed_maps.hpp"
+#include "report/page/run_page.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <random>
@@ -62,40 +60,37 @@ std::vector<double> unpack_frame(const std::string& bytes, std::size_t at, std::
 TEST(PackedMaps, AreOffByAtMostHalfAStepOfTheirRange) {
   std::mt19937 random(2);
   std::uniform_real_distribution<float> any(-3.0F, 5.0F);
-  std::vector<MapSeries> series{{"a", {}}, {"b", {}}};
-  for (int frame = 0; frame < 4; ++frame) {
-    for (MapSeries& one : series)
-      one.frames.push_back(Eigen::VectorXf::NullaryExpr(35, [&](Eigen::Index) { return any(random); }));
-  }
-  const PackedMaps packed = pack_maps(series);
-  EXPECT_EQ(packed.bytes.size(), 2U * 4U * 35U * 2U);
-  const auto described = nlohmann::json::parse(packed.json);
-  std::size_t at = 0;
-  for (std::size_t s = 0; s < 2; ++s) {
-    EXPECT_EQ(described.at(s).at("name"), series[s].name);
-    EXPECT_EQ(described.at(s).at("frames"), 4);
-    const double least = described.at(s).at("least");
-    const double most = described.at(s).at("most");
-    for (const Eigen::VectorXf& frame : series[s].frames) {
-      const std::vector<double> out = unpack_frame(packed.bytes, at, 35, least, most);
-      at += 70;
-      for (std::size_t i = 0; i < 35; ++i)
-        EXPECT_LE(std::abs(out[i] - static_cast<double>(frame(static_cast<Eigen::Index>(i)))),
-                  (most - least) / 131070.0 * 1.0001);
-    }
+  std::vector<Eigen::VectorXf> frames;
+  for (int frame = 0; frame < 4; ++frame)
+    frames.emplace_back(Eigen::VectorXf::NullaryExpr(35, [&](Eigen::Index) { return any(random); }));
+  const PackedMaps packed = pack_maps(frames);
+  EXPECT_EQ(packed.bytes.size(), 4U * 35U * 2U);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const std::vector<double> out = unpack_frame(packed.bytes, 70 * f, 35, packed.least, packed.most);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      EXPECT_LE(std::abs(out[i] - static_cast<double>(frames[f](static_cast<Eigen::Index>(i)))),
+                (packed.most - packed.least) / 131070.0 * 1.0001);
   }
 }
 
 TEST(PackedMaps, KeepAMapThatIsEverywhereTheSame) {
-  const PackedMaps packed = pack_maps({{"flat", {Eigen::VectorXf::Constant(9, 0.25F)}}});
-  const auto described = nlohmann::json::parse(packed.json);
-  EXPECT_EQ(described.at(0).at("least"), 0.25);
-  EXPECT_EQ(described.at(0).at("most"), 0.25);
+  const PackedMaps packed = pack_maps({Eigen::VectorXf::Constant(9, 0.25F)});
+  EXPECT_EQ(packed.least, 0.25);
+  EXPECT_EQ(packed.most, 0.25);
   for (const double value : unpack_frame(packed.bytes, 0, 9, 0.25, 0.25)) EXPECT_EQ(value, 0.25);
 }
 
+TEST(PageData, HasRowsWithTheirDottedNamesAndNullForWhatIsAbsentOrNoNumber) {
+  Row row;
+  row.add("a.b", 1);
+  row.add("none", std::optional<double>());
+  row.add("text", "\"</script>");
+  EXPECT_EQ(Json(std::vector<Row>{row}).dump(), R"([{"a.b":1,"none":null,"text":"\"</script>"}])");
+  EXPECT_EQ(Json(std::vector<std::optional<double>>{0.5, {}, std::nan("")}).dump(), "[0.5,null,null]");
+}
+
 TEST(Page, AsksNoNetworkForAnythingAndHasNoDataAsMarkup) {
-  const std::string page = make_page("draw();", R"({"name": "<b>secret</b>"})", "maps");
+  const std::string page = make_page("draw();", {{"name", "<b>secret</b>"}, {"bytes", "no UTF-8: \xFF"}}, "maps");
   EXPECT_THAT(page, HasSubstr("content=\"default-src 'none';"));
   const std::string head = page.substr(0, page.find("<script"));
   const std::string tail = page.substr(page.rfind("<script>"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Heights over a grid as triangles: normals, orientation, and what hangs together.
-#include "report/exchange/surface_mesh.hpp"
+#include "report/exchange/exchange.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

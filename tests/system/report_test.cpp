@@ -41,8 +41,8 @@ TEST_F(Report, OfASweepHoldsEveryJobItsStateAndItsNumbersAndTheNameOfTheCommandL
   EXPECT_EQ(data.at("id"), directory.filename().string());
   ASSERT_EQ(data.at("jobs").size(), 6U);
   for (std::size_t job = 0; job < 6; ++job) {
-    EXPECT_EQ(data.at("jobs").at(job).at(0), results.at(job).at("id"));
-    EXPECT_EQ(data.at("jobs").at(job).at(1), job == 4 ? "unfinished" : "done");
+    EXPECT_EQ(data.at("jobs").at(job).at("id"), results.at(job).at("id"));
+    EXPECT_EQ(data.at("jobs").at(job).at("state"), job == 4 ? "unfinished" : "done");
   }
   int compared = 0;
   for (const json& column : data.at("columns")) {
@@ -69,7 +69,7 @@ TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   EXPECT_EQ(data.at("taps").size(), 5U);
   EXPECT_EQ(data.at("moments").size(), 6U);
   EXPECT_TRUE(data.at("summary").is_null());
-  EXPECT_EQ(data.at("run").at("state"), "unfinished");
+  EXPECT_EQ(data.at("state"), "unfinished");
   EXPECT_THAT(data.at("warnings").at(0).get<std::string>(), HasSubstr("has not ended: this is how it stands after 5"));
   EXPECT_TRUE(text_of(directory / "taps.jsonl") == taps);
 }
@@ -77,7 +77,7 @@ TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
 TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
   const fs::path directory = ran("footprint.contradictions=0.01 log.maps=true", config("default.yaml"));
   const json data = reported(directory);
-  EXPECT_EQ(data.at("run").at("footprint"), "shape");
+  EXPECT_EQ(data.at("footprint"), "shape");
   std::vector<std::string> names;
   for (const json& map : data.at("maps")) names.push_back(map.at("name"));
   EXPECT_THAT(names, ElementsAre("height", "deviation", "u", "p", "score", "truth"));

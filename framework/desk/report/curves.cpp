@@ -23,50 +23,7 @@ Curve curve_of(const History& history, const std::string& name, const Get& get) 
   return curve;
 }
 
-void add_errors_to(std::vector<CurvePanel>& panels, const History& history) {
-  CurvePanel lengths{"Error of the reconstruction, rms", "cm", CurveAxis::from_zero, {}};
-  std::vector<CurvePanel> shares;
-  for (const RecordField& error : error_fields()) {
-    const bool is_length = error.unit == Unit::metre;
-    Curve curve = curve_of(history, is_length ? error.label : "", [&](const Moment& moment) {
-      Row row;
-      add_errors(row, moment.result.errors);
-      std::optional<double> value = row.number(error.name);
-      if (value && is_length) *value *= 100.0;
-      return value;
-    });
-    if (!is_length) shares.push_back({error.label, "", CurveAxis::share, {}});
-    (is_length ? lengths : shares.back()).curves.push_back(std::move(curve));
-  }
-  panels.push_back(std::move(lengths));
-  std::move(shares.begin(), shares.end(), std::back_inserter(panels));
-}
-
-struct NamedState {
-  const char* name;
-  std::optional<ProcessState> RunResult::*state;
-};
-constexpr std::array<NamedState, 3> kStates{{{"heights", &RunResult::height_process},
-                                             {"labels", &RunResult::weight_process},
-                                             {"object", &RunResult::surface_process}}};
-
-using NamedNumbers = std::vector<std::pair<std::string, double>>;
-
-NamedNumbers parameters_of(const std::optional<ProcessState>& state) {
-  if (!state) return {};
-  NamedNumbers out{{"signal", state->settings.signal}, {"noise", state->settings.noise}};
-  for (const KernelParameter& one : state->kernel) out.emplace_back(one.name, one.value);
-  return out;
-}
-
-NamedNumbers numbers_of(const std::optional<FootprintState>& state) {
-  NamedNumbers out;
-  if (state) {
-    for (const FootprintNumber& one : state->numbers) out.emplace_back(one.name, one.value);
-  }
-  for (auto& [name, value] : out) std::replace(name.begin(), name.end(), '_', ' ');
-  return out;
-}
+using Numbers = std::vector<std::pair<std::string, double>>;
 
 /// A curve for each name that the last moment has.
 template <class NumbersAt>
@@ -83,14 +40,34 @@ std::vector<Curve> named_curves(const History& history, const NumbersAt& numbers
   return out;
 }
 
-std::vector<Curve> likelihoods(const History& history) {
-  std::vector<Curve> out;
+struct NamedState {
+  const char* name;
+  std::optional<ProcessState> RunResult::*state;
+};
+constexpr std::array<NamedState, 3> kStates{{{"heights", &RunResult::height_process},
+                                             {"labels", &RunResult::weight_process},
+                                             {"object", &RunResult::surface_process}}};
+
+Numbers likelihoods_of(const Moment& moment) {
+  Numbers out;
   for (const NamedState& one : kStates) {
-    out.push_back(curve_of(history, one.name, [&](const Moment& moment) {
-      const std::optional<ProcessState>& state = moment.result.*one.state;
-      return state ? std::optional(state->log_marginal_likelihood) : std::nullopt;
-    }));
+    if (const auto& state = moment.result.*one.state) out.emplace_back(one.name, state->log_marginal_likelihood);
   }
+  return out;
+}
+
+Numbers parameters_of(const std::optional<ProcessState>& state) {
+  if (!state) return {};
+  Numbers out{{"signal", state->settings.signal}, {"noise", state->settings.noise}};
+  for (const KernelParameter& one : state->kernel) out.emplace_back(one.name, one.value);
+  return out;
+}
+
+Numbers numbers_of(const std::optional<FootprintState>& state) {
+  if (!state) return {};
+  Numbers out;
+  for (const FootprintNumber& one : state->numbers) out.emplace_back(one.name, one.value);
+  for (auto& [name, value] : out) std::replace(name.begin(), name.end(), '_', ' ');
   return out;
 }
 
@@ -136,7 +113,25 @@ std::vector<CurvePanel> curves_of(const Recording& recording, const History& his
     panels.push_back({std::move(title), unit, axis, std::move(curves)});
   };
   const auto one = [&](const auto& get) { return std::vector<Curve>{curve_of(history, "", get)}; };
-  add_errors_to(panels, history);
+  std::vector<Curve> lengths;
+  std::vector<CurvePanel> shares;
+  for (const RecordField& error : error_fields()) {
+    const bool is_length = error.unit == Unit::metre;
+    Curve curve = curve_of(history, is_length ? error.label : "", [&](const Moment& moment) {
+      Row row;
+      add_errors(row, moment.result.errors);
+      std::optional<double> value = row.number(error.name);
+      if (value && is_length) *value *= 100.0;
+      return value;
+    });
+    if (is_length) {
+      lengths.push_back(std::move(curve));
+    } else {
+      shares.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
+    }
+  }
+  add("Error of the reconstruction, rms", "cm", CurveAxis::from_zero, std::move(lengths));
+  std::move(shares.begin(), shares.end(), std::back_inserter(panels));
   add("Largest standard deviation of a height", "cm", CurveAxis::from_zero,
       one([](const Moment& moment) { return 100.0 * moment.largest_deviation; }));
   add("Share of the taps on the object", "", CurveAxis::share, one([](const Moment& moment) {
@@ -144,7 +139,7 @@ std::vector<CurvePanel> curves_of(const Recording& recording, const History& his
         return moment.taps > 0 ? std::optional(static_cast<double>(result.on_surface_taps) / moment.taps)
                                : std::nullopt;
       }));
-  add("Log marginal likelihood", "nat", CurveAxis::free, likelihoods(history));
+  add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
   for (const NamedState& state : kStates) {
     add(fmt::format("Hyperparameters, {} (SI units)", state.name), "", CurveAxis::logarithmic,
         named_curves(history, [&](const Moment& moment) { return parameters_of(moment.result.*state.state); }));

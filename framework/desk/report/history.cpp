@@ -1,49 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "report/history.hpp"
 
-#include "report/snapshot.hpp"
+#include "experiment/metrics.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
 
-/// The candidates that a map shows.
-class Shown {
- public:
-  explicit Shown(const Candidates& all) : all_(all) {
-    step_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
-  }
-
-  Eigen::VectorXd x() const {
-    Eigen::VectorXd out(count(all_.columns));
-    for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = all_.points(i * step_, 0);
-    return out;
-  }
-
-  Eigen::VectorXd y() const {
-    Eigen::VectorXd out(count(all_.rows));
-    for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = all_.points(i * step_ * all_.columns, 1);
-    return out;
-  }
-
-  Eigen::VectorXf of(const Eigen::VectorXd& map) const {
-    Eigen::VectorXf out(count(all_.columns) * count(all_.rows));
-    Eigen::Index next = 0;
-    for (int row = 0; row < all_.rows; row += step_) {
-      for (int column = 0; column < all_.columns; column += step_)
-        out(next++) = static_cast<float>(map(row * all_.columns + column));
-    }
-    return out;
-  }
-
- private:
-  int count(int all) const { return (all + step_ - 1) / step_; }
-
-  const Candidates& all_;
-  int step_ = 1;
-};
+TapMark mark_of(const PastTap& tap, int number, const Scene& scene) {
+  TapMark mark{number, TapMark::Kind::failed, tap.target.x, tap.target.y, scene.desk()};
+  if (tap.contact.outcome != Outcome::contact) return mark;
+  mark.kind = scene.on_surface(tap.contact.height) ? TapMark::Kind::on : TapMark::Kind::off;
+  mark.height = tap.contact.height;
+  return mark;
+}
 
 /// Whether the scores are a map of their own, beside those that are shown anyhow.
 bool own_scores(const Snapshot& now) {
@@ -53,36 +28,82 @@ bool own_scores(const Snapshot& now) {
 
 }  // namespace
 
+Snapshot snapshot_of(Playback& playback, const Recording& recording) {
+  Experiment& experiment = playback.experiment();
+  const TapBelief& belief = experiment.belief();
+  Snapshot out;
+  out.taps = playback.taps();
+  for (int i = 0; i < out.taps; ++i)
+    out.marks.push_back(mark_of(recording.taps[static_cast<std::size_t>(i)], i + 1, experiment.scene()));
+  out.next = experiment.choose_next();
+  out.scores = experiment.scores();
+  experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
+  out.surface = reconstruction(belief);
+  out.deviation = belief.height_variance().cwiseSqrt();
+  out.uncertainty = belief.uncertainty();
+  if (belief.footprint_is_weight()) {
+    out.weight = belief.weight();
+    out.least_weight = belief.weight_mean().minCoeff();
+    out.most_weight = belief.weight_mean().maxCoeff();
+  } else {
+    out.probability = belief.probability();
+  }
+  out.largest_deviation = std::sqrt(belief.all_taps_variance().maxCoeff());
+  out.result = experiment.result();
+  return out;
+}
+
+std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps) {
+  std::vector<Snapshot> out;
+  for (const int count : taps) {
+    playback.advance_to(count);
+    out.push_back(snapshot_of(playback, recording));
+  }
+  return out;
+}
+
+std::string count_words(const RunResult& result) {
+  std::string out = fmt::format("{} on the object, {} on the desk", result.on_surface_taps, result.off_surface_taps);
+  if (result.failed_taps > 0) out += fmt::format(", {} failed", result.failed_taps);
+  return out;
+}
+
 History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
   Playback playback(workshop, recording);
   Experiment& experiment = playback.experiment();
-  const Shown shown(experiment.candidates());
-  History out;
-  out.x = shown.x();
-  out.y = shown.y();
+  const Candidates& all = experiment.candidates();
+  const auto some =
+      Eigen::seq(0, Eigen::last, (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross);
+  const auto shown = [&](const Eigen::VectorXd& map) -> Eigen::VectorXf {
+    const Eigen::MatrixXd cells = map.reshaped<Eigen::RowMajor>(all.rows, all.columns)(some, some);
+    return cells.reshaped<Eigen::RowMajor>().cast<float>();
+  };
   const bool weight = experiment.belief().footprint_is_weight();
-  out.maps = {{"height", {}}, {"deviation", {}}, {"u", {}}, {weight ? "w" : "p", {}}, {"score", {}}};
+  const std::vector<std::pair<const char*, Eigen::VectorXd Snapshot::*>> maps{
+      {"height", &Snapshot::surface},
+      {"deviation", &Snapshot::deviation},
+      {"u", &Snapshot::uncertainty},
+      {weight ? "w" : "p", weight ? &Snapshot::weight : &Snapshot::probability},
+      {"score", &Snapshot::scores}};
+  History out;
+  out.x = all.xs(some);
+  out.y = all.ys(some);
+  for (const auto& [name, map] : maps) out.maps.push_back({name, {}});
   bool scores = false;
-  const auto all = static_cast<int>(recording.taps.size());
-  for (int taps = 0; taps <= all; ++taps) {
+  double largest = 0.0;
+  const auto last = static_cast<int>(recording.taps.size());
+  for (int taps = 0; taps <= last; ++taps) {
     playback.advance_to(taps);
     const Snapshot now = snapshot_of(playback, recording);
-    const std::array<const Eigen::VectorXd*, 5> maps{&now.surface, &now.deviation, &now.uncertainty,
-                                                     weight ? &now.weight : &now.probability, &now.scores};
-    for (std::size_t i = 0; i < maps.size(); ++i) out.maps[i].frames.push_back(shown.of(*maps[i]));
+    for (std::size_t i = 0; i < maps.size(); ++i) out.maps[i].frames.push_back(shown(now.*maps[i].second));
     scores = scores || own_scores(now);
-    out.moments.push_back({taps, experiment.result(), now.next, now.largest_deviation, {}, {}});
-    if (weight) {
-      out.moments.back().least_weight = experiment.belief().weight_mean().minCoeff();
-      out.moments.back().most_weight = experiment.belief().weight_mean().maxCoeff();
-    }
-    progress(taps, all);
+    largest = std::max(largest, now.largest_deviation);
+    out.moments.push_back(now);
+    progress(taps, last);
   }
-  double largest = 0.0;
-  for (const Moment& moment : out.moments) largest = std::max(largest, moment.largest_deviation);
   for (Eigen::VectorXf& frame : out.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest));
   if (!scores) out.maps.pop_back();
-  if (const Truth* truth = experiment.truth()) out.maps.push_back({"truth", {shown.of(truth->height)}});
+  if (const Truth* truth = experiment.truth()) out.maps.push_back({"truth", {shown(truth->height)}});
   return out;
 }
 

@@ -4,7 +4,8 @@
 #pragma once
 
 #include "record/recording.hpp"
-#include "report/page/packed_maps.hpp"
+
+#include <palpate/types.hpp>
 
 #include <functional>
 #include <optional>
@@ -13,7 +14,17 @@
 
 namespace palpate {
 
-/// After `taps` taps.
+/// A tap as it is drawn.
+struct TapMark {
+  enum class Kind { on, off, failed };
+  int tap = 1;
+  Kind kind = Kind::failed;
+  double x = 0.0;  ///< metres, as `y`
+  double y = 0.0;
+  double height = 0.0;  ///< metres; the desk's where nothing was touched
+};
+
+/// A run after its first `taps` taps.
 struct Moment {
   int taps = 0;
   RunResult result;                ///< what summary.json would say if the run had ended here
@@ -21,6 +32,36 @@ struct Moment {
   double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres
   /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.
   std::optional<double> least_weight, most_weight;
+};
+
+/// The same with what was believed. The maps have one value for each candidate.
+struct Snapshot : Moment {
+  std::vector<TapMark> marks;   ///< of these taps, in their order
+  Eigen::VectorXd surface;      ///< as reconstructed, metres
+  Eigen::VectorXd deviation;    ///< standard deviation of the height, metres
+  Eigen::VectorXd uncertainty;  ///< u
+  /// What speaks for an object, one of the two: w, as the strategy reads it, where the footprint is the weight, or
+  /// else the footprint's p. The other is empty.
+  Eigen::VectorXd weight;
+  Eigen::VectorXd probability;
+  Eigen::VectorXd scores;  ///< what the strategy gives each candidate
+  bool has_weight() const { return weight.size() > 0; }
+  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, where there is w
+};
+
+/// The run as `playback` has it now, after as many of the taps of `recording`.
+Snapshot snapshot_of(Playback& playback, const Recording& recording);
+
+/// The run after each of these numbers of taps, which ascend and lie between 1 and all.
+std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
+
+/// "7 on the object, 10 on the desk, 1 failed"; what there is none of but the first two is left out.
+std::string count_words(const RunResult& result);
+
+/// One quantity over the candidates at several moments; all frames have the same number of cells.
+struct MapSeries {
+  std::string name;
+  std::vector<Eigen::VectorXf> frames;
 };
 
 struct History {

@@ -1,93 +1,178 @@
 // SPDX-License-Identifier: MIT
-#include "report/figures/gallery.hpp"
+#include "analysis/gnuplot.hpp"
+#include "record/fields.hpp"
+#include "report/curves.hpp"
+#include "report/figures/figures.hpp"
+#include "report/figures/sheet.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace palpate {
 namespace {
 
 std::string after_words(const Snapshot& snapshot) {
-  return fmt::format("after tap {}: {}", snapshot.taps, count_words(snapshot));
+  return fmt::format("after tap {}: {}", snapshot.taps, count_words(snapshot.result));
 }
 
-}  // namespace
-
-Figure surface_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last) {
+Figure surface_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
   Sheet sheet(1000, 700);
-  const Raster raster(experiment.candidates(), experiment.scene().area());
-  sheet.data("surface", raster.surface(last.surface, last.deviation));
-  const Snapshot seen = in_sight(last, experiment.candidates(), experiment.scene().area());
+  sheet.data("surface", surface_of(ground, last.surface, last.deviation));
+  const Snapshot seen = in_sight(last, ground);
   sheet.taps("last", seen);
-  sheet.text(recording.config.options.name, 30, 16, 15);
+  sheet.text(options.name, 30, 16, 15);
   const auto behind = last.marks.size() - seen.marks.size();
   sheet.text("surface " + after_words(last) + (behind > 0 ? fmt::format("; {} of them behind it", behind) : ""), 30, 44,
              11);
   const Colours colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
-  sheet.surface(
-      {90, 80, 740, 510}, raster, "surface", "last", colours,
-      relief_of({last}, experiment.candidates().points, experiment.scene().area(), experiment.scene().desk()));
+  sheet.surface({90, 80, 740, 510}, ground, "surface", "last", colours, relief_of({last}, ground));
   sheet.bar({880, 160, 18, 380}, colours);
-  sheet.legend(36, 670, last.failed > 0, false);
+  sheet.legend(36, 670, last.result.failed_taps > 0, false);
   return {"surface", std::move(sheet)};
 }
 
-Figure maps_figure(const Recording& recording, const Experiment& experiment, const Snapshot& last) {
+Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
   constexpr double kLeft = 70;
   constexpr double kTop = 118;
   constexpr double kStep = 440;
   constexpr double kSide = 290;
-  const ExperimentOptions& options = recording.config.options;
-  const Area area = experiment.scene().area();
-  const Raster raster(experiment.candidates(), area);
-  const Box first = map_box(area, kLeft, kTop, kSide);
+  const Box first = map_box(ground.area, kLeft, kTop, kSide);
   Sheet sheet(static_cast<int>(kLeft + 2 * kStep + kSide + 90), static_cast<int>(kTop + first.height + 96));
   struct Panel {
     const char* name;
     const Eigen::VectorXd& values;
-    Colours colours;
+    Palette palette;
+    double high;  ///< from 0
     std::string words;
   };
-  const auto outside = [](const Eigen::VectorXd& values, double low, double high) {
-    if (values.minCoeff() >= low - 5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
+  const auto outside = [](const Eigen::VectorXd& values, double high) {
+    if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nit goes from {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
   };
   // The strategy's score is u w only where there is a w.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
-  std::vector<Panel> panels{
-      {"u", last.uncertainty, {Palette::cividis, 0.0, 1.0, ""}, "u: what is not known of the height"}};
+  std::vector<Panel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, "u: what is not known of the height"}};
   if (last.has_weight()) {
-    panels.push_back({"w",
-                      last.weight,
-                      {Palette::viridis, 0.0, 1.0, ""},
-                      "w: whether there is an object" + outside(last.weight, 0, 1)});
     panels.push_back(
-        {"e", e, {Palette::viridis, 0.0, most, ""}, "e = u w: the exploration function" + outside(e, 0, most)});
+        {"w", last.weight, Palette::viridis, 1.0, "w: whether there is an object" + outside(last.weight, 1)});
+    panels.push_back({"e", e, Palette::viridis, most, "e = u w: the exploration function" + outside(e, most)});
   } else {
-    panels.push_back({"p",
-                      last.probability,
-                      {Palette::viridis, 0.0, 1.0, ""},
-                      fmt::format("p: the probability of an object,\nby footprint/{}", options.footprint.type)});
-    panels.push_back({"score",
-                      e,
-                      {Palette::viridis, 0.0, most, ""},
-                      fmt::format("score of acquisition/{}", options.acquisition.type) + outside(e, 0, most)});
+    const std::string by = fmt::format("by footprint/{}", options.footprint.type);
+    const std::string of = fmt::format("score of acquisition/{}", options.acquisition.type);
+    panels.push_back({"p", last.probability, Palette::viridis, 1.0, "p: the probability of an object,\n" + by});
+    panels.push_back({"score", e, Palette::viridis, most, of + outside(e, most)});
   }
   sheet.text(options.name, kLeft, 14, 15);
   sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kLeft, 42, 11);
-  for (const Panel& panel : panels) sheet.data(panel.name, raster.matrix(panel.values));
+  for (const Panel& panel : panels) sheet.data(panel.name, matrix_of(ground, panel.values));
   sheet.taps("last", last);
   double left = first.left;
   for (const Panel& panel : panels) {
+    const Colours colours{panel.palette, 0.0, panel.high, ""};
     sheet.text(panel.words, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
-    sheet.map({left, kTop, first.width, first.height}, raster, panel.name, "last", panel.colours);
-    sheet.bar({left + first.width + 14, kTop, 14, first.height}, panel.colours);
+    sheet.map({left, kTop, first.width, first.height}, ground, panel.name, "last", colours);
+    sheet.bar({left + first.width + 14, kTop, 14, first.height}, colours);
     left += kStep;
   }
-  sheet.legend(kLeft + 6, kTop + first.height + 68, last.failed > 0);
+  sheet.legend(kLeft + 6, kTop + first.height + 68, last.result.failed_taps > 0);
   return {"maps", std::move(sheet)};
+}
+
+/// Told apart by people who see two colours alike (Okabe and Ito).
+constexpr std::array<const char*, 8> kLines{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                            "#56b4e9", "#e69f00", "#000000", "#8c6d31"};
+
+constexpr double kNameHeight = 17;
+
+/// Names of curves side by side.
+std::size_t columns_of(const CurvePanel& panel) {
+  constexpr std::size_t kLongestOfTwo = 22;
+  const auto is_short = [](const Curve& one) { return one.name.size() <= kLongestOfTwo; };
+  return std::all_of(panel.curves.begin(), panel.curves.end(), is_short) ? 2 : 1;
+}
+
+/// Lines of names above the panel: over the curves they would hide them.
+std::size_t name_lines(const CurvePanel& panel) {
+  if (panel.curves.front().name.empty()) return 0;
+  return (panel.curves.size() + columns_of(panel) - 1) / columns_of(panel);
+}
+
+void draw_curves(Sheet& sheet, const Box& box, double top, const CurvePanel& panel, int number, int taps) {
+  std::string settings =
+      "set border 3 lc rgb '#555555'\nset tics nomirror out scale 0.5 font ',10'\nset grid lc rgb '#e4e4e4' lt 1\n";
+  settings += fmt::format("set xrange [0:{}]\nset xlabel 'taps' font ',10' offset 0,0.6\n", std::max(1, taps));
+  // By CurveAxis.
+  constexpr const char* kAxes[] = {"", "set yrange [0:*]\n", "set yrange [0:1]\n",
+                                   "set logscale y\nset format y '%g'\n"};
+  settings += kAxes[static_cast<std::size_t>(panel.axis)];
+  settings += fmt::format(
+      "set key at graph 0, graph 1.03 left bottom Left reverse horizontal maxcols {} samplen 1 font ',10'\n",
+      columns_of(panel));
+  std::string clauses = "plot ";
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    std::string lines;
+    const std::vector<std::optional<double>>& values = panel.curves[i].values;
+    for (std::size_t tap = 0; tap < values.size(); ++tap) {
+      if (values[tap]) lines += fmt::format("{} {:.10g}\n", tap, *values[tap]);
+    }
+    const std::string name = fmt::format("curve_{}_{}", number, i + 1);
+    sheet.data(name, lines);
+    clauses += fmt::format("{}${} using 1:2 with linespoints lw 2 pt 7 ps 0.6 dt {} lc rgb '{}' title {}",
+                           i > 0 ? ", \\\n  " : "", name, 1 + i / kLines.size(), kLines[i % kLines.size()],
+                           gnuplot_text(panel.curves[i].name));
+  }
+  sheet.text(panel.full_title(), box.left, top, 12);
+  sheet.plot(box, settings, clauses);
+}
+
+/// Curves over the taps. What the run has not is left out. Throws Error for a damaged timings.csv.
+Figure curves_figure(const Recording& recording, const History& history) {
+  constexpr int kColumns = 4;
+  constexpr double kWidth = 280;
+  constexpr double kHeight = 200;
+  if (const std::optional<Error> trouble = read_timings(recording.directory).trouble) throw Error(*trouble);
+  const RunResult& last = history.moments.back().result;
+  const std::vector<CurvePanel> panels = curves_of(recording, history);
+  const int count = static_cast<int>(panels.size());
+  const int columns = std::clamp(count, 1, kColumns);
+  std::vector<double> title_tops;  // of each row of panels
+  std::vector<double> tops;
+  double bottom = 70;
+  for (int first = 0; first < count; first += kColumns) {
+    std::size_t lines = 0;
+    for (int i = first; i < std::min(count, first + kColumns); ++i)
+      lines = std::max(lines, name_lines(panels[static_cast<std::size_t>(i)]));
+    title_tops.push_back(bottom + 8);
+    tops.push_back(bottom + 42 + kNameHeight * static_cast<double>(lines));
+    bottom = tops.back() + kHeight + 60;
+  }
+  Sheet sheet(70 + columns * 365, static_cast<int>(bottom));
+  sheet.text(recording.config.options.name, 60, 14, 15);
+  sheet.text(fmt::format("{} taps: {}", last.taps, count_words(last)), 60, 42, 11);
+  for (int i = 0; i < count; ++i) {
+    const Box box{60.0 + 365 * (i % kColumns), tops[static_cast<std::size_t>(i / kColumns)], kWidth, kHeight};
+    draw_curves(sheet, box, title_tops[static_cast<std::size_t>(i / kColumns)], panels[static_cast<std::size_t>(i)],
+                i + 1, last.taps);
+  }
+  return {"curves", std::move(sheet)};
+}
+
+}  // namespace
+
+Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history) {
+  Playback playback(workshop, recording);
+  const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
+  const Ground ground = ground_of(playback.experiment());
+  const ExperimentOptions& options = recording.config.options;
+  return {write_gallery(recording.directory / "figures",
+                        {surface_figure(options, ground, last), maps_figure(options, ground, last),
+                         curves_figure(recording, history)}),
+          {}};
 }
 
 }  // namespace palpate

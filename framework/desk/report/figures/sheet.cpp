@@ -2,6 +2,9 @@
 #include "report/figures/sheet.hpp"
 
 #include "analysis/gnuplot.hpp"
+#include "record/files.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
@@ -11,6 +14,8 @@
 
 namespace palpate {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostDrawn = 128;  ///< along a side: a panel has about twice as many pixels
@@ -43,6 +48,25 @@ std::string colour_range(const Colours& colours) {
                                                         colours.logarithmic ? "set logscale cb\n" : "");
 }
 
+/// How many of `count` cells along a side are drawn; gnuplot's images have two at least.
+int drawn(int count) { return std::clamp(count, 2, kMostDrawn); }
+
+/// What `cell` makes of each cell that is drawn, by its candidate, column and row, a line end behind each row.
+template <class Cell>
+std::string rows_of(const Ground& ground, const Cell& cell) {
+  const Candidates& all = ground.candidates;
+  std::string out;
+  for (int row = 0; row < drawn(all.rows); ++row) {
+    const int from_row = static_cast<int>((row + 0.5) * all.rows / drawn(all.rows));
+    for (int column = 0; column < drawn(all.columns); ++column) {
+      const int from_column = static_cast<int>((column + 0.5) * all.columns / drawn(all.columns));
+      out += cell(from_row * all.columns + from_column, column, row);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
 // How surfaces are seen: from so far above, turned so far.
 constexpr double kTiltDegrees = 60.0;
 constexpr double kTurnDegrees = 32.0;
@@ -51,6 +75,26 @@ constexpr double kTurn = kTurnDegrees * kPi / 180.0;
 constexpr int kBarSteps = 128;
 
 }  // namespace
+
+const std::vector<std::string>& palette_stops(Palette palette) {
+  static const std::vector<std::string> viridis{
+      "#440154", "#481568", "#482677", "#453781", "#3f4788", "#39558c", "#32648e", "#2d718e", "#287d8e", "#238a8d",
+      "#1f968b", "#20a386", "#29af7f", "#3cbc75", "#56c667", "#74d055", "#94d840", "#b8de29", "#dce318", "#fde725"};
+  static const std::vector<std::string> cividis{"#00204d", "#00336f", "#39486b", "#575c6d", "#707173",
+                                                "#8a8779", "#a69d75", "#c4b56c", "#e4cf5b", "#ffea46"};
+  return palette == Palette::viridis ? viridis : cividis;
+}
+
+std::string gnuplot_palette(Palette palette) {
+  std::string out = "set palette defined (";
+  const std::vector<std::string>& stops = palette_stops(palette);
+  for (std::size_t i = 0; i < stops.size(); ++i) out += fmt::format("{}{} '{}'", i > 0 ? ", " : "", i, stops[i]);
+  return out + ")\n";
+}
+
+Ground ground_of(const Experiment& experiment) {
+  return {experiment.candidates(), experiment.scene().area(), experiment.scene().desk()};
+}
 
 Colours deviation_colours(double least, double most) {
   constexpr double kFloor = 1e-6;       // a micrometre: below it nothing is measured
@@ -68,13 +112,16 @@ Box map_box(const Area& area, double left, double top, double side) {
   return {left, top, scale * area.width, scale * area.depth};
 }
 
-Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk) {
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground) {
   // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
   const auto up = [&](double x, double y, double height) {
-    const double back = (y - 0.5 * area.depth) * std::cos(kTurn) - (x - 0.5 * area.width) * std::sin(kTurn);
-    return back * std::cos(kTilt) + (height - desk) * std::sin(kTilt);
+    const double back =
+        (y - 0.5 * ground.area.depth) * std::cos(kTurn) - (x - 0.5 * ground.area.width) * std::sin(kTurn);
+    return back * std::cos(kTilt) + (height - ground.desk) * std::sin(kTilt);
   };
-  Relief out{desk, desk, desk + 0.01, up(0.0, area.depth, desk), up(0.0, area.depth, desk)};
+  const double desk = ground.desk;
+  const double far = up(0.0, ground.area.depth, desk);
+  Relief out{desk, desk, desk + 0.01, far, far};
   const auto include = [&](double x, double y, double height) {
     out.low = std::min(out.low, height);
     out.top = std::max(out.top, height);
@@ -82,13 +129,16 @@ Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidate
     out.below = std::max(out.below, -up(x, y, height));
   };
   for (const Snapshot& one : snapshots) {
-    for (Eigen::Index i = 0; i < one.surface.size(); ++i) include(candidates(i, 0), candidates(i, 1), one.surface(i));
+    for (Eigen::Index i = 0; i < one.surface.size(); ++i)
+      include(ground.candidates.points(i, 0), ground.candidates.points(i, 1), one.surface(i));
     for (const TapMark& mark : one.marks) include(mark.x, mark.y, mark.height);
   }
   return out;
 }
 
-Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const Area& area) {
+Snapshot in_sight(const Snapshot& snapshot, const Ground& ground) {
+  const Area& area = ground.area;
+  const Candidates& candidates = ground.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
   // A tap lies on the surface, and its mark reaches above it: what is higher by less hides nothing.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
@@ -107,54 +157,31 @@ Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const 
   return out;
 }
 
-Raster::Raster(const Candidates& candidates, const Area& area)
-    : candidates_(candidates),
-      area_(area),
-      columns_(std::clamp(candidates.columns, 2, kMostDrawn)),  // gnuplot's images have two at least
-      rows_(std::clamp(candidates.rows, 2, kMostDrawn)) {}
-
-Eigen::Index Raster::index(int column, int row) const {
-  const int from_column = static_cast<int>((column + 0.5) * candidates_.columns / columns_);
-  const int from_row = static_cast<int>((row + 0.5) * candidates_.rows / rows_);
-  return static_cast<Eigen::Index>(from_row) * candidates_.columns + from_column;
+std::string matrix_of(const Ground& ground, const Eigen::VectorXd& values) {
+  return rows_of(ground, [&](Eigen::Index candidate, int column, int /*row*/) {
+    return (column > 0 ? " " : "") + number(values(candidate));
+  });
 }
 
-std::string Raster::matrix(const Eigen::VectorXd& values) const {
-  std::string out;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column)
-      out += (column > 0 ? " " : "") + number(values(index(column, row)));
-    out += "\n";
-  }
-  return out;
+std::string matrix_columns(const Ground& ground) {
+  return fmt::format("({0} * (column(1) + 0.5)):({1} * (column(2) + 0.5)):3",
+                     100.0 * ground.area.width / drawn(ground.candidates.columns),
+                     100.0 * ground.area.depth / drawn(ground.candidates.rows));
 }
 
-std::string Raster::matrix_columns() const {
-  const double dx = 100.0 * area_.width / columns_;
-  const double dy = 100.0 * area_.depth / rows_;
-  return fmt::format("({0} * (column(1) + 0.5)):({1} * (column(2) + 0.5)):3", dx, dy);
+std::string surface_of(const Ground& ground, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) {
+  return rows_of(ground, [&](Eigen::Index candidate, int column, int row) {
+    const double x = (column + 0.5) * ground.area.width / drawn(ground.candidates.columns);
+    const double y = (row + 0.5) * ground.area.depth / drawn(ground.candidates.rows);
+    return fmt::format("{} {} {} {}\n", number(100.0 * x), number(100.0 * y), number(100.0 * height(candidate)),
+                       number(100.0 * deviation(candidate)));
+  });
 }
 
-std::string Raster::surface(const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) const {
-  std::string out;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const Eigen::Index i = index(column, row);
-      out += fmt::format("{} {} {} {}\n", number(100.0 * x(column)), number(100.0 * y(row)), number(100.0 * height(i)),
-                         number(100.0 * deviation(i)));
-    }
-    out += "\n";
-  }
-  return out;
-}
-
-bool Sheet::has(const std::string& block) const {
-  return std::find(blocks_.begin(), blocks_.end(), block) != blocks_.end();
-}
+bool Sheet::has(const std::string& block) const { return data_.find("$" + block + " << END\n") != std::string::npos; }
 
 void Sheet::data(const std::string& name, const std::string& lines) {
   if (lines.empty()) return;
-  blocks_.push_back(name);
   data_ += fmt::format("${} << END\n{}END\n", name, lines);
 }
 
@@ -219,9 +246,9 @@ std::string Sheet::marks(const std::string& taps, const std::string& columns) co
   return out;
 }
 
-void Sheet::map(const Box& box, const Raster& raster, const std::string& map, const std::string& taps,
+void Sheet::map(const Box& box, const Ground& ground, const std::string& map, const std::string& taps,
                 const Colours& colours) {
-  const Area& area = raster.area();
+  const Area& area = ground.area;
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
   settings += "unset colorbox\nset border lc rgb '#555555'\nset xlabel 'x [cm]' font ',10' offset 0,0.7\n";
   settings += "set ylabel 'y [cm]' font ',10' offset 1.6,0\n";
@@ -230,12 +257,12 @@ void Sheet::map(const Box& box, const Raster& raster, const std::string& map, co
     settings += star_at(100.0 * 0.042 * std::max(area.width, area.depth));
   }
   plot(box, settings,
-       fmt::format("plot ${} matrix using {} with image", map, raster.matrix_columns()) + marks(taps, "1:2"));
+       fmt::format("plot ${} matrix using {} with image", map, matrix_columns(ground)) + marks(taps, "1:2"));
 }
 
-void Sheet::surface(const Box& box, const Raster& raster, const std::string& surface, const std::string& taps,
+void Sheet::surface(const Box& box, const Ground& ground, const std::string& surface, const std::string& taps,
                     const Colours& colours, const Relief& relief) {
-  const Area& area = raster.area();
+  const Area& area = ground.area;
   const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
   const double scale = std::min(box.width / wide, box.height / (relief.above + relief.below));     // pixels a metre
   const double middle = box.top + 0.5 * box.height + 0.5 * scale * (relief.above - relief.below);  // of the desk
@@ -290,6 +317,25 @@ std::string Sheet::script() const {
   for (int i = 0; i < kBarSteps; ++i) bar += fmt::format("{0} {0}\n", i);
   return "set encoding utf8\n" + fmt::format("$bar << END\n{}END\n", bar) + data_ + "set multiplot\n" + panels_ +
          "unset multiplot\nset output\n";
+}
+
+std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Figure>& figures) {
+  make_inner_folder(folder);
+  std::error_code failed;
+  for (const auto& [name, sheet] : figures) {
+    // An older picture would be that of another script.
+    fs::remove(folder / (name + ".png"), failed);
+    write_file(folder / (name + ".gnuplot"), png_header(sheet.width(), sheet.height(), name + ".png") + sheet.script());
+  }
+  std::vector<fs::path> pictures;
+  for (const auto& [name, sheet] : figures) {
+    pictures.push_back(folder / (name + ".png"));
+    const std::string trouble = draw_png(sheet.script(), sheet.width(), sheet.height(), pictures.back());
+    if (trouble.empty()) continue;
+    throw Error(pictures.back().string(), "was not drawn: " + trouble,
+                fmt::format("'gnuplot {}.gnuplot' in that folder draws it later", name), Error::Kind::run);
+  }
+  return pictures;
 }
 
 }  // namespace palpate

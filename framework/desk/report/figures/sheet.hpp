@@ -4,13 +4,22 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "report/figures/palette.hpp"
-#include "report/snapshot.hpp"
+#include "report/history.hpp"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace palpate {
+
+/// What all snapshots of a run share.
+struct Ground {
+  Candidates candidates;
+  Area area;
+  double desk = 0.0;  ///< metres
+};
+
+Ground ground_of(const Experiment& experiment);
 
 /// A rectangle of the picture, pixels from its upper left corner.
 struct Box {
@@ -19,6 +28,19 @@ struct Box {
   double width = 0.0;
   double height = 0.0;
 };
+
+/// The colours of maps: even steps in lightness, so that equal differences look equal, also in grey and to people who
+/// see two colours alike.
+enum class Palette {
+  viridis,  ///< dark blue over green to yellow: where to tap
+  cividis,  ///< dark blue over grey to yellow: what is not known
+};
+
+/// Evenly spaced stops from the lowest value to the highest, each "#rrggbb".
+const std::vector<std::string>& palette_stops(Palette palette);
+
+/// gnuplot's `set palette`, one line.
+std::string gnuplot_palette(Palette palette);
 
 /// What the colours of some panels mean.
 struct Colours {
@@ -35,33 +57,17 @@ struct Colours {
 Colours deviation_colours(double least, double most);
 
 /// The snapshot without the marks that the surface hides when it is seen from the side.
-Snapshot in_sight(const Snapshot& snapshot, const Candidates& candidates, const Area& area);
+Snapshot in_sight(const Snapshot& snapshot, const Ground& ground);
 
-/// Where candidates are drawn: their cells over the area, every cell once unless there are more than a picture can
-/// show.
-class Raster {
- public:
-  /// `candidates` must outlive it.
-  Raster(const Candidates& candidates, const Area& area);
+/// Rows of `values`, one for each candidate, the lowest y first: every cell once unless there are more than a picture
+/// can show.
+std::string matrix_of(const Ground& ground, const Eigen::VectorXd& values);
 
-  const Area& area() const { return area_; }
-  /// Rows of `values`, the lowest y first.
-  std::string matrix(const Eigen::VectorXd& values) const;
-  /// gnuplot's columns that place the matrix, in centimetres.
-  std::string matrix_columns() const;
-  /// "x y height deviation" in centimetres, a blank line behind each row.
-  std::string surface(const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) const;
+/// gnuplot's columns that place such a matrix, in centimetres.
+std::string matrix_columns(const Ground& ground);
 
- private:
-  double x(int column) const { return (column + 0.5) * area_.width / columns_; }
-  double y(int row) const { return (row + 0.5) * area_.depth / rows_; }
-  Eigen::Index index(int column, int row) const;
-
-  const Candidates& candidates_;
-  Area area_;
-  int columns_;
-  int rows_;
-};
+/// "x y height deviation" of the same cells in centimetres, a blank line behind each row.
+std::string surface_of(const Ground& ground, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation);
 
 /// The room that surfaces take when they are seen from the side, metres.
 struct Relief {
@@ -73,7 +79,7 @@ struct Relief {
 };
 
 /// What these snapshots of one experiment need to be drawn alike.
-Relief relief_of(const std::vector<Snapshot>& snapshots, const Points& candidates, const Area& area, double desk);
+Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground);
 
 class Sheet {
  public:
@@ -97,10 +103,10 @@ class Sheet {
   void upright(const std::string& words, double x, double middle, int points);
 
   /// The block `map` seen from above, with the taps NAME over it. The box has the aspect of the area.
-  void map(const Box& box, const Raster& raster, const std::string& map, const std::string& taps,
+  void map(const Box& box, const Ground& ground, const std::string& map, const std::string& taps,
            const Colours& colours);
   /// The block `surface` in three dimensions, with the taps NAME on it, in the middle of the box.
-  void surface(const Box& box, const Raster& raster, const std::string& surface, const std::string& taps,
+  void surface(const Box& box, const Ground& ground, const std::string& surface, const std::string& taps,
                const Colours& colours, const Relief& relief);
   /// The scale of the colours.
   void bar(const Box& box, const Colours& colours);
@@ -120,7 +126,6 @@ class Sheet {
 
   int width_;
   int height_;
-  std::vector<std::string> blocks_;  ///< names
   std::string data_;
   std::string texts_;
   std::string panels_;
@@ -131,5 +136,15 @@ std::string centimetres(double value);
 
 /// The box of a map: as wide or as high as `side`, in the aspect of the area, its upper left corner at (left, top).
 Box map_box(const Area& area, double left, double top, double side);
+
+/// A picture before it is drawn.
+struct Figure {
+  std::string name;
+  Sheet sheet;
+};
+
+/// Writes all scripts to `folder`, then draws them. Throws Error.
+std::vector<std::filesystem::path> write_gallery(const std::filesystem::path& folder,
+                                                 const std::vector<Figure>& figures);
 
 }  // namespace palpate

@@ -4,7 +4,10 @@
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
-#include "report/figures/gallery.hpp"
+#include "report/figures/figures.hpp"
+#include "report/figures/sheet.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -103,8 +106,6 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
   sheet.plot(box, settings, clauses);
 }
 
-}  // namespace
-
 Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results) {
   constexpr double kTop = 86;
   constexpr double kWidth = 250;
@@ -152,8 +153,6 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   return {"distributions", std::move(sheet)};
 }
 
-namespace {
-
 /// A swept key and its values, in the order of the sweep, as many as are shown.
 struct Axis {
   std::string key;
@@ -181,8 +180,7 @@ std::string tics(const std::vector<std::string>& values) {
   return "(" + out + ")";
 }
 
-}  // namespace
-
+/// Of two swept keys but the seed that have two values or more; empty where there are none.
 std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   if (keys.size() < 2) return {};
@@ -257,6 +255,17 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
   std::vector<Figure> out;
   out.push_back({"heat_map", std::move(sheet)});
   return out;
+}
+
+}  // namespace
+
+Figures write_sweep_figures(const Sweep& sweep) {
+  const std::vector<Row> results = sweep_results(sweep);
+  if (std::none_of(results.begin(), results.end(), is_done))
+    throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
+  std::vector<Figure> figures{distributions_figure(sweep, results)};
+  for (Figure& one : heat_maps(sweep, results)) figures.push_back(std::move(one));
+  return {write_gallery(sweep.directory / "figures", figures), {}};
 }
 
 }  // namespace palpate

@@ -1,29 +1,27 @@
 // SPDX-License-Identifier: MIT
-// The files that a page is made of, byte for byte within the program: see assets.hpp. The build passes their folder.
-        .macro asset name, file
-        .globl palpate_asset_\name
-        .globl palpate_asset_\name\()_end
-palpate_asset_\name:
-        .incbin "\file"
-palpate_asset_\name\()_end:
-        .endm
-
-        # Three files, one behind the other.
-        .macro asset_of_three name, first, second, third
-        .globl palpate_asset_\name
-        .globl palpate_asset_\name\()_end
-palpate_asset_\name:
-        .incbin "\first"
-        .incbin "\second"
-        .incbin "\third"
-palpate_asset_\name\()_end:
-        .endm
+// The files that a page is made of, byte for byte within the program: see page.hpp. The build passes their folder.
+        .globl palpate_asset_plotly, palpate_asset_plotly_end
+        .globl palpate_asset_style, palpate_asset_common, palpate_asset_run, palpate_asset_sweep
 
         .section .rodata
-        asset plotly, "vendor/plotly/plotly.min.js.gz"
-        asset style, "web/style.css"
-        asset common, "web/common.js"
-        asset_of_three run, "web/run_maps.js", "web/run_curves.js", "web/run.js"
-        asset_of_three sweep, "web/sweep_numbers.js", "web/sweep_panels.js", "web/sweep.js"
+palpate_asset_plotly:
+        .incbin "vendor/plotly/plotly.min.js.gz"
+palpate_asset_plotly_end:
+        # Texts, each with a 0 at its end.
+palpate_asset_style:
+        .incbin "web/style.css"
+        .byte 0
+palpate_asset_common:
+        .incbin "web/common.js"
+        .byte 0
+palpate_asset_run:
+        .incbin "web/run_maps.js"
+        .incbin "web/run.js"
+        .byte 0
+palpate_asset_sweep:
+        .incbin "web/sweep_numbers.js"
+        .incbin "web/sweep_panels.js"
+        .incbin "web/sweep.js"
+        .byte 0
 
         .section .note.GNU-stack, "", %progbits

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/page.hpp"
 
-#include "report/page/assets.hpp"
-
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <zlib.h>
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+
+// plotly.js as vendored, compressed by gzip; the style; what all pages use: unpacking, text that stays text, colours.
+extern "C" const char palpate_asset_plotly[], palpate_asset_plotly_end[];
+extern "C" const char palpate_asset_style[], palpate_asset_common[];
 
 namespace palpate {
 namespace {
@@ -38,20 +42,14 @@ std::string gzip(std::string_view bytes) {
 }
 
 std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8U | (k < here ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= here ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-  }
+  using namespace boost::archive::iterators;
+  using Digits = base64_from_binary<transform_width<std::string_view::const_iterator, 6, 8>>;
+  std::string out(Digits(bytes.begin()), Digits(bytes.end()));
+  while (out.size() % 4 != 0) out += '=';
   return out;
 }
 
-std::string make_page(std::string_view script, const std::string& json, const std::string& maps) {
+std::string make_page(std::string_view script, const Json& data, const std::string& maps) {
   // plotly makes functions from texts of its own where it draws with WebGL: unsafe-eval.
   constexpr const char* kPolicy =
       "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";
@@ -60,11 +58,12 @@ std::string make_page(std::string_view script, const std::string& json, const st
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n"
       "<body>\n<noscript>This page draws itself by a script, which your browser does not run.</noscript>\n",
-      kPolicy, style_asset());
-  out += packed("plotly", plotly_asset());
-  out += packed("data", gzip(json));
+      kPolicy, palpate_asset_style);
+  out += packed("plotly",
+                {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});
+  out += packed("data", gzip(data.dump(-1, ' ', false, Json::error_handler_t::replace)));
   out += packed("maps", gzip(maps));
-  out += fmt::format("<script>\n\"use strict\";\n{}{}</script>\n</body>\n</html>\n", common_script(), script);
+  out += fmt::format("<script>\n\"use strict\";\n{}{}</script>\n</body>\n</html>\n", palpate_asset_common, script);
   return out;
 }
 

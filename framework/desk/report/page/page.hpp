@@ -4,14 +4,20 @@
 // anything.
 #pragma once
 
+#include "report/page/json.hpp"
+
 #include <string>
 #include <string_view>
 
+/// The scripts of web/, embedded in the program by assets.S, so that a report needs neither an installation nor a
+/// network.
+extern "C" const char palpate_asset_run[];
+extern "C" const char palpate_asset_sweep[];
+
 namespace palpate {
 
-/// A page that runs `script` (behind the common one) on the data: `json` as an object, `maps` as bytes
-/// (packed_maps.hpp).
-std::string make_page(std::string_view script, const std::string& json, const std::string& maps);
+/// A page that runs `script` (behind the common one) on the data and on maps as bytes.
+std::string make_page(std::string_view script, const Json& data, const std::string& maps);
 
 /// Compressed by gzip; equal bytes for equal input.
 std::string gzip(std::string_view bytes);

@@ -8,8 +8,7 @@
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
 #include "record/run_directory.hpp"
-#include "report/page/assets.hpp"
-#include "report/page/json_text.hpp"
+#include "report/page/json.hpp"
 #include "report/page/page.hpp"
 
 #include <palpate/error.hpp>
@@ -22,56 +21,52 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A swept key: its values in the order of the sweep, where they stand as numbers if all are of one dimension, and for
-/// each job which of them it has.
-std::string json_of_key(const Sweep& sweep, std::size_t key) {
-  std::vector<std::string> values;
-  std::map<std::string, std::size_t> found;
-  std::vector<std::size_t> of_job;
-  for (const Job& job : sweep.jobs) {
-    const auto [at, is_new] = found.emplace(job.values[key], values.size());
-    if (is_new) values.push_back(job.values[key]);
-    of_job.push_back(at->second);
-  }
-  std::vector<std::string> numbers;
+/// A swept key: its values in the order in which they are shown, as numbers if all are of one dimension, else as in the
+/// sweep, what stands for no such option first; and for each job which of them it has.
+Json json_of_key(const Sweep& sweep, const std::string& key) {
+  std::vector<JobGroup> groups = group_jobs(sweep, {}, {key});
+  std::map<std::string, double> numbers;
   std::optional<Unit> unit;
-  bool all = true;
-  for (const std::string& value : values) {
+  bool comparable = true;
+  for (const JobGroup& group : groups) {
+    const std::string& value = group.values.front();
+    if (value.empty()) continue;
     const std::optional<AnyQuantity> number = any_quantity(value);
-    numbers.push_back(number ? json_value(number->value) : "null");
-    if (value.empty()) continue;  // where the plugin has no such option
-    all = all && number && (!unit || *unit == number->unit);
-    if (number) unit = number->unit;
+    comparable = comparable && number && (!unit || *unit == number->unit);
+    if (!comparable) break;
+    unit = number->unit;
+    numbers[value] = number->value;
   }
-  return json_object({{"name", json_quoted(sweep.keys[key])},
-                      {"values", json_texts(values)},
-                      {"numbers", all && unit ? json_list(numbers) : "null"},
-                      {"of_job", json_list_of(of_job, [](std::size_t value) { return std::to_string(value); })}});
+  std::stable_sort(groups.begin(), groups.end(), [&](const JobGroup& a, const JobGroup& b) {
+    const std::string& first = a.values.front();
+    const std::string& second = b.values.front();
+    if (first.empty() || second.empty()) return first.empty() && !second.empty();
+    return comparable && numbers.at(first) < numbers.at(second);
+  });
+  Json values;
+  std::vector<std::size_t> of_job(sweep.jobs.size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    values.push_back(groups[i].values.front());
+    for (const JobResult& one : groups[i].jobs) of_job[static_cast<std::size_t>(one.job->index)] = i;
+  }
+  return {{"name", key}, {"values", values}, {"of_job", of_job}};
 }
 
-/// A column of the results with a number for each job, null where a job has none; none for columns without numbers.
-std::optional<std::string> json_of_column(const std::string& name, const std::vector<const Row*>& rows) {
-  std::vector<std::string> numbers;
-  bool any = false;
-  for (const Row* row : rows) {
-    const CellNumber number = number_of(row != nullptr ? row->find(name) : nullptr);
-    if (number.is_text) return {};
-    any = any || number.value;
-    numbers.push_back(number.value ? json_value(*number.value) : "null");
-  }
-  if (!any) return {};
-  const Column column = find_column(name, {name}, "");
-  return json_object(
-      {{"name", json_quoted(name)}, {"better", json_quoted(column.better_words())}, {"numbers", json_list(numbers)}});
-}
-
-std::string json_of_columns(const std::vector<Row>& results, const std::vector<const Row*>& rows) {
-  std::vector<std::string> columns;
+/// The columns of the results that hold numbers and nothing else: one for each job, null where a job has none.
+Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
+  Json columns = Json::array();
   for (const std::string& name : columns_of(results)) {
     if (name == "job" || name == "id" || name == "seed") continue;
-    if (const std::optional<std::string> column = json_of_column(name, rows)) columns.push_back(*column);
+    std::vector<CellNumber> cells;
+    for (const JobResult& job : jobs) cells.push_back(number_of(job.row != nullptr ? job.row->find(name) : nullptr));
+    if (std::any_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.is_text; })) continue;
+    if (std::none_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.value; })) continue;
+    Json numbers;
+    for (const CellNumber& cell : cells) numbers.push_back(cell.value);
+    const std::string better = find_column(name, {name}, "").better_words();
+    columns.push_back({{"name", name}, {"better", better}, {"numbers", numbers}});
   }
-  return json_list(columns);
+  return columns;
 }
 
 /// What became of a job: from its row, or, without one, from its directory as it is now.
@@ -89,27 +84,29 @@ RunStatus standing_of(const Row* row, const fs::path& directory) {
   return out;
 }
 
-std::string json_of_jobs(const Sweep& sweep, const std::vector<const Row*>& rows, const OnProgress& progress) {
-  std::vector<std::string> jobs;
-  for (const Job& job : sweep.jobs) {
-    const fs::path directory = job_directory(sweep, job);
-    const RunStatus standing = standing_of(rows[static_cast<std::size_t>(job.index)], directory);
+Json json_of_jobs(const Sweep& sweep, const std::vector<JobResult>& results, const OnProgress& progress) {
+  Json jobs;
+  for (const auto& [job, row] : results) {
+    const fs::path directory = job_directory(sweep, *job);
+    const RunStatus standing = standing_of(row, directory);
     std::error_code none;
-    const bool reported = fs::exists(directory / "report.html", none);
-    jobs.push_back(json_list({json_quoted(job.id), json_quoted(state_name(standing.state)),
-                              json_quoted(standing.stop_reason), reported ? "1" : "0"}));
-    progress(static_cast<int>(jobs.size()), static_cast<int>(sweep.jobs.size()));
+    jobs.push_back({{"index", job->index},
+                    {"id", job->id},
+                    {"state", state_name(standing.state)},
+                    {"reason", standing.stop_reason},
+                    {"reported", fs::exists(directory / "report.html", none)}});
+    progress(static_cast<int>(jobs.size()), static_cast<int>(results.size()));
   }
-  return json_list(jobs);
+  return jobs;
 }
 
 /// The factors of the 95 % intervals of means over 2, 3, ... jobs, as many as a setting may have.
-std::string json_of_factors(std::size_t jobs) {
+std::vector<double> interval_factors(std::size_t jobs) {
   constexpr std::size_t kMostJobs = 2000;  // from here on it changes by less than 1 in 1000
-  std::vector<std::string> factors;
+  std::vector<double> factors;
   for (std::size_t degrees = 1; degrees < std::min(jobs, kMostJobs); ++degrees)
-    factors.push_back(json_value(student_factor(degrees)));
-  return json_list(factors);
+    factors.push_back(student_factor(degrees));
+  return factors;
 }
 
 /// The fields that are worth a first look: the main error, and the others in the order of the summary.
@@ -129,22 +126,19 @@ std::string id_of(const Sweep& sweep) {
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   const std::vector<Row> results = sweep_results(sweep);
-  std::vector<const Row*> rows;  // of each job
-  const std::vector<JobGroup> all = group_jobs(sweep, results, {});
-  for (const JobResult& job : all.front().jobs) rows.push_back(job.row);
-  const Tree config = read_run_config(sweep.directory);
-  std::vector<std::string> keys;
-  for (std::size_t key = 0; key < sweep.keys.size(); ++key) keys.push_back(json_of_key(sweep, key));
-  const std::vector<std::pair<std::string, std::string>> data{{"version", json_quoted(kVersion)},
-                                                              {"name", json_quoted(sweep_name(sweep))},
-                                                              {"id", json_quoted(id_of(sweep))},
-                                                              {"keys", json_list(keys)},
-                                                              {"jobs", json_of_jobs(sweep, rows, progress)},
-                                                              {"columns", json_of_columns(results, rows)},
-                                                              {"first_looks", json_texts(first_looks())},
-                                                              {"factors", json_of_factors(sweep.jobs.size())},
-                                                              {"config", json_quoted(to_yaml(config))}};
-  return make_page(sweep_script(), json_object(data), "");
+  const std::vector<JobResult> jobs = group_jobs(sweep, results, {}).front().jobs;
+  Json keys = Json::array();
+  for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, key));
+  const Json data{{"version", kVersion},
+                  {"name", sweep_name(sweep)},
+                  {"id", id_of(sweep)},
+                  {"keys", keys},
+                  {"jobs", json_of_jobs(sweep, jobs, progress)},
+                  {"columns", json_of_columns(results, jobs)},
+                  {"first_looks", first_looks()},
+                  {"factors", interval_factors(sweep.jobs.size())},
+                  {"config", to_yaml(read_run_config(sweep.directory))}};
+  return make_page(palpate_asset_sweep, data, "");
 }
 
 }  // namespace palpate

@@ -16,6 +16,11 @@ int interventions(const RunResult& result, const char* kind) {
   return found != result.interventions.end() ? found->second : 0;
 }
 
+/// "3 taps" and what became of them; nothing where there are none.
+void tell(std::vector<std::string>& out, int count, const char* noun, const char* what) {
+  if (count > 0) out.push_back(counted(count, noun) + what);
+}
+
 /// The first tap that this build would have made elsewhere; 0 if there is none.
 int first_drift(const Recording& recording, const History& history) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
@@ -36,7 +41,7 @@ int stalls(const Recording& recording) {
 void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
   if (recording.failed()) {
     const std::string reason = recording.summary->text("stop_reason");
-    out.push_back(reason.empty() ? "The run failed and does not say why." : "The run failed: " + reason);
+    out.push_back("The run failed" + (reason.empty() ? " and does not say why." : ": " + reason));
   } else if (!recording.summary) {
     out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
   }
@@ -45,10 +50,8 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
   } else if (last.on_surface_taps == 0) {
     out.push_back("No tap touched an object: the maps show where it is not.");
   }
-  if (last.failed_taps > 0)
-    out.push_back(fmt::format("{} brought no contact and did not reach the models.", counted(last.failed_taps, "tap")));
-  if (const int refused = interventions(last, "height_refused"); refused > 0)
-    out.push_back(fmt::format("{} brought a height that is no number, and was refused.", counted(refused, "tap")));
+  tell(out, last.failed_taps, "tap", " brought no contact and did not reach the models.");
+  tell(out, interventions(last, "height_refused"), "tap", " brought a height that is no number, and was refused.");
 }
 
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
@@ -71,12 +74,6 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
                     "or on another instruction path. The maps are those of the recorded taps.",
                     drift));
   }
-}
-
-void warn_of_footprint(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
-  if (!last.footprint || last.footprint->remark.empty()) return;
-  out.push_back(
-      fmt::format("The footprint, {}, says: {}.", recording.config.options.footprint.type, last.footprint->remark));
 }
 
 void warn_of_weights(const Recording& recording, const History& history, std::vector<std::string>& out) {
@@ -102,16 +99,14 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
                     "double precision. It acts as noise of each tap.",
                     last.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
   }
-  if (const int pivoted = interventions(last, "pivoted"); pivoted > 0)
-    out.push_back(fmt::format("{} needed pivoting as the last resort.", counted(pivoted, "factorisation")));
+  tell(out, interventions(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
   if (const int aside = interventions(last, "set_aside"); aside > 0)
     out.push_back(fmt::format("{} set aside: the others already tell everything about {}, as far as numbers go.",
                               counted(aside, "tap") + (aside == 1 ? " was" : " were"), aside == 1 ? "it" : "them"));
   if (const int clamped = interventions(last, "variance_clamped"); clamped > 0)
     out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; shown are the bounds.",
                               counted(clamped, "candidate")));
-  if (const int kept = interventions(last, "fit_failed"); kept > 0)
-    out.push_back(fmt::format("{} came to no finite values and kept the old hyperparameters.", counted(kept, "fit")));
+  tell(out, interventions(last, "fit_failed"), "fit", " came to no finite values and kept the old hyperparameters.");
 }
 
 }  // namespace
@@ -121,7 +116,9 @@ std::vector<std::string> warnings_of(const Recording& recording, const History& 
   std::vector<std::string> out;
   warn_of_end(recording, last, out);
   warn_of_choices(recording, history, out);
-  warn_of_footprint(recording, last, out);
+  if (last.footprint && !last.footprint->remark.empty())
+    out.push_back(
+        fmt::format("The footprint, {}, says: {}.", recording.config.options.footprint.type, last.footprint->remark));
   warn_of_weights(recording, history, out);
   warn_of_numbers(last, out);
   if (!recording.truth_known()) out.push_back("The truth is not known here: there are no errors to show.");

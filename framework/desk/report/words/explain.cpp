@@ -4,7 +4,6 @@
 #include "experiment/metrics.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
-#include "report/words/explain_models.hpp"
 #include "report/words/words.hpp"
 
 #include <palpate/error.hpp>
@@ -14,9 +13,184 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace palpate {
 namespace {
+
+/// One process: whose fields, in what unit, and what the program holds of it now.
+struct Subject {
+  const char* title;
+  std::string prefix;  ///< of its fields, with the dot
+  bool metric;         ///< targets are metres, not labels
+  const PluginChoice& kernel;
+  const PluginChoice& fitting;
+  const std::optional<ProcessState>& now;
+  const Row& row;
+
+  std::string amount(double value) const { return metric ? length_words(value) : plain_words(value); }
+  std::string amount(const char* name) const {
+    return number_words(row, prefix + name, metric ? length_words : plain_words);
+  }
+  std::optional<double> number(const char* name) const { return row.number(prefix + name); }
+  std::string words(const char* name) const { return number_words(row, prefix + name); }
+  std::string text(const char* name) const { return row.text(prefix + name); }
+};
+
+/// The fields with a number whose names begin with `prefix`, without it.
+std::vector<std::string> numbers_below(const Row& row, const std::string& prefix) {
+  std::vector<std::string> out;
+  for (const auto& [name, value] : row.fields) {
+    if (name.compare(0, prefix.size(), prefix) == 0 && row.number(name)) out.push_back(name.substr(prefix.size()));
+  }
+  return out;
+}
+
+/// "length_scale" is shown as "length scale", "kernels.0.length_scale" as "kernels.0: length scale".
+std::string parameter_words(std::string name) {
+  const auto dot = name.rfind('.');
+  if (dot != std::string::npos) name.replace(dot, 1, ": ");
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string kernel_words(const Subject& subject) {
+  const std::string prefix = subject.prefix + "kernel.";
+  std::string out = subject.kernel.type;
+  for (const std::string& name : numbers_below(subject.row, prefix)) {
+    Unit unit = Unit::none;  // which unit a parameter has, no record says and no fit changes
+    if (subject.now) {
+      for (const KernelParameter& one : subject.now->kernel) unit = one.name == name ? one.unit : unit;
+    }
+    out += fmt::format(", {} {}", parameter_words(name),
+                       number_words(subject.row, prefix + name, unit == Unit::metre ? length_words : plain_words));
+  }
+  return out;
+}
+
+std::string settings_words(const Subject& subject) {
+  return fmt::format("signal {} and noise {} (standard deviations), prior mean {}{}", subject.amount("signal"),
+                     subject.amount("noise"), subject.amount("mean"), subject.metric ? " above the desk" : "");
+}
+
+std::string fit_words(const Subject& subject) {
+  const std::optional<bool> changed = subject.row.flag(subject.prefix + "fit.changed");
+  if (!changed) {
+    return subject.fitting.type == "fixed"
+               ? "Its hyperparameters are those of the config (fitting: fixed)."
+               : fmt::format("No fit ({}) was due after its latest tap: it keeps the hyperparameters that it had.",
+                             subject.fitting.type);
+  }
+  std::string out = fmt::format("Its latest tap was followed by a fit ({}), which {}", subject.fitting.type,
+                                *changed ? "changed the hyperparameters" : "left the hyperparameters as they were");
+  if (const std::string value = subject.words("fit.objective"); !value.empty()) out += "; objective " + value;
+  if (const auto count = subject.number("fit.evaluations"))
+    out += " after " + counted(std::lround(*count), "evaluation");
+  const std::string reason = subject.text("fit.reason");
+  return out + (reason.empty() ? "." : ": " + reason + ".");
+}
+
+void explain_likelihood(Page& page, const Subject& subject) {
+  std::vector<std::string> parts;
+  if (const std::string value = subject.words("log_marginal_likelihood"); !value.empty())
+    parts.push_back("Log marginal likelihood " + value + " (of its taps under these hyperparameters: more is better)");
+  if (const auto least = subject.number("condition")) {
+    const auto digits = static_cast<int>(std::floor(std::log10(std::max(1.0, *least))));
+    parts.push_back(fmt::format(
+        "{}ondition of its matrix at least {:.2g}: {} the 16 digits of a number", parts.empty() ? "C" : "c", *least,
+        digits == 0 ? "rounding costs none of" : fmt::format("rounding costs about {} of", digits)));
+  }
+  if (!parts.empty()) page.say(fmt::format("{}.", fmt::join(parts, "; ")));
+}
+
+/// The engine, and what had to be done because numbers have sixteen digits.
+std::string rounding_words(const Subject& subject) {
+  const double bound = subject.number("error_bound").value_or(0.0);
+  const double jitter = subject.number("jitter").value_or(0.0);
+  return fmt::format(
+      "Posterior engine: {}; it adds {} to the rounding{}. {}", subject.text("engine"),
+      bound > 0.0 ? fmt::format("at most {:.1e}", bound) : "nothing", bound > 0.0 ? ", in signals" : "",
+      jitter > 0.0
+          ? fmt::format("Its matrix was singular in double precision, so jitter was added to the diagonal, as if every "
+                        "tap had a noise of {} more: the model is a little less sure of its taps.",
+                        subject.amount(std::sqrt(jitter)))
+          : "No jitter was needed.");
+}
+
+void explain_process(Page& page, const Subject& subject) {
+  if (!subject.number("signal")) return;
+  page.say(fmt::format("{}: kernel {}; {}. {}", subject.title, kernel_words(subject), settings_words(subject),
+                       fit_words(subject)));
+  explain_likelihood(page, subject);
+  page.say(rounding_words(subject));
+}
+
+void explain_range_of_weight(Page& page, const Row& row, bool clipped) {
+  const auto least = row.number("min_weight");
+  const auto greatest = row.number("max_weight");
+  if (!least || !greatest) return;
+  std::string out = fmt::format("w runs from {} to {}", plain_words(*least), plain_words(*greatest));
+  constexpr double kRounding = 1e-12;
+  if (*least < -kRounding || *greatest > 1.0 + kRounding) {
+    out += fmt::format(
+        ". It leaves [0, 1] because it is a regression on the labels 0 and 1, not a probability: between near taps "
+        "with "
+        "different labels it overshoots. {}",
+        clipped ? "The score takes it clipped to [0, 1] (weight.clip: true)."
+                : "The score takes it as it comes (weight.clip: false).");
+    return page.say(out);
+  }
+  page.say(out + (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
+}
+
+/// Of a footprint that is not the weight: what it is, what it tells of itself, and its remark.
+void explain_footprint(Page& page, const Row& row, const std::string& type) {
+  const std::string prefix = "footprint.";
+  std::vector<std::string> numbers = numbers_below(row, prefix);
+  for (std::string& one : numbers) one = parameter_words(one) + " " + number_words(row, prefix + one);
+  page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
+                       numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
+  if (const std::string remark = row.text("footprint.remark"); !remark.empty())
+    page.say(fmt::format("Its remark: {}.", remark));
+}
+
+/// What the maps say of the place of the tap: u, and w and e or the probability of `footprint`, whichever the record of
+/// the tap has.
+void explain_place(Page& page, const Row& row, const std::string& footprint) {
+  if (!row.number("u")) return;
+  std::string text =
+      fmt::format("There u = {} (how little is known of the height: 0 all, 1 nothing)", number_words(row, "u"));
+  if (row.number("p"))
+    text += fmt::format(", p = {} (the probability that an object is there, by footprint/{})", number_words(row, "p"),
+                        footprint);
+  if (row.number("w") && row.number("e"))
+    text += fmt::format(", w = {} (what speaks for an object: 0 desk, 1 object), e = u w = {}", number_words(row, "w"),
+                        number_words(row, "e"));
+  page.say(text + ".");
+}
+
+/// A paragraph for each process that the record of the tap has: hyperparameters and their fit, likelihood, condition,
+/// engine, jitter, and how far its map goes. `now` is the choice as computed now, which knows the units of kernels.
+void explain_models(Page& page, const Row& row, const ExperimentOptions& options, const TapRecord& now) {
+  const HeightOptions& height = options.height;
+  const WeightOptions& weight = options.weight;
+  const bool shared = weight.hyperparameters == WeightOptions::Hyperparameters::shared;
+  const PluginChoice& height_kernel = height.kernel ? *height.kernel : options.kernel;
+  const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
+  const PluginChoice& weight_kernel = shared ? height_kernel : weight.kernel ? *weight.kernel : options.kernel;
+  const PluginChoice& weight_fitting = shared ? height_fitting : weight.fitting ? *weight.fitting : options.fitting;
+  explain_process(page,
+                  {"Height process", "height_process.", true, height_kernel, height_fitting, now.height_process, row});
+  if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
+    page.say(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
+                         number_words(row, "max_standard_deviation", length_words)));
+  explain_process(page,
+                  {"Weight process", "weight_process.", false, weight_kernel, weight_fitting, now.weight_process, row});
+  explain_range_of_weight(page, row, weight.clip);
+  if (row.number("p")) explain_footprint(page, row, options.footprint.type);
+  explain_process(page, {"Surface process (of the taps on an object alone, whose level is free)", "surface_process.",
+                         true, height_kernel, height_fitting, now.surface_process, row});
+}
 
 class Explanation {
  public:
@@ -34,7 +208,6 @@ class Explanation {
     Experiment& experiment = playback_.experiment();
     // What the choice read, and the height, which was expected whoever read it.
     experiment.ask(recorded_quantities(row_) | Quantity::height);
-    candidate_ = experiment.candidates().nearest(tap_.target.x, tap_.target.y, experiment.scene().area());
 
     page_.heading(fmt::format("Tap {} of {}{}, run {} ({}): {}", number_, recording_.rows.size(),
                               recording_.summary ? "" : " so far", options_.name, recording_.config.id,
@@ -42,7 +215,7 @@ class Explanation {
     page_.heading("Why there");
     explain_choice();
     page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
-                              counted(contacts_before(), "contact"), hits_before()));
+                              counted(hits_before() + before().off_surface_taps, "contact"), hits_before()));
     if (recorded_quantities(row_) == Quantities()) page_.say("This choice read no model.");
     explain_models(page_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
     page_.heading("What was expected and what was found");
@@ -54,21 +227,13 @@ class Explanation {
   }
 
  private:
-  int contacts_before() const {
-    return count_before([](const Contact&) { return true; });
-  }
+  const RunResult& before() { return playback_.experiment().counts(); }
+  int hits_before() { return before().on_surface_taps; }
 
-  int hits_before() {
-    const Scene& scene = playback_.experiment().scene();
-    return count_before([&](const Contact& contact) { return scene.on_surface(contact.height); });
-  }
-
-  /// Contacts before this tap of which `is_counted` holds.
-  template <class Counted>
-  int count_before(const Counted& is_counted) const {
-    return static_cast<int>(std::count_if(
-        recording_.taps.begin(), recording_.taps.begin() + number_ - 1,
-        [&](const PastTap& tap) { return tap.contact.outcome == Outcome::contact && is_counted(tap.contact); }));
+  /// The candidate at which a tap was made.
+  int candidate_of(const PastTap& tap) {
+    const Experiment& experiment = playback_.experiment();
+    return experiment.candidates().nearest(tap.target.x, tap.target.y, experiment.scene().area());
   }
 
   // The choice.
@@ -103,9 +268,9 @@ class Explanation {
     constexpr const char* kHow[] = {"random: drawn from the candidates by the seed alone",
                                     "sobol: a sequence that spreads evenly, shifted by the seed",
                                     "grid: a lattice over the area"};
-    const char* how = kHow[static_cast<std::size_t>(options_.initial.design)];
     page_.say(fmt::format("It is initial tap {} of {}, placed by the design before any model has a say ({}, seed {}).",
-                          number_, options_.initial.count, how, options_.seed));
+                          number_, options_.initial.count, kHow[static_cast<std::size_t>(options_.initial.design)],
+                          options_.seed));
   }
 
   std::string acquisition_words() const {
@@ -124,30 +289,26 @@ class Explanation {
     const std::string why = row_.text("why");
     page_.say(fmt::format("The acquisition, {}, had nothing to go by: {}.", acquisition_words(),
                           why.empty() ? "its scores told no candidate from another" : why));
-    const auto greatest = row_.number("max_weight");
-    if (hits_before() == 0 && greatest && *greatest <= 0.0) {
-      page_.say(fmt::format("No tap has hit an object yet: every label is 0, and so the weight w is nowhere above {}.",
-                            plain_words(*greatest)));
-    } else if (hits_before() == 0) {
-      page_.say("No tap has hit an object yet.");
-    }
+    const double greatest = row_.number("max_weight").value_or(1.0);
+    if (hits_before() == 0)
+      page_.say("No tap has hit an object yet" +
+                (greatest > 0.0 ? "."
+                                : fmt::format(": every label is 0, and so the weight w is nowhere above {}.",
+                                              plain_words(greatest))));
     page_.say(
         "So the fallback chose it (fallback: uncertainty), which looks where the height is least known: its score "
         "is u.");
   }
 
-  /// Candidates that may not be tapped again, by the rule of the loop.
+  /// How many candidates may not be tapped again, by the rule of the loop.
   int left_out() {
-    const Experiment& experiment = playback_.experiment();
-    std::vector<bool> out(static_cast<std::size_t>(experiment.candidates().size()), false);
+    std::set<int> out;
     for (int i = 0; i < number_ - 1; ++i) {
       const PastTap& tap = recording_.taps[static_cast<std::size_t>(i)];
       const bool failed = tap.contact.outcome != Outcome::contact;
-      if (!failed && options_.repeat == ExperimentOptions::Repeat::allow) continue;
-      const int cell = experiment.candidates().nearest(tap.target.x, tap.target.y, experiment.scene().area());
-      out[static_cast<std::size_t>(cell)] = true;
+      if (failed || options_.repeat == ExperimentOptions::Repeat::forbid) out.insert(candidate_of(tap));
     }
-    return static_cast<int>(std::count(out.begin(), out.end(), true));
+    return static_cast<int>(out.size());
   }
 
   void explain_score(double scale) {
@@ -203,26 +364,21 @@ class Explanation {
     const auto y = row_.number("runner_up.y");
     const auto second = row_.number("runner_up.score");
     if (!x || !y || !second) return page_.say("There is no runner-up.");
-    std::string by = "the same";
-    if (const double less = score - *second; less != 0.0) {
-      by = score == 0.0 ? fmt::format("{:.3g}", std::abs(less))
-                        : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
-      by += less > 0.0 ? " less" : " more, which is a tie";
-    }
-    page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second), by));
+    const double less = score - *second;
+    const std::string by =
+        score == 0.0 ? fmt::format("{:.3g}", std::abs(less)) : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
+    page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second),
+                          less == 0.0 ? "the same" : by + (less > 0.0 ? " less" : " more, which is a tie")));
   }
 
   void explain_repeats() {
-    const Experiment& experiment = playback_.experiment();
-    std::vector<int> before;
-    for (int i = 0; i < number_ - 1; ++i) {
-      const Target& target = recording_.taps[static_cast<std::size_t>(i)].target;
-      if (experiment.candidates().nearest(target.x, target.y, experiment.scene().area()) == candidate_)
-        before.push_back(i + 1);
+    std::vector<int> earlier;
+    for (int i = 1; i < number_; ++i) {
+      if (candidate_of(recording_.taps[static_cast<std::size_t>(i - 1)]) == candidate_of(tap_)) earlier.push_back(i);
     }
-    if (!before.empty())
-      page_.say(fmt::format("This place was tapped before: {} {}.", before.size() == 1 ? "tap" : "taps",
-                            fmt::join(before, ", ")));
+    if (!earlier.empty())
+      page_.say(fmt::format("This place was tapped before: {} {}.", earlier.size() == 1 ? "tap" : "taps",
+                            fmt::join(earlier, ", ")));
   }
 
   // The tap.
@@ -231,9 +387,10 @@ class Explanation {
     const TapBelief& belief = playback_.experiment().belief();
     const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
     if (two_part && hits_before() == 0) return page_.say("Expected: nothing, no tap has been on an object yet.");
-    const double height = belief.height_mean()(candidate_);
+    const int candidate = candidate_of(tap_);
+    const double height = belief.height_mean()(candidate);
     page_.say(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
-                          length_words(height), length_words(std::sqrt(belief.height_variance()(candidate_))),
+                          length_words(height), length_words(std::sqrt(belief.height_variance()(candidate))),
                           two_part ? ", if an object is there (the surface process)" : ""));
     if (!two_part || playback_.experiment().scene().on_surface(tap_.contact.height)) expected_ = height;
   }
@@ -245,26 +402,23 @@ class Explanation {
           "Found: nothing, the tap failed: {}{}. It took {:.1f} s of the robot. No model learns from "
           "it, and its place is left out from then on.",
           outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, contact.seconds));
-      return explain_end();
+    } else {
+      explain_contact(contact, playback_.experiment().scene().on_surface(contact.height));
     }
-    const bool on = playback_.experiment().scene().on_surface(contact.height);
+    if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
+    const std::string reason = recording_.summary->text("stop_reason");
+    page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
+  }
+
+  void explain_contact(const Contact& contact, bool on) {
     std::string text =
         fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
     if (const double more = contact.height - expected_.value_or(contact.height); more != 0.0)
       text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
     text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
-    const std::optional<bool> truly = row_.flag("true_on_surface");
-    if (truly && *truly != on)
-      text += *truly ? " In truth an object is there: the label is wrong."
-                     : " In truth the desk is there: the label is wrong.";
+    if (row_.flag("true_on_surface").value_or(on) != on)
+      text += fmt::format(" In truth {} is there: the label is wrong.", on ? "the desk" : "an object");
     page_.say(text);
-    explain_end();
-  }
-
-  void explain_end() {
-    if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
-    const std::string reason = recording_.summary->text("stop_reason");
-    page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
   }
 
   /// The errors after the tap are recorded with the next one, or at the end of the run.
@@ -297,7 +451,6 @@ class Explanation {
   const Row& row_;
   const PastTap& tap_;
   Playback playback_;
-  int candidate_ = 0;
   std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
   Page page_;
 };

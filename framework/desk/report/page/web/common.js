@@ -2,23 +2,16 @@
 // What all pages use. Text of a config reaches the page in two ways only: as text of an element, or through plain()
 // into a plot, which would take some markup for its own.
 
-/// Bytes of a packed element of this page, decompressed.
-async function unpack(id) {
+/// Bytes of a packed element of this page, decompressed, as a response to read.
+function unpack(id) {
   const packed = atob(document.getElementById(id).textContent);
   const bytes = Uint8Array.from(packed, (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
-async function unpackText(id) {
-  return new TextDecoder().decode(await unpack(id));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
 }
 
 /// Runs plotly, which then is the global Plotly.
 async function loadPlotly() {
-  const script = document.createElement("script");
-  script.textContent = await unpackText("plotly");
-  document.head.append(script);
+  document.head.append(element("script", {}, await unpack("plotly").text()));
 }
 
 /// Whether this browser can draw in three dimensions.
@@ -40,26 +33,40 @@ function foreign(text) {
   return element("bdi", { class: "foreign" }, String(text));
 }
 
-/// Text for a title, a label or a hover of a plot, in which plotly would see tags and entities.
-function plain(text) {
-  const direction = /[\u200e\u200f\u202a-\u202e\u2066-\u2069]/g;
+/// Text on one line and without marks of direction.
+function oneLine(text) {
   return String(text)
-    .replace(/&/g, "&amp;")
-    .replace(/</g, "&lt;")
-    .replace(/>/g, "&gt;")
     .replace(/[\n\r\t]+/g, " ")
-    .replace(direction, "");
+    .replace(/[\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "");
 }
 
-/// A table whose cells are texts or elements. The first `left` columns are set to the left.
-function table(header, rows, left = header.length) {
-  const line = (tag, cells) =>
-    element("tr", {}, ...cells.map((cell, i) => element(tag, i < left ? {} : { class: "number" }, cell)));
-  return element(
-    "div",
-    { class: "scroll" },
-    element("table", {}, element("thead", {}, line("th", header)), element("tbody", {}, ...rows.map((row) => line("td", row)))),
-  );
+/// Text for a title, a label or a hover of a plot, in which plotly would see tags and entities.
+function plain(text) {
+  return oneLine(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+}
+
+/// A row of a table; the cells from the one behind the first `left` on are set to the right.
+function tableRow(tag, cells, left = cells.length) {
+  return element("tr", {}, ...cells.map((cell, i) => element(tag, i < left ? {} : { class: "number" }, cell)));
+}
+
+/// A table whose cells are texts or elements.
+function table(header, rows, left) {
+  const head = element("thead", {}, tableRow("th", header, left));
+  const body = element("tbody", {}, ...rows.map((row) => tableRow("td", row, left)));
+  return element("div", { class: "scroll" }, element("table", {}, head, body));
+}
+
+/// Numbers under their names, those first that are worth the first look.
+function factList(facts) {
+  const items = facts.map(([value, name]) => element("li", {}, element("b", {}, String(value)), element("span", {}, name)));
+  return element("ul", { class: "facts" }, ...items);
+}
+
+/// What is to be known before the rest, if there is anything; each a list of texts and elements.
+function warningList(warnings) {
+  const items = warnings.map((words) => element("li", {}, ...words));
+  return items.length > 0 ? [element("ul", { class: "warnings", id: "warnings" }, ...items)] : [];
 }
 
 /// A heading and what belongs to it.
@@ -72,9 +79,12 @@ function figure(id, caption) {
   return element("figure", {}, element("figcaption", {}, caption), element("div", { id, class: "plot" }));
 }
 
-/// A number for people: `digits` significant ones, nothing for null.
+/// What stands where there is no value.
+const kNothing = "–";
+
+/// A number for people: `digits` significant ones.
 function shown(value, digits = 4) {
-  if (value === null || value === undefined) return "–";
+  if (value === null || value === undefined) return kNothing;
   if (typeof value !== "number") return String(value);
   if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6)) return value.toExponential(digits - 1);
   return String(Number(value.toPrecision(digits)));
@@ -114,7 +124,20 @@ function layout(more = {}) {
   };
 }
 
-const kPlotConfig = { responsive: true, displaylogo: false, displayModeBar: false };
+const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
+
+/// The scale beside a plot whose colours are values.
+const colourBar = (title, more = {}) => ({ title: { text: title, side: "right" }, thickness: 12, ...more });
+
+/// Points that say `text` to the pointer.
+function points(name, x, y, text, marker, more = {}) {
+  return { type: "scatter", mode: "markers", name, x, y, text, marker, hovertemplate: "%{text}<extra></extra>", ...more };
+}
+
+/// Draws into the figure `id`, where `more` is what its layout has beside what all have.
+function plot(id, traces, more = {}) {
+  return Plotly.react(id, traces, layout(more), { responsive: true, displaylogo: false, displayModeBar: false });
+}
 
 /// Says on the page what went wrong; what comes next may still be drawn.
 function complain(trouble) {
@@ -122,12 +145,30 @@ function complain(trouble) {
   console.error(trouble);
 }
 
+/// Begins a drawing when the one before it has ended.
+function inTurn(draw) {
+  inTurn.last = (inTurn.last ?? Promise.resolve()).then(draw).catch(complain);
+  return inTurn.last;
+}
+
+/// Tells whoever waits for the picture what is drawn.
+function tellDrawn(what) {
+  document.body.dataset.drawn = String(what);
+}
+
 /// Unpacks the page's data and lets `draw` fill it; what goes wrong is said on the page.
 async function openPage(draw) {
   try {
-    const [json, maps] = await Promise.all([unpackText("data"), unpack("maps"), loadPlotly()]);
-    await draw(JSON.parse(json), maps);
+    const [data, maps] = await Promise.all([unpack("data").json(), unpack("maps").arrayBuffer(), loadPlotly()]);
+    document.title = `${data.name} ${data.id} – palpate`;
+    document.body.append(element("h1", {}, foreign(data.name)));
+    await draw(data, new Uint8Array(maps));
   } catch (trouble) {
     complain(trouble);
   }
+}
+
+/// The end of a page.
+function footer(data) {
+  return element("footer", {}, `palpate ${data.version}; method: Sun and Min 2021, arXiv:2110.09593; drawn with plotly.js (MIT).`);
 }

@@ -9,23 +9,19 @@ const kWhere = "Viridis";
 /// The maps of the page by name, each a list of frames, each a list of rows.
 function unpackMaps(bytes, described, columns, rows) {
   const out = {};
-  let at = 0;
   const cells = columns * rows;
+  let at = 0;
   for (const { name, least, most, frames } of described) {
-    out[name] = [];
-    for (let frame = 0; frame < frames; ++frame, at += 2 * cells) {
-      const lines = [];
+    out[name] = Array.from({ length: frames }, (_, frame) => {
+      const begin = at + 2 * cells * frame;
       let level = 0;
-      for (let row = 0, cell = 0; row < rows; ++row) {
-        const line = new Array(columns);
-        for (let column = 0; column < columns; ++column, ++cell) {
-          level = (level + bytes[at + cell] + 256 * bytes[at + cells + cell]) & 0xffff;
-          line[column] = least + (level / 65535) * (most - least);
-        }
-        lines.push(line);
-      }
-      out[name].push(lines);
-    }
+      const valueOf = (cell) => {
+        level = (level + bytes[begin + cell] + 256 * bytes[begin + cells + cell]) & 0xffff;
+        return least + (level / 65535) * (most - least);
+      };
+      return Array.from({ length: rows }, (_, row) => Array.from({ length: columns }, (_, column) => valueOf(row * columns + column)));
+    });
+    at += 2 * cells * frames;
   }
   return out;
 }
@@ -33,18 +29,11 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
+/// The least and the most of some frames.
 function extent(frames) {
-  let least = Infinity;
-  let most = -Infinity;
-  for (const lines of frames) {
-    for (const line of lines) {
-      for (const value of line) {
-        if (value < least) least = value;
-        if (value > most) most = value;
-      }
-    }
-  }
-  return [least, most];
+  const lines = frames.flat();
+  const ends = (end, none) => lines.reduce((found, line) => end(found, ...line), none);
+  return [ends(Math.min, Infinity), ends(Math.max, -Infinity)];
 }
 
 /// The taps up to `taps`, by what they touched.
@@ -67,19 +56,10 @@ function hover(tap) {
 /// What would be tapped next, as a list of one or none; with the word that is its hover.
 const nextOf = (moment) => (moment.next ? [{ ...moment.next, word: `next, tap ${moment.taps + 1}` }] : []);
 
-/// Marks in the plane or, `lift` centimetres above what the taps touched, in space.
-function markTrace(taps, name, marker, lift = null) {
-  return {
-    type: lift === null ? "scatter" : "scatter3d",
-    mode: "markers",
-    name,
-    x: taps.map((tap) => tap.x * kCentimetres),
-    y: taps.map((tap) => tap.y * kCentimetres),
-    ...(lift === null ? {} : { z: taps.map((tap) => tap.height * kCentimetres + lift) }),
-    text: taps.map((tap) => tap.word ?? hover(tap)),
-    hovertemplate: "%{text}<extra></extra>",
-    marker,
-  };
+/// Marks in the plane, of taps or of what has a `word` for its hover.
+function markTrace(taps, name, marker, more = {}) {
+  const along = (side) => taps.map((tap) => tap[side] * kCentimetres);
+  return points(name, along("x"), along("y"), taps.map((tap) => tap.word ?? hover(tap)), marker, more);
 }
 
 const edge = (color, width) => ({ color, width });
@@ -90,7 +70,7 @@ function marks(data, moment) {
   return [
     markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
     markTrace(off, "off the object", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
-    { ...markTrace(off, "off the object", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }), showlegend: false },
+    markTrace(off, "off the object", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
     markTrace(failed, "no contact", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
     markTrace(nextOf(moment), "next", { symbol: "star", size: 15, color: "#e8112d", line: edge("#ffffff", 1.2) }),
   ];
@@ -98,38 +78,29 @@ function marks(data, moment) {
 
 /// The panels over the plane: what each shows, in which colours and range.
 function mapPanels(data, maps) {
-  const panels = [{ id: "u", title: "Uncertainty u", bar: "u", frames: maps.u, range: [0, 1], colours: kUnknown }];
+  const panel = (id, title, frames, range = [0, 1], colours = kWhere) => ({ id, title, bar: id, frames, range, colours });
+  const panels = [panel("u", "Uncertainty u", maps.u, [0, 1], kUnknown)];
   if (maps.p) {
-    const title = `Probability p of an object, by footprint/${data.run.footprint}`;
-    panels.push({ id: "p", title, bar: "p", frames: maps.p, range: [0, 1], colours: kWhere });
+    panels.push(panel("p", `Probability p of an object, by footprint/${data.footprint}`, maps.p));
   } else {
     const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
     const largest = extent(exploration)[1];
     const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
-    panels.push({ id: "w", title: "Weight w", bar: "w", frames: maps.w, range: [0, 1], colours: kWhere });
-    panels.push({ id: "e", title: "Exploration e = u w", bar: "e", frames: exploration, range: [0, most], colours: kWhere });
+    panels.push(panel("w", "Weight w", maps.w), panel("e", "Exploration e = u w", exploration, [0, most]));
   }
-  if (maps.score) {
-    const title = `Score of the acquisition, ${data.run.acquisition}`;
-    panels.push({ id: "score", title, bar: "score", frames: maps.score, range: extent(maps.score), colours: kWhere });
-  }
+  if (maps.score) panels.push(panel("score", `Score of the acquisition, ${data.acquisition}`, maps.score, extent(maps.score)));
   return panels;
 }
 
 /// Colours for standard deviations of the height, centimetres, as in the figures: by ratios if the largest is more than
 /// five times the least, or all that was touched would look alike beside what was not.
-function deviationColours(lines, [least, most]) {
-  const bar = { title: { text: "standard deviation [cm]", side: "right" }, thickness: 12, len: 0.8 };
+function deviationColours(lines) {
   const floor = 1e-4;
-  const [low, high] = [Math.max(least, floor), Math.max(most, floor)];
+  const [low, high] = extent([lines]).map((end) => Math.max(end, floor));
+  const bar = colourBar("standard deviation [cm]", { len: 0.8 });
   if (high <= 5 * low) return { surfacecolor: lines, cmin: 0, cmax: high, colorbar: bar };
-  const ticks = [];
-  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power) {
-    for (const digit of [1, 2, 5]) {
-      const value = digit * 10 ** power;
-      if (value >= low && value <= high) ticks.push(value);
-    }
-  }
+  const powers = [-4, -3, -2, -1, 0, 1, 2, 3, 4, 5].map((power) => 10 ** power);
+  const ticks = powers.flatMap((power) => [power, 2 * power, 5 * power]).filter((value) => value >= low && value <= high);
   return {
     surfacecolor: lines.map((line) => line.map((value) => Math.log10(Math.max(value, floor)))),
     cmin: Math.log10(low),
@@ -138,14 +109,12 @@ function deviationColours(lines, [least, most]) {
   };
 }
 
-const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
-
 /// The whole area, centimetres equally long in both directions.
 function planeAxes(data) {
   const range = (side) => [0, side * kCentimetres];
   return {
-    xaxis: axis("x [cm]", { range: range(data.run.width), constrain: "domain" }),
-    yaxis: axis("y [cm]", { range: range(data.run.depth), constrain: "domain", scaleanchor: "x" }),
+    xaxis: axis("x [cm]", { range: range(data.width), constrain: "domain" }),
+    yaxis: axis("y [cm]", { range: range(data.depth), constrain: "domain", scaleanchor: "x" }),
   };
 }
 
@@ -158,13 +127,13 @@ function cells(name, centres, side) {
 function heatMap(data, lines, range, colours, title) {
   return {
     type: "heatmap",
-    ...cells("x", data.x, data.run.width),
-    ...cells("y", data.y, data.run.depth),
+    ...cells("x", data.x, data.width),
+    ...cells("y", data.y, data.depth),
     z: lines,
     zmin: range[0],
     zmax: range[1],
     colorscale: colours,
-    colorbar: { title: { text: title, side: "right" }, thickness: 12, xpad: 4, exponentformat: "power" },
+    colorbar: colourBar(title, { xpad: 4, exponentformat: "power" }),
     hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm: %{z:.4g}<extra></extra>",
   };
 }
@@ -201,20 +170,20 @@ class SurfaceView {
       x: this.x,
       y: this.y,
       z: this.heights[frame],
-      ...deviationColours(this.deviations[frame], extent([this.deviations[frame]])),  // a fit may change them a hundredfold
+      ...deviationColours(this.deviations[frame]),  // of this frame: a fit may change them a hundredfold
       colorscale: kUnknown,
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{customdata:.2f} cm<extra></extra>",
     };
     const { on, off } = tapsUntil(this.data.taps, moment.taps);
-    const lift = this.lift();
     const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres }));
+    const raised = (taps, name, marker) => markTrace(taps, name, marker, { type: "scatter3d", z: taps.map((tap) => this.pin(tap)[1]) });
     const out = [
       surface,
-      this.pins([...on, ...off, ...next], lift),
-      markTrace(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: edge("#000000", 2) }, lift),
-      markTrace(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }, lift),
-      markTrace(next, "next", { symbol: "diamond", size: 6, color: "#e8112d", line: edge("#ffffff", 1) }, lift),
+      this.pins([...on, ...off, ...next]),
+      raised(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: edge("#000000", 2) }),
+      raised(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }),
+      raised(next, "next", { symbol: "diamond", size: 6, color: "#e8112d", line: edge("#ffffff", 1) }),
     ];
     if (this.withTruth && this.truth) out.push(this.wireframe());
     return out;
@@ -225,16 +194,22 @@ class SurfaceView {
     return 0.06 * (this.range[1] - this.range[0]);
   }
 
-  /// Lines from the places of taps up to their marks.
-  pins(taps, lift) {
-    const along = (of) => taps.flatMap((tap) => [...of(tap), null]);
+  /// The ends of a line from the place of a tap up to its mark.
+  pin(tap) {
+    const foot = tap.height * kCentimetres;
+    return [foot, foot + this.lift()];
+  }
+
+  pins(taps) {
+    const along = (ends) => taps.flatMap((tap) => [...ends(tap), null]);
+    const twice = (side) => along((tap) => [tap[side] * kCentimetres, tap[side] * kCentimetres]);
     return {
       type: "scatter3d",
       mode: "lines",
       name: "pins",
-      x: along((tap) => [tap.x * kCentimetres, tap.x * kCentimetres]),
-      y: along((tap) => [tap.y * kCentimetres, tap.y * kCentimetres]),
-      z: along((tap) => [tap.height * kCentimetres, tap.height * kCentimetres + lift]),
+      x: twice("x"),
+      y: twice("y"),
+      z: along((tap) => this.pin(tap)),
       line: { color: "#000000", width: 2 },
       hoverinfo: "skip",
     };
@@ -268,12 +243,12 @@ class SurfaceView {
   }
 
   layout() {
-    if (!this.spatial) return layout({ ...planeAxes(this.data), showlegend: false });
-    const low = Math.min(this.range[0], this.data.run.desk * kCentimetres);
+    if (!this.spatial) return { ...planeAxes(this.data), showlegend: false };
+    const low = Math.min(this.range[0], this.data.desk * kCentimetres);
     const range = [low, this.range[1] + this.lift() + 0.05 * (this.range[1] - low) + 0.1];
-    const [width, depth] = [this.data.run.width, this.data.run.depth].map((metres) => metres * kCentimetres);
+    const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
     const side = Math.max(width, depth) / 1.3;  // fills the room as the camera stands
-    return layout({
+    return {
       margin: { l: 0, r: 0, t: 0, b: 0 },
       showlegend: false,
       uirevision: "keep the view",
@@ -286,10 +261,10 @@ class SurfaceView {
         yaxis: axis("y [cm]", { range: [0, depth] }),
         zaxis: axis("height [cm]", { range }),
       },
-    });
+    };
   }
 
   draw(frame, moment) {
-    return Plotly.react("surface", this.traces(frame, moment), this.layout(), kPlotConfig);
+    return plot("surface", this.traces(frame, moment), this.layout());
   }
 }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The page of a sweep: cost against error, the table of jobs, and how all panels follow the controls.
 
-/// The least and the most of very many numbers.
-const leastOf = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
-const mostOf = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
-
-/// Ends of an axis for values, logarithmic where they span much; `low` and `high` are its ends in the values' unit.
-function rangeOf(means, ends) {
-  const least = leastOf(means);
-  const most = mostOf(means);
-  const low = Math.min(leastOf(ends), least);
-  const high = Math.max(mostOf(ends), most);
+/// An axis for values, logarithmic where they span much; `low` and `high` are its ends in the values' unit. It ends where
+/// `ends` do, as far as they keep near the values: a few settings seen in a few seeds have intervals far wider than
+/// anything measured.
+function rangeOf(values, ends) {
+  const [least, most] = [leastOf(values), mostOf(values)];
+  const room = Math.max(most - least, 1e-12) / 2;
+  const low = Math.min(Math.max(leastOf(ends), least - room), least);
+  const high = Math.max(Math.min(mostOf(ends), most + room), most);
   if (least > 0 && most / least > 20) {
     const bottom = Math.max(low, least / 4);
     const margin = (high / bottom) ** 0.07;
@@ -22,124 +20,90 @@ function rangeOf(means, ends) {
 }
 
 /// Settings by mean cost and mean error, those on the front joined; runs behind them, failed ones grey.
-class FrontPanel {
-  constructor(sweep) {
-    this.sweep = sweep;
-  }
+function drawFront(sweep, choice) {
+  const settings = settingsOf(sweep, choice.cost, choice.error);
+  const at = (job) => ({ job, cost: sweep.number(choice.cost, job), error: sweep.number(choice.error, job) });
+  const done = sweep.done.map(at).filter(({ cost, error }) => cost !== null && error !== null);
+  const failed = sweep.failed.map(at).filter(({ cost }) => cost !== null);
+  listFront(choice, settings.filter((one) => one.front > 0));
+  sayOfFront(sweep, choice, settings, failed);
+  if (done.length + failed.length === 0) return plotNothing("front");
+  const ends = (kind) => {
+    const values = [...done, ...failed].map((run) => run[kind]).filter((value) => value !== null);
+    const intervals = settings.flatMap(({ [kind]: { mean, half } }) => [mean - (half ?? 0), mean + (half ?? 0)]);
+    return rangeOf(values.length > 0 ? values : [0, 1], intervals);
+  };
+  const axisOf = (kind, { type, range }) => roomyAxis(judged(sweep, choice[kind]), { type, range, exponentformat: "power" });
+  const [x, y] = [ends("cost"), ends("error")];
+  const edge = sweep.moreIsBetter(choice.error) ? y.low : y.high;
+  return plotOfHeight("front", 520, frontTraces(sweep, settings, done, failed, x, y, edge), {
+    xaxis: axisOf("cost", x),
+    yaxis: axisOf("error", y),
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    hovermode: "closest",
+    margin: { l: 60, r: 14, t: 40, b: 50 },
+  });
+}
 
-  /// Done and failed runs as {job, cost, error}; a failed one without an error has null there.
-  runs(choice) {
-    const at = (job) => ({ job, cost: this.sweep.number(choice.cost, job), error: this.sweep.number(choice.error, job) });
-    const runs = (jobs) => jobs.map(at).filter(({ cost }) => cost !== null);
-    return { done: runs(this.sweep.done).filter(({ error }) => error !== null), failed: runs(this.sweep.failed) };
-  }
-
-  draw(choice) {
-    const settings = settingsOf(this.sweep, choice.cost, choice.error);
-    const runs = this.runs(choice);
-    this.list(choice, settings);
-    this.caption(choice, settings, runs);
-    const all = [...runs.done, ...runs.failed];
-    if (all.length === 0) return drawIn("front", [], { xaxis: { visible: false }, yaxis: { visible: false } }, 120);
-    const ends = (kind) => settings.flatMap((one) => [one[kind].mean - (one[kind].half ?? 0), one[kind].mean + (one[kind].half ?? 0)]);
-    // A few settings seen in a few seeds have intervals far wider than anything measured: the axis ends before them.
-    const values = (kind) => all.map((run) => run[kind]).filter((value) => value !== null);
-    const kept = (kind) => {
-      const [least, most] = [leastOf(values(kind)), mostOf(values(kind))];
-      const room = Math.max(most - least, 1e-12) / 2;
-      return ends(kind).map((end) => Math.min(Math.max(end, least - room), most + room));
-    };
-    const x = rangeOf(values("cost"), kept("cost"));
-    const y = values("error").length > 0 ? rangeOf(values("error"), kept("error")) : rangeOf([0, 1], []);
-    const edge = this.sweep.moreIsBetter(choice.error) ? y.low : y.high;
-    const more = {
-      xaxis: axis(judged(this.sweep, choice.cost), { type: x.type, range: x.range, exponentformat: "power" }),
-      yaxis: axis(judged(this.sweep, choice.error), { type: y.type, range: y.range, exponentformat: "power" }),
-      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
-      hovermode: "closest",
-      margin: { l: 60, r: 14, t: 40, b: 50 },
-    };
-    return drawIn("front", this.traces(settings, runs, x, y, edge), more, 520);
-  }
-
-  traces(settings, runs, x, y, edge) {
-    const points = (list, name, marker, hover) => ({
-      type: "scatter",
-      mode: "markers",
-      name,
-      x: list.map((run) => run.cost),
-      y: list.map((run) => run.error ?? edge),
-      text: list.map(hover),
-      hovertemplate: "%{text}<extra></extra>",
-      marker,
-    });
-    const about = ({ job }) => `job ${job.index}: ${plain(brief(this.sweep.words(job, this.sweep.all), 120))}`;
-    const why = (run) => `${about(run)}<br>failed: ${plain(brief(run.job.reason, 120))}`;
-    const step = Math.max(1, Math.ceil(runs.done.length / 5000));
-    const complete = settings.filter((one) => one.complete);
-    const front = complete.filter((one) => one.front > 0);
-    return [
-      points(runs.done.filter((_, i) => i % step === 0), "runs", { size: 5, color: "#56b4e9", opacity: runs.done.length > 600 ? 0.2 : 0.5 }, about),
-      points(runs.failed, "failed runs", { size: 9, symbol: "x", color: kGrey, line: { color: "#ffffff", width: 0.5 } }, why),
-      this.means(settings.filter((one) => !one.complete), "settings not compared", { size: 9, symbol: "circle-open", color: kGrey, line: { width: 2 } }, x, y),
-      this.means(complete.filter((one) => one.front === 0), "settings", { size: 9, color: kColours[0], line: { color: "#ffffff", width: 1 } }, x, y),
-      {
-        ...this.means(front, "front", { size: 12, symbol: "diamond", color: kColours[1], line: { color: "#ffffff", width: 1 } }, x, y),
-        mode: "lines+markers+text",
-        line: { color: kColours[1], width: 1.5, shape: "hv" },
-        texttemplate: front.map((one) => String(one.front)),
-        textposition: "top right",
-      },
-    ];
-  }
-
-  means(settings, name, marker, x, y) {
-    const bars = (kind, ends) => ({
+function frontTraces(sweep, settings, done, failed, x, y, edge) {
+  const runs = (list, name, marker, words) => points(name, list.map((run) => run.cost), list.map((run) => run.error ?? edge), list.map(words), marker);
+  const about = ({ job }) => `job ${job.index}: ${plain(brief(sweep.words(job, sweep.all), 120))}`;
+  const why = (run) => `${about(run)}<br>failed: ${plain(brief(run.job.reason, 120))}`;
+  const means = (list, name, marker, more = {}) => {
+    const bars = (kind, { type, low }) => ({
       type: "data",
       symmetric: false,
-      array: settings.map((one) => one[kind].half ?? 0),
+      array: list.map((one) => one[kind].half ?? 0),
       // A logarithmic axis has no 0 for a bar to reach.
-      arrayminus: settings.map((one) => Math.min(one[kind].half ?? 0, ends.type === "log" ? one[kind].mean - ends.low / 2 : Infinity)),
+      arrayminus: list.map((one) => Math.min(one[kind].half ?? 0, type === "log" ? one[kind].mean - low / 2 : Infinity)),
       thickness: 1,
       width: 2,
       color: "rgba(80,80,80,0.35)",
     });
-    return {
-      type: "scatter",
-      mode: "markers",
-      name,
-      x: settings.map((one) => one.cost.mean),
-      y: settings.map((one) => one.error.mean),
-      error_x: bars("cost", x),
-      error_y: bars("error", y),
-      text: settings.map((one) => `${plain(brief(one.words, 120))}<br>${this.sweep.ended(one.jobs)}`),
-      hovertemplate: "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>",
-      marker,
-    };
-  }
+    const text = list.map((one) => `${plain(brief(one.words, 120))}<br>${sweep.ended(one.jobs)}`);
+    const hovertemplate = "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>";
+    const shape = { error_x: bars("cost", x), error_y: bars("error", y), hovertemplate, ...more };
+    return points(name, list.map((one) => one.cost.mean), list.map((one) => one.error.mean), text, marker, shape);
+  };
+  const step = Math.max(1, Math.ceil(done.length / 5000));
+  const complete = settings.filter((one) => one.complete);
+  const front = complete.filter((one) => one.front > 0);
+  const white = { color: "#ffffff", width: 1 };
+  return [
+    runs(done.filter((_, i) => i % step === 0), "runs", { size: 5, color: "#56b4e9", opacity: done.length > 600 ? 0.2 : 0.5 }, about),
+    runs(failed, "failed runs", { size: 9, symbol: "x", color: kGrey, line: { color: "#ffffff", width: 0.5 } }, why),
+    means(settings.filter((one) => !one.complete), "settings not compared", { size: 9, symbol: "circle-open", color: kGrey, line: { width: 2 } }),
+    means(complete.filter((one) => one.front === 0), "settings", { size: 9, color: kColours[0], line: white }),
+    means(front, "front", { size: 12, symbol: "diamond", color: kColours[1], line: white }, {
+      mode: "lines+markers+text",
+      line: { color: kColours[1], width: 1.5, shape: "hv" },
+      texttemplate: front.map((one) => String(one.front)),
+      textposition: "top right",
+    }),
+  ];
+}
 
-  caption(choice, settings, runs) {
-    const failed = this.sweep.failed.length;
-    const placed = runs.failed.length;
-    const edged = runs.failed.filter(({ error }) => error === null).length;
-    const open = settings.filter((one) => !one.complete).length;
-    const empty = this.sweep.groups(this.sweep.settings).length - settings.length;
-    const end = this.sweep.moreIsBetter(choice.error) ? "lower" : "upper";
-    const text = ["Means over the seeds with 95 % intervals; numbered: no other setting is at least as good in both."];
-    if (open > 0) text.push(`Not compared, for jobs that failed, have not ended or lack a value: ${many(open, "setting")}.`);
-    if (empty > 0) text.push(`Without any value: ${many(empty, "setting")}.`);
-    if (edged > 0) text.push(`${edged} failed runs came to no error and stand at the ${end} edge.`);
-    if (failed > placed) text.push(`${failed - placed} failed runs came to no cost either and are not drawn.`);
-    say("front", text.join(" "));
-  }
+function sayOfFront(sweep, choice, settings, placed) {
+  const edged = placed.filter(({ error }) => error === null).length;
+  const open = settings.filter((one) => !one.complete).length;
+  const empty = sweep.groups(sweep.settings).length - settings.length;
+  const gone = sweep.failed.length - placed.length;
+  const end = sweep.moreIsBetter(choice.error) ? "lower" : "upper";
+  say(
+    "front",
+    "Means over the seeds with 95 % intervals; numbered: no other setting is at least as good in both.",
+    open > 0 ? ` Not compared, for jobs that failed, have not ended or lack a value: ${many(open, "setting")}.` : "",
+    empty > 0 ? ` Without any value: ${many(empty, "setting")}.` : "",
+    edged > 0 ? ` ${edged} failed runs came to no error and stand at the ${end} edge.` : "",
+    gone > 0 ? ` ${gone} failed runs came to no cost either and are not drawn.` : "",
+  );
+}
 
-  list(choice, settings) {
-    const value = (of) => `${shown(of.mean)}${of.half === null ? "" : ` ± ${shown(of.half, 2)}`}`;
-    const front = settings.filter((one) => one.front > 0);
-    const rows = front.map((one) => [String(one.front), foreign(one.words), value(one.cost), value(one.error)]);
-    const header = ["", "on the front", foreign(withUnit(choice.cost)), foreign(withUnit(choice.error))];
-    document.getElementById("front_list").replaceChildren(front.length > 0 ? table(header, rows, 2) : "");
-  }
+function listFront(choice, front) {
+  const value = ({ mean, half }) => `${shown(mean)}${half === null ? "" : ` ± ${shown(half, 2)}`}`;
+  const rows = front.map((one) => [String(one.front), foreign(one.words), value(one.cost), value(one.error)]);
+  const header = ["", "on the front", foreign(withUnit(choice.cost)), foreign(withUnit(choice.error))];
+  document.getElementById("front_list").replaceChildren(front.length > 0 ? table(header, rows, 2) : "");
 }
 
 /// All jobs in a table that is sorted by a click and filtered by a word.
@@ -150,8 +114,7 @@ class JobTable {
     this.down = false;
     this.most = 200;
     this.filter = element("input", { type: "search", id: "filter", placeholder: "filter", "aria-label": "filter the jobs" });
-    this.body = element("tbody");
-    this.head = element("thead");
+    this.table = element("table", { id: "jobs" });
     this.note = element("p", { class: "sub", id: "jobs_note" });
     this.more = element("button", { type: "button", id: "more" }, "more");
     this.filter.addEventListener("input", () => this.show());
@@ -162,24 +125,24 @@ class JobTable {
   }
 
   place() {
-    const all = element("div", { class: "scroll" }, element("table", { id: "jobs" }, this.head, this.body));
-    return section("Jobs", element("p", {}, this.filter), all, this.note, this.more);
+    return section("Jobs", element("p", {}, this.filter), element("div", { class: "scroll" }, this.table), this.note, this.more);
   }
 
-  /// A column: its header, what is shown of a job, and by what it is sorted.
+  /// The columns: a header, by what it is sorted, what is shown of a job; numbers are the last ones.
   choose(choice) {
     const wanted = [choice.metric, choice.cost, choice.error, ...mainColumns(this.sweep)];
-    const names = wanted.filter((name, i) => this.sweep.columns.has(name) && wanted.indexOf(name) === i && !this.sweep.key(name));
-    this.columns = [
+    const names = [...new Set(wanted)].filter((name) => this.sweep.columns.has(name) && !this.sweep.key(name));
+    const texts = [
       { name: "job", get: (job) => job.index, show: (job) => this.link(job) },
-      { name: "state", get: (job) => this.state(job) },
-      ...this.sweep.keys.map((key) => ({
-        name: key.name,
-        get: (job) => key.place[key.of_job[job.index]],
-        show: (job) => foreign(this.sweep.text(key, job)),
-      })),
-      ...names.map((name) => ({ name: withUnit(name), number: true, get: (job) => this.sweep.number(name, job) })),
+      { name: "state", get: (job) => this.state(job), show: (job) => foreign(this.state(job)) },
+      ...this.sweep.keys.map((key) => ({ name: key.name, get: (job) => key.of_job[job.index], show: (job) => foreign(this.sweep.text(key, job)) })),
     ];
+    const numbers = names.map((name) => {
+      const get = (job) => this.sweep.number(name, job);
+      return { name: withUnit(name), get, show: (job) => shown(get(job)) };
+    });
+    this.columns = [...texts, ...numbers];
+    this.texts = texts.length;
     this.show();
   }
 
@@ -208,30 +171,29 @@ class JobTable {
     return jobs.sort((a, b) => compare(get(a), get(b)));
   }
 
-  header(column, i) {
+  header({ name }, i) {
     const mark = this.by === i ? (this.down ? " ▼" : " ▲") : "";
-    const button = element("button", { type: "button", class: "sort" }, foreign(column.name), mark);
+    const button = element("button", { type: "button", class: "sort" }, foreign(name), mark);
     button.addEventListener("click", () => {
       this.down = this.by === i && !this.down;
       this.by = i;
       this.show();
-      this.head.querySelectorAll("button")[i].focus();  // the one that took its place
+      this.table.querySelectorAll("button")[i].focus();  // the one that took its place
     });
-    const order = this.by === i ? { "aria-sort": this.down ? "descending" : "ascending" } : {};
-    return element("th", { ...(column.number ? { class: "number" } : {}), ...order }, button);
+    return button;
   }
 
   show() {
     const jobs = this.chosen();
     const drawn = jobs.slice(0, this.most);
-    const cell = (column, job) => {
-      const content = column.show ? column.show(job) : column.number ? shown(column.get(job)) : foreign(column.get(job));
-      return element("td", column.number ? { class: "number" } : {}, content);
-    };
-    this.head.replaceChildren(element("tr", {}, ...this.columns.map((column, i) => this.header(column, i))));
-    this.body.replaceChildren(
-      ...drawn.map((job) => element("tr", { class: job.state }, ...this.columns.map((column) => cell(column, job)))),
-    );
+    const head = tableRow("th", this.columns.map((column, i) => this.header(column, i)), this.texts);
+    head.children[this.by]?.setAttribute("aria-sort", this.down ? "descending" : "ascending");
+    const rows = drawn.map((job) => {
+      const row = tableRow("td", this.columns.map((column) => column.show(job)), this.texts);
+      row.className = job.state;
+      return row;
+    });
+    this.table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...rows));
     const left = jobs.length < this.sweep.jobs.length ? ` of ${this.sweep.jobs.length}` : "";
     this.note.textContent = `${drawn.length < jobs.length ? `the first ${drawn.length} of ` : ""}${jobs.length}${left} jobs`;
     this.more.hidden = drawn.length === jobs.length;
@@ -241,54 +203,36 @@ class JobTable {
 /// What went wrong, in words: failures by their reason, and what has not ended.
 function troubles(sweep) {
   const kMostReasons = 12;
-  const reasons = new Map();
-  for (const job of sweep.failed) {
-    if (!reasons.has(job.reason)) reasons.set(job.reason, []);
-    reasons.get(job.reason).push(job);
-  }
-  const out = [...reasons].slice(0, kMostReasons).map(([reason, jobs]) =>
-    element(
-      "li",
-      {},
-      jobs.length === 1 ? `Job ${jobs[0].index} failed (` : `${jobs.length} jobs failed, the first is job ${jobs[0].index} (`,
-      foreign(sweep.words(jobs[0], sweep.all)),
-      "): ",
-      foreign(reason),
-    ),
-  );
-  if (reasons.size > kMostReasons) out.push(element("li", {}, `${reasons.size - kMostReasons} more reasons stand in the table of jobs.`));
+  const reasons = new Map(sweep.failed.map((job) => [job.reason, []]));
+  for (const job of sweep.failed) reasons.get(job.reason).push(job);
+  const out = [...reasons].slice(0, kMostReasons).map(([reason, jobs]) => [
+    jobs.length === 1 ? `Job ${jobs[0].index} failed (` : `${jobs.length} jobs failed, the first is job ${jobs[0].index} (`,
+    foreign(sweep.words(jobs[0], sweep.all)),
+    "): ",
+    foreign(reason),
+  ]);
+  if (reasons.size > kMostReasons) out.push([`${reasons.size - kMostReasons} more reasons stand in the table of jobs.`]);
   const open = sweep.jobs.length - sweep.done.length - sweep.failed.length;
   if (open > 0) {
-    const some = ["running", "unfinished", "missing"].filter((state) => sweep.count(state) > 0).map((state) => `${sweep.count(state)} ${state}`);
-    out.push(element("li", {}, `${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${some.join(", ")}): this page shows the sweep as it stood; 'palpate resume' carries on what nobody runs.`));
+    const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
+    const states = some.map((count) => count.join(" ")).join(", ");
+    out.push([`${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states}): this page shows the sweep as it stood; 'palpate resume' carries on what nobody runs.`]);
   }
-  return out.length > 0 ? [element("ul", { class: "warnings", id: "warnings" }, ...out)] : [];
-}
-
-/// A choice among names, some of them shown otherwise than they are called.
-function chooser(id, label, names, chosen, texts = {}) {
-  const options = names.map((name) => element("option", { value: name, ...(name === chosen ? { selected: "" } : {}) }, brief(texts[name] ?? name, 60)));
-  return element("label", {}, `${label} `, element("select", { id }, ...options));
+  return out;
 }
 
 function drawSweep(data) {
   const sweep = new SweepData(data);
-  const choice = firstChoices(sweep);
-  document.title = `${data.name} ${data.id} – palpate`;
-  const counts = ["done", "failed", "running", "unfinished", "missing"].map((state) => [sweep.count(state), state]);
-  const facts = [[sweep.jobs.length, "jobs"], ...counts.filter(([count, state]) => count > 0 || state === "done")];
-  const swept = sweep.all.flatMap((key, i) => [i > 0 ? ", " : "", foreign(key.name), ` (${key.values.length})`]);
+  const counts = sweep.counts();
+  if (sweep.done.length === 0) counts.unshift([0, "done"]);
+  const swept = sweep.all.flatMap((key, i) => [i > 0 ? ", " : " over ", foreign(key.name), ` (${key.values.length})`]);
   document.body.append(
-    element("h1", {}, foreign(data.name)),
-    element("p", { class: "sub" }, "sweep ", foreign(data.id), ...(swept.length > 0 ? [" over ", ...swept] : []), "."),
-    element("ul", { class: "facts" }, ...facts.map(([count, what]) => element("li", {}, element("b", {}, String(count)), element("span", {}, what)))),
-    ...troubles(sweep),
+    element("p", { class: "sub" }, "sweep ", foreign(data.id), ...swept, "."),
+    factList([[sweep.jobs.length, "jobs"], ...counts]),
+    ...warningList(troubles(sweep)),
   );
-  const drawing = sweep.columns.size > 0 ? drawPanels(sweep, choice) : noPanels(sweep);
-  document.body.append(
-    section("Config", element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)),
-    element("footer", {}, `palpate ${data.version}; method: Sun and Min 2021, arXiv:2110.09593; drawn with plotly.js (MIT).`),
-  );
+  const drawing = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
+  document.body.append(section("Config", element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
   return drawing;
 }
 
@@ -297,69 +241,58 @@ function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has come to a result yet: there is nothing to draw."), jobs.place());
   jobs.choose({});
-  document.body.dataset.drawn = "1";
+  tellDrawn(1);
 }
 
-function drawPanels(sweep, choice) {
+function drawPanels(sweep) {
   const columns = [...sweep.columns.keys()];
   const keys = sweep.keys.map((key) => key.name);
   const errors = columns.filter((name) => name !== "coverage_95"); // best at 0.95, neither small nor large
   const costs = errors.filter((name) => !sweep.moreIsBetter(name));
-  const cells = new CellsPanel(sweep);
-  const groups = new GroupsPanel(sweep);
-  const parallel = new ParallelPanel(sweep, hasWebGL());
-  const front = new FrontPanel(sweep);
+  const choice = firstChoices(sweep);
   const jobs = new JobTable(sweep);
-  const none = { "": "nothing" };
+  let drawn = 0;
+  const drawAll = (panels) =>
+    inTurn(async () => {
+      for (const panel of panels) await panel(sweep, choice);
+      tellDrawn(++drawn);
+    });
+  /// A choice among names that some panels follow.
+  const chooser = (id, label, names, panels, textOf = (name) => name) => {
+    const options = names.map((name) => element("option", { value: name, ...(name === choice[id] ? { selected: "" } : {}) }, brief(textOf(name), 60)));
+    const control = element("select", { id }, ...options);
+    control.addEventListener("change", () => {
+      choice[id] = control.value;
+      jobs.choose(choice);
+      drawAll(panels);
+    });
+    return element("label", {}, `${label} `, control);
+  };
+  const choices = (...choosers) => element("p", { class: "choices" }, ...choosers);
+  const orNothing = (name) => name || "nothing";
   document.body.append(
-    element("div", { class: "controls" }, chooser("metric", "show", columns, choice.metric, Object.fromEntries(columns.map((name) => [name, withUnit(name)])))),
+    element("div", { class: "controls" }, chooser("metric", "show", columns, [drawCells, drawGroups, drawParallel], withUnit)),
     section(
       "By two keys",
-      element("p", { class: "choices" }, chooser("across", "across", keys, choice.across), chooser("up", "up", ["", ...keys], choice.up, none)),
+      choices(chooser("across", "across", keys, [drawCells]), chooser("up", "up", ["", ...keys], [drawCells], orNothing)),
       element("div", { class: "row wide" }, figure("cells_mean", ""), figure("cells_spread", "")),
     ),
     section(
       "By groups",
-      element("p", { class: "choices" }, chooser("group", "groups by", [kEachSetting, ...keys], choice.group), chooser("then", "and by", ["", ...keys], choice.then, none)),
+      choices(chooser("group", "groups by", [kEachSetting, ...keys], [drawGroups]), chooser("then", "and by", ["", ...keys], [drawGroups], orNothing)),
       figure("groups", ""),
     ),
     section("All keys at once", figure("parallel", "")),
     section(
       "Cost and error",
-      element("p", { class: "choices" }, chooser("cost", "cost", costs, choice.cost), chooser("error", "error", errors, choice.error)),
+      choices(chooser("cost", "cost", costs, [drawFront]), chooser("error", "error", errors, [drawFront])),
       figure("front", ""),
       element("div", { id: "front_list" }),
     ),
     jobs.place(),
   );
-  const all = {
-    metric: [cells, groups, parallel],
-    across: [cells],
-    up: [cells],
-    group: [groups],
-    then: [groups],
-    cost: [front],
-    error: [front],
-  };
-  let drawn = 0;
-  // One drawing at a time. For whoever waits for the picture the page counts them.
-  let drawing = Promise.resolve();
-  const draw = (panels) => {
-    drawing = drawing.then(async () => {
-      for (const panel of panels) await panel.draw(choice);
-      document.body.dataset.drawn = String(++drawn);
-    }).catch(complain);
-    return drawing;
-  };
-  for (const [id, panels] of Object.entries(all)) {
-    document.getElementById(id).addEventListener("change", (event) => {
-      choice[id] = event.target.value;
-      if (["metric", "cost", "error"].includes(id)) jobs.choose(choice);
-      draw(panels);
-    });
-  }
   jobs.choose(choice);
-  return draw([cells, groups, parallel, front]);
+  return drawAll([drawCells, drawGroups, drawParallel, drawFront]);
 }
 
 openPage(drawSweep);

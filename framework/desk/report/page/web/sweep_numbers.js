@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What the panels of a sweep's page are made of: columns, groups, means, the front. Nothing here draws.
 
-/// What stands for a value that a job has not, because its plugins know no such option.
-const kNoValue = "–";
-
-/// Text on one line and without marks of direction, cut where it is long.
+/// Text on one line, cut where it is long.
 function brief(text, most = 36) {
-  const line = String(text)
-    .replace(/[\n\r\t]+/g, " ")
-    .replace(/\d*\.\d{5,}/g, (digits) => shown(Number(digits)))
-    .replace(/[\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "");
-  const letters = Array.from(line);
-  return letters.length > most ? `${letters.slice(0, most - 1).join("")}…` : line;
+  const letters = Array.from(oneLine(text).replace(/\d*\.\d{5,}/g, (digits) => shown(Number(digits))));
+  return letters.length > most ? `${letters.slice(0, most - 1).join("")}…` : letters.join("");
 }
 
 /// Names that stand side by side, each brief: cut at their ends, or in the middle where that leaves equal ones, and
@@ -28,41 +21,40 @@ function briefs(names, most = 36) {
   return alike(middles) ? middles.map((text, i) => `${i + 1}: ${text}`) : middles;
 }
 
+const kStates = ["done", "failed", "running", "unfinished", "missing"];
+
 /// The sweep as the panels ask for it.
 class SweepData {
   constructor(data) {
-    this.data = data;
-    this.jobs = data.jobs.map(([id, state, reason, reported], index) => ({ index, id, state, reason, reported: reported === 1 }));
-    this.done = this.jobs.filter((job) => job.state === "done");
-    this.failed = this.jobs.filter((job) => job.state === "failed");
-    this.keys = data.keys.map((key) => {
-      const order = orderOf(key);
-      const place = [];
-      order.forEach((value, at) => (place[value] = at));
-      return { ...key, order, place, varies: order.length > 1 };
-    });
+    Object.assign(this, data);  // jobs, keys, first_looks, factors
+    [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
     this.columns = new Map(data.columns.map((column) => [column.name, column]));
-    const kept = this.keys.filter((key) => key.name !== "seed");
-    this.settings = kept;
-    this.varying = kept.filter((key) => key.varies);
-    this.all = this.keys.filter((key) => key.varies);  // what tells jobs apart
+    this.all = this.keys.filter((key) => key.values.length > 1);  // what tells jobs apart
+    [this.settings, this.varying] = [this.keys, this.all].map((keys) => keys.filter((key) => key.name !== "seed"));
   }
 
   key(name) {
     return this.keys.find((key) => key.name === name);
   }
 
-  count(state) {
-    return this.jobs.filter((job) => job.state === state).length;
+  /// The states that jobs are in and their number, [[19, "done"], [1, "failed"]].
+  counts() {
+    const counts = kStates.map((state) => [this.jobs.filter((job) => job.state === state).length, state]);
+    return counts.filter(([count]) => count > 0);
   }
 
   moreIsBetter(column) {
     return this.columns.get(column)?.better === "more is better";
   }
 
-  /// The number of a job in the unit in which it is shown, or null.
+  /// The number of a job in SI units, or null.
+  raw(column, job) {
+    return this.columns.get(column).numbers[job.index];
+  }
+
+  /// That in the unit in which it is shown.
   number(column, job) {
-    const value = this.columns.get(column).numbers[job.index];
+    const value = this.raw(column, job);
     return value === null ? null : value * unitOf(column).factor;
   }
 
@@ -70,9 +62,9 @@ class SweepData {
     return jobs.map((job) => this.number(column, job)).filter((value) => value !== null);
   }
 
-  /// The value of a key as written.
+  /// The value of a key as written; plugins without such an option have none.
   text(key, job) {
-    return key.values[key.of_job[job.index]] || kNoValue;
+    return key.values[key.of_job[job.index]] || kNothing;
   }
 
   /// "acquisition=weighted, taps=17": what a job's keys are, those without a value left out.
@@ -81,19 +73,18 @@ class SweepData {
     return said.map((key) => `${key.name}=${this.text(key, job)}`).join(", ") || "the only setting";
   }
 
-  /// Jobs with equal values of `keys`, in the order of the sweep: a list of {jobs, places}, the place of each value in
-  /// the order of its key.
+  /// Jobs with equal values of `keys`, in the order of these: a list of {jobs, places}, the place of each value among
+  /// those of its key.
   groups(keys) {
     const found = new Map();
     for (const job of this.jobs) {
-      const places = keys.map((key) => key.place[key.of_job[job.index]]);
+      const places = keys.map((key) => key.of_job[job.index]);
       const name = places.join();
       if (!found.has(name)) found.set(name, { places, jobs: [] });
       found.get(name).jobs.push(job);
     }
-    const sorted = [...found.values()];
     const compare = (a, b) => a.places.map((place, i) => place - b.places[i]).find((step) => step !== 0) ?? 0;
-    return sorted.sort(compare);
+    return [...found.values()].sort(compare);
   }
 
   /// Some jobs by what became of them: "19 of 20 done, 1 failed".
@@ -105,72 +96,60 @@ class SweepData {
   }
 }
 
-/// The numbers of a key's values in the order in which they are shown: as numbers where they are, else as in the sweep;
-/// what stands for no value comes first.
-function orderOf(key) {
-  const order = key.values.map((_, i) => i);
-  const rank = (i) => (key.values[i] === "" ? -Infinity : key.numbers ? key.numbers[i] : i);
-  return order.sort((a, b) => (rank(a) < rank(b) ? -1 : rank(a) > rank(b) ? 1 : a - b));
-}
-
 /// Mean, standard deviation (null of one value) and half the width of the mean's 95 % interval, as the program
-/// computes them.
-function estimate(values, factors) {
+/// computes them, times `unit`.
+function estimate(values, factors, unit = 1) {
   const count = values.length;
   if (count === 0) return { count, mean: null, deviation: null, half: null };
-  const least = values.reduce((a, b) => Math.min(a, b));
-  const most = values.reduce((a, b) => Math.max(a, b));
+  const [least, most] = [leastOf(values), mostOf(values)];
   const mean = least === most ? least : values.reduce((sum, one) => sum + one / count, 0);
-  if (count < 2) return { count, mean, deviation: null, half: null };
-  const squares = values.reduce((sum, one) => sum + (one - mean) * (one - mean), 0);
+  if (count < 2) return { count, mean: mean * unit, deviation: null, half: null };
+  const variance = values.reduce((sum, one) => sum + (one - mean) * (one - mean), 0) / (count - 1);
   const factor = factors[Math.min(count - 2, factors.length - 1)];
-  return { count, mean, deviation: Math.sqrt(squares / (count - 1)), half: factor * Math.sqrt(squares / (count - 1) / count) };
+  return { count, mean: mean * unit, deviation: Math.sqrt(variance) * unit, half: factor * Math.sqrt(variance / count) * unit };
 }
+
+/// The least and the most of very many numbers.
+const leastOf = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
+const mostOf = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
 
 /// The settings, all keys but the seed, with their means of cost and error over the jobs that are done and have both:
 /// {words, jobs, cost, error, complete, front}, in the order of cost. As `palpate pareto` has it, only settings all of
 /// whose jobs have both are compared; `front` counts from 1.
 function settingsOf(sweep, cost, error) {
-  const factors = sweep.data.factors;
-  // In SI units, so that rounding decides of twins as in the program.
-  const raw = (column, job) => sweep.columns.get(column).numbers[job.index];
-  const scaled = (column, of) => {
-    const { factor } = unitOf(column);
-    const times = (value) => (value === null ? null : value * factor);
-    return { ...of, mean: times(of.mean), deviation: times(of.deviation), half: times(of.half) };
-  };
   const sign = sweep.moreIsBetter(error) ? -1 : 1;
   const settings = sweep.groups(sweep.settings).map(({ jobs }) => {
-    const valued = jobs.filter((job) => job.state === "done" && raw(cost, job) !== null && raw(error, job) !== null);
-    const over = (column) => estimate(valued.map((job) => raw(column, job)), factors);
-    const [paid, missed] = [over(cost), over(error)];
+    const valued = jobs.filter((job) => job.state === "done" && sweep.raw(cost, job) !== null && sweep.raw(error, job) !== null);
+    const over = (column) => [valued.map((job) => sweep.raw(column, job)), sweep.factors];
     return {
       words: sweep.words(jobs[0]),
       jobs,
-      cost: scaled(cost, paid),
-      error: scaled(error, missed),
-      point: { cost: paid.mean, loss: missed.mean === null ? null : sign * missed.mean },
+      cost: estimate(...over(cost), unitOf(cost).factor),
+      error: estimate(...over(error), unitOf(error).factor),
+      // In SI units, so that rounding decides of twins as in the program.
+      paid: estimate(...over(cost)).mean,
+      lost: sign * estimate(...over(error)).mean,
       complete: valued.length === jobs.length,
       front: 0,
     };
   });
   const valued = settings.filter((one) => one.cost.count > 0);
-  valued.sort((a, b) => a.point.cost - b.point.cost || a.point.loss - b.point.loss);
+  valued.sort((a, b) => a.paid - b.paid || a.lost - b.lost);
   // One is beaten if one before it is at most as large in loss, but for its twins.
-  let last = null;
+  let last = { lost: Infinity };
   let number = 0;
   for (const one of valued.filter(({ complete }) => complete)) {
-    const twin = last && one.point.cost === last.cost && one.point.loss === last.loss;
-    if (last && !twin && !(one.point.loss < last.loss)) continue;
+    const twin = one.paid === last.paid && one.lost === last.lost;
+    if (!twin && one.lost >= last.lost) continue;
     one.front = ++number;
-    last = one.point;
+    last = one;
   }
   return valued;
 }
 
 /// Columns that are worth a first look, the best first, as far as they are there.
 function mainColumns(sweep) {
-  return sweep.data.first_looks.filter((name) => sweep.columns.has(name));
+  return sweep.first_looks.filter((name) => sweep.columns.has(name));
 }
 
 /// Whether done jobs differ in a column.
@@ -186,7 +165,7 @@ function bestPair(sweep) {
   let most = 0;
   keys.forEach((across, i) => {
     for (const up of keys.slice(i + 1)) {
-      const filled = sweep.groups([across, up]).length / (across.order.length * up.order.length);
+      const filled = sweep.groups([across, up]).length / (across.values.length * up.values.length);
       if (filled > most) [most, best] = [filled, [across.name, up.name]];
     }
   });
@@ -196,9 +175,9 @@ function bestPair(sweep) {
 /// What the controls say at first.
 function firstChoices(sweep) {
   const names = [...sweep.columns.keys()];
-  const error = [sweep.data.first_looks[0], "on_surface_taps"].find((name) => sweep.columns.has(name)) ?? names[0];
+  const error = [sweep.first_looks[0], "on_surface_taps"].find((name) => sweep.columns.has(name)) ?? names[0];
   const [across, up] = bestPair(sweep);
-  const fewest = sweep.varying.reduce((a, b) => (b.order.length < a.order.length ? b : a), sweep.varying[0]);
+  const fewest = sweep.varying.reduce((a, b) => (b.values.length < a.values.length ? b : a), sweep.varying[0]);
   const costs = ["robot_seconds", "compute_seconds", "taps"].filter((name) => sweep.columns.has(name));
   return {
     metric: error,

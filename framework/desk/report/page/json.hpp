@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The data of a page: what the JSON library makes of vectors, and here of what a value may lack and of rows.
+#pragma once
+
+#include "record/row.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <variant>
+
+namespace nlohmann {
+
+template <class T>
+struct adl_serializer<std::optional<T>> {
+  static void to_json(json& out, const std::optional<T>& value) { out = value ? json(*value) : json(); }
+};
+
+template <>
+struct adl_serializer<std::monostate> {
+  static void to_json(json& out, std::monostate /*null*/) { out = nullptr; }
+};
+
+}  // namespace nlohmann
+
+namespace palpate {
+
+using Json = nlohmann::json;
+
+/// An object whose names keep their dots.
+inline void to_json(Json& out, const Row& row) {
+  out = Json::object();
+  for (const auto& [name, value] : row.fields) out[name] = std::visit([](const auto& one) { return Json(one); }, value);
+}
+
+}  // namespace palpate
