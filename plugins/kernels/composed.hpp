@@ -50,26 +50,16 @@ class Composed : public Kernel {
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
     parts_[0]->covariance(a, b, out);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      for (Eigen::Index j = 0; j < b.rows(); ++j) {
-        for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
-          Piece part(count);
-          parts_[i]->covariance(a.middleRows(from, count), b.row(j), part.matrix());
-          Join::apply(out.col(j).segment(from, count).array(), part);
-        });
-      }
-    }
+    join_others(out, [&](const Kernel& part, Eigen::Index from, Eigen::Index column, VectorOut piece) {
+      part.covariance(a.middleRows(from, piece.size()), b.row(column), piece);
+    });
   }
 
   void variance(const PointsView& a, VectorOut out) const override {
     parts_[0]->variance(a, out);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
-        Piece part(count);
-        parts_[i]->variance(a.middleRows(from, count), part.matrix());
-        Join::apply(out.segment(from, count).array(), part);
-      });
-    }
+    join_others(out, [&](const Kernel& part, Eigen::Index from, Eigen::Index, VectorOut piece) {
+      part.variance(a.middleRows(from, piece.size()), piece);
+    });
   }
 
   std::vector<KernelParameter> parameters() const override {
@@ -113,6 +103,21 @@ class Composed : public Kernel {
   }
 
  protected:
+  /// Takes all parts but the first into `out`, which has that one: piece by piece of each column, which
+  /// fill(part, from, column, piece) fills from the row `from` on.
+  template <class Fill>
+  void join_others(MatrixOut out, const Fill& fill) const {
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+      for (Eigen::Index column = 0; column < out.cols(); ++column) {
+        for_pieces(out.rows(), [&](Eigen::Index from, Eigen::Index count) {
+          Piece piece(count);
+          fill(*parts_[i], from, column, piece.matrix());
+          Join::apply(out.col(column).segment(from, count).array(), piece);
+        });
+      }
+    }
+  }
+
   std::vector<std::shared_ptr<Kernel>> parts_;
 
  private:

@@ -30,15 +30,9 @@ class Product final : public Composed<Multiply> {
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
     parts_[0]->axis_covariance(axis, a, b, out);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      for (Eigen::Index j = 0; j < b.size(); ++j) {
-        for_pieces(a.size(), [&](Eigen::Index from, Eigen::Index count) {
-          Piece part(count);
-          parts_[i]->axis_covariance(axis, a.segment(from, count), b.segment(j, 1), part.matrix());
-          out.col(j).segment(from, count).array() *= part;
-        });
-      }
-    }
+    join_others(out, [&](const Kernel& part, Eigen::Index from, Eigen::Index column, VectorOut piece) {
+      part.axis_covariance(axis, a.segment(from, piece.size()), b.segment(column, 1), piece);
+    });
   }
 };
 

@@ -66,24 +66,22 @@ void CalibrationOptions::list(Fields& fields) {
 
 void BaxterOptions::list(Fields& fields) {
   fields.section(motion, Field("motion", "the tapping motion"));
+  const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
+  const bool adaptive = motion.adaptive_hover.has_value();
+  const char* noise = "is within the noise of the force, take at least 3 N";
+  const char* too_fast = "is too fast for an arm that feels late, take at most 10 cm/s";
   fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
                  "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
-  fields.require(motion.threshold >= kLeastThreshold, "motion.threshold",
-                 "is within the noise of the force, take at least 3 N");
+  fields.require(motion.threshold >= kLeastThreshold, "motion.threshold", noise);
   fields.require(motion.tare >= kShortestTare, "motion.tare", "is too short for a zero, take at least 100 ms");
   fields.require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "motion.travel_speed",
                  "and motion.retreat_speed must let the arm get away, take at least 1 cm/s");
-  const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
   fields.require(!two_stage || motion.fine_threshold <= motion.threshold, "motion.fine_threshold",
                  "must not lie above motion.threshold");
-  fields.require(!two_stage || motion.fine_threshold >= kLeastThreshold, "motion.fine_threshold",
-                 "is within the noise of the force, take at least 3 N");
-  fields.require(motion.speed <= kFastest, "motion.speed",
-                 "is too fast for an arm that feels late, take at most 10 cm/s");
-  fields.require(!two_stage || motion.fine_speed <= kFastest, "motion.fine_speed",
-                 "is too fast for an arm that feels late, take at most 10 cm/s");
-  fields.require(!motion.adaptive_hover || motion.adaptive_hover->speed <= kFastest, "motion.adaptive_hover.speed",
-                 "is too fast for an arm that feels late, take at most 10 cm/s");
+  fields.require(!two_stage || motion.fine_threshold >= kLeastThreshold, "motion.fine_threshold", noise);
+  fields.require(motion.speed <= kFastest, "motion.speed", too_fast);
+  fields.require(!two_stage || motion.fine_speed <= kFastest, "motion.fine_speed", too_fast);
+  fields.require(!adaptive || motion.adaptive_hover->speed <= kFastest, "motion.adaptive_hover.speed", too_fast);
   fields.require(motion.overrun <= kDeepest, "motion.overrun", "lets the arm go on below the desk, take at most 10 cm");
   fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
   fields.section(place, Field("place", "where the scene lies before the robot"));

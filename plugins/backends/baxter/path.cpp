@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/path.hpp"
 
+#include "baxter/words.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace palpate::baxter {
 namespace {
@@ -149,6 +149,30 @@ Path Planner::up(const Joints& from, double rise) const {
     out.add(joints, rise / count);
   }
   return out;
+}
+
+int check_reach(const Planner& planner, const Area& area, double hover, double floor, double speed, double spacing) {
+  const auto count = [&](double length) { return static_cast<int>(std::ceil(length / spacing)) + 1; };
+  const int nx = count(area.width);
+  const int ny = count(area.depth);
+  const Target middle{0.5 * area.width, 0.5 * area.depth};
+  int missed = 0;
+  std::string first;
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      const Target place{area.width * i / (nx - 1), area.depth * j / (ny - 1)};
+      try {
+        planner.column(place, middle, hover, floor, speed);
+      } catch (const NoPath& none) {
+        if (missed++ > 0) continue;
+        first = fmt::format("({:.2f} cm, {:.2f} cm): {}", 100.0 * place.x, 100.0 * place.y, none.reason);
+      }
+    }
+  }
+  if (missed == 0) return nx * ny;
+  throw trouble("place",
+                fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
+                "put the middle of the area near x = 60 cm, y = 20 cm of base");
 }
 
 }  // namespace palpate::baxter

@@ -7,14 +7,19 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <thread>
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -57,16 +62,89 @@ bool glance(const Descriptor& descriptor, short events, Clock::time_point until)
   return ::poll(&one, 1, until <= Clock::now() ? 0 : static_cast<int>(wait.count())) > 0;
 }
 
+struct Process {
+  pid_t pid = 0;
+  pid_t parent = 0;
+  bool ended = false;
+};
+
+/// All of this machine, as they are now.
+std::vector<Process> processes() {
+  std::vector<Process> out;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream in(entry.path() / "stat");
+    std::string line;
+    if (!std::getline(in, line)) continue;
+    // PID (NAME) STATE PARENT ..., where the name may hold anything.
+    const std::size_t behind = line.rfind(')');
+    if (behind == std::string::npos || behind + 4 > line.size()) continue;
+    const char state = line[behind + 2];
+    out.push_back({static_cast<pid_t>(std::stol(name)), static_cast<pid_t>(std::atol(line.c_str() + behind + 4)),
+                   state == 'Z' || state == 'X'});
+  }
+  return out;
+}
+
+bool carries(pid_t pid, const std::string& mark) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
+  const std::string all = '\0' + std::string(std::istreambuf_iterator<char>(in), {});
+  return all.find('\0' + mark + '\0') != std::string::npos;
+}
+
 }  // namespace
 
+Descent::Descent() {
+  static std::atomic<int> count{0};
+  mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(++count);
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+}
+
+void Descent::look(pid_t program) {
+  const std::vector<Process> all = processes();
+  found_.insert(program);
+  for (std::size_t before = 0; before != found_.size();) {
+    before = found_.size();
+    for (const Process& one : all) {
+      if (one.ended || found_.count(one.pid) != 0) continue;
+      const bool left_behind = one.parent == ::getpid() && carries(one.pid, mark_);
+      if (found_.count(one.parent) == 0 && !left_behind) continue;
+      found_.insert(one.pid);
+    }
+  }
+}
+
+void Descent::end(pid_t program) {
+  // Again and again, until none is left: who is ended may just have started another, and whose parent is ended becomes
+  // a child of this process. By then any other of a number that was found is a stranger. A process may take a while to
+  // end, in a driver that does not let go even for ever.
+  constexpr int kLooks = 2000;
+  for (int i = 0; i < kLooks; ++i) {
+    look(program);
+    bool left = false;
+    for (const Process& one : processes()) {
+      const bool kin = one.parent == ::getpid() || found_.count(one.parent) != 0;
+      if (one.ended || !kin || found_.count(one.pid) == 0) continue;
+      ::kill(one.pid, SIGKILL);
+      left = true;
+    }
+    if (!left) break;
+    ::kill(-program, SIGKILL);
+    ::usleep(1000);
+  }
+  for (const pid_t pid : found_) ::waitpid(pid, nullptr, WNOHANG);
+}
+
 Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
-             const Descriptor* kept)
+             const Descriptor& kept)
     : diary_(diary) {
   std::optional<Pipe> in = open_pipe();
   std::optional<Pipe> out = open_pipe();
   if (!in || !out) fail("cannot open a pipe", errno);
   std::vector<int> files{in->to_read.number(), out->to_write.number(), diary_.descriptor().number()};
-  if (kept != nullptr) files.push_back(kept->number());
+  if (kept) files.push_back(kept.number());
   Program program{words, file};
   program.environment.insert(program.environment.begin(), descent_.mark());
   pid_ = spawn(program, files);

@@ -3,12 +3,11 @@
 #pragma once
 
 #include "children/child_process.hpp"
-#include "process/descent.hpp"
-#include "process/diary.hpp"
+#include "process/recorded.hpp"
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,15 +15,27 @@
 
 namespace palpate::process {
 
-/// How often a wait looks whether the user wants to stop.
-constexpr std::chrono::milliseconds kGlance{20};
+/// All that a program started, and what those started, however far away they have gone: into a group or a session of
+/// their own, or left behind by whoever started them.
+class Descent {
+ public:
+  /// From now on the processes that a program leaves behind become this one's children. To be made before it starts.
+  Descent();
 
-/// Until when to wait, and what breaks the wait off.
-struct Patience {
-  std::chrono::steady_clock::time_point until;
-  const std::atomic<bool>* interrupted = nullptr;  ///< may be null
+  /// NAME=VALUE for the program's environment, which those that it starts inherit.
+  const std::string& mark() const { return mark_; }
 
-  bool broken_off() const { return interrupted != nullptr && interrupted->load(); }
+  /// Finds what there is of the descent of `program` now. To be called before the program is asked to end: whoever it
+  /// leaves behind without the mark is known by then.
+  void look(pid_t program);
+
+  /// Ends, with SIGKILL, `program`, which has not been reaped yet, its group, and all of its descent, and reaps what of
+  /// that is a child of this process.
+  void end(pid_t program);
+
+ private:
+  std::string mark_;
+  std::set<pid_t> found_;  ///< the program, too
 };
 
 /// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
@@ -44,10 +55,10 @@ class Child {
   enum class Heard { line, ended, late, interrupted, too_long };
 
   /// Starts `file` with the arguments `words`, of which the first is its name. Its stderr is appended to `diary`, or
-  /// dropped if that is empty. It inherits `kept` (may be null) as the file after the standard ones. Throws Error when
+  /// dropped if that is empty. It inherits `kept` (may be none) as the file after the standard ones. Throws Error when
   /// it cannot be started.
   Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
-        const Descriptor* kept = nullptr);
+        const Descriptor& kept);
   /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM to its group; then SIGKILL to all that
   /// it started, wherever that has gone. Afterwards nothing of it is left.
   ~Child();

@@ -8,22 +8,75 @@
 // run ends, for somebody to look at the arm. So no late answer is ever taken for another tap, and each trouble is told
 // in the record.
 #include "process/child.hpp"
-#include "process/command.hpp"
-#include "process/hold.hpp"
 #include "process/protocol.hpp"
 #include "tapping/words.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <sstream>
 
+#include <unistd.h>
+
+#include <fmt/format.h>
+
 namespace palpate::backends {
 
 using process::Child;
-using process::Hold;
+
+namespace {
+
+/// The words of `text`, split at blanks. 'single' and "double" quotes keep blanks together and are taken away; nothing
+/// else means anything, neither a backslash nor a dollar sign. None if a quote is left open or no word is there.
+std::optional<std::vector<std::string>> split_command(const std::string& text) {
+  std::vector<std::string> words;
+  bool inside = false;  // of a word: '' is one, though empty
+  char quote = '\0';
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (quote == '\0' && blank) {
+      inside = false;
+      continue;
+    }
+    if (!inside) words.emplace_back();
+    inside = true;
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '\'' || c == '"')) {
+      quote = c;
+    } else {
+      words.back() += c;
+    }
+  }
+  if (quote != '\0' || words.empty() || words.front().empty()) return std::nullopt;
+  return words;
+}
+
+bool executable(const std::string& file) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(file, none) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// The file that runs as `program`: a path as it stands, a bare name from the folders of PATH. None if no such file may
+/// be executed.
+std::optional<std::string> find_program(const std::string& program) {
+  if (program.find('/') != std::string::npos) {
+    return executable(program) ? std::optional<std::string>(program) : std::nullopt;
+  }
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string file = (folder.empty() ? "." : folder) + "/" + program;
+    if (executable(file)) return file;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 struct ProcessOptions : Options {
   std::string command;
@@ -39,7 +92,7 @@ struct ProcessOptions : Options {
                                "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
                                "blanks together, nothing else is interpreted, no shell")
                              .needed());
-    fields.require(process::split_command(command).has_value(), "command", "names no program, or a quote is left open");
+    fields.require(split_command(command).has_value(), "command", "names no program, or a quote is left open");
     fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
                               .in(Unit::second)
                               .above(0)
@@ -69,8 +122,8 @@ class Process final : public Backend {
 
   /// Throws Error when there is no such program.
   Process(const Options& options, const Context& context)
-      : options_(options), context_(context), words_(process::split_command(options.command).value()) {
-    const std::optional<std::string> file = process::find_program(words_.front());
+      : options_(options), context_(context), words_(split_command(options.command).value()) {
+    const std::optional<std::string> file = find_program(words_.front());
     if (!file) {
       throw Error("command", "there is no program " + process::shown(words_.front()),
                   "a name is looked for in PATH, a path from the folder in which palpate runs");
@@ -94,10 +147,9 @@ class Process final : public Backend {
 
   std::vector<std::string> describe(const TapRequest& request) override {
     std::vector<std::string> out = tapping::describe(options_.motion, context_.scene.desk(), request, request.previous);
-    std::ostringstream ask;
-    ask << (child_ ? "ask " : "start ") << process::shown(options_.command) << ", which has "
-        << options_.deadline + (child_ ? 0.0 : options_.start) << " s, for this motion:";
-    out.insert(out.begin(), ask.str());
+    out.insert(out.begin(),
+               fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
+                           process::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
     return out;
   }
 
@@ -123,20 +175,19 @@ class Process final : public Backend {
   /// Starts the program, but where taps are not repeatable only once none of an earlier attempt is there any more: two
   /// must not move one arm. If one still is when the patience is over, there is no child.
   void start(const process::Patience& patience) {
-    std::optional<Hold> hold;
-    if (const std::string lock = recorded(kLock); !options_.repeatable && !lock.empty()) {
-      hold = Hold::take(lock, patience);
-      if (!hold) return;
+    Descriptor lock;
+    if (!options_.repeatable && !context_.directory.empty()) {
+      lock = process::locked(recorded(kLock), patience);
+      if (!lock) return;
     }
-    child_ =
-        std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), hold ? &hold->descriptor() : nullptr);
-    if (hold) hold->note(child_->pid());
+    child_ = std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), lock);
+    if (lock) process::note_holder(lock, child_->pid());
   }
 
   process::Answer left_behind() const {
     if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
     process::Answer answer =
-        failed("of an earlier attempt, process " + Hold::noted(recorded(kLock)) + ", still runs: end it");
+        failed("of an earlier attempt, process " + process::noted_holder(recorded(kLock)) + ", still runs: end it");
     answer.contact.ends_run = true;
     return answer;
   }

@@ -10,17 +10,12 @@
 
 #include <chrono>
 #include <cmath>
-#include <sstream>
 #include <thread>
+
+#include <fmt/format.h>
 
 namespace palpate::backends {
 namespace {
-
-std::string centimetres(double height) {
-  std::ostringstream out;
-  out << 100.0 * height << " cm";
-  return out.str();
-}
 
 bool any(const Effects& effects) {
   return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.tip_radius ||
@@ -50,8 +45,8 @@ Simulator::Simulator(const Options& options, const Context& context)
       moves_(change_motion(scene_.effects())) {
   if (scene_.highest() >= scene_.desk() + options.motion.hover) {
     throw Error("motion.hover",
-                "an object is " + centimetres(scene_.highest() - scene_.desk()) + " high, and the arm travels at " +
-                    centimetres(options.motion.hover),
+                fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
+                            100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.hover),
                 "raise it or lower the object");
   }
 }

@@ -2,9 +2,54 @@
 // Outlines of objects as seen from above: a piece, two pieces, or a piece from which another is taken.
 #pragma once
 
-#include "piece.hpp"
+#include <palpate/types.hpp>
+
+#include <cmath>
+#include <utility>
 
 namespace palpate::footprints {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+/// A box or an ellipse. Lengths in metres, in the frame of the area.
+struct Piece {
+  enum class Family { box, ellipse };
+  Family family = Family::box;
+  double x = 0.0;  ///< of the centre
+  double y = 0.0;
+  double a = 0.0;       ///< half of the long axis
+  double b = 0.0;       ///< half of the short axis, at most `a`
+  double cosine = 1.0;  ///< of the angle from x to the long axis: as a direction it needs no trigonometry to be asked
+  double sine = 0.0;
+
+  bool contains(double px, double py) const {
+    const double u = cosine * (px - x) + sine * (py - y);
+    const double v = cosine * (py - y) - sine * (px - x);
+    if (family == Family::box) return std::abs(u) <= a && std::abs(v) <= b;
+    return u * u * (b * b) + v * v * (a * a) <= a * a * (b * b);
+  }
+
+  /// How far it reaches from its centre along x and along y.
+  double reach_x() const { return reach(cosine * a, sine * b); }
+  double reach_y() const { return reach(sine * a, cosine * b); }
+
+  /// Square metres.
+  double extent() const;
+
+  /// The ends along x of its cut at `py`; the first is larger where there is none.
+  std::pair<double, double> cut(double py) const;
+
+  /// Turns it about its centre, radians from x to y.
+  void turn(double angle);
+
+  /// Names the longer axis `a` again, the shape stays.
+  void order_axes();
+
+ private:
+  double reach(double along, double across) const {
+    return family == Family::box ? std::abs(along) + std::abs(across) : std::sqrt(along * along + across * across);
+  }
+};
 
 /// One piece is a block or a cylinder. Two make an L, a T, or objects that lie apart. A piece without another is a
 /// ring, a U, or once more an L.

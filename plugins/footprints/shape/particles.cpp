@@ -3,69 +3,88 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace palpate::footprints {
 namespace {
 
-/// The places of a lattice that rows of pieces hold, counted: where a row of them begins and ends is marked, and the
-/// marks are summed up in the end.
-class LatticeCounts {
- public:
-  LatticeCounts(const PointsView& places, int columns)
-      : columns_(columns),
-        rows_(static_cast<int>(places.rows()) / columns),
-        x0_(places(0, 0)),
-        step_(columns > 1 ? (places(columns - 1, 0) - x0_) / (columns - 1) : 1.0),
-        y0_(places(0, 1)),
-        rise_(rows_ > 1 ? (places((rows_ - 1) * columns, 1) - y0_) / (rows_ - 1) : 1.0),
-        marks_(Eigen::MatrixXd::Zero(columns + 1, rows_)) {}
+/// Whole numbers from `begin` on, before `end`; none where that is not above `begin`.
+struct Cells {
+  int begin;
+  int end;
+};
 
-  void add(const Outline& outline) {
-    const Cells rows = rows_of(outline.first);
-    if (outline.kind == Outline::Kind::one) {
-      for (int row = rows.begin; row < rows.end; ++row) mark(row, cut(outline.first, row), 1.0);
-      return;
-    }
-    const Cells others = rows_of(outline.second);
-    // What both hold is counted once if they are united, and not at all if one is taken from the other.
-    for (int row = rows.begin; row < rows.end; ++row) {
-      const Cells first = cut(outline.first, row);
-      mark(row, first, 1.0);
-      if (row < others.begin || row >= others.end) continue;
-      const Cells second = cut(outline.second, row);
-      mark(row, {std::max(first.begin, second.begin), std::min(first.end, second.end)}, -1.0);
-    }
-    if (outline.kind == Outline::Kind::without) return;
-    for (int row = others.begin; row < others.end; ++row) mark(row, cut(outline.second, row), 1.0);
-  }
+/// Places along one axis, in equal steps.
+struct Axis {
+  double first;
+  double step;
+  int count;
 
-  void sum(VectorOut out) const {
-    for (int row = 0; row < rows_; ++row) {
-      double count = 0.0;
-      for (int column = 0; column < columns_; ++column) out(row * columns_ + column) = count += marks_(column, row);
-    }
+  Axis(double from, double to, int places)
+      : first(from), step(places > 1 ? (to - from) / (places - 1) : 1.0), count(places) {}
+
+  double at(int i) const { return first + i * step; }
+  Cells within(double low, double high) const {
+    return {not_below((low - first) / step), std::min(count, above((high - first) / step))};
   }
 
  private:
-  struct Cells {
-    int begin;
-    int end;  ///< one past the last; not above `begin` where there are none
-  };
-
   /// The first whole number that is not below `t`, none of them negative, and the first above it. (Without SSE4.1
   /// std::ceil and std::floor are calls.)
   static int not_below(double t) { return t <= 0.0 ? 0 : above(t) - (static_cast<double>(above(t) - 1) == t ? 1 : 0); }
   static int above(double t) { return t < 0.0 ? 0 : static_cast<int>(t) + 1; }
+};
 
-  Cells rows_of(const Piece& piece) const {
-    const double reach = piece.reach_y();
-    return {not_below((piece.y - reach - y0_) / rise_), std::min(rows_, above((piece.y + reach - y0_) / rise_))};
+/// How many outlines hold each place of a lattice: where a row of them begins and ends is marked, and the marks are
+/// summed up in the end.
+class LatticeCounts {
+ public:
+  /// None where the places are no lattice, row after row in equal steps up.
+  static std::optional<LatticeCounts> over(const PointsView& places) {
+    const auto count = static_cast<int>(places.rows());
+    int columns = 1;
+    while (columns < count && places(columns, 1) == places(0, 1)) ++columns;
+    if (count == 0 || count % columns != 0) return std::nullopt;
+    const Axis x(places(0, 0), places(columns - 1, 0), columns);
+    const Axis y(places(0, 1), places(count - columns, 1), count / columns);
+    // Steps that are all but rounding are those of nearly equal places.
+    constexpr double kLeast = 1e-6;  // metres
+    if (x.step < kLeast || y.step < kLeast) return std::nullopt;
+    for (int i = 0; i < count; ++i) {
+      const double off_x = places(i, 0) - x.at(i % columns);
+      const double off_y = places(i, 1) - y.at(i / columns);
+      if (std::abs(off_x) > kLeast * x.step || std::abs(off_y) > kLeast * y.step) return std::nullopt;
+    }
+    return LatticeCounts(x, y);
   }
 
+  void add(const Outline& outline) {
+    for (int row = 0; row < y_.count; ++row) {
+      const Cells first = cut(outline.first, row);
+      mark(row, first, 1.0);
+      if (outline.kind == Outline::Kind::one) continue;
+      const Cells second = cut(outline.second, row);
+      // What both hold is counted once if they are united, and not at all if one is taken from the other.
+      mark(row, {std::max(first.begin, second.begin), std::min(first.end, second.end)}, -1.0);
+      if (outline.kind == Outline::Kind::two) mark(row, second, 1.0);
+    }
+  }
+
+  void sum(VectorOut out) const {
+    for (int row = 0; row < y_.count; ++row) {
+      double count = 0.0;
+      for (int column = 0; column < x_.count; ++column) out(row * x_.count + column) = count += marks_(column, row);
+    }
+  }
+
+ private:
+  LatticeCounts(const Axis& x, const Axis& y) : x_(x), y_(y), marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)) {}
+
   Cells cut(const Piece& piece, int row) const {
-    const auto [low, high] = piece.cut(y0_ + row * rise_);
-    if (low > high) return {0, 0};
-    return {not_below((low - x0_) / step_), std::min(columns_, above((high - x0_) / step_))};
+    const double y = y_.at(row);
+    if (std::abs(y - piece.y) > piece.reach_y()) return {0, 0};
+    const auto [low, high] = piece.cut(y);
+    return low > high ? Cells{0, 0} : x_.within(low, high);
   }
 
   void mark(int row, const Cells& cells, double sign) {
@@ -74,8 +93,7 @@ class LatticeCounts {
     marks_(cells.end, row) -= sign;
   }
 
-  int columns_, rows_;
-  double x0_, step_, y0_, rise_;
+  Axis x_, y_;
   Eigen::MatrixXd marks_;
 };
 
@@ -165,10 +183,17 @@ void Particles::move(Particle& particle) {
   ++moved_;
 }
 
-void Particles::count_inside(const PointsView& places, int columns, VectorOut inside) const {
-  LatticeCounts counts(places, columns);
-  for (const Particle& particle : particles_) counts.add(particle.outline);
-  counts.sum(inside);
+void Particles::count_inside(const PointsView& places, VectorOut inside) const {
+  if (std::optional<LatticeCounts> counts = LatticeCounts::over(places)) {
+    for (const Particle& particle : particles_) counts->add(particle.outline);
+    return counts->sum(inside);
+  }
+  inside.setZero();
+  for (const Particle& particle : particles_) {
+    for (Eigen::Index i = 0; i < inside.size(); ++i) {
+      inside(i) += particle.outline.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
+    }
+  }
 }
 
 }  // namespace palpate::footprints

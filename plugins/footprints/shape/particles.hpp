@@ -37,8 +37,8 @@ class Particles {
   /// that this label had before.
   double add(const Touch& touch);
 
-  /// Sets `inside` (M) to how many outlines hold each of the places, a lattice of `columns` columns row by row.
-  void count_inside(const PointsView& places, int columns, VectorOut inside) const;
+  /// Sets `inside` (M) to how many outlines hold each of the places: quickly if those are a lattice, row by row.
+  void count_inside(const PointsView& places, VectorOut inside) const;
 
   /// Touches so far that an outline has wrong, on average.
   double mean_mistakes() const;

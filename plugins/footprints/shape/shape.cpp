@@ -7,7 +7,6 @@
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace palpate::footprints {
@@ -71,15 +70,7 @@ class Shape final : public Footprint {
       Laplace(*kernel_, settings_, points_, on_).probability(places, out);
       return;
     }
-    if (const int columns = lattice_columns(places); columns > 0) {
-      particles_.count_inside(places, columns, out);
-    } else {
-      out.setZero();
-      for (const Particle& particle : particles_.particles()) {
-        for (Eigen::Index i = 0; i < out.size(); ++i)
-          out(i) += particle.outline.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
-      }
-    }
+    particles_.count_inside(places, out);
     out /= particles_.size();
   }
 
@@ -104,26 +95,6 @@ class Shape final : public Footprint {
     settings.largest = options.largest;
     settings.two = settings.without = 0.5 * (1.0 - options.one_piece);
     return OutlinePrior(settings);
-  }
-
-  /// The columns of the lattice that the places are, row after row in equal steps up; 0 where they are none.
-  static int lattice_columns(const PointsView& places) {
-    const Eigen::Index count = places.rows();
-    Eigen::Index columns = 1;
-    while (columns < count && places(columns, 1) == places(0, 1)) ++columns;
-    if (count % columns != 0) return 0;
-    const Eigen::Index rows = count / columns;
-    const double step = columns > 1 ? places(1, 0) - places(0, 0) : 1.0;
-    const double rise = rows > 1 ? places(columns, 1) - places(0, 1) : 1.0;
-    // Steps that are all but rounding are those of nearly equal places.
-    constexpr double kLeast = 1e-6;  // metres
-    if (step < kLeast || rise < kLeast) return 0;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double off_x = places(i, 0) - places(0, 0) - static_cast<double>(i % columns) * step;
-      const double off_y = places(i, 1) - places(0, 1) - static_cast<double>(i / columns) * rise;
-      if (std::abs(off_x) > kLeast * step || std::abs(off_y) > kLeast * rise) return 0;
-    }
-    return static_cast<int>(columns);
   }
 
   double mistaken_;

@@ -7,22 +7,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 namespace palpate::shapes {
 namespace {
 
 using Eigen::Vector3d;
 
-std::string text(double value) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%.4g", value);
-  return out;
-}
+std::string text(double value) { return fmt::format("{:.4g}", value); }
 
 /// "(1, 2, 3) mm"
 std::string place(const Vector3d& point) {
-  return "(" + text(1e3 * point.x()) + ", " + text(1e3 * point.y()) + ", " + text(1e3 * point.z()) + ") mm";
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * point.x(), 1e3 * point.y(), 1e3 * point.z());
 }
 
 Vector3d upright(const std::array<float, 3>& corner, bool y_is_up) {
@@ -59,9 +56,8 @@ void check_areas(const Triangles& mesh, const std::string& file) {
   }
   if (degenerate == 0) return;
   throw Error(file,
-              std::to_string(degenerate) + " of " + std::to_string(mesh.corners.size()) +
-                  " triangles have no area, the first is triangle " + std::to_string(first + 1) + " at " +
-                  place(mesh.points[mesh.corners[first][0]]) + " from the middle of its base",
+              fmt::format("{} of {} triangles have no area, the first is triangle {} at {} from the middle of its base",
+                          degenerate, mesh.corners.size(), first + 1, place(mesh.points[mesh.corners[first][0]])),
               "remove degenerate triangles where the mesh was made");
 }
 

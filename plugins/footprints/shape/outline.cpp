@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "piece.hpp"
+#include "outline.hpp"
 
 #include <algorithm>
 #include <limits>
