@@ -7,14 +7,14 @@ namespace palpate::kernels {
 struct Multiply {
   static constexpr double kNothing = 1.0;
 
-  template <class Whole>
-  static void apply(Whole whole, const Piece& part) {
+  template <class Whole, class Part>
+  static void apply(Whole whole, const Part& part) {
     whole *= part;
   }
   /// The slopes of this part times the values of those before it, and theirs times its value: no division, so that a
   /// value of 0 does no harm.
   template <class Slopes, class Own, class Whole>
-  static void join_slopes(Slopes before, Own& own, const Whole& whole, const Piece& part) {
+  static void join_slopes(Slopes before, Own& own, const Whole& whole, const Eigen::ArrayXd& part) {
     own.array().colwise() *= whole;
     before.array().colwise() *= part;
   }
@@ -30,8 +30,8 @@ class Product final : public Composed<Multiply> {
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
     parts_[0]->axis_covariance(axis, a, b, out);
-    join_others(out, [&](const Kernel& part, Eigen::Index from, Eigen::Index column, VectorOut piece) {
-      part.axis_covariance(axis, a.segment(from, piece.size()), b.segment(column, 1), piece);
+    join_others(out, [&](const Kernel& part, Eigen::Index j, VectorOut own) {
+      part.axis_covariance(axis, a, b.segment(j, 1), own);
     });
   }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One descent of Tapper, and what it makes of the force that the robot tells.
 #include "baxter/tapper.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,11 +31,6 @@ constexpr double kEvenTo = 1.0;     ///< s, for so long its force is looked at
 constexpr std::size_t kFewestEven = 10;
 constexpr double kSteady = 1.5;  ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
 
-Eigen::Vector3d average(const std::vector<Eigen::Vector3d>& readings) {
-  const Eigen::Vector3d sum = std::accumulate(readings.begin(), readings.end(), Eigen::Vector3d(0, 0, 0));
-  return sum / static_cast<double>(readings.size());
-}
-
 /// Of each component; at least one reading.
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
   Eigen::Vector3d out;
@@ -48,30 +43,24 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
   return out;
 }
 
-/// The mean force of a descent from when the arm, which trails its set-point, comes down evenly until shortly after.
-/// Where it rises meanwhile a contact begins: that is no force of a moving arm.
+/// The mean force along z of a descent from when the arm, which trails its set-point, comes down evenly until shortly
+/// after. Where it rises meanwhile a contact begins: that is no force of a moving arm.
 class EvenDescent {
  public:
   /// Takes a reading `time` seconds after the set-point began to come down; the mean when it is there.
-  std::optional<Eigen::Vector3d> add(double time, const Eigen::Vector3d& reading) {
-    if (time >= kEvenTo) return mean();
-    if (time < kEvenFrom) readings_.clear();
-    if (time >= kEvenFrom) readings_.push_back(reading);
-    return std::nullopt;
+  std::optional<double> add(double time, double force) {
+    if (time < kEvenFrom) forces_.clear();
+    if (time >= kEvenFrom && time < kEvenTo) forces_.push_back(force);
+    if (time < kEvenTo || forces_.size() < kFewestEven) return std::nullopt;
+    const std::vector<double> forces = std::exchange(forces_, {});
+    const auto count = static_cast<Eigen::Index>(forces.size());
+    const Eigen::Map<const Eigen::VectorXd> all(forces.data(), count);
+    const double rise = all.tail(count - count / 2).mean() - all.head(count / 2).mean();
+    return std::abs(rise) < kSteady ? std::optional<double>(all.mean()) : std::nullopt;
   }
 
  private:
-  std::optional<Eigen::Vector3d> mean() {
-    const std::vector<Eigen::Vector3d> readings = std::exchange(readings_, {});
-    if (readings.size() < kFewestEven) return std::nullopt;
-    const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
-    const Eigen::Vector3d early = average({readings.begin(), middle});
-    const Eigen::Vector3d late = average({middle, readings.end()});
-    if (std::abs(late.z() - early.z()) >= kSteady) return std::nullopt;
-    return average(readings);
-  }
-
-  std::vector<Eigen::Vector3d> readings_;
+  std::vector<double> forces_;
 };
 
 /// While the sign is not known there are two taps, one for each. They are led alike until one of them feels a contact;
@@ -116,10 +105,7 @@ class SignedTap {
 /// felt at rest before a tap and after it can be compared.
 void Tapper::rest_from_above(const Path& column) {
   settle(column.front());
-  for (double along = 0.0; along < kFromAbove;) {
-    along = std::min(kFromAbove, column.advance(along, options_.motion.speed, kPeriod));
-    step(column.at(along));
-  }
+  follow(column, options_.motion.speed, kFromAbove);
   settle(column.at(kFromAbove));
 }
 
@@ -154,7 +140,8 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
       pulled = 0;
       if (!signed_tap.tap().taring() && !signed_tap.tap().done()) {
         // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
-        zero_ = average(std::exchange(tare, {}));
+        const Eigen::Vector3d sum = std::accumulate(tare.begin(), tare.end(), Eigen::Vector3d(0, 0, 0));
+        zero_ = sum / static_cast<double>(std::exchange(tare, {}).size());
         if (std::exchange(first, false)) at_hover = zero_;
         watch_.set_tare(zero_);
       }
@@ -162,7 +149,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
       // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
       // expected a soft contact.
       if (!moving && plan.start >= plan.hover) {
-        if (const auto mean = even.add(signed_tap.tap().even_for(), reading)) moving = mean->z() - zero_.z();
+        if (const auto mean = even.add(signed_tap.tap().even_for(), reading.z())) moving = *mean - zero_.z();
       }
       // An arm that goes up rubs the other way, which is no pull.
       pulled = coming_down && sign_ * (felt - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
@@ -176,23 +163,17 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     step(command);
   }
   retreat(column.back(plan.hover + kFromAbove - height()));
-  const GuardedTap& tap = signed_tap.tap();
-  switch (tap.outcome()) {
-    case Outcome::contact:
-      rest_from_above(column);
-      if (!believed(at_hover, force_at_rest(at(plan.hover)), motion.threshold)) {
-        return failed(Outcome::aborted,
-                      "the force did not go back to its zero when the tool was clear: its zero moved "
-                      "during the tap, and the contact may be none");
-      }
-      if (moving) learn_moving(*moving);
-      shown_sign_ = signed_tap.sign();
-      return {Outcome::contact, tap.height(), tap.peak_force(), 0.0, {}};
-    case Outcome::timeout:
-      return failed(Outcome::timeout, "the tap took longer than motion.timeout");
-    default:
-      return failed(tap.outcome(), "the descent ended without a contact");
+  const Contact contact = signed_tap.tap().result();
+  if (contact.outcome != Outcome::contact) return contact;
+  rest_from_above(column);
+  if (!believed(at_hover, force_at_rest(at(plan.hover)), motion.threshold)) {
+    return failed(Outcome::aborted,
+                  "the force did not go back to its zero when the tool was clear: its zero moved during the tap, and "
+                  "the contact may be none");
   }
+  if (moving) learn_moving(*moving);
+  shown_sign_ = signed_tap.sign();
+  return contact;
 }
 
 /// Goes up from where it may press. What it presses with goes, and so does what the joints rub against, which turns

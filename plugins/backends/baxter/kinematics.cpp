@@ -42,20 +42,14 @@ struct Arm::Chain {
 
 Arm::Arm(const Eigen::Vector3d& tip) : chain_(std::make_unique<Chain>(tip)) {}
 Arm::~Arm() = default;
-Arm::Arm(Arm&&) noexcept = default;
-Arm& Arm::operator=(Arm&&) noexcept = default;
 
 Pose Arm::tip(const Joints& joints) const {
   KDL::Frame at;
   chain_->forward.JntToCart(array_of(joints), at);
   Pose out;
   out.position = {at.p.x(), at.p.y(), at.p.z()};
-  double x = 0.0;
-  double y = 0.0;
-  double z = 0.0;
-  double w = 0.0;
-  at.M.GetQuaternion(x, y, z, w);
-  out.rotation = Eigen::Quaterniond(w, x, y, z);
+  Eigen::Quaterniond& q = out.rotation;
+  at.M.GetQuaternion(q.x(), q.y(), q.z(), q.w());
   return out;
 }
 

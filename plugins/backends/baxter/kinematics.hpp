@@ -16,8 +16,6 @@ class Arm {
   /// `tip`: the point of the tool that touches, in the frame left_hand, whose z axis goes on along the forearm; metres.
   explicit Arm(const Eigen::Vector3d& tip);
   ~Arm();
-  Arm(Arm&&) noexcept;
-  Arm& operator=(Arm&&) noexcept;
 
   /// Where the tip is, and how the hand is turned.
   Pose tip(const Joints& joints) const;

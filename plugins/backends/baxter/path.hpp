@@ -85,6 +85,8 @@ class Planner {
 
  private:
   Joints solve(const Pose& tip, const Joints& seed, const char* what) const;
+  /// The tip from where the joints `from` have it straight up by `rise`, or down; each height is planned from the last.
+  Path vertical(const Joints& from, Pose tip, double rise, const char* way) const;
 
   Eigen::Isometry3d frame_;  ///< of the scene, in `base`
   const Arm& arm_;

@@ -3,7 +3,7 @@
 #include "baxter/tapper.hpp"
 
 #include "baxter/words.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "baxter/tapper.hpp"
 
 #include "baxter/words.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -140,13 +140,13 @@ void Tapper::go_to(const Joints& hover) {
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
   climb(up);
-  follow(across, options_.motion.travel_speed);
+  follow(across, options_.motion.travel_speed, across.length());
   settle(hover);
 }
 
 void Tapper::climb(const Path& up) {
   if (!(up.length() > 0.0)) return;
-  follow(up, options_.motion.retreat_speed);
+  follow(up, options_.motion.retreat_speed, up.length());
   await_height(up.end());
 }
 
@@ -162,9 +162,9 @@ void Tapper::await_height(const Joints& top) {
   }
 }
 
-void Tapper::follow(const Path& path, double speed) {
-  for (double along = 0.0; along < path.length();) {
-    along = path.advance(along, speed, kPeriod);
+void Tapper::follow(const Path& path, double speed, double end) {
+  for (double along = 0.0; along < end;) {
+    along = std::min(end, path.advance(along, speed, kPeriod));
     step(path.at(along));
   }
 }

@@ -62,7 +62,7 @@ class Tapper {
   void await_fit(bool moving);
   void expect_fit();
   void go_to(const Joints& hover);
-  void follow(const Path& path, double speed);
+  void follow(const Path& path, double speed, double end);
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up);

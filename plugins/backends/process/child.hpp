@@ -15,29 +15,6 @@
 
 namespace palpate::process {
 
-/// All that a program started, and what those started, however far away they have gone: into a group or a session of
-/// their own, or left behind by whoever started them.
-class Descent {
- public:
-  /// From now on the processes that a program leaves behind become this one's children. To be made before it starts.
-  Descent();
-
-  /// NAME=VALUE for the program's environment, which those that it starts inherit.
-  const std::string& mark() const { return mark_; }
-
-  /// Finds what there is of the descent of `program` now. To be called before the program is asked to end: whoever it
-  /// leaves behind without the mark is known by then.
-  void look(pid_t program);
-
-  /// Ends, with SIGKILL, `program`, which has not been reaped yet, its group, and all of its descent, and reaps what of
-  /// that is a child of this process.
-  void end(pid_t program);
-
- private:
-  std::string mark_;
-  std::set<pid_t> found_;  ///< the program, too
-};
-
 /// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
 /// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
 /// directory, and of open files the three standard ones and at most one more.
@@ -79,11 +56,17 @@ class Child {
   bool gone() const;
   bool wait_for_end();
 
+  // All that the program started, and what those started, however far away they have gone: into a group or a session of
+  // their own, or left behind by whoever started them.
+  void find_kin();
+  void end_kin();
+
   Diary diary_;
-  Descent descent_;
-  Descriptor input_;   ///< we write
-  Descriptor output_;  ///< we read
-  std::string heard_;  ///< and not yet taken
+  std::string mark_;     ///< NAME=VALUE of its environment, which those that it starts inherit
+  std::set<pid_t> kin_;  ///< those that were found, itself too
+  Descriptor input_;     ///< we write
+  Descriptor output_;    ///< we read
+  std::string heard_;    ///< and not yet taken
   pid_t pid_ = -1;
 };
 

@@ -9,7 +9,7 @@
 // in the record.
 #include "process/child.hpp"
 #include "process/protocol.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <palpate/error.hpp>
 

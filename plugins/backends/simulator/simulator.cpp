@@ -2,8 +2,6 @@
 #include "simulator/simulator.hpp"
 
 #include "simulator/arm.hpp"
-#include "simulator/normal.hpp"
-#include "simulator/tool.hpp"
 #include "tapping/guarded_tap.hpp"
 
 #include <palpate/error.hpp>
@@ -17,16 +15,13 @@
 namespace palpate::backends {
 namespace {
 
-bool any(const Effects& effects) {
-  return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.tip_radius ||
-         effects.pose_noise || effects.missed_contacts || effects.false_contacts || effects.reach || effects.shaft;
-}
-
-constexpr const char* kTooLong = "the tap took longer than motion.timeout";
-
 bool change_motion(const Effects& effects) {
   return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
          effects.missed_contacts || effects.false_contacts;
+}
+
+bool any(const Effects& effects) {
+  return change_motion(effects) || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft;
 }
 
 }  // namespace
@@ -65,7 +60,8 @@ Contact Simulator::tap(const TapRequest& request) {
 Contact Simulator::ideal_tap(const tapping::Descent& descent, double surface) const {
   const double down = tapping::ideal_seconds(options_.motion, descent, surface);
   const double up = tapping::retreat_seconds(options_.motion, descent, surface);
-  if (down > options_.motion.timeout) return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout + up, kTooLong};
+  if (down > options_.motion.timeout)
+    return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout + up, tapping::kTooLong};
   return {Outcome::contact, surface, options_.motion.threshold, down + up, {}};
 }
 
@@ -105,15 +101,9 @@ Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, do
     felt = touch.feel(arm.position());
     arm.follow(tap.next(felt.height, felt.force));
   }
-  const double seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
-  switch (tap.outcome()) {
-    case Outcome::contact:
-      return {Outcome::contact, tap.height(), tap.peak_force(), seconds, {}};
-    case Outcome::timeout:
-      return {Outcome::timeout, 0.0, 0.0, seconds, kTooLong};
-    default:
-      return {tap.outcome(), 0.0, 0.0, seconds, "the descent ended without a contact"};
-  }
+  Contact contact = tap.result();
+  contact.seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
+  return contact;
 }
 #endif
 

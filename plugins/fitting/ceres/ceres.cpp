@@ -15,10 +15,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace palpate::fitting {
 
@@ -161,21 +162,16 @@ Eigen::VectorXd random_start(const std::vector<Expectation>& expectations, Rando
   return within_limits(x, expectations);
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 bool better(const Spot& a, const Spot& b) { return a.valid && (!b.valid || a.value > b.value); }
 
 /// What every start came to, in words.
 std::string told(const std::vector<Spot>& spots, const Model& model) {
   std::string values;
   for (const Spot& spot : spots) {
-    values += (values.empty() ? "" : " / ") + (spot.valid ? number(model.total(spot.value)) : "nothing");
+    values += values.empty() ? "" : " / ";
+    values += spot.valid ? fmt::format("{:.6g}", model.total(spot.value)) : "nothing";
   }
-  return std::to_string(spots.size()) + (spots.size() == 1 ? " start: " : " starts: ") + values;
+  return fmt::format("{} {}: {}", spots.size(), spots.size() == 1 ? "start" : "starts", values);
 }
 
 }  // namespace

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "outline.hpp"
 
+#include <palpate/error.hpp>
+
 #include <algorithm>
 #include <limits>
 
 namespace palpate::footprints {
+namespace {
+
+/// Whether a piece is large enough that another may be taken from it.
+bool may_lose(const Piece& piece, double smallest) { return piece.a >= smallest; }
+
+}  // namespace
 
 double Piece::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
@@ -51,6 +59,103 @@ void Piece::order_axes() {
   const double turned = -sine;
   sine = cosine;
   cosine = turned;
+}
+
+Piece OutlinePrior::draw_form(double longest, Random& random) const {
+  const double shortest = 0.5 * settings_.smallest;
+  const auto half_axis = [&] { return shortest * std::pow(longest / shortest, random.uniform()); };
+  Piece out;
+  out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
+  const double one = half_axis();
+  const double two = half_axis();
+  out.a = std::max(one, two);
+  out.b = std::min(one, two);
+  out.turn(kPi * random.uniform());
+  return out;
+}
+
+Piece OutlinePrior::draw_piece(Random& random) const {
+  // Drawn until it fits: that is what the prior says. Small ones nearly always fit where any do.
+  constexpr int kPatience = 100000;
+  const double width = settings_.area.width;
+  const double depth = settings_.area.depth;
+  // What is longer than the diagonal would never fit, so it need not be drawn.
+  const double longest = 0.5 * std::min(settings_.largest, std::hypot(width, depth));
+  for (int tries = 0; tries < kPatience; ++tries) {
+    Piece out = draw_form(longest, random);
+    const double reach_x = out.reach_x();
+    const double reach_y = out.reach_y();
+    if (out.a > settings_.most_slender * out.b) continue;
+    if (2.0 * reach_x >= width || 2.0 * reach_y >= depth) continue;
+    out.x = reach_x + (width - 2.0 * reach_x) * random.uniform();
+    out.y = reach_y + (depth - 2.0 * reach_y) * random.uniform();
+    return out;
+  }
+  throw Error("footprint", "hardly any outline of this prior fits into the area", "make smallest and largest smaller");
+}
+
+Piece OutlinePrior::draw_second(Outline::Kind kind, const Piece& first, Random& random) const {
+  if (kind == Outline::Kind::two) return draw_piece(random);
+  Piece out = draw_form(first.a, random);
+  double u, v;
+  do {
+    u = 2.0 * random.uniform() - 1.0;
+    v = 2.0 * random.uniform() - 1.0;
+  } while (first.family == Piece::Family::ellipse && u * u + v * v > 1.0);
+  out.x = first.x + first.cosine * u * first.a - first.sine * v * first.b;
+  out.y = first.y + first.sine * u * first.a + first.cosine * v * first.b;
+  return out;
+}
+
+Outline OutlinePrior::draw(Random& random) const {
+  for (;;) {
+    Outline out;
+    const double kind = random.uniform();
+    out.first = draw_piece(random);
+    if (kind >= settings_.two + settings_.without) return out;
+    out.kind = kind < settings_.two ? Outline::Kind::two : Outline::Kind::without;
+    if (out.kind == Outline::Kind::without && !may_lose(out.first, settings_.smallest)) continue;
+    out.second = draw_second(out.kind, out.first, random);
+    return out;
+  }
+}
+
+double OutlinePrior::odds(Outline::Kind kind) const {
+  if (kind == Outline::Kind::one) return 1.0;
+  return (kind == Outline::Kind::two ? settings_.two : settings_.without) / (1.0 - settings_.two - settings_.without);
+}
+
+double OutlinePrior::family(const Piece& piece) const {
+  return piece.family == Piece::Family::ellipse ? settings_.ellipses : 1.0 - settings_.ellipses;
+}
+
+double OutlinePrior::centre_density(const Piece& piece) const {
+  if (2.0 * piece.b < settings_.smallest || 2.0 * piece.a > settings_.largest) return 0.0;
+  if (piece.a > settings_.most_slender * piece.b) return 0.0;
+  const double reach_x = piece.reach_x();
+  const double reach_y = piece.reach_y();
+  const double width = settings_.area.width;
+  const double depth = settings_.area.depth;
+  if (piece.x < reach_x || piece.x + reach_x > width || piece.y < reach_y || piece.y + reach_y > depth) return 0.0;
+  return 1.0 / ((width - 2.0 * reach_x) * (depth - 2.0 * reach_y));
+}
+
+double OutlinePrior::second_centre_density(const Outline& outline) const {
+  if (outline.kind == Outline::Kind::two) return centre_density(outline.second);
+  const Piece& first = outline.first;
+  if (!may_lose(first, settings_.smallest)) return 0.0;
+  if (2.0 * outline.second.b < settings_.smallest || outline.second.a > first.a) return 0.0;
+  return first.contains(outline.second.x, outline.second.y) ? 1.0 / first.extent() : 0.0;
+}
+
+double OutlinePrior::density(const Outline& outline) const {
+  const double first = centre_density(outline.first) * family(outline.first);
+  if (outline.kind == Outline::Kind::one || first <= 0.0) return first;
+  const double second = second_centre_density(outline) * family(outline.second);
+  // Half axes of what is taken away are spread over a range that the first piece gives.
+  const double range =
+      outline.kind == Outline::Kind::without ? std::log(2.0 * outline.first.a / settings_.smallest) : 1.0;
+  return odds(outline.kind) * first * second / (range * range);
 }
 
 }  // namespace palpate::footprints

@@ -3,9 +3,9 @@
 // (resample-move: Gilks and Berzuini 2001; moves between one and two pieces: Green 1995).
 #pragma once
 
-#include "moves.hpp"
-#include "prior.hpp"
+#include "outline.hpp"
 
+#include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
 
 #include <vector>

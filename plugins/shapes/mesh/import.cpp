@@ -121,20 +121,14 @@ void check_ply(const std::string& bytes, const std::string& file) {
   if (there < rows) throw Error(file, "is cut short: its header promises more rows than there are", kExportAgain);
 }
 
-/// As the middle of a sentence.
-std::string reason(std::string message) {
-  while (!message.empty() && (message.back() == '.' || std::isspace(static_cast<unsigned char>(message.back())) != 0)) {
-    message.pop_back();
-  }
-  return message;
-}
-
 Soup triangles_by_assimp(const std::string& bytes, const std::string& file, const std::string& format) {
   Assimp::Importer importer;
   importer.SetIOHandler(new NoOtherFiles);  // which the importer deletes
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, format.c_str());
   if (scene == nullptr) {
-    throw Error(file, "cannot be read as " + format + ": " + reason(importer.GetErrorString()), kExportAgain);
+    std::string reason = importer.GetErrorString();
+    reason.erase(reason.find_last_not_of(". \t\r\n") + 1);
+    throw Error(file, "cannot be read as " + format + ": " + reason, kExportAgain);
   }
   Soup out;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Objects from a file of triangles. The file is read when the config is resolved, for its hash, and when the scene is
 // built. Where a line first meets the surface, Embree finds: this is its only user.
-#include "options.hpp"
 #include "triangles.hpp"
 
 #include <palpate/error.hpp>
@@ -29,21 +28,12 @@ using Eigen::Vector3d;
 class Mesh final : public Shape {
  public:
   using Options = MeshOptions;
-  Mesh(const Options& options, const Context&) : Mesh(load(options)) {}
+  Mesh(const Options& options, const Context&);
 
   double first_hit(const Line& line) const override;
   double support(const Vector3d& direction) const override;
 
  private:
-  explicit Mesh(Triangles mesh);
-
-  static Triangles load(const Options& options) {
-    const Frame frame{options.unit, options.up == MeshOptions::Up::y};
-    Triangles mesh = join(import_triangles(read_file(options.file), options.file), frame, options.file);
-    check_surface(mesh, options.holes == MeshOptions::Holes::allow, options.file);
-    return mesh;
-  }
-
   void check_embree() const {
     const RTCError code = rtcGetDeviceError(device_.get());
     if (code == RTC_ERROR_NONE) return;
@@ -61,7 +51,7 @@ class Mesh final : public Shape {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-Mesh::Mesh(Triangles mesh) : mesh_(std::move(mesh)) {
+Mesh::Mesh(const Options& options, const Context&) : mesh_(read_surface(options)) {
   Box all;
   for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
     if (i % kFew == 0) boxes_.emplace_back();

@@ -157,27 +157,17 @@ class Solver {
   }
 
  private:
+  /// It is looked for each time: it may have been started again, elsewhere.
   std::string answer(const std::string& request, Deadline deadline) {
     const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
-    if (address_) {
-      try {
-        return call_service(*address_, kSolverService, md5, request, deadline);
-      } catch (const Unreached& reason) {
-        address_.reset();
-        if (reason.why() != Unreached::Why::refused) throw;
-        // It may have been started again, elsewhere.
-      }
-    }
-    const auto uri = master_.service(kSolverService, deadline);
+    const auto uri = master_.told("lookupService", kSolverService, deadline);
     if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
     const auto place = parse_uri(*uri, "rosrpc");
     if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
-    address_ = look_up(place->host, place->port, deadline);
-    return call_service(*address_, kSolverService, md5, request, deadline);
+    return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
   }
 
   Master master_;
-  std::optional<Address> address_;  ///< where IKService was found
 };
 
 class RosRobot final : public Link {
