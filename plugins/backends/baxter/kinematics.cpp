@@ -26,18 +26,14 @@ KDL::Chain left_arm(const Eigen::Vector3d& tip) {
   return out;
 }
 
-Eigen::Matrix<double, 6, 1> weights() {
-  return (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished();
-}
-
 }  // namespace
 
 struct Arm::Chain {
-  explicit Chain(const Eigen::Vector3d& tip)
-      : arm(left_arm(tip)), forward(arm), inverse(arm, weights(), kAccuracy, kIterations) {}
+  explicit Chain(const Eigen::Vector3d& tip) : arm(left_arm(tip)) {}
   KDL::Chain arm;
-  KDL::ChainFkSolverPos_recursive forward;
-  KDL::ChainIkSolverPos_LMA inverse;
+  KDL::ChainFkSolverPos_recursive forward{arm};
+  KDL::ChainIkSolverPos_LMA inverse{arm, (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished(),
+                                    kAccuracy, kIterations};
 };
 
 Arm::Arm(const Eigen::Vector3d& tip) : chain_(std::make_unique<Chain>(tip)) {}

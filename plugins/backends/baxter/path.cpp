@@ -145,18 +145,17 @@ Path Planner::up(const Joints& from, double rise) const {
   return vertical(from, arm_.tip(from), std::max(0.0, rise), "on the way up");
 }
 
-int check_reach(const Planner& planner, const Area& area, double hover, double floor, double speed, double spacing) {
+int check_reach(const Area& area, double spacing, const std::function<void(const Target&)>& plan) {
   const auto count = [&](double length) { return static_cast<int>(std::ceil(length / spacing)) + 1; };
   const int nx = count(area.width);
   const int ny = count(area.depth);
-  const Target middle{0.5 * area.width, 0.5 * area.depth};
   int missed = 0;
   std::string first;
   for (int i = 0; i < nx; ++i) {
     for (int j = 0; j < ny; ++j) {
       const Target place{area.width * i / (nx - 1), area.depth * j / (ny - 1)};
       try {
-        planner.column(place, middle, hover, floor, speed);
+        plan(place);
       } catch (const NoPath& none) {
         if (missed++ > 0) continue;
         first = fmt::format("({:.2f} cm, {:.2f} cm): {}", 100.0 * place.x, 100.0 * place.y, none.reason);

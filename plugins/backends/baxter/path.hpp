@@ -93,9 +93,8 @@ class Planner {
   Inverse inverse_;
 };
 
-/// The joints that bring the tip to every place of the area, on a grid of `spacing` metres, all the way down. Throws
-/// Error (kind `run`) that counts the places which cannot be reached and says why for the first.
-/// Returns how many places were looked at.
-int check_reach(const Planner& planner, const Area& area, double hover, double floor, double speed, double spacing);
+/// Plans for every place of the area, on a grid of `spacing` metres. Throws Error (kind `run`) that counts the places
+/// for which `plan` throws NoPath and says why for the first. Returns how many places were looked at.
+int check_reach(const Area& area, double spacing, const std::function<void(const Target&)>& plan);
 
 }  // namespace palpate::baxter

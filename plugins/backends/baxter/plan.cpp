@@ -28,7 +28,6 @@ constexpr double kUpright = 0.35;      ///< rad that the tool may lean before th
 
 /// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
 constexpr double kLeastRatio = 0.27;
-constexpr double kAnyRatio = std::numeric_limits<double>::infinity();
 constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
 constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
 
@@ -68,8 +67,8 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
     const char* reason;
     const char* remedy;
   } settings[] = {
-      {"set_speed_ratio", seen.speed_ratio, "0.3", kLeastRatio, kAnyRatio, ", at which the arm cannot follow",
-       "set it to 0.3, on /robot/limb/left/set_speed_ratio"},
+      {"set_speed_ratio", seen.speed_ratio, "0.3", kLeastRatio, std::numeric_limits<double>::infinity(),
+       ", at which the arm cannot follow", "set it to 0.3, on /robot/limb/left/set_speed_ratio"},
       {"joint_command_timeout", seen.command_timeout, "0.2 s", kLeastTimeout, kMostTimeout,
        " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the next",
        "set it to 0.2, on /robot/limb/left/joint_command_timeout"},
@@ -121,7 +120,10 @@ void Tapper::check() {
   }
   try {
     if (options_.calibration) column(bare());
-    if (options_.dry_run) try_reach();
+    if (options_.dry_run) {
+      const int places = check_reach(area, kReachSpacing, [this](const Target& place) { column(place); });
+      note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
+    }
   } catch (const NoPath& none) {
     throw trouble("calibration.at", none.reason,
                   "take another place, or move the area: its middle near x = 60 cm, y = 20 cm of base");
@@ -183,13 +185,6 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   return out;
 }
 
-void Tapper::try_reach() {
-  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
-  const int places = check_reach(planner_, scene_.area(), descent.hover + kFromAbove, descent.floor,
-                                 fastest(options_.motion), kReachSpacing);
-  note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
-}
-
 /// Reads until the robot is fit; if it is not within a second, what was read last says why.
 void Tapper::await_fit(bool moving) {
   take(robot_.read());
@@ -213,24 +208,20 @@ Path Tapper::way_up() const {
 
 /// Of a fault one goes up by own kinematics: who knows what else has failed.
 std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
-  const bool asked = options_.inverse_kinematics == BaxterOptions::InverseKinematics::robot && !recovering_;
-  return asked ? ask_robot(tip, seed) : arm_.solve(tip, seed, kLimitMargin);
-}
-
-std::optional<Joints> Tapper::ask_robot(const Pose& tip, const Joints& seed) {
-  const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
+  if (options_.inverse_kinematics == BaxterOptions::InverseKinematics::own || recovering_) {
+    return arm_.solve(tip, seed, kLimitMargin);
+  }
   // Many poses are asked for, and each may take a second.
   if (interrupted()) throw Fault{"interrupted", Then::silence, false};
-  const Robot::Answer answer = robot_.solve(
+  const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
+  const std::optional<Joints> answer = robot_.solve(
       {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},
       seed);
-  if (!answer.trouble.empty()) throw Fault{answer.trouble};
-  if (!answer.joints || !answer.joints->allFinite() || beyond_limits(*answer.joints, kLimitMargin) >= 0)
-    return std::nullopt;
-  const Pose reached = arm_.tip(*answer.joints);
+  if (!answer || !answer->allFinite() || beyond_limits(*answer, kLimitMargin) >= 0) return std::nullopt;
+  const Pose reached = arm_.tip(*answer);
   const bool there = (reached.position - tip.position).norm() < kPoseError &&
                      reached.rotation.angularDistance(tip.rotation) < kTurnError;
-  return there ? answer.joints : std::nullopt;
+  return there ? answer : std::nullopt;
 }
 
 }  // namespace palpate::baxter

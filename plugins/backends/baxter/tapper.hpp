@@ -58,7 +58,6 @@ class Tapper {
   void calibrate(const Contact& contact);
   void check_robot() const;
   std::optional<Fault> listen();
-  void try_reach();
   void await_fit(bool moving);
   void expect_fit();
   void go_to(const Joints& hover);
@@ -79,7 +78,6 @@ class Tapper {
   Path column(const Target& place) const;
   Target bare() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
   std::optional<Joints> inverse(const Pose& tip, const Joints& seed);
-  std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);
   std::optional<Fault> hold(Joints joints);

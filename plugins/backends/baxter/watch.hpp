@@ -105,7 +105,7 @@ class Watch {
     double at = 0.0;
   };
 
-  Watch(const Workspace& workspace, double force_stop);
+  Watch(const Workspace& workspace, double force_stop) : workspace_(workspace), force_stop_(force_stop) {}
 
   /// Forgets what was commanded and felt: before a motion, after a pause in which nothing was sent.
   void begin();
@@ -132,7 +132,9 @@ class Watch {
   /// Tells what is sent, so that look() can judge whether the arm follows.
   void sent(double time, const Joints& target);
   /// The last of what was sent; none since begin().
-  std::optional<Joints> last_sent() const;
+  std::optional<Joints> last_sent() const {
+    return sent_.empty() ? std::nullopt : std::optional<Joints>(sent_.back().target);
+  }
 
   /// The rules of the robot's state, of who sends it, and of the age and soundness of the data: what must hold even
   /// while nothing moves. `moving`: the arm must be enabled.

@@ -61,19 +61,19 @@ bool executable(const std::string& file) {
   return std::filesystem::is_regular_file(file, none) && ::access(file.c_str(), X_OK) == 0;
 }
 
-/// The file that runs as `program`: a path as it stands, a bare name from the folders of PATH. None if no such file may
-/// be executed.
-std::optional<std::string> find_program(const std::string& program) {
-  if (program.find('/') != std::string::npos) {
-    return executable(program) ? std::optional<std::string>(program) : std::nullopt;
-  }
+/// The file that runs as `program`: a path as it stands, a bare name from the folders of PATH. Throws Error where no
+/// such file may be executed.
+std::string find_program(const std::string& program) {
+  const bool is_path = program.find('/') != std::string::npos;
+  if (is_path && executable(program)) return program;
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
-  for (std::string folder; std::getline(folders, folder, ':');) {
+  for (std::string folder; !is_path && std::getline(folders, folder, ':');) {
     const std::string file = (folder.empty() ? "." : folder) + "/" + program;
     if (executable(file)) return file;
   }
-  return std::nullopt;
+  throw Error("command", "there is no program " + process::shown(program),
+              "a name is looked for in PATH, a path from the folder in which palpate runs");
 }
 
 }  // namespace
@@ -122,14 +122,10 @@ class Process final : public Backend {
 
   /// Throws Error when there is no such program.
   Process(const Options& options, const Context& context)
-      : options_(options), context_(context), words_(split_command(options.command).value()) {
-    const std::optional<std::string> file = find_program(words_.front());
-    if (!file) {
-      throw Error("command", "there is no program " + process::shown(words_.front()),
-                  "a name is looked for in PATH, a path from the folder in which palpate runs");
-    }
-    file_ = *file;
-  }
+      : options_(options),
+        context_(context),
+        words_(split_command(options.command).value()),
+        file_(find_program(words_.front())) {}
 
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();
@@ -140,7 +136,11 @@ class Process final : public Backend {
       seconds += options_.start;
     }
     process::Answer answer = child_ ? ask(request, patience(begin, seconds)) : left_behind();
-    if (!answer.in_step) end_program(answer.contact);
+    if (!answer.in_step) {
+      child_.reset();
+      if (answer.contact.ends_run)
+        answer.contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+    }
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
   }
@@ -193,12 +193,6 @@ class Process final : public Backend {
   }
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
-
-  /// Of an answer after which nobody knows what the program does.
-  void end_program(Contact& contact) {
-    child_.reset();
-    if (contact.ends_run) contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
-  }
 
   process::Answer ask(const TapRequest& request, const process::Patience& patience) {
     std::string line;

@@ -2,8 +2,6 @@
 #include "simulator/arm.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace palpate::backends {
 namespace {

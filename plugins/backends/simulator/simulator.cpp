@@ -26,12 +26,6 @@ bool any(const Effects& effects) {
 
 }  // namespace
 
-void SimulatorOptions::list(Fields& fields) {
-  fields.section(motion, Field("motion", "the tapping motion"));
-  fields.real(
-      pace, Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
-}
-
 Simulator::Simulator(const Options& options, const Context& context)
     : options_(options),
       context_(context),

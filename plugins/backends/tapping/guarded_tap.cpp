@@ -123,10 +123,19 @@ double GuardedTap::next(double height, double force, bool fresh) {
       if (ramp(goal_, motion_.adaptive_hover->speed) && arrived(height)) enter(Stage::descend);
       break;
     case Stage::descend:
-      descend(height);
+      if (above_ >= kConsecutive) {
+        touched(height);
+      } else if (ramp(goal_, motion_.speed)) {
+        enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
+      }
       break;
     case Stage::pause:
-      if (arm_ == Arm::real) tare_in_pause();
+      if (arm_ == Arm::real && waited(motion_.pause) && summed_ > 0) {
+        // The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which
+        // must not be tared away.
+        const double mean = sum_ / summed_;
+        if (std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
+      }
       if (above_ >= kConsecutive) {
         touched(height);
       } else if (waited(motion_.pause)) {
@@ -206,22 +215,6 @@ bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for(
 double GuardedTap::even_for() const {
   const bool even = stage_ == Stage::descend || stage_ == Stage::fine;
   return even ? static_cast<double>(periods_ - entered_) * kPeriod : 0.0;
-}
-
-void GuardedTap::descend(double height) {
-  if (above_ >= kConsecutive) {
-    touched(height);
-  } else if (ramp(goal_, motion_.speed)) {
-    enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
-  }
-}
-
-/// The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which must not
-/// be tared away.
-void GuardedTap::tare_in_pause() {
-  if (!waited(motion_.pause) || summed_ == 0) return;
-  const double mean = sum_ / summed_;
-  if (std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
 }
 
 void GuardedTap::enter(Stage stage) {

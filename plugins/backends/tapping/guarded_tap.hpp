@@ -91,8 +91,6 @@ class GuardedTap {
   void enter(Stage stage);
   void touched(double height);
   void conclude(double height);
-  void tare_in_pause();
-  void descend(double height);
   bool ramp(double goal, double speed);
   bool arrived(double height);
   bool waited(double seconds) const;

@@ -64,8 +64,6 @@ class Descent final : public ceres::FirstOrderFunction {
   const Eigen::MatrixXd& metric_;
 };
 
-std::string first_sentence(const std::string& message) { return message.substr(0, message.find_first_of(".\n")); }
-
 Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<Expectation>& expectations) {
   for (std::size_t i = 0; i < expectations.size(); ++i) {
     double& one = x(static_cast<Eigen::Index>(i));
@@ -92,7 +90,7 @@ Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::Mat
   const Eigen::VectorXd x = start + metric * u;
   // An ascent that ends in trouble has still come as far as it says, but for one that could not begin.
   const bool valid = !summary.iterations.empty() && std::isfinite(summary.final_cost) && x.allFinite();
-  return {x, -summary.final_cost, valid, first_sentence(summary.message)};
+  return {x, -summary.final_cost, valid, summary.message.substr(0, summary.message.find_first_of(".\n"))};
 }
 
 /// A metric from the curvature at `spot`, by differences of gradients.

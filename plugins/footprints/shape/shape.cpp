@@ -11,16 +11,13 @@
 
 namespace palpate::footprints {
 
-struct ShapeOptions : Options {
+struct ShapeOptions : LaplaceOptions {
   double smallest = 0.02;
   double largest = 0.22;
   double one_piece = 0.3;
   double mistaken = 0.01;
   double contradictions = 4.0;
   std::int64_t particles = 2000;
-  PluginChoice kernel{"kernel", {}, nullptr};
-  double signal = 2.0;
-  double prior_mean = -1.0;
   void list(Fields& fields) override {
     fields.real(smallest, Field("smallest", "least width of a piece").in(Unit::metre).above(0));
     fields.real(largest, Field("largest", "greatest length of a piece").in(Unit::metre).above(0));
@@ -36,9 +33,7 @@ struct ShapeOptions : Options {
                                       "average, than mistaken lets expect")
                                     .above(0));
     fields.integer(particles, Field("particles", "outlines that stand for the belief").at_least(100).at_most(100000));
-    fields.plugin(kernel, Field("kernel", "of the classifier").needed());
-    fields.real(signal, Field("signal", "of the classifier").above(0).at_most(100));
-    fields.real(prior_mean, Field("prior_mean", "of the classifier"));
+    LaplaceOptions::list(fields);
     fields.require(smallest < largest, "largest", "is not larger than smallest");
   }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "import.hpp"
+#include "triangles.hpp"
 
 #include "children/child_process.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "triangles.hpp"
 
-#include "import.hpp"
-
 #include <palpate/error.hpp>
 
 #include <Eigen/Geometry>

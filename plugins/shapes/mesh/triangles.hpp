@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A surface of triangles that share their corners, checked to be one.
+// From the bytes of a file to a surface of triangles that share their corners, checked to be one.
 #pragma once
 
 #include "options.hpp"
@@ -7,10 +7,23 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace palpate::shapes {
+
+constexpr std::size_t kMostTriangles = 5'000'000;
+
+/// Corners in the units of the file, three a triangle, single precision as assimp reads them.
+using Soup = std::vector<std::array<float, 3>>;
+
+/// By assimp, of which import.cpp is the only user. Reads STL, OBJ or PLY, told apart by the ending of `file`; faces of
+/// more than three corners are divided. Reads no other file, such as the materials of an OBJ. Works in a process of its
+/// own, which a broken file may kill. Throws Error, its `where` the file: another format, cut short, not to be
+/// understood, no triangle, too many.
+Soup import_triangles(const std::string& bytes, const std::string& file);
 
 /// In metres, in the frame of Shape: resting on the plane 0, the rectangle around the outline centred.
 struct Triangles {

@@ -157,7 +157,7 @@ class Visit {
   }
 
   void expect_all_heard(Link& link) const {
-    while (!all_heard(link)) {
+    while (heard(link) != std::array{true, true, true} || (wishes_.commands && !link.listened_to())) {
       if (Steady::now() > until(kHeard)) throw why_not_heard(link);
       std::this_thread::sleep_for(kLook);
     }
@@ -169,13 +169,8 @@ class Visit {
     return {seen.joints.has_value(), seen.endpoint.has_value(), seen.state.has_value()};
   }
 
-  bool all_heard(Link& link) const {
-    return link.clock_runs() && heard(link) == std::array{true, true, true} &&
-           (!wishes_.commands || link.listened_to());
-  }
-
   Error why_not_heard(Link& link) const {
-    if (!link.clock_runs()) {
+    if (link.read().now == 0.0) {
       return trouble("/use_sim_time", "is set, but no time comes on /clock",
                      "start what simulates the time, or delete the parameter and start all nodes again");
     }

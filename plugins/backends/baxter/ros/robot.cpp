@@ -106,74 +106,10 @@ ArmPart arm_part(const sensor_msgs::JointState& message) {
   return part;
 }
 
-/// The robot's own inverse kinematics, asked with a deadline.
-class Solver {
- public:
-  explicit Solver(const Master& master) : master_(master) {}
-
-  /// See Robot::solve(). The node must have been started.
-  Robot::Answer solve(const Pose& gripper, const Joints& seed) {
-    msgs::SolvePositionIKRequest request;
-    request.seed_mode = msgs::SolvePositionIKRequest::SEED_USER;
-    request.pose_stamp.resize(1);
-    geometry_msgs::PoseStamped& pose = request.pose_stamp[0];
-    pose.header.stamp = ros::Time::now();
-    pose.header.frame_id = "base";
-    pose.pose.position.x = gripper.position.x();
-    pose.pose.position.y = gripper.position.y();
-    pose.pose.position.z = gripper.position.z();
-    pose.pose.orientation.x = gripper.rotation.x();
-    pose.pose.orientation.y = gripper.rotation.y();
-    pose.pose.orientation.z = gripper.rotation.z();
-    pose.pose.orientation.w = gripper.rotation.w();
-    request.seed_angles.resize(1);
-    request.seed_angles[0].header = pose.header;
-    request.seed_angles[0].name.assign(kJointNames.begin(), kJointNames.end());
-    request.seed_angles[0].position.assign(seed.begin(), seed.end());
-
-    const auto trouble = [](const std::string& words) {
-      return Robot::Answer{{}, std::string(kSolverService) + ": " + words};
-    };
-    msgs::SolvePositionIKResponse response;
-    try {
-      const ros::SerializedMessage asked = ros::serialization::serializeMessage(request);
-      std::string bytes =
-          answer({reinterpret_cast<const char*>(asked.buf.get()), asked.num_bytes}, Steady::now() + kSolve);
-      ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
-                                         static_cast<std::uint32_t>(bytes.size()));
-      ros::serialization::deserialize(stream, response);
-    } catch (const Unreached& reason) {
-      return trouble(reason.what());
-    } catch (const ros::Exception& exception) {
-      return trouble(std::string("its answer cannot be read: ") + exception.what());
-    }
-    if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
-      return trouble("its answer has not one part for one pose");
-    }
-    if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
-    const ArmPart part = arm_part(response.joints[0]);
-    if (!part.whole) return trouble("its answer has " + part.words);
-    return {part.position, {}};
-  }
-
- private:
-  /// It is looked for each time: it may have been started again, elsewhere.
-  std::string answer(const std::string& request, Deadline deadline) {
-    const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
-    const auto uri = master_.told("lookupService", kSolverService, deadline);
-    if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
-    const auto place = parse_uri(*uri, "rosrpc");
-    if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
-    return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
-  }
-
-  Master master_;
-};
-
 class RosRobot final : public Link {
  public:
   RosRobot(const Network& network, bool commands, std::optional<double> tool_mass)
-      : bag_(std::make_shared<Bag>()), solver_(network.master), pulse_(steady_seconds()) {
+      : bag_(std::make_shared<Bag>()), master_(network.master), pulse_(steady_seconds()) {
     latest_.end_effector.mass = tool_mass;
     handle_.setCallbackQueue(&queue_);
     listen();
@@ -239,15 +175,63 @@ class RosRobot final : public Link {
 
   void record(const std::string& file) override { bag_->open(file); }
 
-  Answer solve(const Pose& gripper, const Joints& seed) override { return solver_.solve(gripper, seed); }
+  std::optional<Joints> solve(const Pose& gripper, const Joints& seed) override {
+    msgs::SolvePositionIKRequest request;
+    request.seed_mode = msgs::SolvePositionIKRequest::SEED_USER;
+    request.pose_stamp.resize(1);
+    geometry_msgs::PoseStamped& pose = request.pose_stamp[0];
+    pose.header.stamp = ros::Time::now();
+    pose.header.frame_id = "base";
+    pose.pose.position.x = gripper.position.x();
+    pose.pose.position.y = gripper.position.y();
+    pose.pose.position.z = gripper.position.z();
+    pose.pose.orientation.x = gripper.rotation.x();
+    pose.pose.orientation.y = gripper.rotation.y();
+    pose.pose.orientation.z = gripper.rotation.z();
+    pose.pose.orientation.w = gripper.rotation.w();
+    request.seed_angles.resize(1);
+    request.seed_angles[0].header = pose.header;
+    request.seed_angles[0].name.assign(kJointNames.begin(), kJointNames.end());
+    request.seed_angles[0].position.assign(seed.begin(), seed.end());
+
+    msgs::SolvePositionIKResponse response;
+    try {
+      const ros::SerializedMessage asked = ros::serialization::serializeMessage(request);
+      std::string bytes =
+          answer({reinterpret_cast<const char*>(asked.buf.get()), asked.num_bytes}, Steady::now() + kSolve);
+      ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                         static_cast<std::uint32_t>(bytes.size()));
+      ros::serialization::deserialize(stream, response);
+    } catch (const Unreached& reason) {
+      throw trouble(kSolverService, reason.what());
+    } catch (const ros::Exception& exception) {
+      throw trouble(kSolverService, std::string("its answer cannot be read: ") + exception.what());
+    }
+    if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
+      throw trouble(kSolverService, "its answer has not one part for one pose");
+    }
+    if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
+    const ArmPart part = arm_part(response.joints[0]);
+    if (!part.whole) throw trouble(kSolverService, "its answer has " + part.words);
+    return part.position;
+  }
 
   std::shared_ptr<Bag> bag() override { return bag_; }
 
-  bool clock_runs() override { return !ros::Time::now().isZero(); }
   /// This program listens, too.
   bool listened_to() override { return command_publisher_.getNumSubscribers() > 1; }
 
  private:
+  /// IKService's, asked with a deadline. It is looked for each time: it may have been started again, elsewhere.
+  std::string answer(const std::string& request, Deadline deadline) {
+    const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
+    const auto uri = master_.told("lookupService", kSolverService, deadline);
+    if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
+    const auto place = parse_uri(*uri, "rosrpc");
+    if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
+    return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
+  }
+
   /// Of a message: who sent it, and when it came.
   struct Heard {
     std::string sender;
@@ -367,7 +351,7 @@ class RosRobot final : public Link {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher command_publisher_;
   msgs::JointCommand command_;
-  Solver solver_;
+  Master master_;
   std::mutex mutex_;
   Snapshot latest_;  ///< guarded by mutex_; its `now` and `own_gap` are not used
   Pulse pulse_;      ///< of the spinner; guarded by mutex_
