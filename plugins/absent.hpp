@@ -12,21 +12,18 @@ constexpr const char* kReason =
     "this build has no " PALPATE_ABSENT "; 'sudo apt-get install --no-install-recommends " PALPATE_ABSENT_PACKAGES
     "' installs it, then build again, as ./palpate does by itself";
 
-template <class Options>
-void describe(Fields& fields) {
-  Options options;
-  options.list(fields);
-}
+/// Has options, and is never made.
+template <class PluginOptions>
+struct Nothing {
+  using Options = PluginOptions;
+};
 
 /// What is wrong with the options is said first, as by the real one.
 template <class Options>
 void* refuse(Fields& fields, const Context&) {
-  describe<Options>(fields);
+  detail::describe<Nothing<Options>>(fields);
   throw Error("", kReason);
 }
-
-/// Nothing was made.
-inline void destroy(void*) {}
 
 /// As manifest_of() fills it for a plugin that is there.
 template <class Interface, class Options>
@@ -39,9 +36,9 @@ constexpr PluginManifest manifest_of(const char* name, const char* summary) {
           name,
           summary,
           false,
-          &describe<Options>,
+          &detail::describe<Nothing<Options>>,
           &refuse<Options>,
-          &destroy};
+          [](void*) {}};
 }
 
 }  // namespace palpate::absent

@@ -4,11 +4,13 @@
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <vector>
@@ -41,12 +43,11 @@ struct Recorded {
 };
 
 Outcome outcome_of(const std::string& name, const std::string& where) {
-  static const std::map<std::string, Outcome> kNames{
-      {"contact", Outcome::contact}, {"no_contact", Outcome::no_contact}, {"unreachable", Outcome::unreachable},
-      {"timeout", Outcome::timeout}, {"aborted", Outcome::aborted},       {"unknown", Outcome::unknown}};
-  const auto found = kNames.find(name);
-  if (found == kNames.end()) throw Error(where, "unknown outcome '" + name + "'");
-  return found->second;
+  // In the order of Outcome.
+  constexpr const char* kNames[] = {"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
+  const auto* const found = std::find(std::begin(kNames), std::end(kNames), name);
+  if (found == std::end(kNames)) throw Error(where, "unknown outcome '" + name + "'");
+  return static_cast<Outcome>(found - std::begin(kNames));
 }
 
 /// Text as palpate wrote it: before what a spreadsheet would compute stands an apostrophe.

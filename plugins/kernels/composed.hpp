@@ -11,16 +11,6 @@
 
 namespace palpate::kernels {
 
-/// A piece of a column, small enough for the stack.
-constexpr Eigen::Index kPiece = 128;
-using Piece = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kPiece, 1>;
-
-/// Calls visit(from, count) for the pieces of `size` rows.
-template <class Visit>
-void for_pieces(Eigen::Index size, Visit visit) {
-  for (Eigen::Index from = 0; from < size; from += kPiece) visit(from, std::min(kPiece, size - from));
-}
-
 struct PartsOptions : Options {
   std::vector<PluginChoice> kernels;
 
@@ -50,26 +40,12 @@ class Composed : public Kernel {
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
     parts_[0]->covariance(a, b, out);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      for (Eigen::Index j = 0; j < b.rows(); ++j) {
-        for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
-          Piece part(count);
-          parts_[i]->covariance(a.middleRows(from, count), b.row(j), part.matrix());
-          Join::apply(out.col(j).segment(from, count).array(), part);
-        });
-      }
-    }
+    join_others(out, [&](const Kernel& part, Eigen::Index j, VectorOut own) { part.covariance(a, b.row(j), own); });
   }
 
   void variance(const PointsView& a, VectorOut out) const override {
     parts_[0]->variance(a, out);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
-        Piece part(count);
-        parts_[i]->variance(a.middleRows(from, count), part.matrix());
-        Join::apply(out.segment(from, count).array(), part);
-      });
-    }
+    join_others(out, [&](const Kernel& part, Eigen::Index, VectorOut own) { part.variance(a, own); });
   }
 
   std::vector<KernelParameter> parameters() const override {
@@ -96,23 +72,32 @@ class Composed : public Kernel {
   }
 
   void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
-    for_pieces(a.rows(), [&](Eigen::Index from, Eigen::Index count) {
-      Eigen::Index first = 0;
-      Piece part(count);
-      auto whole = value.segment(from, count).array();
-      whole.setConstant(Join::kNothing);
-      auto rows = slopes.middleRows(from, count);
-      for (std::size_t i = 0; i < parts_.size(); ++i) {
-        auto own = rows.middleCols(first, counts_[i]);
-        parts_[i]->derivatives(a.middleRows(from, count), b, part.matrix(), own);
-        Join::join_slopes(rows.leftCols(first), own, whole, part);
-        Join::apply(whole, part);
-        first += counts_[i];
-      }
-    });
+    Eigen::Index first = 0;
+    Eigen::ArrayXd part(a.rows());
+    auto whole = value.array();
+    whole.setConstant(Join::kNothing);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      auto own = slopes.middleCols(first, counts_[i]);
+      parts_[i]->derivatives(a, b, part.matrix(), own);
+      Join::join_slopes(slopes.leftCols(first), own, whole, part);
+      Join::apply(whole, part);
+      first += counts_[i];
+    }
   }
 
  protected:
+  /// Takes all parts but the first into `out`, which has that one; fill(part, j, own) says what column j is of one.
+  template <class Fill>
+  void join_others(MatrixOut out, const Fill& fill) const {
+    Eigen::VectorXd own(out.rows());
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+      for (Eigen::Index j = 0; j < out.cols(); ++j) {
+        fill(*parts_[i], j, own);
+        Join::apply(out.col(j).array(), own.array());
+      }
+    }
+  }
+
   std::vector<std::shared_ptr<Kernel>> parts_;
 
  private:

@@ -7,14 +7,14 @@ namespace palpate::kernels {
 struct Multiply {
   static constexpr double kNothing = 1.0;
 
-  template <class Whole>
-  static void apply(Whole whole, const Piece& part) {
+  template <class Whole, class Part>
+  static void apply(Whole whole, const Part& part) {
     whole *= part;
   }
   /// The slopes of this part times the values of those before it, and theirs times its value: no division, so that a
   /// value of 0 does no harm.
   template <class Slopes, class Own, class Whole>
-  static void join_slopes(Slopes before, Own& own, const Whole& whole, const Piece& part) {
+  static void join_slopes(Slopes before, Own& own, const Whole& whole, const Eigen::ArrayXd& part) {
     own.array().colwise() *= whole;
     before.array().colwise() *= part;
   }
@@ -30,15 +30,9 @@ class Product final : public Composed<Multiply> {
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
     parts_[0]->axis_covariance(axis, a, b, out);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      for (Eigen::Index j = 0; j < b.size(); ++j) {
-        for_pieces(a.size(), [&](Eigen::Index from, Eigen::Index count) {
-          Piece part(count);
-          parts_[i]->axis_covariance(axis, a.segment(from, count), b.segment(j, 1), part.matrix());
-          out.col(j).segment(from, count).array() *= part;
-        });
-      }
-    }
+    join_others(out, [&](const Kernel& part, Eigen::Index j, VectorOut own) {
+      part.axis_covariance(axis, a, b.segment(j, 1), own);
+    });
   }
 };
 

@@ -7,12 +7,12 @@ namespace palpate::kernels {
 struct Add {
   static constexpr double kNothing = 0.0;
 
-  template <class Whole>
-  static void apply(Whole whole, const Piece& part) {
+  template <class Whole, class Part>
+  static void apply(Whole whole, const Part& part) {
     whole += part;
   }
   template <class Slopes, class Own, class Whole>
-  static void join_slopes(const Slopes&, const Own&, const Whole&, const Piece&) {}
+  static void join_slopes(const Slopes&, const Own&, const Whole&, const Eigen::ArrayXd&) {}
 };
 
 using Sum = Composed<Add>;

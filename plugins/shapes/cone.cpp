@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quadric.hpp"
+#include "solid.hpp"
 
 #include <palpate/plugin.hpp>
 #include <palpate/shape.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The cap of a ball, at most half of it.
-#include "quadric.hpp"
+#include "solid.hpp"
 
 #include <palpate/plugin.hpp>
 #include <palpate/shape.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bars.hpp"
+#include "prism.hpp"
 
 #include <palpate/plugin.hpp>
 

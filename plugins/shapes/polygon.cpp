@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "prism.hpp"
-#include "solid.hpp"
 
 #include <palpate/plugin.hpp>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "prism.hpp"
 
-#include "solid.hpp"
-
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Not convex, but a cylinder less a cylinder: the same intervals.
-#include "quadric.hpp"
+#include "solid.hpp"
 
 #include <palpate/plugin.hpp>
 #include <palpate/shape.hpp>

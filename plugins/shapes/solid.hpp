@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the shapes share: the part of a line that lies in a convex set, and an option.
+// What the shapes share: an option, and the part of a line that lies in a convex set. A solid bounded by half-spaces
+// and a quadric meets a line in the intersection of their intervals, so that the first hit is exact up to rounding.
 #pragma once
 
 #include <palpate/options.hpp>
+#include <palpate/shape.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace palpate::shapes {
@@ -43,5 +46,73 @@ struct Interval {
 inline void list_height(double& height, Fields& fields) {
   fields.real(height, Field("height", "of the top above the desk, upright").in(Unit::metre).above(0));
 }
+
+using Eigen::Vector3d;
+
+/// The points with sum of weights * (p - centre)^2 <= level: a ball, a cylinder, an ellipsoid or, with a negative
+/// weight along z, a double cone.
+struct Quadric {
+  Vector3d weights;
+  Vector3d centre;
+  double level;
+
+  /// Where the line is within, of a double cone within the lower half.
+  void clip(const Line& line, Interval& interval) const {
+    const Vector3d& u = line.direction;
+    // From the point of the line that is nearest to the centre, so that nothing cancels for a line from afar.
+    const double shift = (centre - line.origin).dot(u);
+    const Vector3d from = line.origin + shift * u - centre;
+    const Vector3d weighted = weights.cwiseProduct(u);
+    const double a = weighted.dot(u);
+    const double b = weighted.dot(from);
+    const double c = weights.cwiseProduct(from).dot(from) - level;
+    // a x^2 + 2 b x + c <= 0
+    const double discriminant = b * b - a * c;
+    if (discriminant < 0.0 && a >= 0.0) return interval.clear();
+    const double q = -(b + std::copysign(std::sqrt(std::max(0.0, discriminant)), b));
+    if (q == 0.0) return clip_double_root(a, c, shift, interval);
+    const double one = c / q;
+    const double other = a == 0.0 ? std::copysign(kInfinity, q) : q / a;
+    if (a < 0.0) {
+      // A steep line is within both halves of a double cone, above the upper root and below the lower; it points down.
+      interval.begin = std::max(interval.begin, std::max(one, other) + shift);
+      return;
+    }
+    interval.begin = std::max(interval.begin, std::min(one, other) + shift);
+    interval.end = std::min(interval.end, std::max(one, other) + shift);
+  }
+
+ private:
+  /// b and the discriminant are 0: a line that runs within or without for ever, one that touches, or a steep one
+  /// through the apex of a double cone, below which it is within.
+  static void clip_double_root(double a, double c, double shift, Interval& interval) {
+    if (a == 0.0 && c > 0.0) interval.clear();
+    if (a == 0.0) return;
+    interval.begin = std::max(interval.begin, shift);
+    if (a > 0.0) interval.end = std::min(interval.end, shift);
+  }
+};
+
+/// The largest product of a direction with a point of the disk of this radius around the axis, in the plane 0.
+inline double disk_support(const Vector3d& direction, double radius) {
+  return radius * std::hypot(direction.x(), direction.y());
+}
+
+/// A quadric between the plane 0 and a height.
+class Round : public Shape {
+ public:
+  Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}
+
+  double first_hit(const Line& line) const final {
+    Interval inside;
+    inside.clip(line.origin.z(), line.direction.z(), 0.0, height_);
+    quadric_.clip(line, inside);
+    return inside.first();
+  }
+
+ protected:
+  Quadric quadric_;
+  double height_;
+};
 
 }  // namespace palpate::shapes

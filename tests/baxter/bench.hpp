@@ -3,7 +3,6 @@
 #pragma once
 
 #include "baxter/path.hpp"
-#include "baxter/preflight.hpp"
 #include "baxter/watch.hpp"
 #include "support/plugins.hpp"
 

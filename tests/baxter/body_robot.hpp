@@ -65,20 +65,20 @@ class BodyRobot final : public Robot {
 
   void record(const std::string&) override {}
 
-  Answer solve(const Pose& gripper, const Joints& seed) override {
+  std::optional<Joints> solve(const Pose& gripper, const Joints& seed) override {
     ++asked;
     if (answer) return answer(gripper, seed);
-    return {gripper_.solve(gripper, seed), {}};
+    return gripper_.solve(gripper, seed);
   }
 
   Body body;
   std::vector<Joints> commands;
-  std::vector<double> commanded;                             ///< when, seconds
-  std::vector<double> heights;                               ///< of the tip after every period
-  std::function<void()> every_period;                        ///< called then
-  std::function<Answer(const Pose&, const Joints&)> answer;  ///< instead of what is right
-  std::function<void(Snapshot&)> spoil;                      ///< changes what is heard
-  std::function<double()> late;                              ///< s by which a wait ends too late
+  std::vector<double> commanded;                                            ///< when, seconds
+  std::vector<double> heights;                                              ///< of the tip after every period
+  std::function<void()> every_period;                                       ///< called then
+  std::function<std::optional<Joints>(const Pose&, const Joints&)> answer;  ///< instead of what is right
+  std::function<void(Snapshot&)> spoil;                                     ///< changes what is heard
+  std::function<double()> late;                                             ///< s by which a wait ends too late
   int asked = 0;
 
  private:

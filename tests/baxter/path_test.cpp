@@ -189,11 +189,16 @@ TEST(AdvancingOnAPath, KeepsToTheSpeedOfTheTipAndOfTheJoints) {
 }
 
 TEST(TheReachOfTheArea, IsWholeWhereTheFakeRobotHasItsSceneAndElseRefusedWithTheFirstPlaceThatLiesBeyond) {
-  EXPECT_EQ(check_reach(PlannerBench().planner, {0.23, 0.23}, 0.135, -0.02, 0.03, 0.02), 13 * 13);
+  const auto reach = [](const PlannerBench& bench, double spacing) {
+    return check_reach({0.23, 0.23}, spacing, [&](const Target& place) {
+      bench.planner.column(place, {0.115, 0.115}, 0.135, -0.02, 0.03);
+    });
+  };
+  EXPECT_EQ(reach(PlannerBench(), 0.02), 13 * 13);
   BaxterOptions far = fake_options();
   far.place.corner[0] = 0.85;
   try {
-    check_reach(PlannerBench(far).planner, {0.23, 0.23}, 0.135, -0.02, 0.03, 0.05);
+    reach(PlannerBench(far), 0.05);
     FAIL() << "parts of it lie more than 1 m before the robot";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::run);

@@ -43,6 +43,11 @@ inline BaxterOptions asking() {
   return with([](BaxterOptions& o) { o.inverse_kinematics = BaxterOptions::InverseKinematics::robot; });
 }
 
+/// What it says where nobody answers it.
+inline std::optional<Joints> silent_service(const Pose&, const Joints&) {
+  throw Error("", "IKService did not answer", {}, Error::Kind::run);
+}
+
 /// The driver, which goes by `options`, taps with a robot as fake_options() has it but for `change`; the test looks on.
 class TapperBench {
  public:

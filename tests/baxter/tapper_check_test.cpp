@@ -34,12 +34,7 @@ TEST(ADryRun, CommandsNothing) {
   EXPECT_THAT(bench.notes, testing::Contains(HasSubstr("all 169 places of the area can be reached")));
 }
 
-using Answer = Robot::Answer;
-
-/// Has the robot answer so when it is asked for joints.
-void answer(Bench& bench, const Answer& said) {
-  bench.robot.answer = [said](const Pose&, const Joints&) { return said; };
-}
+using Answer = std::optional<Joints>;
 
 TEST(TheRobotsInverseKinematics, IsAskedForEveryPose) {
   Bench bench(asking());
@@ -50,16 +45,14 @@ TEST(TheRobotsInverseKinematics, IsAskedForEveryPose) {
 TEST(TheRobotsInverseKinematics, IsNotBelieved) {
   const Arm gripper({0, 0, 0.025});
   const std::function<Answer(const Pose&, const Joints&)> answers[] = {
-      [](const Pose&, const Joints&) { return Answer{}; },
-      [](const Pose&, const Joints&) {
-        return Answer{Joints::Constant(kNaN), {}};
-      },
+      [](const Pose&, const Joints&) { return Answer(); },
+      [](const Pose&, const Joints&) { return Answer(Joints::Constant(kNaN)); },
       [&](const Pose& pose, const Joints& seed) {  // another place
-        return Answer{gripper.solve({pose.position + Eigen::Vector3d(0, 0, 0.002), pose.rotation}, seed), {}};
+        return gripper.solve({pose.position + Eigen::Vector3d(0, 0, 0.002), pose.rotation}, seed);
       },
       [&](const Pose& pose, const Joints& seed) {  // beyond a limit
-        Answer out{gripper.solve(pose, seed), {}};
-        if (out.joints) (*out.joints)(6) += 2.0 * 3.14159265358979323846;
+        Answer out = gripper.solve(pose, seed);
+        if (out) (*out)(6) += 2.0 * 3.14159265358979323846;
         return out;
       }};
   for (const auto& one : answers) {
@@ -73,7 +66,7 @@ TEST(TheRobotsInverseKinematics, IsNotBelieved) {
 
 TEST(TheRobotsInverseKinematics, EndsTheRunBeforeAnythingMovesWhenItDoesNotAnswer) {
   Bench bench(asking());
-  answer(bench, {{}, "IKService did not answer"});
+  bench.robot.answer = test::silent_service;
   const Contact contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
@@ -173,7 +166,7 @@ TEST(BeforeFlight, ADryRunWithoutAnAnswerOfTheRobotsInverseKinematicsSaysSo) {
   BaxterOptions options = asking();
   options.dry_run = true;
   Bench bench(options);
-  answer(bench, {{}, "IKService did not answer"});
+  bench.robot.answer = test::silent_service;
   expect_check(bench, "IKService did not answer");
 }
 

@@ -145,7 +145,7 @@ TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
   const Arm gripper({0, 0, 0.025});
   bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
     bench.interrupted = true;
-    return Robot::Answer{gripper.solve(pose, seed), {}};
+    return gripper.solve(pose, seed);
   };
   const int before = bench.robot.asked;
   const Contact contact = bench.tap(kOnObject);
@@ -160,7 +160,7 @@ TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
   bench.robot.every_period = [&] {
     if (bench.tip() > 0.12) return;
     bench.interrupted = true;
-    bench.robot.answer = [](const Pose&, const Joints&) { return Robot::Answer{{}, "IKService did not answer"}; };
+    bench.robot.answer = test::silent_service;
   };
   const Contact contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.reason, "interrupted; the arm was raised to the height of travel");

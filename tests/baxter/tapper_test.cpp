@@ -267,7 +267,7 @@ TEST(ATap, IsNotBegunWhereTheWayToItCannotBePlanned) {
   bench.robot.answer = [&](const Pose& pose, const Joints& seed) {
     const Eigen::Vector3d at = plans.planner.to_scene(pose.position);
     const bool on_the_way = (at - Eigen::Vector3d(0.07, 0.07, at.z())).norm() < 0.02;
-    return on_the_way ? Robot::Answer{} : Robot::Answer{gripper.solve(pose, seed), {}};
+    return on_the_way ? std::nullopt : gripper.solve(pose, seed);
   };
   EXPECT_EQ(bench.tap(kOnObject).outcome, Outcome::unreachable);
   EXPECT_TRUE(bench.robot.commands.empty()) << "it would have gone up first";

@@ -8,7 +8,7 @@
 #include "fake_baxter/assembly.hpp"
 #include "fake_baxter/faults.hpp"
 #include "fake_baxter/mechanics.hpp"
-#include "simulator/normal.hpp"
+#include "simulator/arm.hpp"
 
 #include <palpate/scene.hpp>
 

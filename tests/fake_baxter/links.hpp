@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the links of Baxter's left arm weigh: the numbers of Rethink's baxter.urdf 1.2.0. Where its joints are is in
-// baxter/left_arm.hpp.
+// baxter/kinematics.hpp.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fake_baxter/mujoco.hpp"
 
-#include "baxter/left_arm.hpp"
+#include "baxter/kinematics.hpp"
 #include "fake_baxter/links.hpp"
 #include "fake_baxter/series_elastic.hpp"
 

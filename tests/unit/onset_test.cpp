@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "tapping/onset.hpp"
+#include "tapping/guarded_tap.hpp"
 
-#include "simulator/normal.hpp"
+#include "simulator/arm.hpp"
 #include "support/testing.hpp"
 
 namespace palpate::tapping {

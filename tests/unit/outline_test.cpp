@@ -221,7 +221,7 @@ TEST(Particles, CountOutlinesOverPlacesAsOneByOne) {
     for (const auto& [columns, rows] : {std::pair{47, 47}, {31, 7}, {1, 40}, {40, 1}, {1, 1}}) {
       const Points places = test::lattice(columns, rows);
       Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
-      belief.count_inside(places, columns, inside);
+      belief.count_inside(places, inside);
       for (Eigen::Index i = 0; i < places.rows(); ++i) {
         const auto one_by_one =
             std::count_if(belief.particles().begin(), belief.particles().end(),
@@ -294,7 +294,7 @@ TEST(Particles, ComeToThePosteriorThatAMillionDrawsWeighedByTheirLabelsComeTo) {
     for (const auto& [place, on] : labels) product *= belief.add({place, 0.0, on});
     found_evidence += product / kRuns;
     Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
-    belief.count_inside(places, 12, inside);
+    belief.count_inside(places, inside);
     mean += inside / (4000.0 * kRuns);
   }
   // Forty thousand outlines, of which one in three is new: 0.5 / sqrt(13000) is 0.004.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What each effect of a scene does to taps, against closed forms.
 #include "simulator/arm.hpp"
-#include "simulator/tool.hpp"
 #include "tapping_bench.hpp"
 
 namespace palpate::test {

@@ -2,7 +2,7 @@
 // What a person is told of a tap before it is made, motion by motion.
 #include "support/filled.hpp"
 #include "support/testing.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 namespace palpate::tapping {
 namespace {

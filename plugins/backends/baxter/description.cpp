@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/description.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
-#include <string_view>
 #include <vector>
 
 #include <tinyxml2.h>
+#include <boost/lexical_cast/try_lexical_convert.hpp>
 
 namespace palpate::baxter {
 namespace {
@@ -17,11 +16,9 @@ namespace {
 using Element = const tinyxml2::XMLElement*;
 
 /// NaN where it is no number from 0 on.
-double mass_of(std::string_view text) {
+double mass_of(const std::string& text) {
   double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  const bool number = error == std::errc() && rest == end && std::isfinite(value) && value >= 0.0;
+  const bool number = boost::conversion::try_lexical_convert(text, value) && value >= 0.0;
   return number ? value : std::numeric_limits<double>::quiet_NaN();
 }
 

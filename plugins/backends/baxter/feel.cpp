@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What Tapper makes of the force that the robot tells.
-#include "baxter/readings.hpp"
+// One descent of Tapper, and what it makes of the force that the robot tells.
 #include "baxter/tapper.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace palpate::baxter {
 namespace {
 
+using tapping::GuardedTap;
 using tapping::newtons;
+using Then = Fault::Then;
+
+constexpr double kPeriod = GuardedTap::kPeriod;
 
 constexpr std::size_t kForceSamples = 25;  ///< new ones, for the force at rest
 constexpr double kForcePatience = 1.0;     ///< s in which they must have come
@@ -20,7 +24,175 @@ constexpr int kTold = 3;                   ///< taps of a run for which that is 
 constexpr double kMostMoving = 0.8;        ///< of the threshold: more may be a contact that begins
 constexpr double kLeastMoved = 2.5;        ///< N that the zero may move, whatever the threshold: noise makes 0.4
 
+constexpr double kUnloading = 0.6;  ///< s after which an arm that trails by 0.35 s has turned around and is clear
+constexpr int kPulled = 6;          ///< new readings of a force that pulls: what moving takes away from it is noisy
+constexpr double kEvenFrom = 0.7;   ///< s after which an arm that trails by 0.35 s comes down evenly
+constexpr double kEvenTo = 1.0;     ///< s, for so long its force is looked at
+constexpr std::size_t kFewestEven = 10;
+constexpr double kSteady = 1.5;  ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
+
+/// Of each component; at least one reading.
+Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
+  Eigen::Vector3d out;
+  const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
+  for (int i = 0; i < 3; ++i) {
+    std::nth_element(readings.begin(), middle, readings.end(),
+                     [i](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[i] < b[i]; });
+    out[i] = (*middle)[i];
+  }
+  return out;
+}
+
+/// The mean force along z of a descent from when the arm, which trails its set-point, comes down evenly until shortly
+/// after. Where it rises meanwhile a contact begins: that is no force of a moving arm.
+class EvenDescent {
+ public:
+  /// Takes a reading `time` seconds after the set-point began to come down; the mean when it is there.
+  std::optional<double> add(double time, double force) {
+    if (time < kEvenFrom) forces_.clear();
+    if (time >= kEvenFrom && time < kEvenTo) forces_.push_back(force);
+    if (time < kEvenTo || forces_.size() < kFewestEven) return std::nullopt;
+    const std::vector<double> forces = std::exchange(forces_, {});
+    const auto count = static_cast<Eigen::Index>(forces.size());
+    const Eigen::Map<const Eigen::VectorXd> all(forces.data(), count);
+    const double rise = all.tail(count - count / 2).mean() - all.head(count / 2).mean();
+    return std::abs(rise) < kSteady ? std::optional<double>(all.mean()) : std::nullopt;
+  }
+
+ private:
+  std::vector<double> forces_;
+};
+
+/// While the sign is not known there are two taps, one for each. They are led alike until one of them feels a contact;
+/// that one goes on, and its sign is the robot's, if the contact is one.
+class SignedTap {
+  struct One {
+    double sign;
+    tapping::GuardedTap tap;
+    double set_point = 0.0;
+  };
+
+ public:
+  /// `sign`: of the force when something presses the tool upwards, 1 or -1; 0 if it is not known.
+  SignedTap(const tapping::MotionOptions& motion, const tapping::Descent& descent, double sign) {
+    const tapping::GuardedTap tap(motion, descent, tapping::GuardedTap::Arm::real);
+    taps_ = sign != 0.0 ? std::vector<One>{{sign, tap}} : std::vector<One>{{-1.0, tap}, {1.0, tap}};
+  }
+
+  /// As GuardedTap::next, with the force as the robot tells it.
+  double next(double height, double force, bool fresh) {
+    for (One& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
+    if (taps_.size() == 2 && taps_.front().set_point != taps_.back().set_point) {
+      // Of a contact the set-point is put where the arm is.
+      const bool second = taps_.back().set_point == height;
+      taps_.erase(second ? taps_.begin() : taps_.begin() + 1);
+    }
+    return taps_.front().set_point;
+  }
+
+  const tapping::GuardedTap& tap() const { return taps_.front().tap; }
+  /// 0 while nothing has shown it.
+  double sign() const { return taps_.size() == 1 ? taps_.front().sign : 0.0; }
+
+ private:
+  std::vector<One> taps_;
+};
+
 }  // namespace
+
+/// Comes down to `hover` from just above and waits until the arm rests. Its joints rub: at 0.4 Nm the force of an arm
+/// at rest reads 9 N less after it has come up than after it has come down. So it rests as it will go on, and what is
+/// felt at rest before a tap and after it can be compared.
+void Tapper::rest_from_above(const Path& column) {
+  settle(column.front());
+  follow(column, options_.motion.speed, kFromAbove);
+  settle(column.at(kFromAbove));
+}
+
+Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column) {
+  const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
+  const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
+  rest_from_above(column);
+  SignedTap signed_tap(motion, plan, sign_);
+  std::vector<Eigen::Vector3d> tare;
+  EvenDescent even;
+  std::optional<double> moving;
+  int pulled = 0;
+  double set_point = plan.hover;
+  Joints command = at(plan.hover);
+  Eigen::Vector3d at_hover = seen_.endpoint->force;
+  for (bool first = true; !signed_tap.tap().done();) {
+    const double before = set_point;
+    const bool taring = signed_tap.tap().taring();
+    const bool fresh = watch_.fresh();
+    const Eigen::Vector3d reading = seen_.endpoint->force;
+    const bool coming_down = signed_tap.tap().coming_down();
+    const double felt = reading.z() - (coming_down ? moving_ : 0.0);
+    set_point = signed_tap.next(height(), felt, fresh);
+    // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
+    if (set_point == height() && set_point != before) {
+      command = seen_.joints->position;
+    } else if (set_point != before) {
+      command = at(set_point);
+    }
+    if (taring) {
+      if (fresh) tare.push_back(reading);
+      pulled = 0;
+      if (!signed_tap.tap().taring() && !signed_tap.tap().done()) {
+        // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
+        const Eigen::Vector3d sum = std::accumulate(tare.begin(), tare.end(), Eigen::Vector3d(0, 0, 0));
+        zero_ = sum / static_cast<double>(std::exchange(tare, {}).size());
+        if (std::exchange(first, false)) at_hover = zero_;
+        watch_.set_tare(zero_);
+      }
+    } else if (fresh) {
+      // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
+      // expected a soft contact.
+      if (!moving && plan.start >= plan.hover) {
+        if (const auto mean = even.add(signed_tap.tap().even_for(), reading.z())) moving = *mean - zero_.z();
+      }
+      // An arm that goes up rubs the other way, which is no pull.
+      pulled = coming_down && sign_ * (felt - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
+      if (pulled >= kPulled) {
+        throw Fault{
+            "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
+            "wrong",
+            Then::retreat};
+      }
+    }
+    step(command);
+  }
+  retreat(column.back(plan.hover + kFromAbove - height()));
+  const Contact contact = signed_tap.tap().result();
+  if (contact.outcome != Outcome::contact) return contact;
+  rest_from_above(column);
+  if (!believed(at_hover, force_at_rest(at(plan.hover)), motion.threshold)) {
+    return failed(Outcome::aborted,
+                  "the force did not go back to its zero when the tool was clear: its zero moved during the tap, and "
+                  "the contact may be none");
+  }
+  if (moving) learn_moving(*moving);
+  shown_sign_ = signed_tap.sign();
+  return contact;
+}
+
+/// Goes up from where it may press. What it presses with goes, and so does what the joints rub against, which turns
+/// around: only what comes after that is a force of something that holds the tool.
+void Tapper::retreat(const Path& up) {
+  watch_.forget_tare();
+  const double free = seen_.now + kUnloading;
+  bool tared = false;
+  for (double along = 0.0; along < up.length();) {
+    along = up.advance(along, options_.motion.retreat_speed, kPeriod);
+    step(up.at(along));
+    if (!tared && seen_.now >= free) {
+      tared = true;
+      watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
+    }
+  }
+  await_height(up.end());
+  if (!tared) watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
+}
 
 std::string Tapper::learnt_sign() const {
   if (options_.sign() != BaxterOptions::ForceSign::learn || sign_ == 0.0) return {};

@@ -2,8 +2,7 @@
 // Baxter's numbers in KDL's words.
 #pragma once
 
-#include "baxter/left_arm.hpp"
-#include "baxter/robot.hpp"
+#include "baxter/kinematics.hpp"
 
 #include <kdl/frames.hpp>
 #include <kdl/jntarray.hpp>

@@ -26,36 +26,26 @@ KDL::Chain left_arm(const Eigen::Vector3d& tip) {
   return out;
 }
 
-Eigen::Matrix<double, 6, 1> weights() {
-  return (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished();
-}
-
 }  // namespace
 
 struct Arm::Chain {
-  explicit Chain(const Eigen::Vector3d& tip)
-      : arm(left_arm(tip)), forward(arm), inverse(arm, weights(), kAccuracy, kIterations) {}
+  explicit Chain(const Eigen::Vector3d& tip) : arm(left_arm(tip)) {}
   KDL::Chain arm;
-  KDL::ChainFkSolverPos_recursive forward;
-  KDL::ChainIkSolverPos_LMA inverse;
+  KDL::ChainFkSolverPos_recursive forward{arm};
+  KDL::ChainIkSolverPos_LMA inverse{arm, (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished(),
+                                    kAccuracy, kIterations};
 };
 
 Arm::Arm(const Eigen::Vector3d& tip) : chain_(std::make_unique<Chain>(tip)) {}
 Arm::~Arm() = default;
-Arm::Arm(Arm&&) noexcept = default;
-Arm& Arm::operator=(Arm&&) noexcept = default;
 
 Pose Arm::tip(const Joints& joints) const {
   KDL::Frame at;
   chain_->forward.JntToCart(array_of(joints), at);
   Pose out;
   out.position = {at.p.x(), at.p.y(), at.p.z()};
-  double x = 0.0;
-  double y = 0.0;
-  double z = 0.0;
-  double w = 0.0;
-  at.M.GetQuaternion(x, y, z, w);
-  out.rotation = Eigen::Quaterniond(w, x, y, z);
+  Eigen::Quaterniond& q = out.rotation;
+  at.M.GetQuaternion(q.x(), q.y(), q.z(), q.w());
   return out;
 }
 

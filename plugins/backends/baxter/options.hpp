@@ -12,11 +12,40 @@
 
 namespace palpate::baxter {
 
+/// The arm's firmware stops at 16 N ("squish"), for two seconds. A threshold must leave room for what the arm presses
+/// on while three samples are taken and it comes to rest.
+constexpr double kGreatestThreshold = 12.0;
+constexpr double kGreatestStop = 15.0;
+constexpr double kLeastThreshold = 3.0;  ///< N: twice the noise of the tests' robot; nobody published a real one's
+constexpr double kShortestTare = 0.1;    ///< s
+constexpr double kSlowest = 0.01;        ///< m/s, for ways that have no time-out
+constexpr double kFastest = 0.1;         ///< m/s, downwards: the arm presses on for a third of a second of it
+constexpr double kDeepest = 0.1;         ///< m below the desk
+
+/// In a build that cannot talk to a robot no option is mandatory: what is to be said first is then what to install.
+inline Field mandatory(Field field) {
+#ifndef PALPATE_ABSENT
+  field.needed();
+#endif
+  return field;
+}
+
 /// What is fixed to the flange of the arm.
 struct ToolOptions : Options {
   double tip[3] = {0.0, 0.0, 0.0};  ///< the point that touches, in the frame left_hand, metres
   double gripper = 0.025;           ///< left_gripper as the robot has it, from left_hand along z, metres
-  void list(Fields& fields) override;
+  void list(Fields& fields) override {
+    const char* meaning =
+        "the point of the tool that touches, in the frame left_hand: x, y, and z away from the flange";
+    fields.reals(tip, 3, mandatory(Field("tip", meaning).in(Unit::metre).at_least(-0.6).at_most(0.6)));
+    fields.real(gripper, Field("gripper",
+                               "how far from left_hand the robot has its frame left_gripper, which is what it "
+                               "reports; checked at the start")
+                             .in(Unit::metre)
+                             .at_least(0)
+                             .at_most(0.6)
+                             .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
+  }
 };
 
 /// Where the frame of the scene lies in the robot's frame `base`.
@@ -25,15 +54,35 @@ struct PlaceOptions : Options {
   double height = 0.0;            ///< of the scene's zero, metres
   double rotation = 0.0;          ///< about the vertical, radians
   /// Brings a point (x, y, z) of the scene to corner + R(rotation) (x, y), height + z.
-  Eigen::Isometry3d frame() const;
-  void list(Fields& fields) override;
+  Eigen::Isometry3d frame() const {
+    return Eigen::Translation3d(corner[0], corner[1], height) * Eigen::AngleAxisd(rotation, Eigen::Vector3d::UnitZ());
+  }
+  void list(Fields& fields) override {
+    const char* corner_is = "the corner (0, 0) of the area in the robot's frame base: x forward, y to the left";
+    fields.reals(corner, 2, mandatory(Field("corner", corner_is).in(Unit::metre).at_least(-1.5).at_most(1.5)));
+    const char* height_is = "of the scene's zero, from which desk and heights count, in the frame base";
+    fields.real(height, mandatory(Field("height", height_is).in(Unit::metre).at_least(-1).at_most(1)));
+    fields.real(rotation, Field("rotation", "of the scene about the vertical, from base's x axis to the scene's")
+                              .in(Unit::radian)
+                              .at_least(-6.3)
+                              .at_most(6.3));
+  }
 };
 
 /// A tap on the bare desk before the first of the run, whose height then counts instead of the config's.
 struct CalibrationOptions : Options {
   double at[2] = {0.0, 0.0};  ///< in the area, metres
   double tolerance = 0.01;    ///< how far the desk may be from where the config has it, metres
-  void list(Fields& fields) override;
+  void list(Fields& fields) override {
+    fields.reals(
+        at, 2,
+        Field("at", "where to tap, a place in the area at which nothing lies on the desk").in(Unit::metre).needed());
+    fields.real(tolerance, Field("tolerance", "how far the desk may be from where `place` has it; farther ends the run")
+                               .in(Unit::metre)
+                               .above(0)
+                               .at_most(0.05)
+                               .from("Baxter's absolute accuracy is 2 to 10 mm"));
+  }
 };
 
 struct BaxterOptions : Options {
@@ -53,7 +102,57 @@ struct BaxterOptions : Options {
   bool bag = false;
 
   ForceSign sign() const { return force_sign.value_or(calibration ? ForceSign::learn : ForceSign::negative); }
-  void list(Fields& fields) override;
+  void list(Fields& fields) override {
+    fields.section(motion, Field("motion", "the tapping motion"));
+    const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
+    const bool adaptive = motion.adaptive_hover.has_value();
+    const char* noise = "is within the noise of the force, take at least 3 N";
+    const char* too_fast = "is too fast for an arm that feels late, take at most 10 cm/s";
+    fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
+                   "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
+    fields.require(motion.threshold >= kLeastThreshold, "motion.threshold", noise);
+    fields.require(motion.tare >= kShortestTare, "motion.tare", "is too short for a zero, take at least 100 ms");
+    fields.require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "motion.travel_speed",
+                   "and motion.retreat_speed must let the arm get away, take at least 1 cm/s");
+    fields.require(!two_stage || motion.fine_threshold <= motion.threshold, "motion.fine_threshold",
+                   "must not lie above motion.threshold");
+    fields.require(!two_stage || motion.fine_threshold >= kLeastThreshold, "motion.fine_threshold", noise);
+    fields.require(motion.speed <= kFastest, "motion.speed", too_fast);
+    fields.require(!two_stage || motion.fine_speed <= kFastest, "motion.fine_speed", too_fast);
+    fields.require(!adaptive || motion.adaptive_hover->speed <= kFastest, "motion.adaptive_hover.speed", too_fast);
+    fields.require(motion.overrun <= kDeepest, "motion.overrun",
+                   "lets the arm go on below the desk, take at most 10 cm");
+    fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
+    fields.section(place, Field("place", "where the scene lies before the robot"));
+    fields.section(calibration,
+                   Field("calibration", "begin with a tap on the bare desk, and take its height for the desk's"));
+    ForceSign chosen = sign();
+    fields.choice(
+        chosen,
+        Field("force_sign", "of the force along z in endpoint_state when something presses the tool upwards")
+            .from("Rethink documents none; five public programs for Baxter take it to fall. With a calibration "
+                  "tap the default is learn"),
+        {{"negative", "it falls", {}},
+         {"positive", "it rises", {}},
+         {"learn", "until the first contact any change counts, and that contact shows it", {}}});
+    force_sign = chosen;
+    fields.real(
+        force_stop,
+        Field(
+            "force_stop",
+            "change of the force since the tare at which the arm stops whatever it does; sideways, while it goes up or "
+            "down, half as much again")
+            .in(Unit::newton)
+            .above(0)
+            .at_most(kGreatestStop)
+            .from("the arm's firmware stops it at 16 N"));
+    fields.require(force_stop > motion.threshold, "force_stop", "must lie above motion.threshold");
+    fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),
+                  {{"own", "this program", {}}, {"robot", "the robot's IKService, whose answers are checked", {}}});
+    fields.flag(dry_run, Field("dry_run", "connect, check and compute every pose of the whole area, but move nothing"));
+    fields.flag(view, Field("view", "publish the surface, its standard deviation and the taps, to be seen in RViz"));
+    fields.flag(bag, Field("bag", "record what the robot says and is told in a rosbag in the run's folder"));
+  }
 };
 
 }  // namespace palpate::baxter

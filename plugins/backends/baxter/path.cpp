@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/path.hpp"
 
+#include "baxter/words.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace palpate::baxter {
 namespace {
@@ -88,17 +88,22 @@ Joints Planner::solve(const Pose& tip, const Joints& seed, const char* what) con
   return *found;
 }
 
+Path Planner::vertical(const Joints& from, Pose tip, double rise, const char* way) const {
+  Path out;
+  out.add(from, 0.0);
+  const double start = tip.position.z();
+  const int count = rise != 0.0 ? steps(std::abs(rise), kColumnStep) : 0;
+  for (int i = 1; i <= count; ++i) {
+    tip.position.z() = start + rise * i / count;
+    out.add(solve(tip, out.end(), way), std::abs(rise) / count);
+  }
+  return out;
+}
+
 Path Planner::column(const Target& place, const Target& middle, double hover, double floor, double speed) const {
   const Joints seed = solve(pose(middle, hover), untucked(), nullptr);
-  Joints joints = solve(pose(place, hover), seed, nullptr);
-  Path out;
-  out.add(joints, 0.0);
-  const int count = steps(hover - floor, kColumnStep);
-  const double step = (hover - floor) / count;
-  for (int i = 1; i <= count; ++i) {
-    joints = solve(pose(place, hover - i * step), joints, "on the way down");
-    out.add(joints, step);
-  }
+  const Pose top = pose(place, hover);
+  Path out = vertical(solve(top, seed, nullptr), top, floor - hover, "on the way down");
   if (out.steepest() * speed > kJointSpeed) {
     throw NoPath{"a joint would have to turn faster than 0.4 rad/s on the way down to " +
                  place_text(pose(place, floor)) + " at the speed of the motion: take a lower one"};
@@ -137,18 +142,30 @@ Path Planner::line(const Joints& from, const Joints& to) const {
 }
 
 Path Planner::up(const Joints& from, double rise) const {
-  Path out;
-  out.add(from, 0.0);
-  if (!(rise > 0.0)) return out;
-  Pose tip = arm_.tip(from);
-  Joints joints = from;
-  const int count = steps(rise, kColumnStep);
-  for (int i = 1; i <= count; ++i) {
-    tip.position.z() += rise / count;
-    joints = solve(tip, joints, "on the way up");
-    out.add(joints, rise / count);
+  return vertical(from, arm_.tip(from), std::max(0.0, rise), "on the way up");
+}
+
+int check_reach(const Area& area, double spacing, const std::function<void(const Target&)>& plan) {
+  const auto count = [&](double length) { return static_cast<int>(std::ceil(length / spacing)) + 1; };
+  const int nx = count(area.width);
+  const int ny = count(area.depth);
+  int missed = 0;
+  std::string first;
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      const Target place{area.width * i / (nx - 1), area.depth * j / (ny - 1)};
+      try {
+        plan(place);
+      } catch (const NoPath& none) {
+        if (missed++ > 0) continue;
+        first = fmt::format("({:.2f} cm, {:.2f} cm): {}", 100.0 * place.x, 100.0 * place.y, none.reason);
+      }
+    }
   }
-  return out;
+  if (missed == 0) return nx * ny;
+  throw trouble("place",
+                fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
+                "put the middle of the area near x = 60 cm, y = 20 cm of base");
 }
 
 }  // namespace palpate::baxter

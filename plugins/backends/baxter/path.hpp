@@ -85,10 +85,16 @@ class Planner {
 
  private:
   Joints solve(const Pose& tip, const Joints& seed, const char* what) const;
+  /// The tip from where the joints `from` have it straight up by `rise`, or down; each height is planned from the last.
+  Path vertical(const Joints& from, Pose tip, double rise, const char* way) const;
 
   Eigen::Isometry3d frame_;  ///< of the scene, in `base`
   const Arm& arm_;
   Inverse inverse_;
 };
+
+/// Plans for every place of the area, on a grid of `spacing` metres. Throws Error (kind `run`) that counts the places
+/// for which `plan` throws NoPath and says why for the first. Returns how many places were looked at.
+int check_reach(const Area& area, double spacing, const std::function<void(const Target&)>& plan);
 
 }  // namespace palpate::baxter

@@ -3,9 +3,11 @@
 #include "baxter/tapper.hpp"
 
 #include "baxter/words.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace palpate::baxter {
 namespace {
@@ -20,6 +22,81 @@ constexpr double kPatience = 1.0;       ///< s in which data must be fresh when 
 /// s in which another program that commands the arm is heard, and streams that are too slow
 constexpr double kListen = Stream::kWindow + 0.05;
 
+constexpr double kAgreement = 0.005;   ///< m between kinematics and endpoint_state: both come from the same joints
+constexpr double kAgreedTurn = 0.035;  ///< rad, likewise
+constexpr double kUpright = 0.35;      ///< rad that the tool may lean before the first motion puts it upright
+
+/// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
+constexpr double kLeastRatio = 0.27;
+constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
+constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
+
+/// Finer than what is said of taps.
+std::string fine_centimetres(double length) { return fmt::format("{:.2f} cm", 100.0 * length); }
+
+/// Own kinematics against the robot's: they must agree on left_gripper, but for a gripper that the config does not
+/// know.
+void check_gripper(const JointReading& joints, const EndpointReading& endpoint, double gripper) {
+  const Pose hand = Arm(Eigen::Vector3d::Zero()).tip(joints.position);
+  const Eigen::Vector3d seen = hand.rotation.inverse() * (endpoint.pose.position - hand.position);
+  const double aside = std::hypot(seen.x(), seen.y());
+  const double turned = hand.rotation.angularDistance(endpoint.pose.rotation);
+  if (aside <= kAgreement && std::abs(seen.z() - gripper) <= kAgreement && turned <= kAgreedTurn) return;
+  if (aside <= kAgreement && turned <= kAgreedTurn) {
+    throw trouble("tool.gripper",
+                  fmt::format("the robot has left_gripper {} from left_hand, the config has it at {}",
+                              fine_centimetres(seen.z()), fine_centimetres(gripper)),
+                  "a gripper is configured on the robot that the config does not know: see what is mounted, then "
+                  "correct tool.gripper and tool.tip");
+  }
+  throw trouble("tool.gripper",
+                fmt::format("joints and endpoint_state disagree by {} about where left_gripper is",
+                            fine_centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm())),
+                "this is another arm than the Baxter whose lengths are known, or its gripper is mounted askew");
+}
+
+/// What others have left on the robot and what it takes to be mounted, one line each for the diary. Throws Error where
+/// that would keep the arm from doing what it is told: a speed ratio at which it could not follow, a time-out of
+/// set-points shorter than five periods or longer than half a second, a collision avoidance that pushes it.
+std::vector<std::string> check_settings(const Snapshot& seen) {
+  const struct {
+    const char* topic;
+    const std::optional<Setting>& setting;
+    const char* own;
+    double least, most;
+    const char* reason;
+    const char* remedy;
+  } settings[] = {
+      {"set_speed_ratio", seen.speed_ratio, "0.3", kLeastRatio, std::numeric_limits<double>::infinity(),
+       ", at which the arm cannot follow", "set it to 0.3, on /robot/limb/left/set_speed_ratio"},
+      {"joint_command_timeout", seen.command_timeout, "0.2 s", kLeastTimeout, kMostTimeout,
+       " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the next",
+       "set it to 0.2, on /robot/limb/left/joint_command_timeout"},
+  };
+  std::vector<std::string> out;
+  for (const auto& [topic, setting, own, least, most, reason, remedy] : settings) {
+    if (!setting) {
+      out.push_back(fmt::format("{}: nobody says it now, taken for the robot's own {}", topic, own));
+      continue;
+    }
+    out.push_back(fmt::format("{}: {:g} from {}", topic, setting->value, setting->sender));
+    if (setting->value >= least && setting->value <= most) continue;
+    throw trouble(topic, fmt::format("{} has set it to {:g}{}", setting->sender, setting->value, reason), remedy);
+  }
+  if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
+    std::vector<std::string> from = seen.avoidance->objects;
+    if (seen.avoidance->other_arm) from.insert(from.begin(), "the other arm");
+    throw trouble("collision_avoidance_state", "the robot pushes the arm away from " + listed(from),
+                  "move the other arm away, or the area forward");
+  }
+  const EndEffector& mounted = seen.end_effector;
+  out.push_back(fmt::format(
+      "mounted, as the robot has it: {}, {}; a tool of another mass moves the zero of the force with the posture",
+      mounted.product.empty() ? "no gripper that it knows" : mounted.product,
+      mounted.mass ? fmt::format("{:g} kg beyond the flange", *mounted.mass) : "of unknown mass"));
+  return out;
+}
+
 /// Of all that GuardedTap does within a column.
 double fastest(const tapping::MotionOptions& motion) {
   double out = std::max(motion.speed, motion.type == tapping::MotionOptions::Type::two_stage ? motion.fine_speed : 0.0);
@@ -30,22 +107,50 @@ double fastest(const tapping::MotionOptions& motion) {
 }  // namespace
 
 void Tapper::check() {
-  check_plan(options_, scene_);
+  const Area area = scene_.area();
+  if (options_.calibration && (bare().x < 0.0 || bare().y < 0.0 || bare().x > area.width || bare().y > area.depth)) {
+    throw trouble("calibration.at", "lies outside of the area", "take a bare place within");
+  }
   const std::optional<Fault> slow = listen();
   await_fit(!options_.dry_run);
   if (slow && !options_.dry_run) throw trouble("", slow->reason);
-  check_before_flight(seen_, options_, planner_, workspace_, !options_.dry_run);
+  check_robot();
   if (!options_.dry_run) {
     for (const std::string& line : check_settings(seen_)) note_(line);
   }
   try {
     if (options_.calibration) column(bare());
-    if (options_.dry_run) try_reach();
+    if (options_.dry_run) {
+      const int places = check_reach(area, kReachSpacing, [this](const Target& place) { column(place); });
+      note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
+    }
   } catch (const NoPath& none) {
     throw trouble("calibration.at", none.reason,
                   "take another place, or move the area: its middle near x = 60 cm, y = 20 cm of base");
   } catch (const Fault& fault) {
     throw trouble("", fault.reason);
+  }
+}
+
+/// Compares what the robot says with what the config says of it. In a dry run the robot may be disabled and the arm
+/// anywhere.
+void Tapper::check_robot() const {
+  const bool moving = !options_.dry_run;
+  if (const std::optional<Fault> fault = Watch::fit(seen_, moving)) throw trouble("", fault->reason);
+  if (const int joint = beyond_limits(seen_.joints->position, 0.0); joint >= 0 && moving) {
+    throw trouble("", fmt::format("{} is beyond its limit", kJointNames[static_cast<std::size_t>(joint)]),
+                  "move the arm by hand");
+  }
+  check_gripper(*seen_.joints, *seen_.endpoint, options_.tool.gripper);
+  if (!moving) return;
+  const std::string breach = workspace_.breach(tip_);
+  if (!breach.empty()) {
+    throw trouble("", breach,
+                  "bring the tool by hand to a place above the area; palpate moves the arm there and nowhere else");
+  }
+  const Eigen::Vector3d down = arm_.tip(seen_.joints->position).rotation * Eigen::Vector3d::UnitZ();
+  if (std::acos(std::clamp(-down.z(), -1.0, 1.0)) > kUpright) {
+    throw trouble("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
   }
 }
 
@@ -80,13 +185,6 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   return out;
 }
 
-void Tapper::try_reach() {
-  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
-  const int places = check_reach(planner_, scene_.area(), descent.hover + kFromAbove, descent.floor,
-                                 fastest(options_.motion), kReachSpacing);
-  note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
-}
-
 /// Reads until the robot is fit; if it is not within a second, what was read last says why.
 void Tapper::await_fit(bool moving) {
   take(robot_.read());
@@ -110,24 +208,20 @@ Path Tapper::way_up() const {
 
 /// Of a fault one goes up by own kinematics: who knows what else has failed.
 std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
-  const bool asked = options_.inverse_kinematics == BaxterOptions::InverseKinematics::robot && !recovering_;
-  return asked ? ask_robot(tip, seed) : arm_.solve(tip, seed, kLimitMargin);
-}
-
-std::optional<Joints> Tapper::ask_robot(const Pose& tip, const Joints& seed) {
-  const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
+  if (options_.inverse_kinematics == BaxterOptions::InverseKinematics::own || recovering_) {
+    return arm_.solve(tip, seed, kLimitMargin);
+  }
   // Many poses are asked for, and each may take a second.
   if (interrupted()) throw Fault{"interrupted", Then::silence, false};
-  const Robot::Answer answer = robot_.solve(
+  const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
+  const std::optional<Joints> answer = robot_.solve(
       {tip.position + tip.rotation * (offset - Eigen::Map<const Eigen::Vector3d>(options_.tool.tip)), tip.rotation},
       seed);
-  if (!answer.trouble.empty()) throw Fault{answer.trouble};
-  if (!answer.joints || !answer.joints->allFinite() || beyond_limits(*answer.joints, kLimitMargin) >= 0)
-    return std::nullopt;
-  const Pose reached = arm_.tip(*answer.joints);
+  if (!answer || !answer->allFinite() || beyond_limits(*answer, kLimitMargin) >= 0) return std::nullopt;
+  const Pose reached = arm_.tip(*answer);
   const bool there = (reached.position - tip.position).norm() < kPoseError &&
                      reached.rotation.angularDistance(tip.rotation) < kTurnError;
-  return there ? answer.joints : std::nullopt;
+  return there ? answer : std::nullopt;
 }
 
 }  // namespace palpate::baxter

@@ -32,15 +32,17 @@ class Diary {
     waiting_.clear();
   }
 
-  /// A name for the rosbag that no earlier part of the run has taken.
-  std::string bag() const {
-    for (int part = 1;; ++part) {
-      std::string file = directory_ + "/baxter" + (part > 1 ? "-" + std::to_string(part) : "") + ".bag";
-      if (!std::filesystem::exists(std::filesystem::symlink_status(file))) return file;
+  /// A name for the rosbag that no earlier part of the run has taken; notes that there is one.
+  std::string new_bag() {
+    std::string file = directory_ + "/baxter.bag";
+    for (int part = 2; std::filesystem::exists(std::filesystem::symlink_status(file)); ++part) {
+      if (part == 2) {
+        note("an earlier part of this run has a rosbag: if it was killed, 'rosbag reindex' makes that readable");
+      }
+      file = directory_ + "/baxter-" + std::to_string(part) + ".bag";
     }
+    return file;
   }
-
-  bool has_bag() const { return std::filesystem::exists(directory_ + "/baxter.bag"); }
 
   bool kept() const { return !directory_.empty(); }
 
@@ -70,17 +72,11 @@ class Baxter final : public Backend {
   }
 
   Contact tap(const TapRequest& request) override {
-    if (options_.bag && !recording_ && diary_.kept()) {
-      if (diary_.has_bag()) {
-        diary_.note("an earlier part of this run has a rosbag: if it was killed, 'rosbag reindex' makes that readable");
-      }
-      robot_->record(diary_.bag());
-    }
-    recording_ = true;
+    if (options_.bag && !begun_ && diary_.kept()) robot_->record(diary_.new_bag());
     if (view_) view_->target(request.target);
     const RealTime real_time(!robot_->read().simulated);
-    if (!recorded_schedule_ && !real_time.words().empty()) diary_.note(real_time.words());
-    recorded_schedule_ = true;
+    if (!begun_ && !real_time.words().empty()) diary_.note(real_time.words());
+    begun_ = true;
     Contact contact = tapper_.tap(request);
     diary_.write();
     if (view_ && contact.outcome == Outcome::contact) {
@@ -114,8 +110,7 @@ class Baxter final : public Backend {
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;
   std::unique_ptr<View> view_;  ///< before the robot goes, this goes
-  bool recording_ = false;
-  bool recorded_schedule_ = false;
+  bool begun_ = false;          ///< with the first tap
 };
 
 PALPATE_PLUGIN(Backend, Baxter, "baxter", "the left arm of a Baxter, over ROS 1")

@@ -2,6 +2,7 @@
 // The control loop before everything else that this computer does.
 #pragma once
 
+#include <cstring>
 #include <string>
 
 #include <pthread.h>
@@ -12,8 +13,21 @@ namespace palpate::baxter {
 class RealTime {
  public:
   /// With `wanted` false it does nothing: of a simulated clock no period is real.
-  explicit RealTime(bool wanted);
-  ~RealTime();
+  explicit RealTime(bool wanted) {
+    if (!wanted) return;
+    pthread_getschedparam(pthread_self(), &policy_before_, &before_);
+    sched_param here{};
+    here.sched_priority = kPriority;
+    const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &here);
+    granted_ = refused == 0;
+    words_ = granted_ ? "real-time scheduling: granted"
+                      : std::string("real-time scheduling: not allowed (") + std::strerror(refused) +
+                            "); a line '@palpate - rtprio 20' in /etc/security/limits.d/palpate.conf allows it to the "
+                            "group palpate from the next login on";
+  }
+  ~RealTime() {
+    if (granted_) pthread_setschedparam(pthread_self(), policy_before_, &before_);
+  }
   RealTime(const RealTime&) = delete;
   RealTime& operator=(const RealTime&) = delete;
 
@@ -21,6 +35,9 @@ class RealTime {
   const std::string& words() const { return words_; }
 
  private:
+  /// Above everything ordinary, below the kernel's own threads for interrupts (50).
+  static constexpr int kPriority = 20;
+
   bool granted_ = false;
   int policy_before_ = 0;
   sched_param before_{};

@@ -124,13 +124,9 @@ class Robot {
   /// From now on writes what is heard and sent, and what is shown, to a rosbag. Throws Error if it cannot be opened.
   virtual void record(const std::string& file) = 0;
 
-  /// What the robot's own inverse kinematics says of a pose of left_gripper.
-  struct Answer {
-    std::optional<Joints> joints;  ///< none: it says that there is no solution
-    std::string trouble;           ///< why there is no answer at all, one line; empty if there is one
-  };
-  /// Asks it, starting from `seed`; returns within a second of real time.
-  virtual Answer solve(const Pose& gripper, const Joints& seed) = 0;
+  /// What the robot's own inverse kinematics says of a pose of left_gripper, starting from `seed`: joints, or none if
+  /// there is no solution. Returns within a second of real time; throws Error if it does not answer.
+  virtual std::optional<Joints> solve(const Pose& gripper, const Joints& seed) = 0;
 };
 
 }  // namespace palpate::baxter

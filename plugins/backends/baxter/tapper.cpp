@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/tapper.hpp"
 
-#include "baxter/readings.hpp"
-#include "baxter/signed_tap.hpp"
 #include "baxter/words.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +24,12 @@ constexpr double kAtGoal = 0.015;    ///< rad: settled errors are up to 0.008
 constexpr double kStill = 0.002;     ///< rad in kStillFor
 constexpr double kStillFor = 0.1;    ///< s
 constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
-constexpr double kUnloading = 0.6;   ///< s after which an arm that trails by 0.35 s has turned around and is clear
-constexpr int kPulled = 6;           ///< new readings of a force that pulls: what moving takes away from it is noisy
+
+constexpr double kHeld = 0.5;         ///< s for which the measured joints are sent at a stop
+constexpr double kReflexEnds = 4.0;   ///< s: the firmware's own stop lasts two
+constexpr int kReflexes = 20;         ///< how often it may fire on the way up
+constexpr double kAboveTravel = 0.3;  ///< m that the arm may be above the height of travel
+constexpr double kBelowFloor = 0.01;  ///< m that the tip may be below the end of a descent
 
 /// For the first contact with a desk of which nobody knows how hard it is: at 1 cm/s and 4 N it stays below 8 N on
 /// 100 kN/m.
@@ -39,10 +41,12 @@ tapping::MotionOptions gentle(tapping::MotionOptions motion) {
   return motion;
 }
 
-Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false) {
-  Contact out{outcome, 0.0, 0.0, 0.0, reason};
-  out.ends_run = ends_run;
-  return out;
+/// Where the tip may be: the area and a little beside it, from below the desk, where descents end, to well above the
+/// height of travel.
+Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
+  const Area area = scene.area();
+  return {area.width, area.depth, scene.desk() - options.motion.overrun - kBelowFloor,
+          scene.desk() + options.motion.hover + kAboveTravel};
 }
 
 }  // namespace
@@ -61,6 +65,12 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
       sign_(options.sign() == ForceSign::learn      ? 0.0
             : options.sign() == ForceSign::positive ? 1.0
                                                     : -1.0) {}
+
+Contact Tapper::failed(Outcome outcome, const std::string& reason, bool ends_run) {
+  Contact out{outcome, 0.0, 0.0, 0.0, reason};
+  out.ends_run = ends_run;
+  return out;
+}
 
 Contact Tapper::tap(const TapRequest& request) {
   const double begin = robot_.read().now;
@@ -130,13 +140,13 @@ void Tapper::go_to(const Joints& hover) {
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
   climb(up);
-  follow(across, options_.motion.travel_speed);
+  follow(across, options_.motion.travel_speed, across.length());
   settle(hover);
 }
 
 void Tapper::climb(const Path& up) {
   if (!(up.length() > 0.0)) return;
-  follow(up, options_.motion.retreat_speed);
+  follow(up, options_.motion.retreat_speed, up.length());
   await_height(up.end());
 }
 
@@ -152,9 +162,9 @@ void Tapper::await_height(const Joints& top) {
   }
 }
 
-void Tapper::follow(const Path& path, double speed) {
-  for (double along = 0.0; along < path.length();) {
-    along = path.advance(along, speed, kPeriod);
+void Tapper::follow(const Path& path, double speed, double end) {
+  for (double along = 0.0; along < end;) {
+    along = std::min(end, path.advance(along, speed, kPeriod));
     step(path.at(along));
   }
 }
@@ -174,108 +184,6 @@ void Tapper::settle(const Joints& goal) {
     if (seen_.now - since >= kStillFor && (now - goal).cwiseAbs().maxCoeff() < kAtGoal) return;
   }
   throw Fault{"the arm did not come to rest where it was sent: see what holds it", Then::hold};
-}
-
-/// Comes down to `hover` from just above and waits until the arm rests. Its joints rub: at 0.4 Nm the force of an arm
-/// at rest reads 9 N less after it has come up than after it has come down. So it rests as it will go on, and what is
-/// felt at rest before a tap and after it can be compared.
-void Tapper::rest_from_above(const Path& column) {
-  settle(column.front());
-  for (double along = 0.0; along < kFromAbove;) {
-    along = std::min(kFromAbove, column.advance(along, options_.motion.speed, kPeriod));
-    step(column.at(along));
-  }
-  settle(column.at(kFromAbove));
-}
-
-Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column) {
-  const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
-  const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
-  rest_from_above(column);
-  SignedTap signed_tap(motion, plan, sign_);
-  std::vector<Eigen::Vector3d> tare;
-  EvenDescent even;
-  std::optional<double> moving;
-  int pulled = 0;
-  double set_point = plan.hover;
-  Joints command = at(plan.hover);
-  Eigen::Vector3d at_hover = seen_.endpoint->force;
-  for (bool first = true; !signed_tap.tap().done();) {
-    const double before = set_point;
-    const bool taring = signed_tap.tap().taring();
-    const bool fresh = watch_.fresh();
-    const Eigen::Vector3d reading = seen_.endpoint->force;
-    const bool coming_down = signed_tap.tap().coming_down();
-    const double felt = reading.z() - (coming_down ? moving_ : 0.0);
-    set_point = signed_tap.next(height(), felt, fresh);
-    // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
-    if (set_point == height() && set_point != before) {
-      command = seen_.joints->position;
-    } else if (set_point != before) {
-      command = at(set_point);
-    }
-    if (taring) {
-      if (fresh) tare.push_back(reading);
-      pulled = 0;
-      if (!signed_tap.tap().taring() && !signed_tap.tap().done()) {
-        // The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
-        zero_ = average(std::exchange(tare, {}));
-        if (std::exchange(first, false)) at_hover = zero_;
-        watch_.set_tare(zero_);
-      }
-    } else if (fresh) {
-      // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
-      // expected a soft contact.
-      if (!moving && plan.start >= plan.hover && even.add(signed_tap.tap().even_for(), reading)) {
-        moving = even.mean().z() - zero_.z();
-      }
-      // An arm that goes up rubs the other way, which is no pull.
-      pulled = coming_down && sign_ * (felt - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
-      if (pulled >= kPulled) {
-        throw Fault{
-            "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
-            "wrong",
-            Then::retreat};
-      }
-    }
-    step(command);
-  }
-  retreat(column.back(plan.hover + kFromAbove - height()));
-  const GuardedTap& tap = signed_tap.tap();
-  switch (tap.outcome()) {
-    case Outcome::contact:
-      rest_from_above(column);
-      if (!believed(at_hover, force_at_rest(at(plan.hover)), motion.threshold)) {
-        return failed(Outcome::aborted,
-                      "the force did not go back to its zero when the tool was clear: its zero moved "
-                      "during the tap, and the contact may be none");
-      }
-      if (moving) learn_moving(*moving);
-      shown_sign_ = signed_tap.sign();
-      return {Outcome::contact, tap.height(), tap.peak_force(), 0.0, {}};
-    case Outcome::timeout:
-      return failed(Outcome::timeout, "the tap took longer than motion.timeout");
-    default:
-      return failed(tap.outcome(), "the descent ended without a contact");
-  }
-}
-
-/// Goes up from where it may press. What it presses with goes, and so does what the joints rub against, which turns
-/// around: only what comes after that is a force of something that holds the tool.
-void Tapper::retreat(const Path& up) {
-  watch_.forget_tare();
-  const double free = seen_.now + kUnloading;
-  bool tared = false;
-  for (double along = 0.0; along < up.length();) {
-    along = up.advance(along, options_.motion.retreat_speed, kPeriod);
-    step(up.at(along));
-    if (!tared && seen_.now >= free) {
-      tared = true;
-      watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
-    }
-  }
-  await_height(up.end());
-  if (!tared) watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
 }
 
 void Tapper::expect_fit() {
@@ -313,6 +221,62 @@ bool Tapper::pass() {
 void Tapper::take(Snapshot seen) {
   seen_ = std::move(seen);
   if (seen_.joints) tip_ = planner_.to_scene(arm_.tip(seen_.joints->position).position);
+}
+
+/// Does what may still be done and tells, in half a sentence, where that left the arm.
+std::string Tapper::recover(const Fault& fault) {
+  if (fault.then == Then::silence) return kSilent;
+  const std::string where = "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk";
+  recovering_ = true;
+  if (const auto other = hold(seen_.joints->position)) return std::string(kSilent) + ": " + other->reason;
+  if (fault.then == Then::hold) return where;
+  try {
+    for (int attempt = 1;; ++attempt) {
+      try {
+        outlast_reflex();
+        climb(way_up());
+        settle(*watch_.last_sent());
+        return "the arm was raised to the height of travel";
+      } catch (const Fault& again) {
+        if (!again.reflex || attempt == kReflexes) throw;
+      }
+    }
+  } catch (const NoPath& none) {
+    return where + ", it could not be raised: " + none.reason;
+  } catch (const Fault& other) {
+    if (other.then == Then::silence) return std::string(kSilent) + ": " + other.reason;
+    hold(seen_.joints->position);
+    return where + ", it was not raised: " + other.reason;
+  }
+}
+
+/// Waits, where the arm is, until its own reflex lets it go. One that is left pressing fires again as soon as that: a
+/// little way up is made each time, until there is less than 16 N.
+void Tapper::outlast_reflex() {
+  watch_.begin();
+  watch_.expect_collision(true);
+  next_ = seen_.now;
+  const double patience = seen_.now + kReflexEnds;
+  const Joints here = seen_.joints->position;
+  while (seen_.now < patience && seen_.collision && seen_.collision->collision) step(here);
+  watch_.expect_collision(false);
+  step(seen_.joints->position);
+}
+
+Fault Tapper::standstill() { return {"the clock of the robot's network stands still: its sender is gone"}; }
+
+/// Sends the joints, which keep the arm where it is, for a while; or less, where a rule comes to ask for silence. That
+/// rule, if one did.
+std::optional<Fault> Tapper::hold(Joints joints) {
+  watch_.begin();
+  next_ = seen_.now;
+  for (double left = kHeld; left > 0.0; left -= kPeriod) {
+    robot_.command(joints);
+    if (!pass()) return standstill();
+    std::optional<Fault> fault = watch_.look(seen_, tip_);
+    if (fault && fault->then == Then::silence) return fault;
+  }
+  return std::nullopt;
 }
 
 }  // namespace palpate::baxter

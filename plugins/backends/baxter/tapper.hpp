@@ -4,7 +4,6 @@
 #pragma once
 
 #include "baxter/path.hpp"
-#include "baxter/preflight.hpp"
 #include "baxter/watch.hpp"
 #include "tapping/guarded_tap.hpp"
 
@@ -42,7 +41,10 @@ class Tapper {
   /// nothing.
   std::string learnt_sign() const;
 
-  /// Looks at everything that must be right before anything moves. Throws Error.
+  /// Looks at everything that must be right before anything moves. Throws Error (kind `run`) that names the cause and
+  /// the remedy: a calibration tap beside the area, a state in which it must not move, a second sender, stale or
+  /// unsound data, a joint beyond its limit, left_gripper not where the config has it, an arm that is not above the
+  /// area with its tool down, settings that others left, places that cannot be reached.
   void check();
 
  private:
@@ -54,12 +56,12 @@ class Tapper {
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
   void calibrate(const Contact& contact);
+  void check_robot() const;
   std::optional<Fault> listen();
-  void try_reach();
   void await_fit(bool moving);
   void expect_fit();
   void go_to(const Joints& hover);
-  void follow(const Path& path, double speed);
+  void follow(const Path& path, double speed, double end);
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up);
@@ -67,6 +69,7 @@ class Tapper {
   Eigen::Vector3d force_at_rest(const Joints& joints);
   bool believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const;
   std::string recover(const Fault& fault);
+  static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
   static Fault standstill();
   void outlast_reflex();
   Path way_up() const;
@@ -75,7 +78,6 @@ class Tapper {
   Path column(const Target& place) const;
   Target bare() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
   std::optional<Joints> inverse(const Pose& tip, const Joints& seed);
-  std::optional<Joints> ask_robot(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);
   std::optional<Fault> hold(Joints joints);

@@ -93,8 +93,6 @@ std::string Workspace::breach(const Eigen::Vector3d& tip) const {
   return {};
 }
 
-Watch::Watch(const Workspace& workspace, double force_stop) : workspace_(workspace), force_stop_(force_stop) {}
-
 void Watch::begin() {
   sent_.clear();
   joint_stream_.begin();
@@ -111,10 +109,6 @@ void Watch::begin() {
 void Watch::sent(double time, const Joints& target) {
   sent_.push_back({time, target});
   while (sent_.front().time < time - kTrail) sent_.pop_front();
-}
-
-std::optional<Joints> Watch::last_sent() const {
-  return sent_.empty() ? std::nullopt : std::optional<Joints>(sent_.back().target);
 }
 
 std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {

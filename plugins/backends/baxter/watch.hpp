@@ -5,10 +5,10 @@
 #include "baxter/kinematics.hpp"
 #include "baxter/options.hpp"
 #include "baxter/robot.hpp"
-#include "baxter/stream.hpp"
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -39,6 +39,47 @@ struct Workspace {
   std::string breach(const Eigen::Vector3d& tip) const;
 };
 
+/// How often something new comes: the new readings of one stream within the last half second. The robot sends a hundred
+/// times a second and the driver looks as often; but either may be late, and then the latest reading is one that was
+/// looked at before. What counts readings must count new ones.
+class Stream {
+ public:
+  static constexpr double kWindow = 0.5;  ///< s
+  /// The fewest in a window: 50 Hz. Three readings, which make a contact, then take 60 ms; at 2 cm/s that is 1.2 mm.
+  static constexpr int kFewest = 25;
+
+  /// Takes what is the latest at `now` (s); whether it is new, that is, has another stamp than the one before.
+  bool hear(const Arrival& arrival, double now) {
+    while (!heard_.empty() && heard_.front().time < now - kWindow - kSlack) heard_.pop_front();
+    if (stamp_ == arrival.stamp) return false;
+    stamp_ = arrival.stamp;
+    heard_.push_back({now, arrival.count});
+    return true;
+  }
+
+  /// How many were new within the last kWindow seconds, with those that came and went between two looks, where the
+  /// arrivals are counted.
+  int heard() const {
+    if (heard_.empty()) return 0;
+    const long counted = heard_.back().count - heard_.front().count + 1;
+    return static_cast<int>(std::max(counted, static_cast<long>(heard_.size())));
+  }
+
+  /// Counts anew. What was heard last is still not new.
+  void begin() { heard_.clear(); }
+
+ private:
+  /// A stream of exactly the fewest has as many in every window, whatever the sums of its times round to.
+  static constexpr double kSlack = 1e-6;
+
+  struct Heard {
+    double time;
+    long count;
+  };
+  std::optional<double> stamp_;
+  std::deque<Heard> heard_;
+};
+
 /// Sources of the numbers: the robot's own limits and times where they are known (its firmware stops at 16 N, forgets
 /// commands after 0.2 s, trails its set-point by 0.3 to 0.4 s), else several times what a sound robot shows.
 class Watch {
@@ -64,7 +105,7 @@ class Watch {
     double at = 0.0;
   };
 
-  Watch(const Workspace& workspace, double force_stop);
+  Watch(const Workspace& workspace, double force_stop) : workspace_(workspace), force_stop_(force_stop) {}
 
   /// Forgets what was commanded and felt: before a motion, after a pause in which nothing was sent.
   void begin();
@@ -91,7 +132,9 @@ class Watch {
   /// Tells what is sent, so that look() can judge whether the arm follows.
   void sent(double time, const Joints& target);
   /// The last of what was sent; none since begin().
-  std::optional<Joints> last_sent() const;
+  std::optional<Joints> last_sent() const {
+    return sent_.empty() ? std::nullopt : std::optional<Joints>(sent_.back().target);
+  }
 
   /// The rules of the robot's state, of who sends it, and of the age and soundness of the data: what must hold even
   /// while nothing moves. `moving`: the arm must be enabled.

@@ -7,14 +7,19 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <thread>
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -57,18 +62,54 @@ bool glance(const Descriptor& descriptor, short events, Clock::time_point until)
   return ::poll(&one, 1, until <= Clock::now() ? 0 : static_cast<int>(wait.count())) > 0;
 }
 
+struct Process {
+  pid_t pid = 0;
+  pid_t parent = 0;
+  bool ended = false;
+};
+
+/// All of this machine, as they are now.
+std::vector<Process> processes() {
+  std::vector<Process> out;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream in(entry.path() / "stat");
+    std::string line;
+    if (!std::getline(in, line)) continue;
+    // PID (NAME) STATE PARENT ..., where the name may hold anything.
+    const std::size_t behind = line.rfind(')');
+    if (behind == std::string::npos || behind + 4 > line.size()) continue;
+    const char state = line[behind + 2];
+    out.push_back({static_cast<pid_t>(std::stol(name)), static_cast<pid_t>(std::atol(line.c_str() + behind + 4)),
+                   state == 'Z' || state == 'X'});
+  }
+  return out;
+}
+
+bool carries(pid_t pid, const std::string& mark) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
+  const std::string all = '\0' + std::string(std::istreambuf_iterator<char>(in), {});
+  return all.find('\0' + mark + '\0') != std::string::npos;
+}
+
 }  // namespace
 
 Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
-             const Descriptor* kept)
+             const Descriptor& kept)
     : diary_(diary) {
+  static std::atomic<int> count{0};
+  mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(++count);
+  // From now on the processes that a program leaves behind become this one's children.
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::optional<Pipe> in = open_pipe();
   std::optional<Pipe> out = open_pipe();
   if (!in || !out) fail("cannot open a pipe", errno);
   std::vector<int> files{in->to_read.number(), out->to_write.number(), diary_.descriptor().number()};
-  if (kept != nullptr) files.push_back(kept->number());
+  if (kept) files.push_back(kept.number());
   Program program{words, file};
-  program.environment.insert(program.environment.begin(), descent_.mark());
+  program.environment.insert(program.environment.begin(), mark_);
   pid_ = spawn(program, files);
   if (pid_ < 0) fail("cannot start '" + file + "'", errno);
   input_ = std::move(in->to_write);
@@ -77,14 +118,14 @@ Child::Child(const std::string& file, const std::vector<std::string>& words, con
 }
 
 Child::~Child() {
-  descent_.look(pid_);
+  find_kin();
   input_.close();
   if (!wait_for_end()) {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
   // Before it is reaped, so that the number of the group is still its own: what it started must not outlive it either.
-  descent_.end(pid_);
+  end_kin();
   diary_.trim();
 }
 
@@ -156,6 +197,45 @@ bool Child::wait_for_end() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
+}
+
+/// What there is of it now. To be called before the program is asked to end: whoever it leaves behind without the mark
+/// is known by then.
+void Child::find_kin() {
+  const std::vector<Process> all = processes();
+  kin_.insert(pid_);
+  for (std::size_t before = 0; before != kin_.size();) {
+    before = kin_.size();
+    for (const Process& one : all) {
+      if (one.ended || kin_.count(one.pid) != 0) continue;
+      const bool left_behind = one.parent == ::getpid() && carries(one.pid, mark_);
+      if (kin_.count(one.parent) == 0 && !left_behind) continue;
+      kin_.insert(one.pid);
+    }
+  }
+}
+
+/// Ends, with SIGKILL, the program, which has not been reaped yet, its group, and all of its kin, and reaps what of
+/// that is a child of this process.
+void Child::end_kin() {
+  // Again and again, until none is left: who is ended may just have started another, and whose parent is ended becomes
+  // a child of this process. By then any other of a number that was found is a stranger. A process may take a while to
+  // end, in a driver that does not let go even for ever.
+  constexpr int kLooks = 2000;
+  for (int i = 0; i < kLooks; ++i) {
+    find_kin();
+    bool left = false;
+    for (const Process& one : processes()) {
+      const bool near = one.parent == ::getpid() || kin_.count(one.parent) != 0;
+      if (one.ended || !near || kin_.count(one.pid) == 0) continue;
+      ::kill(one.pid, SIGKILL);
+      left = true;
+    }
+    if (!left) break;
+    ::kill(-pid_, SIGKILL);
+    ::usleep(1000);
+  }
+  for (const pid_t pid : kin_) ::waitpid(pid, nullptr, WNOHANG);
 }
 
 }  // namespace palpate::process

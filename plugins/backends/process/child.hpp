@@ -3,29 +3,17 @@
 #pragma once
 
 #include "children/child_process.hpp"
-#include "process/descent.hpp"
-#include "process/diary.hpp"
+#include "process/recorded.hpp"
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
 
 namespace palpate::process {
-
-/// How often a wait looks whether the user wants to stop.
-constexpr std::chrono::milliseconds kGlance{20};
-
-/// Until when to wait, and what breaks the wait off.
-struct Patience {
-  std::chrono::steady_clock::time_point until;
-  const std::atomic<bool>* interrupted = nullptr;  ///< may be null
-
-  bool broken_off() const { return interrupted != nullptr && interrupted->load(); }
-};
 
 /// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
 /// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
@@ -44,10 +32,10 @@ class Child {
   enum class Heard { line, ended, late, interrupted, too_long };
 
   /// Starts `file` with the arguments `words`, of which the first is its name. Its stderr is appended to `diary`, or
-  /// dropped if that is empty. It inherits `kept` (may be null) as the file after the standard ones. Throws Error when
+  /// dropped if that is empty. It inherits `kept` (may be none) as the file after the standard ones. Throws Error when
   /// it cannot be started.
   Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
-        const Descriptor* kept = nullptr);
+        const Descriptor& kept);
   /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM to its group; then SIGKILL to all that
   /// it started, wherever that has gone. Afterwards nothing of it is left.
   ~Child();
@@ -68,11 +56,17 @@ class Child {
   bool gone() const;
   bool wait_for_end();
 
+  // All that the program started, and what those started, however far away they have gone: into a group or a session of
+  // their own, or left behind by whoever started them.
+  void find_kin();
+  void end_kin();
+
   Diary diary_;
-  Descent descent_;
-  Descriptor input_;   ///< we write
-  Descriptor output_;  ///< we read
-  std::string heard_;  ///< and not yet taken
+  std::string mark_;     ///< NAME=VALUE of its environment, which those that it starts inherit
+  std::set<pid_t> kin_;  ///< those that were found, itself too
+  Descriptor input_;     ///< we write
+  Descriptor output_;    ///< we read
+  std::string heard_;    ///< and not yet taken
   pid_t pid_ = -1;
 };
 

@@ -8,22 +8,75 @@
 // run ends, for somebody to look at the arm. So no late answer is ever taken for another tap, and each trouble is told
 // in the record.
 #include "process/child.hpp"
-#include "process/command.hpp"
-#include "process/hold.hpp"
 #include "process/protocol.hpp"
-#include "tapping/words.hpp"
+#include "tapping/motion.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <sstream>
 
+#include <unistd.h>
+
+#include <fmt/format.h>
+
 namespace palpate::backends {
 
 using process::Child;
-using process::Hold;
+
+namespace {
+
+/// The words of `text`, split at blanks. 'single' and "double" quotes keep blanks together and are taken away; nothing
+/// else means anything, neither a backslash nor a dollar sign. None if a quote is left open or no word is there.
+std::optional<std::vector<std::string>> split_command(const std::string& text) {
+  std::vector<std::string> words;
+  bool inside = false;  // of a word: '' is one, though empty
+  char quote = '\0';
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (quote == '\0' && blank) {
+      inside = false;
+      continue;
+    }
+    if (!inside) words.emplace_back();
+    inside = true;
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '\'' || c == '"')) {
+      quote = c;
+    } else {
+      words.back() += c;
+    }
+  }
+  if (quote != '\0' || words.empty() || words.front().empty()) return std::nullopt;
+  return words;
+}
+
+bool executable(const std::string& file) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(file, none) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// The file that runs as `program`: a path as it stands, a bare name from the folders of PATH. Throws Error where no
+/// such file may be executed.
+std::string find_program(const std::string& program) {
+  const bool is_path = program.find('/') != std::string::npos;
+  if (is_path && executable(program)) return program;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
+  for (std::string folder; !is_path && std::getline(folders, folder, ':');) {
+    const std::string file = (folder.empty() ? "." : folder) + "/" + program;
+    if (executable(file)) return file;
+  }
+  throw Error("command", "there is no program " + process::shown(program),
+              "a name is looked for in PATH, a path from the folder in which palpate runs");
+}
+
+}  // namespace
 
 struct ProcessOptions : Options {
   std::string command;
@@ -39,7 +92,7 @@ struct ProcessOptions : Options {
                                "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
                                "blanks together, nothing else is interpreted, no shell")
                              .needed());
-    fields.require(process::split_command(command).has_value(), "command", "names no program, or a quote is left open");
+    fields.require(split_command(command).has_value(), "command", "names no program, or a quote is left open");
     fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
                               .in(Unit::second)
                               .above(0)
@@ -69,14 +122,10 @@ class Process final : public Backend {
 
   /// Throws Error when there is no such program.
   Process(const Options& options, const Context& context)
-      : options_(options), context_(context), words_(process::split_command(options.command).value()) {
-    const std::optional<std::string> file = process::find_program(words_.front());
-    if (!file) {
-      throw Error("command", "there is no program " + process::shown(words_.front()),
-                  "a name is looked for in PATH, a path from the folder in which palpate runs");
-    }
-    file_ = *file;
-  }
+      : options_(options),
+        context_(context),
+        words_(split_command(options.command).value()),
+        file_(find_program(words_.front())) {}
 
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();
@@ -87,17 +136,20 @@ class Process final : public Backend {
       seconds += options_.start;
     }
     process::Answer answer = child_ ? ask(request, patience(begin, seconds)) : left_behind();
-    if (!answer.in_step) end_program(answer.contact);
+    if (!answer.in_step) {
+      child_.reset();
+      if (answer.contact.ends_run)
+        answer.contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+    }
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
   }
 
   std::vector<std::string> describe(const TapRequest& request) override {
     std::vector<std::string> out = tapping::describe(options_.motion, context_.scene.desk(), request, request.previous);
-    std::ostringstream ask;
-    ask << (child_ ? "ask " : "start ") << process::shown(options_.command) << ", which has "
-        << options_.deadline + (child_ ? 0.0 : options_.start) << " s, for this motion:";
-    out.insert(out.begin(), ask.str());
+    out.insert(out.begin(),
+               fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
+                           process::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
     return out;
   }
 
@@ -123,31 +175,24 @@ class Process final : public Backend {
   /// Starts the program, but where taps are not repeatable only once none of an earlier attempt is there any more: two
   /// must not move one arm. If one still is when the patience is over, there is no child.
   void start(const process::Patience& patience) {
-    std::optional<Hold> hold;
-    if (const std::string lock = recorded(kLock); !options_.repeatable && !lock.empty()) {
-      hold = Hold::take(lock, patience);
-      if (!hold) return;
+    Descriptor lock;
+    if (!options_.repeatable && !context_.directory.empty()) {
+      lock = process::locked(recorded(kLock), patience);
+      if (!lock) return;
     }
-    child_ =
-        std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), hold ? &hold->descriptor() : nullptr);
-    if (hold) hold->note(child_->pid());
+    child_ = std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), lock);
+    if (lock) process::note_holder(lock, child_->pid());
   }
 
   process::Answer left_behind() const {
     if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
     process::Answer answer =
-        failed("of an earlier attempt, process " + Hold::noted(recorded(kLock)) + ", still runs: end it");
+        failed("of an earlier attempt, process " + process::noted_holder(recorded(kLock)) + ", still runs: end it");
     answer.contact.ends_run = true;
     return answer;
   }
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
-
-  /// Of an answer after which nobody knows what the program does.
-  void end_program(Contact& contact) {
-    child_.reset();
-    if (contact.ends_run) contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
-  }
 
   process::Answer ask(const TapRequest& request, const process::Patience& patience) {
     std::string line;

@@ -5,8 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace palpate::process {
@@ -28,15 +29,6 @@ class Written final : public Fields {
 
   void real(double& value, const Field& field) override { out_[field.name] = value; }
   void real(std::optional<double>& value, const Field& field) override { maybe(value, field); }
-  void reals(double* values, std::size_t count, const Field& field) override {
-    out_[field.name] = Json(std::vector<double>(values, values + count));
-  }
-  void table(std::vector<double>& values, std::size_t columns, const Field& field) override {
-    Json& rows = out_[field.name] = Json::array();
-    for (std::size_t i = 0; i < values.size(); i += columns) {
-      rows.push_back(std::vector<double>(&values[i], &values[i] + columns));
-    }
-  }
   void integer(std::int64_t& value, const Field& field) override { out_[field.name] = value; }
   void integer(std::optional<std::int64_t>& value, const Field& field) override { maybe(value, field); }
   void flag(bool& value, const Field& field) override { out_[field.name] = value; }
@@ -53,14 +45,10 @@ class Written final : public Fields {
     out_[field.name] = nullptr;
     if (present) section(options, field);
   }
-  void sections(const ListAccess& access, const Field& field) override {
-    Json& items = out_[field.name] = Json::array();
-    for (std::size_t i = 0; i < access.size(); ++i) {
-      Written inner(items.emplace_back(Json::object()));
-      access.item(i).list(inner);
-    }
-  }
-  // A motion holds no plugins.
+  // A motion holds no lists and no plugins.
+  void reals(double*, std::size_t, const Field&) override {}
+  void table(std::vector<double>&, std::size_t, const Field&) override {}
+  void sections(const ListAccess&, const Field&) override {}
   void plugin(PluginChoice&, const Field&) override {}
   void plugin(std::optional<PluginChoice>&, const char*, const Field&) override {}
   void plugins(std::vector<PluginChoice>&, const char*, const Field&) override {}
@@ -76,11 +64,8 @@ class Written final : public Fields {
   Json& out_;
 };
 
-const std::array<std::pair<const char*, Outcome>, 5> kOutcomes{{{"contact", Outcome::contact},
-                                                                {"no_contact", Outcome::no_contact},
-                                                                {"unreachable", Outcome::unreachable},
-                                                                {"timeout", Outcome::timeout},
-                                                                {"aborted", Outcome::aborted}}};
+/// In the order of Outcome; `unknown` is nothing that a program could say.
+constexpr const char* kOutcomes[] = {"contact", "no_contact", "unreachable", "timeout", "aborted"};
 
 /// The program's own words in the record: whole characters, none that a terminal obeys.
 std::string cleaned(const std::string& reason) {
@@ -102,9 +87,8 @@ class Reader {
  public:
   explicit Reader(const Json& answer) : answer_(answer) {
     for (const auto& [key, value] : answer.items()) {
-      static const std::array<const char*, 7> kKnown{"tap",     "outcome", "height",  "force",
-                                                     "seconds", "reason",  "ends_run"};
-      if (std::find(kKnown.begin(), kKnown.end(), key) == kKnown.end()) refuse("has an unknown field " + shown(key));
+      static const std::set<std::string> known{"tap", "outcome", "height", "force", "seconds", "reason", "ends_run"};
+      if (known.count(key) == 0) refuse("has an unknown field " + shown(key));
     }
   }
 
@@ -141,9 +125,8 @@ class Reader {
 
   Outcome outcome() {
     const std::string name = text("outcome");
-    for (const auto& [known, outcome] : kOutcomes) {
-      if (name == known) return outcome;
-    }
+    const auto* const known = std::find(std::begin(kOutcomes), std::end(kOutcomes), name);
+    if (known != std::end(kOutcomes)) return static_cast<Outcome>(known - std::begin(kOutcomes));
     refuse("has an unknown outcome");
     return Outcome::aborted;
   }

@@ -3,12 +3,30 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <thread>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 namespace palpate::process {
+namespace {
+
+constexpr const char* kNote = "\n[here %15lld bytes are left out]\n";
+
+std::string note_of(long long bytes) {
+  std::array<char, 64> line{};
+  std::snprintf(line.data(), line.size(), kNote, bytes);
+  return line.data();
+}
+
+const auto kNoteLength = static_cast<off_t>(note_of(0).size());
 
 Descriptor open_recorded(const std::string& file, int flags) {
   const int number = ::open(file.c_str(), flags | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
@@ -18,6 +36,72 @@ Descriptor open_recorded(const std::string& file, int flags) {
   if (!out)
     throw Error("command", std::string("cannot open a pipe or file: ") + std::strerror(errno), {}, Error::Kind::run);
   return out;
+}
+
+}  // namespace
+
+Diary::Diary(const std::string& file)
+    : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)), kept_(!file.empty()) {
+  if (!kept_) return;
+  begin_ = size();
+  const std::string note = read(kFirst, kFirst + kNoteLength);
+  long long before = 0;
+  if (std::sscanf(note.c_str(), kNote, &before) == 1 && note == note_of(before)) left_out_ = before;
+}
+
+void Diary::trim() {
+  const off_t end = kept_ ? size() : 0;
+  const off_t noted = kFirst + (left_out_ > 0 ? kNoteLength : 0);
+  if (end <= noted + 2 * kLast) return;
+  const std::string last = read(end - kLast, end);
+  left_out_ += end - kLast - noted;
+  // What the program writes now is lost between the two, or comes to stand before the note: no more than that.
+  left_out_ += std::max<off_t>(0, size() - end);
+  if (::ftruncate(file_.number(), kFirst) != 0) return;
+  write_all(file_, note_of(left_out_) + last);  // a full disk costs words of a program, no tap
+  begin_ = std::min(begin_, kFirst);
+}
+
+std::string Diary::last_words() const {
+  if (!kept_) return {};
+  constexpr off_t kEnough = 1024;
+  const off_t end = size();
+  std::string text = read(std::max(begin_, end - kEnough), end);
+  text.erase(text.find_last_not_of(" \r\n") + 1);
+  return text.substr(text.find_last_of('\n') + 1);
+}
+
+off_t Diary::size() const { return ::lseek(file_.number(), 0, SEEK_END); }
+
+std::string Diary::read(off_t begin, off_t end) const {
+  std::string out(static_cast<std::size_t>(std::max<off_t>(0, end - begin)), '\0');
+  const ssize_t got = ::pread(file_.number(), out.data(), out.size(), begin);
+  out.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  return out;
+}
+
+Descriptor locked(const std::string& file, const Patience& patience) {
+  Descriptor lock = open_recorded(file, O_RDWR);
+  // Asked again and again: a wait in the kernel could not be broken off.
+  while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) {
+      throw Error(file, std::string("cannot be locked: ") + std::strerror(errno), {}, Error::Kind::run);
+    }
+    if (patience.broken_off() || std::chrono::steady_clock::now() >= patience.until) return {};
+    std::this_thread::sleep_for(kGlance);
+  }
+  return lock;
+}
+
+void note_holder(const Descriptor& lock, pid_t holder) {
+  // A note that cannot be written costs the next one a number in a message, no more.
+  if (::ftruncate(lock.number(), 0) == 0) write_all(lock, std::to_string(holder) + '\n');
+}
+
+std::string noted_holder(const std::string& file) {
+  std::ifstream in(file);
+  std::string holder;
+  return std::getline(in, holder) ? holder : "?";
 }
 
 }  // namespace palpate::process

@@ -1,14 +1,41 @@
 // SPDX-License-Identifier: MIT
-// The simulated arm: how it follows its set-point, and what it feels.
+// The simulated arm: how it follows its set-point, the shape of its tool, and what it feels.
 #pragma once
 
-#include "simulator/normal.hpp"
-
 #include <palpate/effects.hpp>
+#include <palpate/random.hpp>
+#include <palpate/scene.hpp>
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace palpate::backends {
+
+/// Standard normal numbers from a stream, by Box and Muller's method: in pairs, of which the second waits.
+class Normal {
+ public:
+  explicit Normal(Random random) : random_(random) {}
+
+  double operator()() {
+    if (spare_) {
+      const double out = *spare_;
+      spare_.reset();
+      return out;
+    }
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - random_.uniform()));
+    const double angle = 2.0 * 3.14159265358979323846 * random_.uniform();
+    spare_ = radius * std::sin(angle);
+    return radius * std::cos(angle);
+  }
+
+  /// The stream itself, for what is not normal.
+  Random& uniform() { return random_; }
+
+ private:
+  Random random_;
+  std::optional<double> spare_;
+};
 
 /// One axis that follows a set-point: a second-order system, exact for a set-point that is constant over each period.
 /// Without lag it is where it is told to be.
@@ -30,6 +57,12 @@ class Arm {
   double from_deviation_[2]{}, from_velocity_[2]{};
 };
 
+/// Height of the tool's lowest point when it first meets something on its way straight down at (x, y), metres: that of
+/// the scene for a point; higher where the side of a round tip, or the shaft above it, meets a taller place nearby.
+/// The largest value over the tool's disc is searched on rings and then around the best point, to 0.1 um where the
+/// scene is smooth or has one edge there; details smaller than an eighth of the radius may be missed.
+double contact_height(const Scene& scene, const Effects& effects, double x, double y);
+
 /// What the arm meets and feels during one tap: a spring at `surface`, a sensor with noise, drift, blindness and jerks.
 class Touch {
  public:
@@ -47,14 +80,14 @@ class Touch {
  private:
   double surface_;
   double hover_;
-  double stiffness_;  ///< of object and arm in series, N/m
-  double give_;       ///< of the object, m/N
-  double noise_;      ///< N
-  double drift_;      ///< N/m, of this tap
-  bool blind_;
-  double jerk_at_;  ///< height, below any floor if there is none
-  double jerk_;     ///< N
-  int jerk_left_;   ///< periods
+  double stiffness_;    ///< of object and arm in series, N/m
+  double give_ = 0.0;   ///< of the object, m/N
+  double noise_ = 0.0;  ///< N
+  double drift_ = 0.0;  ///< N/m, of this tap
+  bool blind_ = false;
+  double jerk_at_ = -std::numeric_limits<double>::infinity();  ///< height, below any floor if there is none
+  double jerk_;                                                ///< N
+  int jerk_left_ = 5;                                          ///< periods: 50 ms
   Normal normal_;
 };
 

@@ -2,45 +2,29 @@
 #include "simulator/simulator.hpp"
 
 #include "simulator/arm.hpp"
-#include "simulator/normal.hpp"
-#include "simulator/tool.hpp"
 #include "tapping/guarded_tap.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
 #include <cmath>
-#include <sstream>
 #include <thread>
+
+#include <fmt/format.h>
 
 namespace palpate::backends {
 namespace {
-
-std::string centimetres(double height) {
-  std::ostringstream out;
-  out << 100.0 * height << " cm";
-  return out.str();
-}
-
-bool any(const Effects& effects) {
-  return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.tip_radius ||
-         effects.pose_noise || effects.missed_contacts || effects.false_contacts || effects.reach || effects.shaft;
-}
-
-constexpr const char* kTooLong = "the tap took longer than motion.timeout";
 
 bool change_motion(const Effects& effects) {
   return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
          effects.missed_contacts || effects.false_contacts;
 }
 
-}  // namespace
-
-void SimulatorOptions::list(Fields& fields) {
-  fields.section(motion, Field("motion", "the tapping motion"));
-  fields.real(
-      pace, Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
+bool any(const Effects& effects) {
+  return change_motion(effects) || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft;
 }
+
+}  // namespace
 
 Simulator::Simulator(const Options& options, const Context& context)
     : options_(options),
@@ -50,8 +34,8 @@ Simulator::Simulator(const Options& options, const Context& context)
       moves_(change_motion(scene_.effects())) {
   if (scene_.highest() >= scene_.desk() + options.motion.hover) {
     throw Error("motion.hover",
-                "an object is " + centimetres(scene_.highest() - scene_.desk()) + " high, and the arm travels at " +
-                    centimetres(options.motion.hover),
+                fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
+                            100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.hover),
                 "raise it or lower the object");
   }
 }
@@ -70,7 +54,8 @@ Contact Simulator::tap(const TapRequest& request) {
 Contact Simulator::ideal_tap(const tapping::Descent& descent, double surface) const {
   const double down = tapping::ideal_seconds(options_.motion, descent, surface);
   const double up = tapping::retreat_seconds(options_.motion, descent, surface);
-  if (down > options_.motion.timeout) return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout + up, kTooLong};
+  if (down > options_.motion.timeout)
+    return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout + up, tapping::kTooLong};
   return {Outcome::contact, surface, options_.motion.threshold, down + up, {}};
 }
 
@@ -110,15 +95,9 @@ Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, do
     felt = touch.feel(arm.position());
     arm.follow(tap.next(felt.height, felt.force));
   }
-  const double seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
-  switch (tap.outcome()) {
-    case Outcome::contact:
-      return {Outcome::contact, tap.height(), tap.peak_force(), seconds, {}};
-    case Outcome::timeout:
-      return {Outcome::timeout, 0.0, 0.0, seconds, kTooLong};
-    default:
-      return {tap.outcome(), 0.0, 0.0, seconds, "the descent ended without a contact"};
-  }
+  Contact contact = tap.result();
+  contact.seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
+  return contact;
 }
 #endif
 

@@ -14,7 +14,12 @@ namespace palpate::backends {
 struct SimulatorOptions : Options {
   tapping::MotionOptions motion;
   double pace = 0.0;
-  void list(Fields& fields) override;
+  void list(Fields& fields) override {
+    fields.section(motion, Field("motion", "the tapping motion"));
+    fields.real(
+        pace,
+        Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
+  }
 };
 
 class Simulator final : public Backend {

@@ -17,7 +17,80 @@ constexpr double kHeldUp = 2.0;
 /// s by which an arm trails its set-point: for so long it does not move yet.
 constexpr double kTrail = 0.35;
 
+/// The shortest part of a descent that is looked at, metres, and the share of it that the rise may take.
+constexpr double kFirstWindow = 0.02;
+constexpr double kInside = 0.6;
+
+/// What the best hinge with this kink explains: the sum of squares that it takes off that of the forces about their
+/// mean. Negative where the force would fall with the depth.
+double explained(const std::vector<Sample>& samples, double kink) {
+  const auto n = static_cast<double>(samples.size());
+  double depth = 0.0;
+  double force = 0.0;
+  for (const Sample& one : samples) {
+    depth += std::max(0.0, kink - one.height);
+    force += one.force;
+  }
+  depth /= n;
+  force /= n;
+  double square = 0.0;
+  double product = 0.0;
+  for (const Sample& one : samples) {
+    const double d = std::max(0.0, kink - one.height) - depth;
+    square += d * d;
+    product += d * (one.force - force);
+  }
+  if (square == 0.0) return -1.0;
+  return product < 0.0 ? -1.0 : product * product / square;
+}
+
 }  // namespace
+
+std::optional<double> onset(const std::vector<Sample>& samples) {
+  if (samples.size() < 4) return std::nullopt;
+  std::vector<double> heights;
+  for (const Sample& one : samples) heights.push_back(one.height);
+  std::sort(heights.begin(), heights.end());
+  heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+  if (heights.size() < 3) return std::nullopt;
+  // Between two neighbouring heights the hinge changes smoothly, so the best of them brackets the best kink.
+  std::size_t best = 0;
+  double most = -1.0;
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    const double here = explained(samples, heights[i]);
+    if (here > most * (1.0 + 1e-12) || (most < 0.0 && here >= 0.0)) {
+      most = here;
+      best = i;
+    }
+  }
+  if (!(most > 0.0)) return std::nullopt;
+  double low = heights[best - 1];
+  double high = heights[std::min(best + 1, heights.size() - 1)];
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double left = low + (high - low) / 3.0;
+    const double right = high - (high - low) / 3.0;
+    if (explained(samples, left) * (1.0 + 1e-12) >= explained(samples, right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
+  if (descent.empty()) return std::nullopt;
+  const double bottom = descent.back().height;
+  for (double window = kFirstWindow;; window *= 2.0) {
+    const auto first =
+        std::find_if(descent.begin(), descent.end(), [&](const Sample& one) { return one.height < bottom + window; });
+    const std::optional<double> found = onset({first, descent.end()});
+    // A kink at the upper end of the window is that of a window that begins within the rise.
+    const bool inside = found && *found - bottom < kInside * window;
+    if (inside || first == descent.begin()) return found;
+  }
+}
 
 GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
     : motion_(motion), descent_(descent), arm_(arm), set_point_(descent.hover) {}
@@ -50,10 +123,19 @@ double GuardedTap::next(double height, double force, bool fresh) {
       if (ramp(goal_, motion_.adaptive_hover->speed) && arrived(height)) enter(Stage::descend);
       break;
     case Stage::descend:
-      descend(height);
+      if (above_ >= kConsecutive) {
+        touched(height);
+      } else if (ramp(goal_, motion_.speed)) {
+        enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
+      }
       break;
     case Stage::pause:
-      if (arm_ == Arm::real) tare_in_pause();
+      if (arm_ == Arm::real && waited(motion_.pause) && summed_ > 0) {
+        // The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which
+        // must not be tared away.
+        const double mean = sum_ / summed_;
+        if (std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
+      }
       if (above_ >= kConsecutive) {
         touched(height);
       } else if (waited(motion_.pause)) {
@@ -97,18 +179,21 @@ double GuardedTap::next(double height, double force, bool fresh) {
   return set_point_;
 }
 
+Contact GuardedTap::result() const {
+  if (outcome_ == Outcome::contact) return {outcome_, height_, peak_, 0.0, {}};
+  const bool late = outcome_ == Outcome::timeout;
+  return {outcome_, 0.0, 0.0, 0.0, late ? kTooLong : "the descent ended without a contact"};
+}
+
 /// What a new reading counts for.
 void GuardedTap::feel(double height, double force) {
   const bool in_pause = arm_ == Arm::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
-  if (taring() || in_pause) {
+  const bool stopped = (stage_ == Stage::stop || stage_ == Stage::rest) && !waited(kWatched + kPeriod);
+  if (taring() || in_pause || stopped) {
     sum_ += force;
     ++summed_;
   }
   if (taring()) return;
-  if ((stage_ == Stage::stop || stage_ == Stage::rest) && !waited(kWatched + kPeriod)) {
-    sum_ += force;
-    ++summed_;
-  }
   const double felt = force - zero_;
   peak_ = std::max(peak_, felt);
   above_ = felt > threshold() ? above_ + 1 : 0;
@@ -130,22 +215,6 @@ bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for(
 double GuardedTap::even_for() const {
   const bool even = stage_ == Stage::descend || stage_ == Stage::fine;
   return even ? static_cast<double>(periods_ - entered_) * kPeriod : 0.0;
-}
-
-void GuardedTap::descend(double height) {
-  if (above_ >= kConsecutive) {
-    touched(height);
-  } else if (ramp(goal_, motion_.speed)) {
-    enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
-  }
-}
-
-/// The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which must not
-/// be tared away.
-void GuardedTap::tare_in_pause() {
-  if (!waited(motion_.pause) || summed_ == 0) return;
-  const double mean = sum_ / summed_;
-  if (std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
 }
 
 void GuardedTap::enter(Stage stage) {

@@ -1,14 +1,36 @@
 // SPDX-License-Identifier: MIT
-// The guarded tap: from what the arm feels to where it goes next, a period at a time. It owns no arm: a simulator and a
-// robot run the same one.
+// The guarded tap: from what the arm feels to where it goes next, a period at a time, and where a contact began, found
+// from what was felt before and after it was noticed. It owns no arm: a simulator and a robot run the same one.
 #pragma once
 
 #include "tapping/motion.hpp"
-#include "tapping/onset.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace palpate::tapping {
+
+/// One sample of a descent: the height of the tip, metres, and the force, newtons.
+struct Sample {
+  double height;
+  double force;
+};
+
+/// The height at which the force begins to rise: the kink of the hinge force = zero + slope * max(0, kink - height)
+/// that is nearest to `samples` in the sense of least squares, zero and slope being free. The height at which a
+/// threshold is crossed lies lower by threshold / stiffness, and by what the arm moves while one makes sure; the kink
+/// does not, and the noise of a single sample is averaged out.
+/// None when there are fewer than four samples or no slope makes the force rise with the depth. Where every kink within
+/// an interval fits as well (a rigid surface, met between two samples), the lowest.
+std::optional<double> onset(const std::vector<Sample>& samples);
+
+/// The onset of the contact with which `descent` ends, its samples in the order of time. Only its last part is looked
+/// at, since the zero of the force may wander on the way: as much as shows the whole rise, which is long on a soft
+/// object, with air above it.
+std::optional<double> onset_of_descent(const std::vector<Sample>& descent);
+
+/// Why a tap has the outcome `timeout`.
+constexpr const char* kTooLong = "the tap took longer than motion.timeout";
 
 /// One descent, from arrival at the height of travel to the end of contact; travel and retreat are the caller's.
 ///
@@ -21,7 +43,7 @@ namespace palpate::tapping {
 /// down
 ///   slowly to a gentler threshold; the height is that of the second contact. No second contact within twice the way
 ///   back means that the first was none, and the descent goes on.
-/// - continuous: the set-point is put where the arm is, and the height is that of the onset (onset.hpp).
+/// - continuous: the set-point is put where the arm is, and the height is that of the onset.
 /// A contact of a real arm is believed if the force lasts; if not, the descent goes on.
 class GuardedTap {
  public:
@@ -53,6 +75,8 @@ class GuardedTap {
   double even_for() const;
   /// When done: `contact`, `no_contact` (the floor was reached) or `timeout`.
   Outcome outcome() const { return outcome_; }
+  /// When done, what came of it, but for the time.
+  Contact result() const;
   /// Of the contact, metres.
   double height() const { return height_; }
   /// Largest force above the tare so far, newtons.
@@ -67,8 +91,6 @@ class GuardedTap {
   void enter(Stage stage);
   void touched(double height);
   void conclude(double height);
-  void tare_in_pause();
-  void descend(double height);
   bool ramp(double goal, double speed);
   bool arrived(double height);
   bool waited(double seconds) const;

@@ -4,21 +4,49 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace palpate::tapping {
+
+namespace {
+
+/// A quantity that is more than nothing; `source` is where its default comes from.
+Field positive(const char* name, const char* meaning, Unit unit, const char* source) {
+  return Field(name, meaning).in(unit).above(0).from(source);
+}
+
+std::string per_second(double value) { return centimetres(value) + "/s"; }
+
+std::string descent(const MotionOptions& motion, double desk, const TapRequest& request) {
+  const Descent plan = plan_descent(motion, desk, request.predicted);
+  std::string expected;
+  if (plan.start < plan.hover) {
+    expected = fmt::format("at {} to {} above the desk, just above what is expected, and on ",
+                           per_second(motion.adaptive_hover->speed), centimetres(plan.start - desk));
+  }
+  const bool steps = motion.type == MotionOptions::Type::paper;
+  return fmt::format("descend {}at {}{} to at most {} below the desk", expected, per_second(motion.speed),
+                     steps ? " in steps of " + centimetres(motion.step) : "", centimetres(desk - plan.floor));
+}
+
+std::string touch(const MotionOptions& motion) {
+  const std::string first = fmt::format("stop at {} above the tare: a contact", newtons(motion.threshold));
+  if (motion.type != MotionOptions::Type::two_stage) return first;
+  return fmt::format("{}; then {} back and again at {} to {}", first, centimetres(motion.back_off),
+                     per_second(motion.fine_speed), newtons(motion.fine_threshold));
+}
+
+}  // namespace
 
 void AdaptiveHover::list(Fields& fields) {
   fields.real(deviations,
               Field("deviations", "standard deviations of the predicted height that the descent begins above it")
                   .at_least(0)
                   .from("2: the surface is higher in about 2 % of the taps"));
-  fields.real(clearance, Field("clearance", "and this much higher still; a contact on the way there backs off by it")
-                             .in(Unit::metre)
-                             .above(0)
-                             .from("an estimate: several times the error of a good tap"));
-  fields.real(speed, Field("speed", "from the height of travel down to there")
-                         .in(Unit::metre_per_second)
-                         .above(0)
-                         .from("a third of travel_speed, since a wrong prediction is hit at this speed"));
+  fields.real(clearance, positive("clearance", "and this much higher still; a contact on the way there backs off by it",
+                                  Unit::metre, "an estimate: several times the error of a good tap"));
+  fields.real(speed, positive("speed", "from the height of travel down to there", Unit::metre_per_second,
+                              "a third of travel_speed, since a wrong prediction is hit at this speed"));
 }
 
 void MotionOptions::list(Fields& fields) {
@@ -29,49 +57,34 @@ void MotionOptions::list(Fields& fields) {
       type, Field("type", "how the arm comes down"),
       {{"paper", "in steps with a pause after each, until the force rises; the height is read after that pause",
         [&, this](Fields& inner) {
-          inner.real(step, Field("step", "height of one step").in(Unit::metre).above(0).from("Sun and Min 2021: 3 cm"));
+          inner.real(step, positive("step", "height of one step", Unit::metre, "Sun and Min 2021: 3 cm"));
           pause_after(inner, "rest after each step");
         }},
        {"two_stage", "at once until the force rises, a little back, and again more slowly and gently",
         [&, this](Fields& inner) {
-          inner.real(back_off, Field("back_off", "way up between the stages")
-                                   .in(Unit::metre)
-                                   .above(0)
-                                   .from("2 cm: the springs unwind, and a false contact shows"));
+          inner.real(back_off, positive("back_off", "way up between the stages", Unit::metre,
+                                        "2 cm: the springs unwind, and a false contact shows"));
           pause_after(inner, "rest before the second stage, with a new tare");
-          inner.real(fine_speed, Field("fine_speed", "of the second stage")
-                                     .in(Unit::metre_per_second)
-                                     .above(0)
-                                     .from("2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
-          inner.real(fine_threshold, Field("fine_threshold", "force at which the second stage ends")
-                                         .in(Unit::newton)
-                                         .above(0)
-                                         .from("6 N: four deviations of 1.5 N of noise"));
+          inner.real(fine_speed, positive("fine_speed", "of the second stage", Unit::metre_per_second,
+                                          "2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
+          inner.real(fine_threshold, positive("fine_threshold", "force at which the second stage ends", Unit::newton,
+                                              "6 N: four deviations of 1.5 N of noise"));
         }},
        {"continuous", "at constant speed until the force rises; the height is that where it began to rise", {}}});
   fields.real(
       speed,
-      Field("speed", "of the descent: of its steps, or of its first stage")
-          .in(Unit::metre_per_second)
-          .above(0)
-          .from("2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion has its known 13 mm and 6.4 s a tap"));
-  fields.real(threshold, Field("threshold", "force above the tare at which contact is declared")
-                             .in(Unit::newton)
-                             .above(0)
-                             .from("10 N: used with Baxter, whose firmware stops the arm at 16 N"));
-  fields.real(hover, Field("hover", "height above the desk at which the arm travels and the descent begins")
-                         .in(Unit::metre)
-                         .above(0)
-                         .from("13.5 cm: 2.5 cm above the highest of the paper's objects"));
+      positive("speed", "of the descent: of its steps, or of its first stage", Unit::metre_per_second,
+               "2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion has its known 13 mm and 6.4 s a tap"));
+  fields.real(threshold, positive("threshold", "force above the tare at which contact is declared", Unit::newton,
+                                  "10 N: used with Baxter, whose firmware stops the arm at 16 N"));
+  fields.real(hover, positive("hover", "height above the desk at which the arm travels and the descent begins",
+                              Unit::metre, "13.5 cm: 2.5 cm above the highest of the paper's objects"));
   fields.section(adaptive_hover,
                  Field("adaptive_hover", "begin the slow descent just above the predicted surface instead"));
-  fields.real(travel_speed, Field("travel_speed", "of the tool at the height of travel")
-                                .in(Unit::metre_per_second)
-                                .above(0)
-                                .from("30 cm/s: Baxter's default speed ratio is 0.3 of about 1 m/s"));
-  fields.real(
-      retreat_speed,
-      Field("retreat_speed", "of the tool on its way up").in(Unit::metre_per_second).above(0).from("as travel_speed"));
+  fields.real(travel_speed, positive("travel_speed", "of the tool at the height of travel", Unit::metre_per_second,
+                                     "30 cm/s: Baxter's default speed ratio is 0.3 of about 1 m/s"));
+  fields.real(retreat_speed,
+              positive("retreat_speed", "of the tool on its way up", Unit::metre_per_second, "as travel_speed"));
   fields.real(tare, Field("tare", "rest before the descent, in which the force is averaged: its zero")
                         .in(Unit::second)
                         .at_least(0)
@@ -80,11 +93,9 @@ void MotionOptions::list(Fields& fields) {
                            .in(Unit::metre)
                            .at_least(0)
                            .from("3 cm: 1500 N/m reach 10 N after 0.7 cm, and a lag adds 1 cm"));
-  fields.real(timeout, Field("timeout", "a tap that takes longer fails")
-                           .in(Unit::second)
-                           .above(0)
-                           .at_most(3600)
-                           .from("ten times what the paper's motion takes"));
+  fields.real(timeout, positive("timeout", "a tap that takes longer fails", Unit::second,
+                                "ten times what the paper's motion takes")
+                           .at_most(3600));
 }
 
 Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted) {
@@ -135,6 +146,19 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
       return seconds + kWatched;
   }
   return seconds;
+}
+
+std::string centimetres(double length) { return fmt::format("{:.1f} cm", 100.0 * length); }
+std::string newtons(double force) { return fmt::format("{:.1f} N", force); }
+std::string place(const Target& target) {
+  return fmt::format("({:.1f}, {:.1f}) cm", 100.0 * target.x, 100.0 * target.y);
+}
+
+std::vector<std::string> describe(const MotionOptions& motion, double desk, const TapRequest& request,
+                                  const std::optional<Target>& from) {
+  return {fmt::format("travel {}to {} at {} above the desk, {}", from ? "from " + place(*from) + " " : "",
+                      place(request.target), centimetres(motion.hover), per_second(motion.travel_speed)),
+          descent(motion, desk, request), touch(motion)};
 }
 
 }  // namespace palpate::tapping

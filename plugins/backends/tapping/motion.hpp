@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// How an arm taps: the options that a simulated and a real arm share, and what follows from them before anything moves.
+// How an arm taps: the options that a simulated and a real arm share, what follows from them before anything moves, and
+// a tap in words, for a person who decides whether it is made.
 #pragma once
 
 #include <palpate/backend.hpp>
 #include <palpate/options.hpp>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace palpate::tapping {
 
@@ -58,5 +61,15 @@ constexpr double kWatched = 0.1;
 /// Seconds from arrival to contact with a rigid surface at `surface`, for an arm that follows its set-point at once and
 /// feels without noise: what GuardedTap needs then, but for whole periods and those that it takes to be sure.
 double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface);
+
+/// Rounded to a millimetre and to a tenth of a newton: "13.5 cm", "6.0 N".
+std::string centimetres(double length);
+std::string newtons(double force);
+/// "(11.5, 3.0) cm"
+std::string place(const Target& target);
+
+/// The way there from `from` (none: it is not known), the descent, and the force that ends it; a line each.
+std::vector<std::string> describe(const MotionOptions& motion, double desk, const TapRequest& request,
+                                  const std::optional<Target>& from);
 
 }  // namespace palpate::tapping

@@ -10,22 +10,9 @@
 
 namespace palpate::footprints {
 
-struct ClassifierOptions : Options {
-  PluginChoice kernel{"kernel", {}, nullptr};
-  double signal = 2.0;
-  double prior_mean = -1.0;
-  void list(Fields& fields) override {
-    fields.plugin(kernel, Field("kernel", "shape of the covariance of the latent function").needed());
-    fields.real(signal, Field("signal", "prior standard deviation of the latent function").above(0).at_most(100));
-    fields.real(prior_mean, Field("prior_mean",
-                                  "of the latent function; below 0 says that most of the area is desk: at -1, with "
-                                  "a signal of 2, a third of it is an object"));
-  }
-};
-
 class Classifier final : public Footprint {
  public:
-  using Options = ClassifierOptions;
+  using Options = LaplaceOptions;
   Classifier(const Options& options, const Context& context)
       : kernel_(context.create<Kernel>(options.kernel)), settings_{options.signal, options.prior_mean} {}
 

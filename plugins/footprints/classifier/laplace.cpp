@@ -11,17 +11,17 @@ namespace {
 constexpr double kRootHalf = 0.70710678118654752440;
 constexpr double kLogRootTwoPi = 0.91893853320467274178;
 
-/// Phi(z) / phi(z) for z far below 0, by the asymptotic series of Mills' ratio: from -10 on the terms shrink to less
-/// than 1e-9 of the first before they grow.
-double mills(double z) {
+/// The asymptotic series of Mills' ratio without its first term: -z Phi(z) / phi(z) - 1 for z far below 0. From -10 on
+/// the terms shrink to less than 1e-9 of the first before they grow.
+double rest_of_mills(double z) {
   const double inverse = 1.0 / (z * z);
   double term = 1.0;
-  double sum = 1.0;
+  double sum = 0.0;
   for (int k = 1; k <= 8; ++k) {
     term *= -(2 * k - 1) * inverse;
     sum += term;
   }
-  return -sum / z;
+  return sum;
 }
 
 }  // namespace
@@ -37,18 +37,12 @@ Probit probit(double z) {
     out.slope = std::exp(log_density - out.log);
     out.weight = out.slope * (z + out.slope);
   } else {
-    const double ratio = mills(z);
+    const double rest = rest_of_mills(z);
+    const double ratio = -(1.0 + rest) / z;
     out.log = log_density + std::log(ratio);
     out.slope = 1.0 / ratio;
-    // slope + z would cancel: 1 / ratio + z = (1 + z ratio) / ratio, and the series of 1 + z ratio begins at 1 / z^2.
-    const double inverse = 1.0 / (z * z);
-    double term = 1.0;
-    double rest = 0.0;
-    for (int k = 1; k <= 8; ++k) {
-      term *= -(2 * k - 1) * inverse;
-      rest -= term;
-    }
-    out.weight = out.slope * rest / ratio;
+    // slope + z would cancel: 1 / ratio + z = (1 + z ratio) / ratio.
+    out.weight = -out.slope * rest / ratio;
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <palpate/kernel.hpp>
+#include <palpate/options.hpp>
 
 #include <vector>
 
@@ -20,6 +21,21 @@ Probit probit(double z);
 
 /// Phi(z), the standard normal distribution.
 double normal_cdf(double z);
+
+struct LaplaceOptions : Options {
+  PluginChoice kernel{"kernel", {}, nullptr};
+  double signal = 2.0;
+  double prior_mean = -1.0;
+
+  void list(Fields& fields) override {
+    fields.plugin(kernel, Field("kernel", "shape of the covariance of the classifier's latent function").needed());
+    fields.real(signal,
+                Field("signal", "prior standard deviation of the classifier's latent function").above(0).at_most(100));
+    fields.real(prior_mean, Field("prior_mean",
+                                  "of the classifier's latent function; below 0 says that most of the area is desk: at "
+                                  "-1, with a signal of 2, a third of it is an object"));
+  }
+};
 
 struct LaplaceSettings {
   double signal = 1.0;  ///< prior standard deviation of f, > 0

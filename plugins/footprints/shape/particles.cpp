@@ -2,70 +2,243 @@
 #include "particles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace palpate::footprints {
 namespace {
 
-/// The places of a lattice that rows of pieces hold, counted: where a row of them begins and ends is marked, and the
-/// marks are summed up in the end.
-class LatticeCounts {
- public:
-  LatticeCounts(const PointsView& places, int columns)
-      : columns_(columns),
-        rows_(static_cast<int>(places.rows()) / columns),
-        x0_(places(0, 0)),
-        step_(columns > 1 ? (places(columns - 1, 0) - x0_) / (columns - 1) : 1.0),
-        y0_(places(0, 1)),
-        rise_(rows_ > 1 ? (places((rows_ - 1) * columns, 1) - y0_) / (rows_ - 1) : 1.0),
-        marks_(Eigen::MatrixXd::Zero(columns + 1, rows_)) {}
+// Greatest steps; each is made smaller by a factor down to a thirtieth, for posteriors of all widths.
+constexpr double kShift = 0.07;   // metres
+constexpr double kTurn = 1.4;     // radians
+constexpr double kStretch = 0.9;  // of a logarithm
+constexpr int kScales = 16;
 
-  void add(const Outline& outline) {
-    const Cells rows = rows_of(outline.first);
-    if (outline.kind == Outline::Kind::one) {
-      for (int row = rows.begin; row < rows.end; ++row) mark(row, cut(outline.first, row), 1.0);
-      return;
-    }
-    const Cells others = rows_of(outline.second);
-    // What both hold is counted once if they are united, and not at all if one is taken from the other.
-    for (int row = rows.begin; row < rows.end; ++row) {
-      const Cells first = cut(outline.first, row);
-      mark(row, first, 1.0);
-      if (row < others.begin || row >= others.end) continue;
-      const Cells second = cut(outline.second, row);
-      mark(row, {std::max(first.begin, second.begin), std::min(first.end, second.end)}, -1.0);
-    }
-    if (outline.kind == Outline::Kind::without) return;
-    for (int row = others.begin; row < others.end; ++row) mark(row, cut(outline.second, row), 1.0);
+/// Factors of the steps, their logarithms evenly spaced: a look-up is quicker than a power.
+double some_scale(Random& random) {
+  static const std::array<double, kScales> scales = [] {
+    std::array<double, kScales> out{};
+    for (int i = 0; i < kScales; ++i) out[static_cast<std::size_t>(i)] = std::pow(1.0 / 30.0, i / (kScales - 1.0));
+    return out;
+  }();
+  return scales[static_cast<std::size_t>(random.bits() % kScales)];
+}
+
+constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of a new piece from a wrong label
+
+/// Standard normal (Box and Muller 1958).
+double normal(Random& random) {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+  return radius * std::cos(2.0 * kPi * random.uniform());
+}
+
+/// Uniform in (-1, 1]: as good as a normal step where steps are of all sizes anyway, and quicker.
+double either_way(Random& random) { return 1.0 - 2.0 * random.uniform(); }
+
+/// Moves a side and leaves the one across from it. Returns the correction: even steps in the length of a half axis are
+/// uneven ones in its logarithm.
+double move_side(Piece& piece, double scale, Random& random) {
+  const bool along = random.uniform() < 0.5;
+  double& half = along ? piece.a : piece.b;
+  const double before = half;
+  const double change = 0.5 * kShift * scale * either_way(random);
+  half += change;
+  if (half <= 0.0) return 0.0;
+  const double side = random.uniform() < 0.5 ? change : -change;
+  piece.x += side * (along ? piece.cosine : -piece.sine);
+  piece.y += side * (along ? piece.sine : piece.cosine);
+  const double correction = before / half;
+  piece.order_axes();
+  return correction;
+}
+
+void change_family(Piece& piece) {
+  constexpr double kSameExtent = 1.1283791670955126;  // an ellipse as large as a box is longer by this
+  const bool box = piece.family == Piece::Family::box;
+  piece.family = box ? Piece::Family::ellipse : Piece::Family::box;
+  piece.a *= box ? kSameExtent : 1.0 / kSameExtent;
+  piece.b *= box ? kSameExtent : 1.0 / kSameExtent;
+}
+
+/// The labels of one piece that a second piece of a kind could set right.
+std::vector<Target> repairable(const Piece& piece, Outline::Kind kind, const std::vector<Touch>& touches) {
+  std::vector<Target> out;
+  const bool adds = kind == Outline::Kind::two;
+  for (const Touch& touch : touches) {
+    if (touch.on == adds && piece.contains(touch.place.x, touch.place.y) != adds) out.push_back(touch.place);
+  }
+  return out;
+}
+
+/// How much less often the centre of the second piece is proposed than the prior has it.
+double second_correction(const Outline& outline, const OutlinePrior& prior, const std::vector<Target>& near) {
+  if (near.empty()) return 1.0;
+  const double by_prior = prior.second_centre_density(outline);
+  double by_labels = 0.0;
+  for (const Target& place : near) {
+    const double dx = (outline.second.x - place.x) / kNear;
+    const double dy = (outline.second.y - place.y) / kNear;
+    by_labels += std::exp(-0.5 * (dx * dx + dy * dy));
+  }
+  by_labels /= 2.0 * kPi * kNear * kNear * static_cast<double>(near.size());
+  return by_prior / (0.5 * by_prior + 0.5 * by_labels);
+}
+
+/// Adds or takes away the second piece, or names the two pieces the other way round.
+double change_kind(Outline& outline, Outline::Kind kind, const OutlinePrior& prior, const std::vector<Touch>& touches,
+                   Random& random) {
+  if (outline.kind == Outline::Kind::two && kind != Outline::Kind::two) {
+    std::swap(outline.first, outline.second);
+    return 1.0;
+  }
+  const std::vector<Target> near = repairable(outline.first, kind, touches);
+  if (outline.kind == kind) {
+    const double correction = second_correction(outline, prior, near);
+    outline.kind = Outline::Kind::one;
+    return 1.0 / (prior.odds(kind) * correction);
+  }
+  if (outline.kind != Outline::Kind::one) return 0.0;
+  outline.kind = kind;
+  outline.second = prior.draw_second(kind, outline.first, random);
+  if (!near.empty() && random.uniform() < 0.5) {
+    const Target& place = near[random.index(near.size())];
+    outline.second.x = place.x + kNear * normal(random);
+    outline.second.y = place.y + kNear * normal(random);
+  }
+  return prior.odds(kind) * second_correction(outline, prior, near);
+}
+
+/// A changed outline, and what Metropolis and Hastings multiply the ratio of the likelihoods by: its prior density
+/// times the density of proposing the way back, over those of the outline as it was and of the way there. 0 where there
+/// is no way.
+struct Proposal {
+  Outline outline;
+  double density = 0.0;  ///< of it, by the prior
+  double correction = 0.0;
+};
+
+/// Shifts, turns or stretches a piece, moves one of its sides, changes its family; adds a second piece or takes it away
+/// again, or draws an outline anew. A second piece is added where the prior would have it or, one time in two, about a
+/// label that the outline has wrong, because there it may set one right. `density` is that of `from`, by the prior.
+Proposal propose(const Outline& from, double density, const OutlinePrior& prior, const std::vector<Touch>& touches,
+                 Random& random) {
+  Proposal out{from, density, 1.0};
+  Outline& to = out.outline;
+  const double which = random.uniform();
+  if (which < 0.02) {
+    to = prior.draw(random);
+    out.density = prior.density(to);
+    return out;
+  }
+  if (which < 0.14) {
+    // As many of the moves add as take away, for each kind, so that these shares cancel.
+    const auto kind = which < 0.08 ? Outline::Kind::two : Outline::Kind::without;
+    out.correction = change_kind(to, kind, prior, touches, random);
+    out.density = prior.density(to);
+    if (out.density <= 0.0) out.correction = 0.0;
+    return out;
   }
 
-  void sum(VectorOut out) const {
-    for (int row = 0; row < rows_; ++row) {
-      double count = 0.0;
-      for (int column = 0; column < columns_; ++column) out(row * columns_ + column) = count += marks_(column, row);
-    }
+  Piece& piece = from.kind == Outline::Kind::one || random.uniform() < 0.5 ? to.first : to.second;
+  const double scale = some_scale(random);
+  if (which < 0.46) {
+    piece.x += kShift * scale * either_way(random);
+    piece.y += kShift * scale * either_way(random);
+  } else if (which < 0.64) {
+    piece.turn(kTurn * scale * either_way(random));
+  } else if (which < 0.81) {
+    piece.a *= std::exp(kStretch * scale * either_way(random));
+    piece.b *= std::exp(kStretch * scale * either_way(random));
+    piece.order_axes();
+  } else if (which < 0.97) {
+    out.correction = move_side(piece, scale, random);
+  } else {
+    change_family(piece);
+  }
+  out.density = out.correction > 0.0 ? prior.density(to) : 0.0;
+  out.correction *= out.density / density;
+  return out;
+}
+
+/// Whole numbers from `begin` on, before `end`; none where that is not above `begin`.
+struct Cells {
+  int begin;
+  int end;
+};
+
+/// Places along one axis, in equal steps.
+struct Axis {
+  double first;
+  double step;
+  int count;
+
+  Axis(double from, double to, int places)
+      : first(from), step(places > 1 ? (to - from) / (places - 1) : 1.0), count(places) {}
+
+  double at(int i) const { return first + i * step; }
+  Cells within(double low, double high) const {
+    return {not_below((low - first) / step), std::min(count, above((high - first) / step))};
   }
 
  private:
-  struct Cells {
-    int begin;
-    int end;  ///< one past the last; not above `begin` where there are none
-  };
-
   /// The first whole number that is not below `t`, none of them negative, and the first above it. (Without SSE4.1
   /// std::ceil and std::floor are calls.)
   static int not_below(double t) { return t <= 0.0 ? 0 : above(t) - (static_cast<double>(above(t) - 1) == t ? 1 : 0); }
   static int above(double t) { return t < 0.0 ? 0 : static_cast<int>(t) + 1; }
+};
 
-  Cells rows_of(const Piece& piece) const {
-    const double reach = piece.reach_y();
-    return {not_below((piece.y - reach - y0_) / rise_), std::min(rows_, above((piece.y + reach - y0_) / rise_))};
+/// How many outlines hold each place of a lattice: where a row of them begins and ends is marked, and the marks are
+/// summed up in the end.
+class LatticeCounts {
+ public:
+  /// None where the places are no lattice, row after row in equal steps up.
+  static std::optional<LatticeCounts> over(const PointsView& places) {
+    const auto count = static_cast<int>(places.rows());
+    int columns = 1;
+    while (columns < count && places(columns, 1) == places(0, 1)) ++columns;
+    if (count == 0 || count % columns != 0) return std::nullopt;
+    const Axis x(places(0, 0), places(columns - 1, 0), columns);
+    const Axis y(places(0, 1), places(count - columns, 1), count / columns);
+    // Steps that are all but rounding are those of nearly equal places.
+    constexpr double kLeast = 1e-6;  // metres
+    if (x.step < kLeast || y.step < kLeast) return std::nullopt;
+    for (int i = 0; i < count; ++i) {
+      const double off_x = places(i, 0) - x.at(i % columns);
+      const double off_y = places(i, 1) - y.at(i / columns);
+      if (std::abs(off_x) > kLeast * x.step || std::abs(off_y) > kLeast * y.step) return std::nullopt;
+    }
+    return LatticeCounts(x, y);
   }
 
+  void add(const Outline& outline) {
+    for (int row = 0; row < y_.count; ++row) {
+      const Cells first = cut(outline.first, row);
+      mark(row, first, 1.0);
+      if (outline.kind == Outline::Kind::one) continue;
+      const Cells second = cut(outline.second, row);
+      // What both hold is counted once if they are united, and not at all if one is taken from the other.
+      mark(row, {std::max(first.begin, second.begin), std::min(first.end, second.end)}, -1.0);
+      if (outline.kind == Outline::Kind::two) mark(row, second, 1.0);
+    }
+  }
+
+  void sum(VectorOut out) const {
+    for (int row = 0; row < y_.count; ++row) {
+      double count = 0.0;
+      for (int column = 0; column < x_.count; ++column) out(row * x_.count + column) = count += marks_(column, row);
+    }
+  }
+
+ private:
+  LatticeCounts(const Axis& x, const Axis& y) : x_(x), y_(y), marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)) {}
+
   Cells cut(const Piece& piece, int row) const {
-    const auto [low, high] = piece.cut(y0_ + row * rise_);
-    if (low > high) return {0, 0};
-    return {not_below((low - x0_) / step_), std::min(columns_, above((high - x0_) / step_))};
+    const double y = y_.at(row);
+    if (std::abs(y - piece.y) > piece.reach_y()) return {0, 0};
+    const auto [low, high] = piece.cut(y);
+    return low > high ? Cells{0, 0} : x_.within(low, high);
   }
 
   void mark(int row, const Cells& cells, double sign) {
@@ -74,8 +247,7 @@ class LatticeCounts {
     marks_(cells.end, row) -= sign;
   }
 
-  int columns_, rows_;
-  double x0_, step_, y0_, rise_;
+  Axis x_, y_;
   Eigen::MatrixXd marks_;
 };
 
@@ -165,10 +337,17 @@ void Particles::move(Particle& particle) {
   ++moved_;
 }
 
-void Particles::count_inside(const PointsView& places, int columns, VectorOut inside) const {
-  LatticeCounts counts(places, columns);
-  for (const Particle& particle : particles_) counts.add(particle.outline);
-  counts.sum(inside);
+void Particles::count_inside(const PointsView& places, VectorOut inside) const {
+  if (std::optional<LatticeCounts> counts = LatticeCounts::over(places)) {
+    for (const Particle& particle : particles_) counts->add(particle.outline);
+    return counts->sum(inside);
+  }
+  inside.setZero();
+  for (const Particle& particle : particles_) {
+    for (Eigen::Index i = 0; i < inside.size(); ++i) {
+      inside(i) += particle.outline.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
+    }
+  }
 }
 
 }  // namespace palpate::footprints

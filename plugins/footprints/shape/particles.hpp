@@ -3,9 +3,9 @@
 // (resample-move: Gilks and Berzuini 2001; moves between one and two pieces: Green 1995).
 #pragma once
 
-#include "moves.hpp"
-#include "prior.hpp"
+#include "outline.hpp"
 
+#include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
 
 #include <vector>
@@ -37,8 +37,8 @@ class Particles {
   /// that this label had before.
   double add(const Touch& touch);
 
-  /// Sets `inside` (M) to how many outlines hold each of the places, a lattice of `columns` columns row by row.
-  void count_inside(const PointsView& places, int columns, VectorOut inside) const;
+  /// Sets `inside` (M) to how many outlines hold each of the places: quickly if those are a lattice, row by row.
+  void count_inside(const PointsView& places, VectorOut inside) const;
 
   /// Touches so far that an outline has wrong, on average.
   double mean_mistakes() const;

@@ -7,21 +7,17 @@
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace palpate::footprints {
 
-struct ShapeOptions : Options {
+struct ShapeOptions : LaplaceOptions {
   double smallest = 0.02;
   double largest = 0.22;
   double one_piece = 0.3;
   double mistaken = 0.01;
   double contradictions = 4.0;
   std::int64_t particles = 2000;
-  PluginChoice kernel{"kernel", {}, nullptr};
-  double signal = 2.0;
-  double prior_mean = -1.0;
   void list(Fields& fields) override {
     fields.real(smallest, Field("smallest", "least width of a piece").in(Unit::metre).above(0));
     fields.real(largest, Field("largest", "greatest length of a piece").in(Unit::metre).above(0));
@@ -37,9 +33,7 @@ struct ShapeOptions : Options {
                                       "average, than mistaken lets expect")
                                     .above(0));
     fields.integer(particles, Field("particles", "outlines that stand for the belief").at_least(100).at_most(100000));
-    fields.plugin(kernel, Field("kernel", "of the classifier").needed());
-    fields.real(signal, Field("signal", "of the classifier").above(0).at_most(100));
-    fields.real(prior_mean, Field("prior_mean", "of the classifier"));
+    LaplaceOptions::list(fields);
     fields.require(smallest < largest, "largest", "is not larger than smallest");
   }
 };
@@ -71,15 +65,7 @@ class Shape final : public Footprint {
       Laplace(*kernel_, settings_, points_, on_).probability(places, out);
       return;
     }
-    if (const int columns = lattice_columns(places); columns > 0) {
-      particles_.count_inside(places, columns, out);
-    } else {
-      out.setZero();
-      for (const Particle& particle : particles_.particles()) {
-        for (Eigen::Index i = 0; i < out.size(); ++i)
-          out(i) += particle.outline.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
-      }
-    }
+    particles_.count_inside(places, out);
     out /= particles_.size();
   }
 
@@ -104,26 +90,6 @@ class Shape final : public Footprint {
     settings.largest = options.largest;
     settings.two = settings.without = 0.5 * (1.0 - options.one_piece);
     return OutlinePrior(settings);
-  }
-
-  /// The columns of the lattice that the places are, row after row in equal steps up; 0 where they are none.
-  static int lattice_columns(const PointsView& places) {
-    const Eigen::Index count = places.rows();
-    Eigen::Index columns = 1;
-    while (columns < count && places(columns, 1) == places(0, 1)) ++columns;
-    if (count % columns != 0) return 0;
-    const Eigen::Index rows = count / columns;
-    const double step = columns > 1 ? places(1, 0) - places(0, 0) : 1.0;
-    const double rise = rows > 1 ? places(columns, 1) - places(0, 1) : 1.0;
-    // Steps that are all but rounding are those of nearly equal places.
-    constexpr double kLeast = 1e-6;  // metres
-    if (step < kLeast || rise < kLeast) return 0;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double off_x = places(i, 0) - places(0, 0) - static_cast<double>(i % columns) * step;
-      const double off_y = places(i, 1) - places(0, 1) - static_cast<double>(i / columns) * rise;
-      if (std::abs(off_x) > kLeast * step || std::abs(off_y) > kLeast * rise) return 0;
-    }
-    return static_cast<int>(columns);
   }
 
   double mistaken_;

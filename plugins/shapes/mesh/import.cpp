@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "import.hpp"
+#include "triangles.hpp"
 
 #include "children/child_process.hpp"
 
@@ -121,20 +121,14 @@ void check_ply(const std::string& bytes, const std::string& file) {
   if (there < rows) throw Error(file, "is cut short: its header promises more rows than there are", kExportAgain);
 }
 
-/// As the middle of a sentence.
-std::string reason(std::string message) {
-  while (!message.empty() && (message.back() == '.' || std::isspace(static_cast<unsigned char>(message.back())) != 0)) {
-    message.pop_back();
-  }
-  return message;
-}
-
 Soup triangles_by_assimp(const std::string& bytes, const std::string& file, const std::string& format) {
   Assimp::Importer importer;
   importer.SetIOHandler(new NoOtherFiles);  // which the importer deletes
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, format.c_str());
   if (scene == nullptr) {
-    throw Error(file, "cannot be read as " + format + ": " + reason(importer.GetErrorString()), kExportAgain);
+    std::string reason = importer.GetErrorString();
+    reason.erase(reason.find_last_not_of(". \t\r\n") + 1);
+    throw Error(file, "cannot be read as " + format + ": " + reason, kExportAgain);
   }
   Soup out;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
@@ -163,14 +157,17 @@ Soup triangles_by_assimp(const std::string& bytes, const std::string& file, cons
 #endif
 #endif
 
+void limit(int resource, rlim_t most) {
+  const rlimit both{most, most};
+  setrlimit(resource, &both);
+}
+
 /// Far more than assimp needs for any sound file of so many bytes; what would take more is told by `out_of_memory`.
 void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*out_of_memory)()) {
 #ifndef PALPATE_SANITIZED  // for a sanitizer's own memory has terabytes of addresses, of which it takes more at will
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  const rlim_t most = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes;
-  const rlimit memory{most, most};
-  setrlimit(RLIMIT_AS, &memory);
+  limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes);
   std::set_new_handler(out_of_memory);
 #endif
 }
@@ -179,12 +176,10 @@ const ChildProcess::Say* say_in_child = nullptr;
 
 /// In the process of its own: answers 'T' and the triangles, or 'E', reason and hint. Returns the exit status.
 int answer(const ChildProcess::Say& say, const std::string& bytes, const std::string& file, const std::string& format) {
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
+  limit(RLIMIT_CORE, 0);
   // Sound meshes of 13 and 55 MB take 0.3 and 0.5 s; 102 bytes kept assimp busy for as long as they were let.
   const rlim_t seconds = 1 + bytes.size() / 250'000;
-  const rlimit patience{seconds, seconds};
-  setrlimit(RLIMIT_CPU, &patience);
+  limit(RLIMIT_CPU, seconds);
   alarm(static_cast<unsigned>(12 * seconds));  // and where it waits for ever
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // a failed assertion of assimp would be a second line

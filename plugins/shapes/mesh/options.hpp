@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a config says of an object that comes from a file.
+// What a config says of an object that comes from a file, and the bytes of that.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -20,5 +20,9 @@ struct MeshOptions : Options {
   /// Reads the file, whose content the checksum stands for: throws what read_file() does.
   void list(Fields& fields) override;
 };
+
+/// The whole file. Throws Error, its `where` the file: missing, not readable, no regular file, empty, or larger than
+/// 500 MB.
+std::string read_file(const std::string& file);
 
 }  // namespace palpate::shapes

@@ -6,23 +6,22 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <boost/functional/hash.hpp>
 
 namespace palpate::shapes {
 namespace {
 
 using Eigen::Vector3d;
 
-std::string text(double value) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%.4g", value);
-  return out;
-}
+std::string text(double value) { return fmt::format("{:.4g}", value); }
 
 /// "(1, 2, 3) mm"
 std::string place(const Vector3d& point) {
-  return "(" + text(1e3 * point.x()) + ", " + text(1e3 * point.y()) + ", " + text(1e3 * point.z()) + ") mm";
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * point.x(), 1e3 * point.y(), 1e3 * point.z());
 }
 
 Vector3d upright(const std::array<float, 3>& corner, bool y_is_up) {
@@ -59,9 +58,8 @@ void check_areas(const Triangles& mesh, const std::string& file) {
   }
   if (degenerate == 0) return;
   throw Error(file,
-              std::to_string(degenerate) + " of " + std::to_string(mesh.corners.size()) +
-                  " triangles have no area, the first is triangle " + std::to_string(first + 1) + " at " +
-                  place(mesh.points[mesh.corners[first][0]]) + " from the middle of its base",
+              fmt::format("{} of {} triangles have no area, the first is triangle {} at {} from the middle of its base",
+                          degenerate, mesh.corners.size(), first + 1, place(mesh.points[mesh.corners[first][0]])),
               "remove degenerate triangles where the mesh was made");
 }
 
@@ -101,58 +99,44 @@ void check_closed(const Triangles& mesh, const std::string& file) {
   }
 }
 
-}  // namespace
-
-Triangles join(const Soup& soup, const Frame& frame, const std::string& file) {
-  struct Corner {
-    std::array<float, 3> at;
-    std::uint32_t number;
-  };
-  std::vector<Corner> sorted(soup.size());
-  Vector3d least = Vector3d::Constant(HUGE_VAL);
-  Vector3d most = -least;
+/// Points keep the order in which the file names them, in which neighbours are near: see mesh.cpp.
+Triangles join(const Soup& soup, const MeshOptions& options) {
+  const bool y_is_up = options.up == MeshOptions::Up::y;
+  Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < soup.size(); ++i) {
-    sorted[i].number = static_cast<std::uint32_t>(i);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!std::isfinite(soup[i][k])) {
-        throw Error(file, "triangle " + std::to_string(i / 3 + 1) + " has a coordinate that is not a finite number",
-                    "export it again");
-      }
-      sorted[i].at[k] = soup[i][k] + 0.0F;  // -0 is 0
+    const Vector3d point = upright(soup[i], y_is_up);
+    if (!point.allFinite()) {
+      throw Error(options.file,
+                  "triangle " + std::to_string(i / 3 + 1) + " has a coordinate that is not a finite number",
+                  "export it again");
     }
-    const Vector3d point = upright(soup[i], frame.y_is_up);
-    least = least.cwiseMin(point);
-    most = most.cwiseMax(point);
+    box.extend(point);
   }
-  check_size(frame.unit * (most - least), frame.unit * least.cwiseAbs().cwiseMax(most.cwiseAbs()).maxCoeff(),
-             frame.unit, file);
-  const Vector3d origin((least.x() + most.x()) / 2, (least.y() + most.y()) / 2, least.z());
+  const double furthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  check_size(options.unit * box.sizes(), options.unit * furthest, options.unit, options.file);
+  const Vector3d origin(box.center().x(), box.center().y(), box.min().z());
 
-  std::sort(sorted.begin(), sorted.end(),
-            [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.number < b.number; });
-  // Points keep the order in which the file names them, in which neighbours are near: see mesh.cpp.
-  std::vector<std::uint32_t> first(soup.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const bool again = i > 0 && sorted[i].at == sorted[i - 1].at;
-    first[sorted[i].number] = again ? first[sorted[i - 1].number] : sorted[i].number;
-  }
   Triangles out;
   out.corners.resize(soup.size() / 3);
-  std::vector<std::uint32_t> number(soup.size());
+  std::unordered_map<Soup::value_type, std::uint32_t, boost::hash<Soup::value_type>> numbers;
   for (std::size_t i = 0; i < soup.size(); ++i) {
-    if (first[i] == i) {
-      number[i] = static_cast<std::uint32_t>(out.points.size());
-      out.points.emplace_back(frame.unit * (upright(soup[i], frame.y_is_up) - origin));
-    }
-    out.corners[i / 3][i % 3] = number[first[i]];
+    const auto [x, y, z] = soup[i];
+    const auto next = static_cast<std::uint32_t>(out.points.size());
+    const auto [known, fresh] = numbers.try_emplace({x + 0.0F, y + 0.0F, z + 0.0F}, next);  // -0 is 0
+    if (fresh) out.points.emplace_back(options.unit * (upright(soup[i], y_is_up) - origin));
+    out.corners[i / 3][i % 3] = known->second;
   }
   return out;
 }
 
-void check_surface(const Triangles& mesh, bool holes_allowed, const std::string& file) {
-  check_areas(mesh, file);
-  check_doubles(mesh, file);
-  if (!holes_allowed) check_closed(mesh, file);
+}  // namespace
+
+Triangles read_surface(const MeshOptions& options) {
+  const Triangles out = join(import_triangles(read_file(options.file), options.file), options);
+  check_areas(out, options.file);
+  check_doubles(out, options.file);
+  if (options.holes == MeshOptions::Holes::refuse) check_closed(out, options.file);
+  return out;
 }
 
 }  // namespace palpate::shapes

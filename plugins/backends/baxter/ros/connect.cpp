@@ -71,7 +71,7 @@ class Visit {
                 missing.size() == Link::needed().size() ? "is it the master of a Baxter?"
                                                         : "the robot may be starting, or a node of it has ended");
     if (missing.size() == Link::needed().size()) return nobody;
-    const auto version = network_.master.parameter(kVersionParameter, until(kTold));
+    const auto version = network_.master.told("getParam", kVersionParameter, until(kTold));
     if (!version) return trouble(kVersionParameter, "is not set at the master", "is it the master of a Baxter?");
     if (version->rfind("1.2.", 0) != 0) {
       throw trouble(kVersionParameter, "the robot's software is " + *version,
@@ -113,21 +113,21 @@ class Visit {
         try {
           look_up(place->host, place->port, within(kLookUp, until(kTold)));
         } catch (const Unreached& reason) {
-          throw unreachable(topic, node, *place, reason);
+          throw no_publisher(topic, node, *place, reason);
         }
       }
     }
   }
 
   std::optional<Place> place_of(const std::string& node) const {
-    const auto uri = network_.master.node(node, until(kTold));
+    const auto uri = network_.master.told("lookupNode", node, until(kTold));
     return uri ? parse_uri(*uri, "http") : std::nullopt;
   }
 
   /// Beyond the flange, kg. The robot's own description is kept up to date: with what is mounted, and with what it has
   /// been told that it holds.
   std::optional<double> tool_mass() const {
-    const auto urdf = network_.master.parameter(kDescriptionParameter, until(kTold));
+    const auto urdf = network_.master.told("getParam", kDescriptionParameter, until(kTold));
     return urdf ? mass_beyond(*urdf, "left_hand") : std::nullopt;
   }
 
@@ -152,12 +152,12 @@ class Visit {
       Wire(look_up(place->host, place->port, deadline), deadline);
       return true;
     } catch (const Unreached& reason) {
-      return reason.why() != Unreached::Why::refused;
+      return reason.why != Unreached::Why::refused;
     }
   }
 
   void expect_all_heard(Link& link) const {
-    while (!all_heard(link)) {
+    while (heard(link) != std::array{true, true, true} || (wishes_.commands && !link.listened_to())) {
       if (Steady::now() > until(kHeard)) throw why_not_heard(link);
       std::this_thread::sleep_for(kLook);
     }
@@ -169,13 +169,8 @@ class Visit {
     return {seen.joints.has_value(), seen.endpoint.has_value(), seen.state.has_value()};
   }
 
-  bool all_heard(Link& link) const {
-    return link.clock_runs() && heard(link) == std::array{true, true, true} &&
-           (!wishes_.commands || link.listened_to());
-  }
-
   Error why_not_heard(Link& link) const {
-    if (!link.clock_runs()) {
+    if (link.read().now == 0.0) {
       return trouble("/use_sim_time", "is set, but no time comes on /clock",
                      "start what simulates the time, or delete the parameter and start all nodes again");
     }
@@ -198,7 +193,7 @@ class Visit {
         if (offer.md5 != needed.md5) return other_message(needed, node, offer);
         mute.push_back(node);
       } catch (const Unreached& reason) {
-        why = unreachable(needed.name, node, *place, reason);
+        why = no_publisher(needed.name, node, *place, reason);
       }
     }
     if (!malformed.empty()) return trouble(network_.where(), malformed, "is it a Baxter?");
@@ -215,23 +210,10 @@ class Visit {
                                           : "the robot's software must be 1.2");
   }
 
-  static Error unreachable(const std::string& topic, const std::string& node, const Place& place,
-                           const Unreached& reason) {
-    const std::string publisher = "its publisher " + node;
-    switch (reason.why()) {
-      case Unreached::Why::name:
-        return trouble(
-            topic,
-            fmt::format("{} is on the host {}, which does not resolve here ({})", publisher, place.host, reason.what()),
-            "add it to /etc/hosts, or install libnss-mdns for names in .local");
-      case Unreached::Why::refused:
-        return trouble(topic, fmt::format("{} is not at {}:{} ({})", publisher, place.host, place.port, reason.what()),
+  static Error no_publisher(const std::string& topic, const std::string& node, const Place& place,
+                            const Unreached& reason) {
+    return unreachable(topic, "its publisher " + node, place, reason,
                        "start it again, or remove what is left of it with rosnode cleanup");
-      default:
-        return trouble(topic,
-                       fmt::format("{} at {}:{} does not answer: {}", publisher, place.host, place.port, reason.what()),
-                       "check that no firewall lies between, or start it again");
-    }
   }
 
   Error why_nobody_listens(const Graph& graph) const {

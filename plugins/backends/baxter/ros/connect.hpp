@@ -4,7 +4,9 @@
 
 #include "baxter/options.hpp"
 #include "baxter/robot.hpp"
-#include "baxter/view.hpp"
+
+#include <palpate/scene.hpp>
+#include <palpate/types.hpp>
 
 #include <memory>
 
@@ -23,6 +25,22 @@ struct Wishes {
 /// Throws Error (kind `run`) within five seconds of real time, with what is missing and what to do: no master, names
 /// that do not resolve, data that do not come, another robot or software, messages of another md5 sum.
 std::unique_ptr<Robot> connect(const Wishes& wishes);
+
+/// What a person watching the experiment sees: the surface as it is believed, the taps, the area, the next target. All
+/// lengths are metres in the frame of the scene; what is shown is in the robot's frame `base`.
+class View {
+ public:
+  virtual ~View() = default;
+
+  /// Where the arm goes now.
+  virtual void target(const Target& place) = 0;
+
+  /// A tap that touched something; others are not shown.
+  virtual void tapped(const Target& place, double height, bool on_surface) = 0;
+
+  /// The surface: one height and its standard deviation for each place.
+  virtual void surface(const Points& places, const VectorView& height, const VectorView& deviation) = 0;
+};
 
 /// Publishes latched in frame `base`: palpate/surface (PointCloud2 with x, y, z, intensity = standard deviation) and
 /// palpate/taps (MarkerArray: taps on and off the object, the area, the next target). `robot` is what connect() has

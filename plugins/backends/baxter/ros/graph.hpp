@@ -1,18 +1,70 @@
 // SPDX-License-Identifier: MIT
 // The network of ROS as its master and nodes describe it, asked with deadlines: who publishes, whether its host can be
-// found from here, what messages it sends; and one call of a service. In plain sockets, before and beside roscpp.
+// found from here, what messages it sends; and one call of a service. Over TCP of which no step outlasts its deadline,
+// before and beside roscpp, whose own look-ups and calls wait for ever when a host is gone.
 #pragma once
 
-#include "baxter/ros/socket.hpp"
-
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
 namespace palpate::baxter {
+
+using Steady = std::chrono::steady_clock;
+using Deadline = Steady::time_point;
+using Address = boost::asio::ip::tcp::endpoint;
+
+/// The earlier of `deadline` and `longest` from now.
+Deadline within(std::chrono::milliseconds longest, Deadline deadline);
+
+/// Why nothing came of talking to a host; caught inside ros/, where it becomes an Error for the user.
+struct Unreached : std::runtime_error {
+  enum class Why {
+    name,      ///< the host's name has no address
+    refused,   ///< the host, or the way to it, says no
+    silent,    ///< nobody answered in time
+    nonsense,  ///< somebody answered who does not speak the protocol, or says that it cannot serve
+  };
+  Unreached(Why reason, const std::string& words) : std::runtime_error(words), why(reason) {}
+  Why why;
+};
+
+/// A thread that hears no signals: they are for those that were there before.
+std::thread deaf_thread(const std::function<void()>& run);
+
+/// The address of a host by its name or number. Throws Unreached (`name`), also when the answer takes too long.
+Address look_up(const std::string& host, int port, Deadline deadline);
+
+/// A TCP connection. All members throw Unreached.
+class Wire {
+ public:
+  Wire(const Address& address, Deadline deadline);
+
+  void send(const std::string& bytes, Deadline deadline);
+
+  /// Exactly so many bytes.
+  std::string receive(std::size_t bytes, Deadline deadline);
+
+  /// What is there, at least one byte, at most `most`; empty when the other side has ended the connection.
+  std::string receive_some(std::size_t most, Deadline deadline);
+
+ private:
+  template <class Begin>
+  std::size_t finish(Deadline deadline, const Begin& begin);
+
+  boost::asio::io_context io_;
+  boost::asio::ip::tcp::socket socket_{io_};
+};
 
 /// A host and a port, as in http://host:port/ and rosrpc://host:port.
 struct Place {
@@ -44,22 +96,11 @@ class Master {
   /// Whether it is one: its process.
   int greet(Deadline deadline) const;
   Graph graph(Deadline deadline) const;
-  /// A parameter; none if it is not set or is no text.
-  std::optional<std::string> parameter(const std::string& name, Deadline deadline) const {
-    return told("getParam", name, deadline);
-  }
-  /// Where a node can be asked; none if the master does not know it.
-  std::optional<std::string> node(const std::string& name, Deadline deadline) const {
-    return told("lookupNode", name, deadline);
-  }
-  /// Where a service is; none if nobody offers it.
-  std::optional<std::string> service(const std::string& name, Deadline deadline) const {
-    return told("lookupService", name, deadline);
-  }
-
- private:
+  /// What it says of a name: the value of a parameter (`getParam`), where a node can be asked (`lookupNode`), where a
+  /// service is (`lookupService`). None if it does not know that, or it is no text.
   std::optional<std::string> told(const char* method, const std::string& name, Deadline deadline) const;
 
+ private:
   Address address_;
 };
 

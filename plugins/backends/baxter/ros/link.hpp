@@ -38,7 +38,6 @@ class Link : public Robot {
   static const std::array<Topic, 3>& needed();
   /// What is written of them, and of what is shown.
   virtual std::shared_ptr<Bag> bag() = 0;
-  virtual bool clock_runs() = 0;   ///< protocol time is known
   virtual bool listened_to() = 0;  ///< somebody receives the set-points
 };
 

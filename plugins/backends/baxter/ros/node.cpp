@@ -127,25 +127,27 @@ Network find_network(Deadline deadline) {
   const std::optional<Place> place = parse_uri(uri, "http");
   if (!place) throw trouble(where, "is not of the form http://host:port", "as in http://011305P0001.local:11311");
   const std::string name = own_name(deadline);
-  const std::string at = fmt::format("{}:{}", place->host, place->port);
   try {
     const Master master(look_up(place->host, place->port, within(kLookUp, deadline)));
     master.greet(within(kAnswer, deadline));
     return {uri, master, name};
   } catch (const Unreached& reason) {
-    switch (reason.why()) {
-      case Unreached::Why::name:
-        throw trouble(where, fmt::format("the name {} does not resolve ({})", place->host, reason.what()),
-                      "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
-      case Unreached::Why::refused:
-        throw trouble(where, fmt::format("no master at {} ({})", at, reason.what()),
-                      "start the robot, or mend the variable");
-      case Unreached::Why::silent:
-        throw trouble(where, fmt::format("{} does not answer within {} s", at, kAnswer.count() / 1000),
-                      "check that the robot is on and that no firewall lies between");
-      default:
-        throw trouble(where, fmt::format("{} is no ROS master: {}", at, reason.what()), "mend the variable");
-    }
+    throw unreachable(where, "the master", *place, reason, "start the robot, or mend the variable");
+  }
+}
+
+Error unreachable(const std::string& where, const std::string& who, const Place& place, const Unreached& reason,
+                  const std::string& remedy) {
+  switch (reason.why) {
+    case Unreached::Why::name:
+      return trouble(
+          where, fmt::format("{} is on the host {}, which does not resolve here ({})", who, place.host, reason.what()),
+          "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
+    case Unreached::Why::silent:
+      return trouble(where, fmt::format("{} at {}:{} does not answer in time", who, place.host, place.port),
+                     "check that the robot is on and that no firewall lies between");
+    default:
+      return trouble(where, fmt::format("{} is not at {}:{} ({})", who, place.host, place.port, reason.what()), remedy);
   }
 }
 

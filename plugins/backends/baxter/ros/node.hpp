@@ -5,6 +5,8 @@
 
 #include "baxter/ros/graph.hpp"
 
+#include <palpate/error.hpp>
+
 #include <functional>
 #include <string>
 
@@ -22,6 +24,10 @@ struct Network {
 
 /// Checks ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME and asks the master. Throws Error (kind `run`) before `deadline`.
 Network find_network(Deadline deadline);
+
+/// Why nothing came of talking to `who` at `place`, and what to do: `remedy` if nobody is there who speaks ROS.
+Error unreachable(const std::string& where, const std::string& who, const Place& place, const Unreached& reason,
+                  const std::string& remedy);
 
 /// Starts roscpp, once a process; it leaves the network when the process ends. Throws Error if it cannot, or was
 /// started with another master, or has been told to go.

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "baxter/ros/arm_part.hpp"
 #include "baxter/ros/bag.hpp"
 #include "baxter/ros/link.hpp"
 #include "baxter/ros/pulse.hpp"
-#include "baxter/ros/solver.hpp"
 #include "baxter/words.hpp"
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include <baxter_core_msgs/EndEffectorProperties.h>
 #include <baxter_core_msgs/EndpointState.h>
 #include <baxter_core_msgs/JointCommand.h>
+#include <baxter_core_msgs/SolvePositionIK.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
@@ -51,6 +50,9 @@ constexpr std::uint32_t kBacklog = 10;
 /// Without messages the spinner looks up so often.
 const ros::WallDuration kSpin(0.5 * Pulse::kNoted);
 
+/// For an answer of the robot's inverse kinematics, with room in the promised second.
+constexpr milliseconds kSolve(900);
+
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
@@ -77,10 +79,37 @@ class Clock {
 
 double steady_seconds() { return std::chrono::duration<double>(Steady::now().time_since_epoch()).count(); }
 
+constexpr std::size_t kArm = kJointNames.size();
+
+/// The arm's joints among named ones.
+struct ArmPart {
+  std::size_t count = 0;  ///< how many of them there are
+  bool whole = false;     ///< all of them, each with a position; a message with only some of them is malformed
+  std::string words;      ///< what is there, of a message that is malformed
+  Joints position = Joints::Zero();
+};
+
+ArmPart arm_part(const sensor_msgs::JointState& message) {
+  ArmPart part;
+  for (std::size_t joint = 0; joint < kArm; ++joint) {
+    const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[joint]);
+    if (found == message.name.end()) continue;
+    ++part.count;
+    const auto at = static_cast<std::size_t>(found - message.name.begin());
+    if (at < message.position.size()) part.position[static_cast<Eigen::Index>(joint)] = message.position[at];
+  }
+  part.whole = part.count == kArm && message.position.size() == message.name.size();
+  if (!part.whole) {
+    part.words = fmt::format("{} of the left arm's seven joints, {} names and {} positions", part.count,
+                             message.name.size(), message.position.size());
+  }
+  return part;
+}
+
 class RosRobot final : public Link {
  public:
   RosRobot(const Network& network, bool commands, std::optional<double> tool_mass)
-      : bag_(std::make_shared<Bag>()), solver_(network.master), pulse_(steady_seconds()) {
+      : bag_(std::make_shared<Bag>()), master_(network.master), pulse_(steady_seconds()) {
     latest_.end_effector.mass = tool_mass;
     handle_.setCallbackQueue(&queue_);
     listen();
@@ -146,15 +175,63 @@ class RosRobot final : public Link {
 
   void record(const std::string& file) override { bag_->open(file); }
 
-  Answer solve(const Pose& gripper, const Joints& seed) override { return solver_.solve(gripper, seed); }
+  std::optional<Joints> solve(const Pose& gripper, const Joints& seed) override {
+    msgs::SolvePositionIKRequest request;
+    request.seed_mode = msgs::SolvePositionIKRequest::SEED_USER;
+    request.pose_stamp.resize(1);
+    geometry_msgs::PoseStamped& pose = request.pose_stamp[0];
+    pose.header.stamp = ros::Time::now();
+    pose.header.frame_id = "base";
+    pose.pose.position.x = gripper.position.x();
+    pose.pose.position.y = gripper.position.y();
+    pose.pose.position.z = gripper.position.z();
+    pose.pose.orientation.x = gripper.rotation.x();
+    pose.pose.orientation.y = gripper.rotation.y();
+    pose.pose.orientation.z = gripper.rotation.z();
+    pose.pose.orientation.w = gripper.rotation.w();
+    request.seed_angles.resize(1);
+    request.seed_angles[0].header = pose.header;
+    request.seed_angles[0].name.assign(kJointNames.begin(), kJointNames.end());
+    request.seed_angles[0].position.assign(seed.begin(), seed.end());
+
+    msgs::SolvePositionIKResponse response;
+    try {
+      const ros::SerializedMessage asked = ros::serialization::serializeMessage(request);
+      std::string bytes =
+          answer({reinterpret_cast<const char*>(asked.buf.get()), asked.num_bytes}, Steady::now() + kSolve);
+      ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                         static_cast<std::uint32_t>(bytes.size()));
+      ros::serialization::deserialize(stream, response);
+    } catch (const Unreached& reason) {
+      throw trouble(kSolverService, reason.what());
+    } catch (const ros::Exception& exception) {
+      throw trouble(kSolverService, std::string("its answer cannot be read: ") + exception.what());
+    }
+    if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
+      throw trouble(kSolverService, "its answer has not one part for one pose");
+    }
+    if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
+    const ArmPart part = arm_part(response.joints[0]);
+    if (!part.whole) throw trouble(kSolverService, "its answer has " + part.words);
+    return part.position;
+  }
 
   std::shared_ptr<Bag> bag() override { return bag_; }
 
-  bool clock_runs() override { return !ros::Time::now().isZero(); }
   /// This program listens, too.
   bool listened_to() override { return command_publisher_.getNumSubscribers() > 1; }
 
  private:
+  /// IKService's, asked with a deadline. It is looked for each time: it may have been started again, elsewhere.
+  std::string answer(const std::string& request, Deadline deadline) {
+    const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
+    const auto uri = master_.told("lookupService", kSolverService, deadline);
+    if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
+    const auto place = parse_uri(*uri, "rosrpc");
+    if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
+    return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
+  }
+
   /// Of a message: who sent it, and when it came.
   struct Heard {
     std::string sender;
@@ -274,7 +351,7 @@ class RosRobot final : public Link {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher command_publisher_;
   msgs::JointCommand command_;
-  Solver solver_;
+  Master master_;
   std::mutex mutex_;
   Snapshot latest_;  ///< guarded by mutex_; its `now` and `own_gap` are not used
   Pulse pulse_;      ///< of the spinner; guarded by mutex_

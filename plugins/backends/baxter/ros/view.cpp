@@ -27,8 +27,8 @@ class RosView final : public View {
  public:
   RosView(std::shared_ptr<Bag> bag, const PlaceOptions& place, const Area& area, double desk)
       : frame_(place.frame()), area_(area), desk_(desk), bag_(std::move(bag)) {
-    surface_publisher_ = handle_.advertise<sensor_msgs::PointCloud2>(kSurface, 1, true);
-    taps_publisher_ = handle_.advertise<MarkerArray>(kTaps, 1, true);
+    surface_publisher_ = handle_.advertise<sensor_msgs::PointCloud2>("palpate/surface", 1, true);
+    taps_publisher_ = handle_.advertise<MarkerArray>("palpate/taps", 1, true);
     show_taps();
   }
 
@@ -75,9 +75,6 @@ class RosView final : public View {
   }
 
  private:
-  static constexpr const char* kSurface = "palpate/surface";
-  static constexpr const char* kTaps = "palpate/taps";
-
   geometry_msgs::Point in_base(double x, double y, double z) const {
     const Eigen::Vector3d at = frame_ * Eigen::Vector3d(x, y, z);
     geometry_msgs::Point point;
