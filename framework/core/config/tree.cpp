@@ -30,6 +30,12 @@ Tree Tree::list(std::vector<Tree> items) {
   return tree;
 }
 
+Tree Tree::map(std::initializer_list<std::pair<const char*, Tree>> entries) {
+  Tree tree(Kind::map);
+  for (const auto& [key, value] : entries) tree.entries.push_back({key, {}, value});
+  return tree;
+}
+
 const Tree* Tree::find(std::string_view key) const {
   for (const Entry& entry : entries) {
     if (entry.key == key) return &entry.value;

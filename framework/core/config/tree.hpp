@@ -3,6 +3,7 @@
 // and sweeps as trees; only yaml.cpp and json.cpp know the formats.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -49,7 +50,7 @@ struct Tree {
   static Tree quote(std::string text) { return scalar(std::move(text), true); }
   static Tree list() { return Tree(Kind::list); }
   static Tree list(std::vector<Tree> items);
-  static Tree map() { return Tree(Kind::map); }
+  static Tree map(std::initializer_list<std::pair<const char*, Tree>> entries = {});
 
   bool is_map() const { return kind == Kind::map; }
   bool is_scalar() const { return kind == Kind::scalar; }

@@ -43,7 +43,7 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  virtual const char* name() const = 0;
+  const char* name() const { return name_; }
   /// Room for so many rows, as far as that is reasonable.
   virtual void reserve(int rows) = 0;
   /// Whether absorb() reads the row of L^-1.
@@ -51,7 +51,10 @@ class Engine {
 
   /// Back to the prior, with `means` maps of means. `prior` is the variance of the kernel at the candidates, one number
   /// if it is the same at all.
-  virtual void restart(int means, const VectorView& prior) = 0;
+  void restart(int means, const VectorView& prior) {
+    clear();
+    maps_.restart(means, prior);
+  }
 
   /// Takes one more row into the maps.
   virtual void absorb(const FactorRow& row) = 0;
@@ -60,7 +63,21 @@ class Engine {
   /// leaves away, beyond what the kernel itself may be off by rounding.
   virtual double covariance_error() const { return 0.0; }
 
-  virtual const Maps& maps() const = 0;
+  const Maps& maps() const { return maps_; }
+
+ protected:
+  Engine(const char* name, const Machine& machine, const Kernel& kernel, const Candidates& candidates,
+         const Tiling& tiling)
+      : name_(name), machine_(machine), kernel_(kernel), candidates_(candidates), maps_(tiling) {}
+
+  /// Forgets all rows.
+  virtual void clear() = 0;
+
+  const char* name_;
+  Machine machine_;
+  const Kernel& kernel_;
+  const Candidates& candidates_;
+  Maps maps_;
 };
 
 /// `kernel` and `candidates` must outlive the engines, and the hyperparameters of the kernel stay as they are. The

@@ -4,6 +4,8 @@
 #include "record/files.hpp"
 #include "record/tap_row.hpp"
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <string_view>
@@ -245,10 +247,6 @@ FieldList<TapTimes> make_timing_list() {
   return list;
 }
 
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 /// One line of timings.csv; none if it is damaged.
 std::optional<TapTimes> read_times(std::string_view line) {
   TapTimes out;
@@ -293,7 +291,7 @@ const RecordField* find_summary_field(const std::string& name) {
 
 Unit unit_of_column(const std::string& name) {
   if (const RecordField* field = find_summary_field(name)) return field->unit;
-  return ends_with(name, "_m") ? Unit::metre : ends_with(name, "_seconds") ? Unit::second : Unit::none;
+  return boost::ends_with(name, "_m") ? Unit::metre : boost::ends_with(name, "_seconds") ? Unit::second : Unit::none;
 }
 
 bool depends_on_machine(const std::string& name) {

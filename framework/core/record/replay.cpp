@@ -12,11 +12,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool has(const Row& row, const char* field) {
-  const Scalar* value = row.find(field);
-  return value != nullptr && !std::holds_alternative<std::monostate>(*value);
-}
-
 /// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
 class Recorded final : public Backend {
  public:
@@ -72,7 +67,7 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const auto made = static_cast<int>(recorded.size());
   const bool cut = made < recording.config.options.taps;
   Experiment experiment(recording.config.options, workshop.host, workshop.interrupted,
-                        std::make_shared<Recorded>(recording, has(recorded.front(), "predicted.height")));
+                        std::make_shared<Recorded>(recording, recorded.front().number("predicted.height").has_value()));
   Collector collector;
   experiment.run(collector, made);
 
@@ -94,9 +89,7 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const bool failed = recording.failed();
   RunResult result = failed ? experiment.counts() : experiment.result();
   // A record that failed, or ended before its budget, did so for a reason that the taps alone do not show.
-  if (failed || cut) {
-    result.stop_reason = summary.text("stop_reason");
-  }
+  if (failed || cut) result.stop_reason = summary.text("stop_reason");
   const std::string failure = failed ? result.stop_reason : std::string();
   compare(summary, summary_list().row({result, recording.config, failure, {}, {}, {}, {}}), 0, report);
   return report;

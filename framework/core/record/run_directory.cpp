@@ -20,13 +20,6 @@ constexpr const char* kTimings = "timings.csv";
 constexpr const char* kSummary = "summary.json";
 constexpr const char* kLock = "lock";
 
-fs::path made(fs::path directory) {
-  std::error_code trouble;
-  fs::create_directories(directory, trouble);
-  if (trouble) throw Error(directory.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
-  return directory;
-}
-
 }  // namespace
 
 const char* state_name(RunStatus::State state) {
@@ -91,7 +84,7 @@ RunStatus read_status(const fs::path& directory) {
   return out;
 }
 
-RunDirectory::RunDirectory(fs::path directory) : path_(made(std::move(directory))), lock_(path_ / kLock) {
+RunDirectory::RunDirectory(const fs::path& directory) : path_(make_folder(directory)), lock_(path_ / kLock) {
   remove_neighbours(path_, {"config.yaml", "manifest.json", "taps.csv", "surface.csv", kSummary});
   remove_neighbours(path_ / "maps", {});
 }
