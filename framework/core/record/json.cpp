@@ -74,12 +74,16 @@ class RowReader final : public nlohmann::json_sax<Json> {
   std::size_t name_bytes_ = 0;     ///< of the fields so far
 };
 
-/// Builds a tree from the same events. Scalars that are no strings are kept as they are written.
+constexpr const char* kPutBack = "the file is damaged: put it back as it was, or remove it";
+
+/// Builds a tree from the same events. Throws Error for what is JSON, and yet not read. Scalars that are no strings are
+/// kept as they are written.
 class TreeReader final : public nlohmann::json_sax<Json> {
  public:
+  explicit TreeReader(const std::filesystem::path& file) : file_(file) {}
+
   Tree tree;
-  std::size_t bytes = 0;            ///< read when it was found to be no JSON
-  const char* objection = nullptr;  ///< to what is JSON, and yet not read
+  std::size_t bytes = 0;  ///< read when it was found to be no JSON
 
   bool null() override { return add({}); }
   bool boolean(bool value) override { return add(Tree::scalar(value ? "true" : "false")); }
@@ -108,25 +112,27 @@ class TreeReader final : public nlohmann::json_sax<Json> {
     Tree& inner = *open_.back();
     return inner.is_map() ? inner.entries.back().value : inner.items.emplace_back();
   }
-  Tree* put(Tree value) {
-    if (open_.empty() && !value.is_map()) objection = "is not a JSON object";
-    if (open_.size() > kMostLevels) objection = "is nested too deeply";
-    if (++values_ > kMostValues) objection = "holds too many values";
-    if (objection != nullptr) return nullptr;
-    Tree& at = place();
-    at = std::move(value);
-    return &at;
+  Tree& put(Tree value) {
+    const auto refuse = [&](const char* reason) { throw Error(file_.string(), reason, kPutBack); };
+    if (open_.empty() && !value.is_map()) refuse("is not a JSON object");
+    if (open_.size() > kMostLevels) refuse("is nested too deeply");
+    if (++values_ > kMostValues) refuse("holds too many values");
+    return place() = std::move(value);
   }
-  bool add(Tree value) { return put(std::move(value)) != nullptr; }
+  bool add(Tree value) {
+    put(std::move(value));
+    return true;
+  }
   bool open(Tree empty) {
-    open_.push_back(put(std::move(empty)));
-    return open_.back() != nullptr;
+    open_.push_back(&put(std::move(empty)));
+    return true;
   }
   bool close() {
     open_.pop_back();
     return true;
   }
 
+  const std::filesystem::path& file_;
   std::vector<Tree*> open_;
   std::size_t values_ = 0;
 };
@@ -206,11 +212,9 @@ Row read_json_row(const std::filesystem::path& file, const std::string& remedy) 
 
 Tree read_json(const std::filesystem::path& file) {
   const std::string text = read_bounded(file);
-  TreeReader reader;
+  TreeReader reader(file);
   if (Json::sax_parse(text, &reader)) return std::move(reader.tree);
-  const char* const remedy = "the file is damaged: put it back as it was, or remove it";
-  if (reader.objection != nullptr) throw Error(file.string(), reader.objection, remedy);
-  throw Error(place_behind(file, text, reader.bytes), "is not valid JSON", remedy);
+  throw Error(place_behind(file, text, reader.bytes), "is not valid JSON", kPutBack);
 }
 
 std::string to_json(const Tree& tree) {
