@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Groups of options that may be absent, by the example that they exist for: the effects of a scene.
-#include "scene/effect_options.hpp"
+#include "scene/scene_options.hpp"
 
 #include "config/describe.hpp"
 #include "config/resolve.hpp"

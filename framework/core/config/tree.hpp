@@ -92,6 +92,10 @@ struct Tree::Entry {
   Tree value;
 };
 
+/// Whether `text` can be the name of a plugin or of a file of a group; and what to say if not.
+bool is_name(const std::string& text);
+inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-', and no path";
+
 /// The name among `known` that `name` was probably meant to be, or "" when none is near.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "gp/candidates.hpp"
+#include "gp/engine.hpp"
 #include "gp/factor.hpp"
-#include "gp/posterior.hpp"
 
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>

@@ -4,7 +4,6 @@
 #include "config/describe.hpp"
 #include "config/hash.hpp"
 #include "config/tree.hpp"
-#include "plugin/apart.hpp"
 #include "plugin/named.hpp"
 
 #include <palpate/acquisition.hpp>
@@ -34,10 +33,6 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 namespace {
-
-// What is said of a library by who looked at it begins with one of these.
-constexpr char kSound = 'S';
-constexpr char kBroken = 'B';
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& step, const std::string& reason,
                          const std::string& hint = {}) {
@@ -266,13 +261,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   const std::lock_guard lock(mutex_);
   auto& slot = libraries_[{kind, name}];
   if (slot) return slot;
-  const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-  if (!plain) {
-    throw Error("", fmt::format("'{}' is not the name of a plugin", name),
-                "a name has letters, digits, '_' and '-', and no path");
-  }
+  if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
   std::vector<fs::path> found;
   for (const fs::path& folder : folders_) {
     std::error_code none;
@@ -325,36 +314,10 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
 }
 
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {
-  try {
-    std::string answer = kSound + std::string(library(kind, name)->manifest().summary);
-    describe_fields([&](Fields& fields) { describe(kind, name, fields); });
-    libraries_.clear();  // a library may break down over its end, too
-    return answer;
-  } catch (const Error& trouble) {
-    return kBroken + std::string(trouble.what());
-  }
-}
-
-std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::string& name) const {
-  std::vector<PluginListing> out;
-  for (const std::string& one : kinds()) {
-    if (!kind.empty() && one != kind) continue;
-    for (const auto& found : files(one)) {
-      const std::string& stem = found.first;
-      if (!name.empty() && stem != name) continue;
-      // The files are sorted: a name in a second folder comes right after the first, whose row names both.
-      if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
-      PluginListing row{one, stem, found.second, {}, {}};
-      try {
-        const std::string answer = look_apart([&] { return look(one, stem); });
-        (answer.front() == kSound ? row.summary : row.trouble) = answer.substr(1);
-      } catch (const Error& trouble) {
-        row.trouble = fmt::format("{}: loading: {}, build or copy it again", found.second.string(), trouble.what());
-      }
-      out.push_back(std::move(row));
-    }
-  }
-  return out;
+  std::string summary = library(kind, name)->manifest().summary;
+  describe_fields([&](Fields& fields) { describe(kind, name, fields); });
+  libraries_.clear();  // a library may break down over its end, too
+  return summary;
 }
 
 std::vector<LoadedPlugin> PluginHost::loaded(const std::set<std::pair<std::string, std::string>>& plugins) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "scene/effect_options.hpp"
+// The part `scene.effects:` of a config.
+#include "scene/scene_options.hpp"
 
 namespace palpate {
 namespace {
