@@ -80,6 +80,34 @@ const Tree* find_child(const Tree& tree, std::string_view name) {
   return tree.kind == Tree::Kind::list ? find_item(tree, name) : tree.find(name);
 }
 
+/// Edit distance with swaps of neighbours (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+/// The shortest of the known names that `name` is a part of, as hit is of first_hit_tap; "" if there is none.
+std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kLeast = 3;
+  std::string best;
+  for (const std::string& candidate : known) {
+    const bool longer = name.size() >= kLeast && candidate.find(name) != std::string::npos;
+    if (longer && (best.empty() || candidate.size() < best.size())) best = candidate;
+  }
+  return best;
+}
+
 }  // namespace
 
 const Tree* Tree::find_path(std::string_view path) const {
@@ -197,27 +225,6 @@ void Tree::append_canonical(std::string& out) const {
   }
 }
 
-namespace {
-
-/// Edit distance with swaps of neighbours (optimal string alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
-}  // namespace
-
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-';
@@ -237,21 +244,6 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
   }
   return best;
 }
-
-namespace {
-
-/// The shortest of the known names that `name` is a part of, as hit is of first_hit_tap; "" if there is none.
-std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
-  constexpr std::size_t kLeast = 3;
-  std::string best;
-  for (const std::string& candidate : known) {
-    const bool longer = name.size() >= kLeast && candidate.find(name) != std::string::npos;
-    if (longer && (best.empty() || candidate.size() < best.size())) best = candidate;
-  }
-  return best;
-}
-
-}  // namespace
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   std::string near = nearest(name, known);

@@ -83,20 +83,18 @@ void check_complete(const fs::path& file) {
     refuse(file, "reading the header", "not a complete shared library", "build or copy it again");
   };
 
-  std::array<char, EI_NIDENT> identity{};
-  const auto known = std::min<std::uint64_t>(size, identity.size());
-  read(0, identity.data(), known);
-  if (std::memcmp(identity.data(), ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
+  ElfW(Ehdr) header{};
+  const auto known = std::min<std::uint64_t>(size, sizeof header);
+  read(0, &header, known);
+  if (std::memcmp(header.e_ident, ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
     refuse(file, "reading the header", "not a shared library", "build it with palpate_add_plugin()");
   }
-  if (known < identity.size()) incomplete();
+  if (known < EI_NIDENT) incomplete();
   constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
-  if (identity[EI_CLASS] != kNativeClass) return;
-
-  ElfW(Ehdr) header{};
+  if (header.e_ident[EI_CLASS] != kNativeClass) return;
   // Linkers write the section headers last: a file that holds them was not cut short.
-  if (!read(0, &header, sizeof header)) incomplete();
-  if (!holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize)) incomplete();
+  const bool sections = holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize);
+  if (known < sizeof header || !sections) incomplete();
   std::vector<ElfW(Phdr)> segments(header.e_phnum);
   if (!read(header.e_phoff, segments.data(), segments.size() * sizeof(ElfW(Phdr)))) incomplete();
   for (const ElfW(Phdr) & segment : segments) {
