@@ -41,37 +41,31 @@ class RowReader final : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
   bool start_object(std::size_t) override {
-    ends_.push_back(name_.size());
-    if (ends_.size() > 1) name_ += '.';
+    prefixes_.push_back(prefixes_.empty() ? "" : name_ + ".");
     return true;
   }
   bool key(string_t& key) override {
-    name_.resize(prefix());
-    name_ += key;
+    name_.assign(prefixes_.back()).append(key);
     return true;
   }
   bool end_object() override {
-    name_.resize(ends_.back());
-    ends_.pop_back();
+    prefixes_.pop_back();
     return true;
   }
 
  private:
-  /// The length of what comes before the names in the innermost object: "a." in {"a": {...
-  std::size_t prefix() const { return ends_.back() + (ends_.size() > 1 ? 1 : 0); }
-
   template <class T>
   bool add(T value) {
     name_bytes_ += name_.size();
-    if (ends_.empty() || name_bytes_ > kMostNameBytes) return false;
+    if (prefixes_.empty() || name_bytes_ > kMostNameBytes) return false;
     row_.fields.emplace_back(name_, std::move(value));
     return true;
   }
 
   Row& row_;
-  std::string name_;               ///< of the value to come, dotted
-  std::vector<std::size_t> ends_;  ///< lengths of the names of the open objects
-  std::size_t name_bytes_ = 0;     ///< of the fields so far
+  std::string name_;                   ///< of the value to come, dotted
+  std::vector<std::string> prefixes_;  ///< of the names in the open objects: "a." in {"a": {...
+  std::size_t name_bytes_ = 0;         ///< of the fields so far
 };
 
 constexpr const char* kPutBack = "the file is damaged: put it back as it was, or remove it";
