@@ -18,6 +18,7 @@ namespace palpate::stability {
 namespace {
 
 using test::Process;
+using test::scattered;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A process as tests make and read it: of a single output unless they say otherwise, its maps by value.
+// A process as tests make and read it: of a single output unless they say otherwise, over any places, its maps by
+// value.
 #pragma once
 
 #include "gp/process.hpp"
@@ -9,6 +10,12 @@
 #include <vector>
 
 namespace palpate::test {
+
+/// Candidates at any places, one row.
+inline Candidates scattered(Points points) {
+  const auto count = static_cast<int>(points.rows());
+  return {count, 1, std::move(points), {}, {}};
+}
 
 class Process : public palpate::Process {
  public:
