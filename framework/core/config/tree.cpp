@@ -18,6 +18,12 @@ std::string Place::text() const {
   return fmt::format("{}:{}:{}", *file, line, column);
 }
 
+std::string place_in(const std::string& file, std::string_view text, std::size_t bytes) {
+  const std::string_view before = text.substr(0, bytes);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  return fmt::format("{}:{}:{}", file, line, before.size() - (before.rfind('\n') + 1) + 1);
+}
+
 Tree Tree::scalar(std::string text, bool quoted) {
   Tree tree(Kind::scalar);
   tree.text = std::move(text);

@@ -22,6 +22,9 @@ struct Place {
   std::string text() const;
 };
 
+/// "file:line:column" of what lies behind so many bytes of a file's text.
+std::string place_in(const std::string& file, std::string_view text, std::size_t bytes);
+
 /// Who has the last word when two sources say the same thing: the higher layer. Groups named under `defaults` count
 /// up from 0 in their order.
 using Layer = int;

@@ -21,9 +21,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
+#include <boost/algorithm/string/split.hpp>
 #include <boost/dll/shared_library.hpp>
 
 #include <link.h>
@@ -49,20 +49,19 @@ std::string dlerror_part(const std::string& what) {
   return what.substr(from, end == std::string::npos || end < from ? std::string::npos : end - from);
 }
 
+/// What is at the places of a text between `separator`s.
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> out;
+  return boost::split(out, text, [separator](char c) { return c == separator; });
+}
+
 /// "what is 32 here and 16 in the program" for the first part of the stamps that differs.
-std::string stamp_difference(std::string_view theirs, std::string_view ours) {
-  const auto part = [](std::string_view& stamp) {
-    const auto end = std::min(stamp.find(';'), stamp.size());
-    const std::string_view head = stamp.substr(0, end);
-    stamp.remove_prefix(std::min(end + 1, stamp.size()));
-    return head;
-  };
-  while (!ours.empty() || !theirs.empty()) {
-    const std::string_view mine = part(ours);
-    const std::string_view other = part(theirs);
-    if (mine != other) return fmt::format("built with {}, the program with {}", other, mine);
-  }
-  return {};
+std::string stamp_difference(const std::string& theirs, const std::string& ours) {
+  const std::vector<std::string> other = parts_of(theirs, ';');
+  const std::vector<std::string> own = parts_of(ours, ';');
+  const auto [there, here] = std::mismatch(other.begin(), other.end(), own.begin(), own.end());
+  return fmt::format("built with {}, the program with {}", there != other.end() ? *there : "",
+                     here != own.end() ? *here : "");
 }
 
 /// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
@@ -219,8 +218,7 @@ PluginHost::~PluginHost() = default;
 std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
   std::vector<fs::path> out;
   if (const char* variable = std::getenv("PALPATE_PLUGIN_PATH")) {
-    std::istringstream in(variable);
-    for (std::string folder; std::getline(in, folder, ':');) {
+    for (const std::string& folder : parts_of(variable, ':')) {
       if (!folder.empty()) out.emplace_back(folder);
     }
   }

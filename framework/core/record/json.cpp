@@ -131,13 +131,6 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   std::size_t values_ = 0;
 };
 
-/// "file:line:column" behind so many bytes of its text.
-std::string place_behind(const std::filesystem::path& file, const std::string& text, std::size_t bytes) {
-  const std::string read = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
-  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
-  return fmt::format("{}:{}:{}", file.string(), line, read.size() - (read.rfind('\n') + 1) + 1);
-}
-
 void append(std::string& out, const Tree& tree, const std::string& indent) {
   const std::string inner = indent + "  ";
   switch (tree.kind) {
@@ -208,7 +201,7 @@ Tree read_json(const std::filesystem::path& file) {
   const std::string text = read_bounded(file);
   TreeReader reader(file);
   if (Json::sax_parse(text, &reader)) return std::move(reader.tree);
-  throw Error(place_behind(file, text, reader.bytes), "is not valid JSON", kPutBack);
+  throw Error(place_in(file.string(), text, std::max<std::size_t>(reader.bytes, 1) - 1), "is not valid JSON", kPutBack);
 }
 
 std::string to_json(const Tree& tree) {

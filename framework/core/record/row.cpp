@@ -5,6 +5,7 @@
 #include "config/utf8.hpp"
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -130,12 +131,7 @@ std::string Row::cell(std::string_view name) const {
 
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + "\"";
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
 std::string csv_cell(const Scalar& value) {
