@@ -8,8 +8,6 @@
 
 #include <palpate/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -126,8 +124,7 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
     if (!is_intent(row)) out.rows.push_back(std::move(row));
   }
   if (out.rows.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
-  for (std::size_t i = 0; i < out.rows.size(); ++i)
-    out.taps.push_back(past_tap(out.rows[i], fmt::format("{}: tap {}", file.string(), i + 1)));
+  out.taps = past_taps(out.rows, file);
   out.summary = read_summary(directory);
   if (out.summary) check_complete(*out.summary, static_cast<int>(out.rows.size()), directory);
   return out;

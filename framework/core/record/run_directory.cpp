@@ -112,21 +112,11 @@ std::vector<PastTap> RunDirectory::recover() {
     rows_.push_back(unknown_result_of(*intent));
     AppendFile(path_ / kTaps).append(to_json_line(rows_.back()) + "\n", true);
   }
-  recover_timings();
-  std::vector<PastTap> past;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    past.push_back(past_tap(rows_[i], fmt::format("{}: tap {}", (path_ / kTaps).string(), i + 1)));
-  }
-  return past;
-}
-
-void RunDirectory::recover_timings() {
-  if (!is_there(path_ / kTimings)) return;
-  const std::string text = read_file(path_ / kTimings);
-  cut_file(path_ / kTimings, text.rfind('\n') + 1);
+  if (is_there(path_ / kTimings)) cut_file(path_ / kTimings, read_file(path_ / kTimings).rfind('\n') + 1);
   for (const TapTimes& tap : read_timings(path_).taps) {
     for (std::size_t i = 0; i < kPhases; ++i) total_[i] += tap.seconds[i];
   }
+  return past_taps(rows_, path_ / kTaps);
 }
 
 void RunDirectory::open(bool announce, bool sync) {

@@ -90,8 +90,6 @@ class RunDirectory final : public Journal {
   void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text, sync_); }
 
  private:
-  void recover_timings();
-
   std::filesystem::path path_;
   FileLock lock_;
   AppendFile taps_;
