@@ -21,11 +21,7 @@ fs::path prepare_folder(const ExportArguments& arguments) {
     make_inner_folder(folder);
     return folder;
   }
-  fs::path folder = arguments.to;
-  std::error_code trouble;
-  fs::create_directories(folder, trouble);
-  if (trouble) throw Error(folder.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
-  return folder;
+  return make_folder(arguments.to);
 }
 
 /// That more taps may follow is no mistake, but whoever reads the files should know.

@@ -37,7 +37,7 @@ long peak_rss_bytes() {
   return usage.ru_maxrss * 1024;
 }
 
-void write_maps(const std::string& file, const Candidates& candidates, const Process& process) {
+void write_maps(const std::string& file, const Candidates& candidates, const test::Process& process) {
   const Eigen::VectorXd mean = process.mean(0);
   const Eigen::VectorXd variance = process.variance(0);
   const Eigen::VectorXd weight = process.mean(1);
@@ -64,7 +64,7 @@ void run(const Arguments& arguments) {
   const std::shared_ptr<Kernel> kernel = palpate::benchmark::make_kernel();
   std::vector<double> totals;
   palpate::benchmark::Replay best;
-  std::unique_ptr<Process> process;
+  std::unique_ptr<test::Process> process;
   for (int i = 0; i < arguments.repeat; ++i) {
     process.reset();
     palpate::benchmark::Replay one = palpate::benchmark::replay(taps, candidates, kernel, settings, &process);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "stability/check.hpp"
 
-#include "gp/process.hpp"
 #include "stability/reference.hpp"
 #include "support/mocks.hpp"
 #include "support/plugins.hpp"
+#include "support/process.hpp"
 #include "support/support.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +16,9 @@
 
 namespace palpate::stability {
 namespace {
+
+using test::Process;
+using test::scattered;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // The log marginal likelihood, and an unknown constant in the mean, against the oracle with 100 digits; there, the
 // constant is nothing but a constant added to every covariance.
-#include "gp/process.hpp"
 #include "stability/oracle.hpp"
 #include "stability/reference.hpp"
+#include "support/process.hpp"
 #include "support/testing.hpp"
 
 namespace palpate::stability {
 namespace {
+
+using test::Process;
+using test::scattered;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 

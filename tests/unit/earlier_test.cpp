@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a run had come to after fewer taps is what a run with that budget comes to.
-#include "record/earlier.hpp"
+#include "record/recording.hpp"
 
 #include "record/fields.hpp"
 #include "record/session.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Groups of options that may be absent, by the example that they exist for: the effects of a scene.
-#include "scene/effect_options.hpp"
+#include "scene/scene_options.hpp"
 
 #include "config/describe.hpp"
 #include "config/resolve.hpp"
@@ -10,7 +10,7 @@
 namespace palpate::test {
 namespace {
 
-EffectOptions effects(const std::string& yaml) { return test::filled<EffectOptions>(yaml); }
+Effects effects(const std::string& yaml) { return test::filled<EffectOptions>(yaml).values; }
 
 std::string effect_refusal(const std::string& yaml) {
   return error_of([&] { effects(yaml); });
@@ -24,10 +24,10 @@ std::string resolved(const std::string& yaml) {
 
 TEST(OptionalGroups, AreAbsentUntilTheyAreWrittenAndTakenAwayByNone) {
   EXPECT_FALSE(effects("{joint_lag: none}").joint_lag);
-  const Effects none = effects("{}").values();
+  const Effects none = effects("{}");
   EXPECT_FALSE(none.joint_lag);
   EXPECT_FALSE(none.reach);
-  const Effects some = effects("{joint_lag: {}, stiffness: {arm: 2 kN/m, object: 3 N/mm}}").values();
+  const Effects some = effects("{joint_lag: {}, stiffness: {arm: 2 kN/m, object: 3 N/mm}}");
   ASSERT_TRUE(some.joint_lag);
   EXPECT_DOUBLE_EQ(some.joint_lag->delay, 0.35);
   ASSERT_TRUE(some.stiffness);

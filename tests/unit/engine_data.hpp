@@ -2,8 +2,8 @@
 // What tests of the posterior engines start from: drawn taps, grids, processes of two outputs, and the textbook.
 #pragma once
 
-#include "gp/process.hpp"
 #include "support/arrays.hpp"
+#include "support/process.hpp"
 #include "support/testing.hpp"
 #include "support/textbook.hpp"
 

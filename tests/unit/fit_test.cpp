@@ -74,7 +74,7 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
       EXPECT_EQ(call.targets[1](tap), *record.on_surface ? 1.0 : 0.0);
     }
   }
-  const Process& height = *shared->experiment.belief().height_process().process;
+  const auto& height = *shared->experiment.belief().height_process().process;
   const TapBelief::Output label = shared->experiment.belief().weight_process();
   const ProcessSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";

@@ -2,6 +2,7 @@
 // What error is expected, and whether a run that stops for it was right to.
 #include "experiment/forecast.hpp"
 
+#include "support/process.hpp"
 #include "support/runs.hpp"
 #include "support/stopping.hpp"
 #include "support/testing.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a process does with matrices that no Cholesky factorisation takes: it raises the jitter within its limits,
 // and at the very last sets taps aside. It never gives a number that is none.
-#include "gp/process.hpp"
 #include "support/mocks.hpp"
+#include "support/process.hpp"
 #include "support/testing.hpp"
 
 #include <functional>

@@ -119,7 +119,7 @@ TEST(TapRow, ReadsBackAsTheTapThatItTells) {
   record.source = Source::fallback;
   record.why = "no score is positive";
   const Row row = *parse_json_row(to_json_line(tap_row(record)));
-  const PastTap back = past_tap(row, "here");
+  const PastTap back = past_taps({row}, "here").front();
   EXPECT_EQ(back.source, Source::fallback);
   EXPECT_EQ(back.target.x, record.target.x);
   EXPECT_EQ(back.contact.height, 0.1 + 0.2) << "to the last bit";

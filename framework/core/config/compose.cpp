@@ -46,12 +46,6 @@ fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, c
   return {};
 }
 
-bool is_name(const std::string& text) {
-  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-}
-
 /// The path as the user would name it: relative when it lies below the working directory.
 fs::path shown(const fs::path& path) {
   const fs::path near = path.lexically_proximate(fs::current_path());
@@ -61,10 +55,7 @@ fs::path shown(const fs::path& path) {
 /// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
 /// name, and for a file that is being read already.
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
-  if (!is_name(name)) {
-    throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group),
-                "a name has letters, digits, '_' and '-', and no path");
-  }
+  if (!is_name(name)) throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group), kNameHint);
   const std::string link = group + "/" + name;
   const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
   chain.push_back(link);
@@ -80,18 +71,19 @@ void drop(Container& from, const Holds& holds) {
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
 constexpr Layer kLayersOfGroup = 16;
 
-bool has(const fs::path& folder, fs::perms right) {
+/// Whether a folder is there and gives all of these rights.
+bool gives(const fs::path& folder, fs::perms rights) {
   std::error_code none;
   const fs::file_status status = fs::status(folder, none);
-  return fs::exists(status) && (status.permissions() & right) != fs::perms::none;
+  return fs::exists(status) && (status.permissions() & rights) == rights;
 }
 
-bool others_may_write(const fs::path& folder) { return has(folder, fs::perms::others_write); }
+bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::others_write); }
 
 /// Whether all users share a folder, each with files of their own, as the one for temporary files. Where others may
 /// write and also remove, the config itself may be theirs, and groups beside it make nothing worse: so are all folders
 /// of some mounted disks.
-bool is_common(const fs::path& folder) { return others_may_write(folder) && has(folder, fs::perms::sticky_bit); }
+bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
 /// A group that is chosen brings its types, those of the groups within it (a backend's motion) included.
 void set_layer_of_type(Tree& content, Layer layer, const Place& place) {

@@ -133,21 +133,21 @@ std::string quantity_pattern(Unit unit) {
   return fmt::format("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *({})$", fmt::join(unit_names(unit), "|"));
 }
 
-void number_schema(Tree& out, const FieldDescription& field) {
-  if (field.unit == Unit::none) {
-    out.at("type") = Tree::quote("number");
-  } else {
-    out.at("type") = Tree::quote("string");
-    out.at("pattern") = Tree::quote(quantity_pattern(field.unit));
-  }
+Tree number_schema(Unit unit) {
+  if (unit == Unit::none) return Tree::map({{"type", Tree::quote("number")}});
+  return Tree::map({{"type", Tree::quote("string")}, {"pattern", Tree::quote(quantity_pattern(unit))}});
 }
 
+/// A plugin of that kind.
+Tree plugin_schema(const std::string& kind) { return Tree::map({{"$ref", Tree::quote("#/definitions/" + kind)}}); }
+
+Tree array_schema(Tree items) { return Tree::map({{"type", Tree::quote("array")}, {"items", std::move(items)}}); }
+
 /// As many numbers as `field` has in a row.
-void row_schema(Tree& out, const FieldDescription& field) {
-  out.at("type") = Tree::quote("array");
-  number_schema(out.at("items"), field);
-  out.at("minItems") = Tree::scalar(std::to_string(field.count));
-  out.at("maxItems") = Tree::scalar(std::to_string(field.count));
+Tree row_schema(const FieldDescription& field) {
+  Tree out = array_schema(number_schema(field.unit));
+  for (const char* bound : {"minItems", "maxItems"}) out.at(bound) = Tree::scalar(std::to_string(field.count));
+  return out;
 }
 
 /// A group with a type has a schema for each of its cases, with the fields of that and of no other.
@@ -156,81 +156,67 @@ Tree group_schema(const std::vector<FieldDescription>& fields) {
     return std::any_of(field.cases.begin(), field.cases.end(), [](const auto& one) { return !one.fields.empty(); });
   });
   if (typed == fields.end()) return schema_of(fields);
-  Tree out = Tree::map();
-  Tree& any = out.at("anyOf");
-  any = Tree::list();
+  Tree any = Tree::list();
   std::vector<FieldDescription> chosen = fields;
   for (const auto& one : typed->cases) {
     chosen[static_cast<std::size_t>(typed - fields.begin())].cases = {one};
     any.items.push_back(schema_of(chosen));
     if (typed->required) any.items.back().at("required") = Tree::list({Tree::quote(typed->name)});
   }
-  return out;
+  return Tree::map({{"anyOf", any}});
 }
 
-Tree field_schema(const FieldDescription& field) {
-  Tree out = Tree::map();
-  const std::string range = field.range.empty() ? "" : " (" + field.range + ")";
-  out.at("description") = Tree::quote(field.meaning + range);
+/// A group, or a word in its place.
+Tree section_schema(const FieldDescription& field) {
+  Tree group = group_schema(field.fields);
+  if (!field.optional && !field.group) return group;
+  const Tree name =
+      Tree::map({{"type", Tree::quote("string")},
+                 {"description", Tree::quote(fmt::format("a name: NAME reads {}/NAME.yaml", field.name))}});
+  const Tree none = Tree::map({{"const", Tree::quote("none")}});
+  return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
+}
+
+/// What values a field takes.
+Tree value_schema(const FieldDescription& field) {
   switch (field.type) {
     case Type::real:
-      number_schema(out, field);
-      break;
+      return number_schema(field.unit);
     case Type::reals:
-      row_schema(out, field);
-      break;
+      return row_schema(field);
     case Type::table:
-      out.at("type") = Tree::quote("array");
-      row_schema(out.at("items"), field);
-      break;
+      return array_schema(row_schema(field));
     case Type::integer:
+      return Tree::map({{"type", Tree::quote("integer")}});
     case Type::flag:
+      return Tree::map({{"type", Tree::quote("boolean")}});
     case Type::text:
-      out.at("type") = Tree::quote(field.type == Type::integer ? "integer"
-                                   : field.type == Type::flag  ? "boolean"
-                                                               : "string");
-      break;
+      return Tree::map({{"type", Tree::quote("string")}});
     case Type::choice: {
-      Tree& names = out.at("enum") = Tree::list();
+      Tree names = Tree::list();
       for (const auto& one : field.cases) names.items.push_back(Tree::quote(one.name));
-      break;
+      return Tree::map({{"enum", names}});
     }
-    case Type::section: {
-      Tree inner = group_schema(field.fields);
-      if (field.optional || field.group) {
-        Tree word = Tree::map();
-        if (field.group) {
-          word.at("type") = Tree::quote("string");
-          word.at("description") = Tree::quote(fmt::format("a name: NAME reads {}/NAME.yaml", field.name));
-        } else {
-          word.at("const") = Tree::quote("none");
-        }
-        out.at("anyOf") = Tree::list({std::move(word), std::move(inner)});
-        break;
-      }
-      for (const Tree::Entry& entry : inner.entries) out.entries.push_back(entry);
-      break;
-    }
+    case Type::section:
+      return section_schema(field);
     case Type::sections:
-      out.at("type") = Tree::quote("array");
-      out.at("items") = group_schema(field.fields);
-      break;
+      return array_schema(group_schema(field.fields));
     case Type::plugin:
-      out = Tree::map();
-      out.at("$ref") = Tree::quote("#/definitions/" + field.kind);
       break;
     case Type::plugins: {
       // In a list no group is chosen by its name: every item is a map with a type.
-      Tree plugin = Tree::map();
-      plugin.at("$ref") = Tree::quote("#/definitions/" + field.kind);
-      Tree typed = Tree::map();
-      typed.at("type") = Tree::quote("object");
-      typed.at("required") = Tree::list({Tree::quote("type")});
-      out.at("type") = Tree::quote("array");
-      out.at("items").at("allOf") = Tree::list({std::move(plugin), std::move(typed)});
-      break;
+      const Tree typed = Tree::map({{"type", Tree::quote("object")}, {"required", Tree::list({Tree::quote("type")})}});
+      return array_schema(Tree::map({{"allOf", Tree::list({plugin_schema(field.kind), typed})}}));
     }
   }
+  return plugin_schema(field.kind);
+}
+
+Tree field_schema(const FieldDescription& field) {
+  if (field.type == Type::plugin) return plugin_schema(field.kind);
+  const std::string range = field.range.empty() ? "" : " (" + field.range + ")";
+  Tree out = Tree::map({{"description", Tree::quote(field.meaning + range)}});
+  for (Tree::Entry& entry : value_schema(field).entries) out.entries.push_back(std::move(entry));
   return out;
 }
 
@@ -301,25 +287,20 @@ std::string describe_text(const std::vector<FieldDescription>& fields) {
 Tree describe_tree(const std::vector<FieldDescription>& fields) {
   Tree list = Tree::list();
   for (const FieldDescription& field : fields) {
-    Tree row = Tree::map();
-    row.at("name") = Tree::quote(field.name);
-    row.at("type") = Tree::quote(field.type_name());
-    row.at("unit") = Tree::quote(unit_symbol(field.unit));
-    row.at("range") = Tree::quote(field.range);
-    row.at("default") = field.required ? Tree{} : Tree::quote(field.default_value);
-    row.at("required") = Tree::scalar(field.required ? "true" : "false");
-    row.at("meaning") = Tree::quote(field.meaning);
-    row.at("source") = Tree::quote(field.source);
-    if (!field.cases.empty()) {
-      Tree cases = Tree::list();
-      for (const auto& one : field.cases) {
-        Tree entry = Tree::map();
-        entry.at("name") = Tree::quote(one.name);
-        entry.at("meaning") = Tree::quote(one.meaning);
-        entry.at("options") = describe_tree(one.fields);
-        cases.items.push_back(std::move(entry));
-      }
-      row.at("cases") = std::move(cases);
+    Tree row = Tree::map({{"name", Tree::quote(field.name)},
+                          {"type", Tree::quote(field.type_name())},
+                          {"unit", Tree::quote(unit_symbol(field.unit))},
+                          {"range", Tree::quote(field.range)},
+                          {"default", field.required ? Tree{} : Tree::quote(field.default_value)},
+                          {"required", Tree::scalar(field.required ? "true" : "false")},
+                          {"meaning", Tree::quote(field.meaning)},
+                          {"source", Tree::quote(field.source)}});
+    for (const auto& one : field.cases) {
+      Tree& cases = row.at("cases");
+      cases.kind = Tree::Kind::list;
+      cases.items.push_back(Tree::map({{"name", Tree::quote(one.name)},
+                                       {"meaning", Tree::quote(one.meaning)},
+                                       {"options", describe_tree(one.fields)}}));
     }
     if (!field.fields.empty()) row.at("options") = describe_tree(field.fields);
     list.items.push_back(std::move(row));
@@ -328,13 +309,11 @@ Tree describe_tree(const std::vector<FieldDescription>& fields) {
 }
 
 Tree schema_of(const std::vector<FieldDescription>& fields) {
-  Tree out = Tree::map();
-  out.at("type") = Tree::quote("object");
   Tree properties = Tree::map();
   add_properties(properties, fields);
-  out.at("properties") = std::move(properties);
-  out.at("additionalProperties") = Tree::scalar("false");
-  return out;
+  return Tree::map({{"type", Tree::quote("object")},
+                    {"properties", std::move(properties)},
+                    {"additionalProperties", Tree::scalar("false")}});
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -38,19 +39,13 @@ std::vector<std::string> split_top(const std::string& text) {
   return parts;
 }
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 Bound parse_bound(const std::string& text, const Tree& tree, const std::string& key, const std::string& how_to) {
   Bound out{0.0, {}};
   const auto result = std::from_chars(text.data(), text.data() + text.size(), out.value);
   if (result.ec != std::errc() || !std::isfinite(out.value)) {
     throw Error(tree.place.text(), fmt::format("{}: '{}' in '{}' is not a number", key, text, tree.text), how_to);
   }
-  out.unit = trimmed(std::string(result.ptr, text.data() + text.size()));
+  out.unit = boost::trim_copy(std::string(result.ptr, text.data() + text.size()));
   return out;
 }
 
@@ -114,7 +109,7 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
                 fmt::format("within braces, where commas part entries, put it into quotes: \"{}(...)\"", call.name));
   }
   for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
-    call.bounds.push_back(parse_bound(trimmed(part), value, key, how_to));
+    call.bounds.push_back(parse_bound(boost::trim_copy(part), value, key, how_to));
   }
   return call;
 }
@@ -154,7 +149,7 @@ Axis parse_axis(const std::string& text) {
   if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path), whole.value};
   Axis axis{whole.path, {}, Tree::list()};
   for (const std::string& part : parts) {
-    const Override one = parse_override(whole.path + "=" + trimmed(part));
+    const Override one = parse_override(whole.path + "=" + boost::trim_copy(part));
     // Beside other values a list is one value: at=[1cm,1cm],[2cm,2cm].
     if (one.value.kind == Tree::Kind::list) {
       axis.values.push_back(one.value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/keys.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace palpate {
@@ -23,11 +24,7 @@ void ConfigKeys::add(const std::vector<FieldDescription>& fields, const std::str
     const std::string path = prefix + field.name;
     if (field.group) {
       groups_.push_back(path);
-      if (!field.kind.empty()) {
-        plugins_.insert(field.kind);
-      } else {
-        (prefix.empty() ? plain_ : parts_).insert(path);
-      }
+      if (!field.kind.empty()) plugins_.insert(field.kind);
     }
     if (!field.heir_of.empty()) heirs_.emplace_back(path, field.heir_of);
     if (field.type == FieldDescription::Type::section) add(field.fields, path + ".");
@@ -35,10 +32,14 @@ void ConfigKeys::add(const std::vector<FieldDescription>& fields, const std::str
 }
 
 bool ConfigKeys::is_group(const std::string& path) const {
-  return plain_.count(path) > 0 || is_part(path) || plugins_.count(last_key(path)) > 0;
+  return is_plugin(path) || std::find(groups_.begin(), groups_.end(), path) != groups_.end();
 }
 
 bool ConfigKeys::is_plugin(const std::string& path) const { return plugins_.count(last_key(path)) > 0; }
+
+bool ConfigKeys::is_part(const std::string& path) const {
+  return path.find('.') != std::string::npos && is_group(path) && !is_plugin(path);
+}
 
 bool ConfigKeys::is_of_strategy(const std::string& path) const { return of_run_.count(first_key(path)) == 0; }
 

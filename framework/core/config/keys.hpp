@@ -27,7 +27,7 @@ class ConfigKeys {
   /// Whether a name without such a file is the type of a plugin; `path` is that of a group, or its last key.
   bool is_plugin(const std::string& path) const;
   /// Whether a group lies within another, as scene.effects does.
-  bool is_part(const std::string& path) const { return parts_.count(path) > 0; }
+  bool is_part(const std::string& path) const;
   /// The paths that the list calls groups.
   const std::vector<std::string>& groups() const { return groups_; }
 
@@ -44,8 +44,6 @@ class ConfigKeys {
 
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names
-  std::set<std::string> plain_;    ///< those at the top that are none: their paths
-  std::set<std::string> parts_;    ///< those within them: likewise
   std::set<std::string> of_run_;
   std::vector<std::pair<std::string, std::string>> heirs_;
 };

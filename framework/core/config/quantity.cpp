@@ -74,9 +74,13 @@ constexpr std::array kDimensions{
 
 const Dimension& dimension_of(Unit unit) { return kDimensions[static_cast<std::size_t>(unit)]; }
 
+[[noreturn]] void refuse(const Tree& tree, const std::string& name, const std::string& reason,
+                         const std::string& hint) {
+  throw Error(tree.place.text(), fmt::format("{}: {}", name, reason), hint);
+}
+
 [[noreturn]] void refuse(const Tree& tree, const std::string& name, const std::string& reason, Unit unit) {
-  throw Error(tree.place.text(), fmt::format("{}: {}", name, reason),
-              fmt::format("write {}", dimension_of(unit).example));
+  refuse(tree, name, reason, fmt::format("write {}", dimension_of(unit).example));
 }
 
 /// Splits a scalar into number and unit, refusing what is not a scalar with a decimal number in front.
@@ -90,8 +94,8 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   const std::string_view number = text.substr(0, length);
   if (looks_octal(number)) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' has a leading zero", name, text),
-                "octal numbers are not read: write it without the zero");
+    refuse(tree, name, fmt::format("'{}' has a leading zero", text),
+           "octal numbers are not read: write it without the zero");
   }
   return {number, rest};
 }
@@ -151,13 +155,11 @@ std::vector<std::string> unit_names(Unit unit) {
 double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   const auto [number, symbol] = split(tree, name, unit);
   if (!symbol.empty() && symbol[0] == ',') {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' has a decimal comma", name, tree.text), "write a point");
+    refuse(tree, name, fmt::format("'{}' has a decimal comma", tree.text), "write a point");
   }
   if (unit == Unit::none) {
-    if (!symbol.empty()) {
-      throw Error(tree.place.text(), fmt::format("{}: '{}' is not a plain number", name, tree.text),
-                  "this one has no unit");
-    }
+    if (!symbol.empty())
+      refuse(tree, name, fmt::format("'{}' is not a plain number", tree.text), "this one has no unit");
     return to_double(number, 0, tree, name, unit);
   }
   if (symbol.empty()) refuse(tree, name, fmt::format("'{}' lacks its unit", tree.text), unit);
@@ -169,8 +171,7 @@ double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
     }
     return to_double(number, known.power, tree, name, unit) * known.factor;
   }
-  throw Error(tree.place.text(), fmt::format("{}: unknown unit '{}'", name, symbol),
-              suggestion(symbol, unit_names(unit)));
+  refuse(tree, name, fmt::format("unknown unit '{}'", symbol), suggestion(symbol, unit_names(unit)));
 }
 
 std::optional<AnyQuantity> any_quantity(const std::string& text) {
@@ -199,12 +200,10 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
   const char* last = number.data() + number.size();
   const auto result = std::from_chars(first, last, value);
   if (result.ec == std::errc::result_out_of_range) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' is out of range", name, tree.text),
-                "at most 9223372036854775807");
+    refuse(tree, name, fmt::format("'{}' is out of range", tree.text), "at most 9223372036854775807");
   }
   if (result.ec != std::errc() || result.ptr != last || !rest.empty()) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' is not a whole number", name, tree.text),
-                "write digits alone");
+    refuse(tree, name, fmt::format("'{}' is not a whole number", tree.text), "write digits alone");
   }
   return value;
 }

@@ -6,6 +6,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,32 +15,33 @@
 namespace palpate {
 namespace {
 
+/// What stands for what a config does not say.
+const Tree kNothing;
+
 /// Reads one map and writes its resolved twin. Nested groups get a resolver of their own.
 class Resolver final : public Fields {
  public:
-  /// `input` may be null: then every field has its default, and errors name the place of `parent`. `path` is "" at
-  /// the top, else it ends in a dot.
-  Resolver(const Tree* input, std::string path, const PluginSource& plugins, ResolveNotes& notes, const Place& parent)
+  /// Where `input` is null every field has its default, and where it has no place errors name that of `parent`. `path`
+  /// is "" at the top, else it ends in a dot.
+  Resolver(const Tree& input, std::string path, const PluginSource& plugins, ResolveNotes& notes, const Place& parent)
       : input_(input), path_(std::move(path)), plugins_(plugins), notes_(notes), output_(Tree::map()) {
-    output_.place = input_ != nullptr ? input_->place : parent;
-    if (input_ != nullptr && input_->kind != Tree::Kind::map && input_->kind != Tree::Kind::null) {
-      throw Error(input_->place.text(), fmt::format("{} is not a group of options", owner()),
+    output_.place = input.place.file ? input.place : parent;
+    if (!input.is_map() && input.kind != Tree::Kind::null) {
+      throw Error(input.place.text(), fmt::format("{} is not a group of options", owner()),
                   fmt::format("write {{key: value, ...}}{}", path_.empty() ? "" : " or " + path_ + "KEY=VALUE"));
     }
   }
 
   /// Refuses keys that no field has claimed. `elsewhere`: see resolve().
   Tree finish(const std::vector<std::string>& elsewhere = {}) {
-    if (input_ != nullptr && !silent_) {
-      for (const Tree::Entry& entry : input_->entries) {
-        if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-        if (entry.value.highest_layer() < type_layer_) {
-          notes_.dropped.push_back({path_ + entry.key, entry.value.place.text()});
-          continue;
-        }
-        known_.insert(known_.end(), elsewhere.begin(), elsewhere.end());
-        refuse_unknown(entry, known_);
+    for (const Tree::Entry& entry : input_.entries) {
+      if (silent_ || is_known(entry.key)) continue;
+      if (entry.value.highest_layer() < type_layer_) {
+        notes_.dropped.push_back({path_ + entry.key, entry.value.place.text()});
+        continue;
       }
+      known_.insert(known_.end(), elsewhere.begin(), elsewhere.end());
+      refuse_unknown(entry, known_);
     }
     return std::move(output_);
   }
@@ -161,7 +163,7 @@ class Resolver final : public Fields {
   }
 
   void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) override {
-    if (input_ == nullptr || input_->find(field.name) == nullptr) {
+    if (input_.find(field.name) == nullptr) {
       known_.emplace_back(field.name);
       return;
     }
@@ -201,7 +203,7 @@ class Resolver final : public Fields {
 
   void require(bool holds, const char* field, const std::string& reason) override {
     if (holds) return;
-    const Place place = input_ != nullptr ? input_->place_of(field) : Place{};
+    const Place place = input_.place_of(field);
     throw Error(place.file ? place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
   }
 
@@ -210,6 +212,7 @@ class Resolver final : public Fields {
   std::string name(const Field& field) const { return path_ + field.name; }
   std::string owner() const { return path_.empty() ? "the config" : path_.substr(0, path_.size() - 1); }
   std::string where() const { return output_.place.text(); }
+  bool is_known(const std::string& key) const { return std::find(known_.begin(), known_.end(), key) != known_.end(); }
 
   static bool is_none(const Tree& tree) { return tree.is_scalar() && !tree.quoted && tree.text == "none"; }
   static bool is_row(const Tree& tree, std::size_t values) {
@@ -231,12 +234,12 @@ class Resolver final : public Fields {
 
   /// Finds the field's value and remembers that the field exists. Null when the config does not say it.
   const Tree* claim(const Field& field) {
-    if (!adopted_.empty() && std::find(known_.begin(), known_.end(), field.name) != known_.end()) {
+    if (!adopted_.empty() && is_known(field.name)) {
       throw Error(where(), fmt::format("{} has an option '{}', and so has {}", adopted_, field.name, owner()),
                   "the plugin needs another name for it");
     }
     known_.emplace_back(field.name);
-    const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
+    const Tree* tree = input_.find(field.name);
     if (tree == nullptr && field.required) {
       refuse_misspelt(field.name);
       throw Error(where(), fmt::format("'{}' is missing", name(field)), field.meaning);
@@ -263,30 +266,25 @@ class Resolver final : public Fields {
 
   /// What a dotted key stands for, as a file has it: `weight: {clip: yes}`.
   static std::string nested(const Tree::Entry& entry) {
-    std::string out;
-    std::string end;
-    for (const char c : entry.key) {
-      out += c == '.' ? ": {" : std::string(1, c);
-      if (c == '.') end += '}';
-    }
+    const auto groups = std::count(entry.key.begin(), entry.key.end(), '.');
     constexpr std::size_t kShort = 40;
     const std::string& text = entry.value.text;
     const bool short_value = entry.value.is_scalar() && text.size() < kShort && text.find('\n') == std::string::npos;
-    return out + ": " + (short_value ? text : "...") + end;
+    return boost::replace_all_copy(entry.key, ".", ": {") + ": " + (short_value ? text : "...") +
+           std::string(static_cast<std::size_t>(groups), '}');
   }
 
   /// Before complaining that `missing` is missing: perhaps it is there under a name that is nearly right.
   void refuse_misspelt(const std::string& missing) const {
-    if (input_ == nullptr) return;
-    for (const Tree::Entry& entry : input_->entries) {
-      const bool known = std::find(known_.begin(), known_.end(), entry.key) != known_.end();
-      if (known || (nearest(entry.key, {missing}).empty() && !is_below_one_of(entry.key, {missing}))) continue;
+    for (const Tree::Entry& entry : input_.entries) {
+      if (is_known(entry.key) || (nearest(entry.key, {missing}).empty() && !is_below_one_of(entry.key, {missing})))
+        continue;
       refuse_unknown(entry, {missing});
     }
   }
 
   void write(const Field& field, Tree value) {
-    const Tree* tree = input_ != nullptr ? input_->find(field.name) : nullptr;
+    const Tree* tree = input_.find(field.name);
     notes_.origins.push_back({path_ + field.name, tree != nullptr ? tree->place.text() : "default"});
     if (tree != nullptr) value.place = tree->place;
     output_.at(field.name) = std::move(value);
@@ -312,7 +310,7 @@ class Resolver final : public Fields {
 
   /// Nested options; `tree` is null where the config does not say them.
   Tree read_group(Options& options, const Tree* tree, const std::string& path) {
-    Resolver inner(tree, path + ".", plugins_, notes_, output_.place);
+    Resolver inner(tree != nullptr ? *tree : kNothing, path + ".", plugins_, notes_, output_.place);
     options.list(inner);
     return inner.finish();
   }
@@ -349,14 +347,13 @@ class Resolver final : public Fields {
   /// Fills `choice`; returns what goes into the resolved config. `tree` is null where the config does not say the
   /// plugin and `choice` names the default.
   Tree read_plugin(PluginChoice& choice, const Tree* tree, const std::string& path) {
-    static const Tree nothing = Tree::map();
     const Tree* const type = tree != nullptr ? &type_of(*tree, choice.kind, path) : nullptr;
     const std::string at = type != nullptr ? type->place.text() : where();
     if (type != nullptr) choice.type = name_of_plugin(*type, choice.kind, path + ".type");
-    Resolver inner(tree != nullptr ? tree : &nothing, path + ".", plugins_, notes_, output_.place);
+    Resolver inner(tree != nullptr ? *tree : kNothing, path + ".", plugins_, notes_, output_.place);
     inner.plugin_ = choice.kind + "/" + choice.type;
     inner.known_.emplace_back("type");
-    inner.type_layer_ = (type != nullptr ? *type : nothing).layer;  // options older than it may be dropped
+    inner.type_layer_ = (type != nullptr ? *type : kNothing).layer;  // options older than it may be dropped
     // What the type needs is missing where it was chosen, not in the group file that it was laid over.
     if (type != nullptr && type->place.file) inner.output_.place = type->place;
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
@@ -370,7 +367,7 @@ class Resolver final : public Fields {
     return written;
   }
 
-  const Tree* input_;
+  const Tree& input_;
   std::string path_;
   std::string plugin_;   ///< whose options these are; "" for none
   bool silent_ = false;  ///< a plugin among these is: any key may be its
@@ -386,7 +383,7 @@ class Resolver final : public Fields {
 
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere) {
-  Resolver resolver(&input, "", plugins, notes, input.place);
+  Resolver resolver(input, "", plugins, notes, input.place);
   options.list(resolver);
   return resolver.finish(elsewhere);
 }
@@ -394,7 +391,7 @@ Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, R
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
           const std::function<void(Fields&)>& describe) {
   ResolveNotes notes;
-  Resolver resolver(&resolved, path.empty() ? path : path + ".", plugins, notes, resolved.place);
+  Resolver resolver(resolved, path.empty() ? path : path + ".", plugins, notes, resolved.place);
   describe(resolver);
 }
 

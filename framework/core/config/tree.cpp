@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 
 namespace palpate {
@@ -15,6 +16,12 @@ std::string Place::text() const {
   if (!file) return {};
   if (line == 0) return *file;
   return fmt::format("{}:{}:{}", *file, line, column);
+}
+
+std::string place_in(const std::string& file, std::string_view text, std::size_t bytes) {
+  const std::string_view before = text.substr(0, bytes);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  return fmt::format("{}:{}:{}", file, line, before.size() - (before.rfind('\n') + 1) + 1);
 }
 
 Tree Tree::scalar(std::string text, bool quoted) {
@@ -27,6 +34,12 @@ Tree Tree::scalar(std::string text, bool quoted) {
 Tree Tree::list(std::vector<Tree> items) {
   Tree tree(Kind::list);
   tree.items = std::move(items);
+  return tree;
+}
+
+Tree Tree::map(std::initializer_list<std::pair<const char*, Tree>> entries) {
+  Tree tree(Kind::map);
+  for (const auto& [key, value] : entries) tree.entries.push_back({key, {}, value});
   return tree;
 }
 
@@ -71,6 +84,42 @@ const Tree* find_item(const Tree& list, std::string_view name) {
 
 const Tree* find_child(const Tree& tree, std::string_view name) {
   return tree.kind == Tree::Kind::list ? find_item(tree, name) : tree.find(name);
+}
+
+/// Visits a tree and all below.
+template <class AnyTree, class Visit>
+void for_all(AnyTree& tree, const Visit& visit) {
+  visit(tree);
+  for (auto& item : tree.items) for_all(item, visit);
+  for (auto& entry : tree.entries) for_all(entry.value, visit);
+}
+
+/// Edit distance with swaps of neighbours (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+/// The shortest of the known names that `name` is a part of, as hit is of first_hit_tap; "" if there is none.
+std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t kLeast = 3;
+  std::string best;
+  for (const std::string& candidate : known) {
+    const bool longer = name.size() >= kLeast && candidate.find(name) != std::string::npos;
+    if (longer && (best.empty() || candidate.size() < best.size())) best = candidate;
+  }
+  return best;
 }
 
 }  // namespace
@@ -122,21 +171,16 @@ Place Tree::place_of(std::string_view path) const {
 
 Layer Tree::highest_layer() const {
   Layer highest = layer;
-  for (const Tree& item : items) highest = std::max(highest, item.highest_layer());
-  for (const Entry& entry : entries) highest = std::max(highest, entry.value.highest_layer());
+  for_all(*this, [&](const Tree& one) { highest = std::max(highest, one.layer); });
   return highest;
 }
 
 void Tree::set_layer(Layer value) {
-  layer = value;
-  for (Tree& item : items) item.set_layer(value);
-  for (Entry& entry : entries) entry.value.set_layer(value);
+  for_all(*this, [&](Tree& one) { one.layer = value; });
 }
 
 void Tree::shift_layer(int steps) {
-  layer += steps;
-  for (Tree& item : items) item.shift_layer(steps);
-  for (Entry& entry : entries) entry.value.shift_layer(steps);
+  for_all(*this, [&](Tree& one) { one.layer += steps; });
 }
 
 void Tree::merge(const Tree& upper) {
@@ -190,26 +234,11 @@ void Tree::append_canonical(std::string& out) const {
   }
 }
 
-namespace {
-
-/// Edit distance with swaps of neighbours (optimal string alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[a.size()][b.size()];
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
 }
-
-}  // namespace
 
 std::string nearest(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
@@ -224,21 +253,6 @@ std::string nearest(std::string_view name, const std::vector<std::string>& known
   }
   return best;
 }
-
-namespace {
-
-/// The shortest of the known names that `name` is a part of, as hit is of first_hit_tap; "" if there is none.
-std::string longer_form(std::string_view name, const std::vector<std::string>& known) {
-  constexpr std::size_t kLeast = 3;
-  std::string best;
-  for (const std::string& candidate : known) {
-    const bool longer = name.size() >= kLeast && candidate.find(name) != std::string::npos;
-    if (longer && (best.empty() || candidate.size() < best.size())) best = candidate;
-  }
-  return best;
-}
-
-}  // namespace
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   std::string near = nearest(name, known);

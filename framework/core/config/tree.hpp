@@ -3,6 +3,7 @@
 // and sweeps as trees; only yaml.cpp and json.cpp know the formats.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ struct Place {
   /// "file:line:column", or as much of it as is known.
   std::string text() const;
 };
+
+/// "file:line:column" of what lies behind so many bytes of a file's text.
+std::string place_in(const std::string& file, std::string_view text, std::size_t bytes);
 
 /// Who has the last word when two sources say the same thing: the higher layer. Groups named under `defaults` count
 /// up from 0 in their order.
@@ -49,7 +53,7 @@ struct Tree {
   static Tree quote(std::string text) { return scalar(std::move(text), true); }
   static Tree list() { return Tree(Kind::list); }
   static Tree list(std::vector<Tree> items);
-  static Tree map() { return Tree(Kind::map); }
+  static Tree map(std::initializer_list<std::pair<const char*, Tree>> entries = {});
 
   bool is_map() const { return kind == Kind::map; }
   bool is_scalar() const { return kind == Kind::scalar; }
@@ -90,6 +94,10 @@ struct Tree::Entry {
   Place place;  ///< of the key
   Tree value;
 };
+
+/// Whether `text` can be the name of a plugin or of a file of a group; and what to say if not.
+bool is_name(const std::string& text);
+inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-', and no path";
 
 /// The name among `known` that `name` was probably meant to be, or "" when none is near.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "config/utf8.hpp"
 
+#include <boost/locale/utf.hpp>
+
 namespace palpate {
 
 std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  // No longer forms of shorter sequences, no surrogates, nothing beyond U+10FFFF.
-  const bool refused = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
-                       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
-  return refused ? 0 : length;
+  using boost::locale::utf::code_point;
+  const char* end = text.data();
+  const code_point read = boost::locale::utf::utf_traits<char>::decode(end, text.data() + text.size());
+  const bool refused = read == boost::locale::utf::illegal || read == boost::locale::utf::incomplete;
+  return refused ? 0 : static_cast<std::size_t>(end - text.data());
 }
 
 std::size_t utf8_prefix(std::string_view text) {

@@ -232,9 +232,7 @@ std::string similar_file(const std::filesystem::path& missing) {
 
 Tree parse_yaml(const std::string& text, const std::string& file) {
   if (const std::size_t valid = utf8_prefix(text); valid < text.size()) {
-    const auto line_begin = text.rfind('\n', valid) == std::string::npos ? 0 : text.rfind('\n', valid) + 1;
-    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(valid), '\n');
-    throw Error(fmt::format("{}:{}:{}", file, line + 1, valid - line_begin + 1), "not UTF-8", "save the file as UTF-8");
+    throw Error(place_in(file, text, valid), "not UTF-8", "save the file as UTF-8");
   }
   // Marks do not count it.
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";

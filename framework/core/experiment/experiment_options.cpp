@@ -40,6 +40,11 @@ void CandidateOptions::list(Fields& fields) {
   fields.require(!(count && spacing), "spacing", "give either count or spacing; the word none takes the other away");
 }
 
+void ProcessOptions::list_plugins(Fields& fields) {
+  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one").inherits("kernel"));
+  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
+}
+
 void HeightOptions::list(Fields& fields) {
   fields.real(signal, Field("signal", "prior standard deviation of the height")
                           .in(Unit::metre)
@@ -49,8 +54,7 @@ void HeightOptions::list(Fields& fields) {
   fields.real(
       noise,
       Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0).at_most(kMostSignal));
-  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one").inherits("kernel"));
-  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
+  list_plugins(fields);
 }
 
 void WeightOptions::list(Fields& fields) {
@@ -66,8 +70,7 @@ void WeightOptions::list(Fields& fields) {
         "those of the heights, noise in signals included, fitted to heights and labels together; signals stay "
         "apart",
         {}}});
-  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one").inherits("kernel"));
-  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
+  list_plugins(fields);
   const bool shared = hyperparameters == Hyperparameters::shared;
   fields.require(!shared || !kernel, "kernel",
                  "the labels have the heights' kernel when hyperparameters are shared; take it away, or choose own");

@@ -30,23 +30,25 @@ struct CandidateOptions : Options {
 };
 
 /// What a process has of its own: the heights' in metres, the labels' without unit.
-struct HeightOptions : Options {
+struct ProcessOptions : Options {
   double signal = 1.0;
   double noise = 1e-4;
   std::optional<PluginChoice> kernel;
   std::optional<PluginChoice> fitting;
+
+ protected:
+  void list_plugins(Fields& fields);
+};
+
+struct HeightOptions : ProcessOptions {
   void list(Fields& fields) override;
 };
 
-struct WeightOptions : Options {
+struct WeightOptions : ProcessOptions {
   enum class Hyperparameters { own, shared };
-  double signal = 1.0;
-  double noise = 1e-4;
   double prior_mean = 0.0;
   bool clip = false;
   Hyperparameters hyperparameters = Hyperparameters::own;
-  std::optional<PluginChoice> kernel;
-  std::optional<PluginChoice> fitting;
   void list(Fields& fields) override;
 };
 

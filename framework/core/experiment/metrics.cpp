@@ -10,6 +10,12 @@ constexpr double kLogTwoPi = 1.83787706640934548356;
 /// 97.5 % quantile of the standard normal distribution.
 constexpr double kNormal975 = 1.95996398454005423552;
 
+Eigen::VectorXd gated(const SurfaceMaps& maps) {
+  if (!maps.two_part) return *maps.height;
+  const Eigen::VectorXd desk = Eigen::VectorXd::Constant(maps.height->size(), maps.desk);
+  return (maps.probability->array() >= 0.5).select(*maps.height, desk);
+}
+
 }  // namespace
 
 Truth truth_at(const Candidates& candidates, const Scene& scene) {
@@ -40,16 +46,6 @@ double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
   const auto either = (predicted || truth.on).count();
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
 }
-
-namespace {
-
-Eigen::VectorXd gated(const SurfaceMaps& maps) {
-  if (!maps.two_part) return *maps.height;
-  const Eigen::VectorXd desk = Eigen::VectorXd::Constant(maps.height->size(), maps.desk);
-  return (maps.probability->array() >= 0.5).select(*maps.height, desk);
-}
-
-}  // namespace
 
 SurfaceMaps maps_of(const TapBelief& belief, Quantities known) {
   return {known.has(Quantity::height) ? &belief.height_mean() : nullptr,

@@ -60,6 +60,21 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   return design;
 }
 
+/// Visits the allowed candidates, in their order, whose score is not below `least()`, which may grow: by blocks, of
+/// which most have none.
+template <class Least, class Visit>
+void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Least& least,
+                 const Visit& visit) {
+  constexpr Eigen::Index kBlock = 64;
+  for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, scores.size() - first);
+    if (scores.segment(first, count).maxCoeff() < least()) continue;
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      if (scores(i) >= least() && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
@@ -85,25 +100,6 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   }
   return design;
 }
-
-namespace {
-
-/// Visits the allowed candidates, in their order, whose score is not below `least()`, which may grow: by blocks, of
-/// which most have none.
-template <class Least, class Visit>
-void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Least& least,
-                 const Visit& visit) {
-  constexpr Eigen::Index kBlock = 64;
-  for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
-    const Eigen::Index count = std::min(kBlock, scores.size() - first);
-    if (scores.segment(first, count).maxCoeff() < least()) continue;
-    for (Eigen::Index i = first; i < first + count; ++i) {
-      if (scores(i) >= least() && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
-    }
-  }
-}
-
-}  // namespace
 
 Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();

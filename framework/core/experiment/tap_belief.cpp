@@ -219,55 +219,49 @@ TapBelief::Output TapBelief::output(const Model& model, int output) {
   return {&process, output, fitted ? &model.fit : nullptr};
 }
 
-namespace {
-
-/// The values of a map, of its right size.
-Eigen::VectorXd& room(std::optional<Eigen::VectorXd>& map, int size) {
-  if (!map) map.emplace(size);
-  return *map;
-}
-
-}  // namespace
-
 void TapBelief::map_heights() {
   const Process& process = *heights_.process;
-  const int size = candidates_.size();
-  process.read_relative_variance(room(uncertainty_, size));
-  process.read_variance(0, room(variance_, size));
-  if (!two_part_) {
-    process.read_mean(0, room(height_mean_, size));
-    height_mean_->array() += desk_;
-  }
+  for (Eigen::VectorXd* map : {&uncertainty_, &variance_}) map->resize(candidates_.size());
+  process.read_relative_variance(uncertainty_);
+  process.read_variance(0, variance_);
+  if (!two_part_) map_surface(process);
   if (joined_ && process.shown() > label_output()) map_labels();
   heights_.stale = false;
 }
 
 void TapBelief::map_labels() {
-  labels().process->read_mean(label_output(), room(weight_mean_, candidates_.size()));
-  const auto clipped = weight_mean_->cwiseMax(0.0).cwiseMin(1.0);
+  weight_mean_.resize(candidates_.size());
+  labels().process->read_mean(label_output(), weight_mean_);
+  const auto clipped = weight_mean_.cwiseMax(0.0).cwiseMin(1.0);
   if (clip_) weight_ = clipped;
   if (!footprint_) probability_ = clipped;
   labels_.stale = false;
 }
 
 void TapBelief::map_object() {
-  const Process& process = *object_.process;
-  process.read_mean(0, room(height_mean_, candidates_.size()));
-  height_mean_->array() += desk_;
-  process.read_variance(0, room(object_variance_, candidates_.size()));
+  map_surface(*object_.process);
+  object_variance_.resize(candidates_.size());
+  object_.process->read_variance(0, object_variance_);
   object_.stale = false;
 }
 
-void TapBelief::map_footprint() {
-  if (probability_ && touches_taken_ == touches_.size()) return;
-  for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
-  footprint_->probability(candidates_.points, room(probability_, candidates_.size()));
+void TapBelief::map_surface(const Process& process) {
+  height_mean_.resize(candidates_.size());
+  process.read_mean(0, height_mean_);
+  height_mean_.array() += desk_;
 }
 
-const Eigen::VectorXd& TapBelief::kept(const Map& map) const {
-  if (!map) throw std::logic_error("a map of the belief is read for which nobody asked");
+void TapBelief::map_footprint() {
+  if (probability_.size() > 0 && touches_taken_ == touches_.size()) return;
+  for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
+  probability_.resize(candidates_.size());
+  footprint_->probability(candidates_.points, probability_);
+}
+
+const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {
+  if (map.size() == 0) throw std::logic_error("a map of the belief is read for which nobody asked");
   if (!current_) throw std::logic_error("a map of the belief is read that is older than the last tap");
-  return *map;
+  return map;
 }
 
 Prediction TapBelief::predict(int candidate) const {

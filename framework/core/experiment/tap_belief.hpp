@@ -15,7 +15,6 @@
 #include <palpate/plugin.hpp>
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace palpate {
@@ -104,7 +103,6 @@ class TapBelief final : public Belief {
   Prediction predict(int candidate) const;
 
  private:
-  using Map = std::optional<Eigen::VectorXd>;
   /// A process and all that it is made from; built when it is asked for.
   struct Model {
     const char* name = "";
@@ -134,8 +132,9 @@ class TapBelief final : public Belief {
   void map_heights();
   void map_labels();
   void map_object();
+  void map_surface(const Process& process);
   void map_footprint();
-  const Eigen::VectorXd& kept(const Map& map) const;
+  const Eigen::VectorXd& kept(const Eigen::VectorXd& map) const;
 
   const Candidates& candidates_;
   const Context& context_;
@@ -159,7 +158,8 @@ class TapBelief final : public Belief {
   bool footprint_asked_ = false;
   std::size_t touches_taken_ = 0;  ///< by the footprint
   int failed_fits_ = 0;
-  Map uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
+  /// Empty until somebody asks for them.
+  Eigen::VectorXd uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
 };
 
 }  // namespace palpate

@@ -39,11 +39,6 @@ Candidates product_grid(Eigen::VectorXd xs, Eigen::VectorXd ys) {
   return out;
 }
 
-Candidates scattered(Points points) {
-  const auto count = static_cast<int>(points.rows());
-  return {count, 1, std::move(points), {}, {}};
-}
-
 Candidates grid_by_count(const Area& area, int count) { return grid(area, count, count); }
 
 Candidates grid_by_spacing(const Area& area, double spacing) {

@@ -36,9 +36,6 @@ Candidates grid_by_spacing(const Area& area, double spacing);
 /// The places (x, y) for all y of `ys` and, for each, all x of `xs`, in any order and at any distance.
 Candidates product_grid(Eigen::VectorXd xs, Eigen::VectorXd ys);
 
-/// Any places, one row.
-Candidates scattered(Points points);
-
 /// round(side / spacing), at least one; real, because it may be beyond any integer.
 double cells_along(double side, double spacing);
 

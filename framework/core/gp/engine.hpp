@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Engines: three ways to bring one more row of the factor to the maps over the candidates.
+// Engines: three ways to bring one more row of the factor to the maps over the candidates; and which one is taken.
 //
 // With L the factor of the covariance of n taps, K_* their covariance with the candidates and V = L^-1 K_*, a tap adds
 // one row v to V, and
@@ -43,7 +43,7 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  virtual const char* name() const = 0;
+  const char* name() const { return name_; }
   /// Room for so many rows, as far as that is reasonable.
   virtual void reserve(int rows) = 0;
   /// Whether absorb() reads the row of L^-1.
@@ -51,7 +51,10 @@ class Engine {
 
   /// Back to the prior, with `means` maps of means. `prior` is the variance of the kernel at the candidates, one number
   /// if it is the same at all.
-  virtual void restart(int means, const VectorView& prior) = 0;
+  void restart(int means, const VectorView& prior) {
+    clear();
+    maps_.restart(means, prior);
+  }
 
   /// Takes one more row into the maps.
   virtual void absorb(const FactorRow& row) = 0;
@@ -60,7 +63,21 @@ class Engine {
   /// leaves away, beyond what the kernel itself may be off by rounding.
   virtual double covariance_error() const { return 0.0; }
 
-  virtual const Maps& maps() const = 0;
+  const Maps& maps() const { return maps_; }
+
+ protected:
+  Engine(const char* name, const Machine& machine, const Kernel& kernel, const Candidates& candidates,
+         const Tiling& tiling)
+      : name_(name), machine_(machine), kernel_(kernel), candidates_(candidates), maps_(tiling) {}
+
+  /// Forgets all rows.
+  virtual void clear() = 0;
+
+  const char* name_;
+  Machine machine_;
+  const Kernel& kernel_;
+  const Candidates& candidates_;
+  Maps maps_;
 };
 
 /// `kernel` and `candidates` must outlive the engines, and the hyperparameters of the kernel stay as they are. The
@@ -70,5 +87,32 @@ std::unique_ptr<Engine> make_grid(const Machine&, const Kernel& kernel, const Ca
 /// Directions whose share of a covariance is below `tolerance` are left out.
 std::unique_ptr<Engine> make_lowrank(const Machine&, const Kernel& kernel, const Candidates& candidates,
                                      double tolerance);
+
+struct PosteriorSettings {
+  enum class Kind { automatic, dense, grid, lowrank };
+
+  Kind engine = Kind::automatic;
+  /// What `automatic` may lose beyond the rounding of `dense`: of means in prior standard deviations, of variances in
+  /// prior variances.
+  double accuracy = 1e-9;
+  double tolerance = 1e-15;  ///< of `lowrank`: see make_lowrank()
+  int taps = 64;             ///< that are expected: room is made for them, and `automatic` weighs engines by them
+  Machine machine;
+};
+
+struct EngineChoice {
+  std::unique_ptr<Engine> engine;
+  std::string reason;  ///< one line, without a comma: it becomes a cell of tables
+};
+
+/// Why these settings cannot be used with this kernel, the end of a sentence; empty if they can: `grid` and `lowrank`
+/// need a kernel that is separable and candidates that are a product grid.
+std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates);
+
+/// The engine that was asked for, or the fastest that is admissible; `lowrank` is not any more when its error has been
+/// found too large, `error` > accuracy. Settings to which there is no objection. The kernel and the candidates must
+/// outlive the engine.
+EngineChoice choose_engine(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
+                           double error = 0.0);
 
 }  // namespace palpate

@@ -10,22 +10,13 @@ constexpr double kMostReserved = 1.0 * (1 << 27);
 class Dense final : public Engine {
  public:
   Dense(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
-      : machine_(machine),
-        kernel_(kernel),
-        candidates_(candidates),
-        maps_(Tiling::pieces(candidates.size())),
+      : Engine("dense", machine, kernel, candidates, Tiling::pieces(candidates.size())),
         rows_(maps_.tiling().strips() * simd::kPiece, simd::kPiece, simd::kPiece) {}
 
-  const char* name() const override { return "dense"; }
   void reserve(int rows) override {
     if (static_cast<double>(rows) * candidates_.size() <= kMostReserved) rows_.reserve(rows);
   }
   bool needs_inverse() const override { return false; }
-
-  void restart(int means, const VectorView& prior) override {
-    rows_.clear();
-    maps_.restart(means, prior);
-  }
 
   void absorb(const FactorRow& row) override {
     const int depth = rows_.rows();
@@ -41,13 +32,9 @@ class Dense final : public Engine {
     });
   }
 
-  const Maps& maps() const override { return maps_; }
-
  private:
-  Machine machine_;
-  const Kernel& kernel_;
-  const Candidates& candidates_;
-  Maps maps_;
+  void clear() override { rows_.clear(); }
+
   simd::Panels rows_;  ///< V, a piece of the candidates a panel
 };
 

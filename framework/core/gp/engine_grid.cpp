@@ -12,28 +12,18 @@ constexpr int kGroup = 4;
 class Grid final : public Engine {
  public:
   Grid(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
-      : machine_(machine),
-        kernel_(kernel),
-        candidates_(candidates),
-        maps_(Tiling::grid(candidates)),
+      : Engine("grid", machine, kernel, candidates, Tiling::grid(candidates)),
         along_x_(candidates.columns, simd::kPanelLines * kLine, kLine),
         along_y_(candidates.rows, simd::kStripRows, simd::kStripRows),
         column_(std::max(candidates.columns, candidates.rows)),
         scaled_(static_cast<std::size_t>(machine.workers->threads())) {}
 
-  const char* name() const override { return "grid"; }
   void reserve(int rows) override {
     along_x_.reserve(rows);
     along_y_.reserve(rows);
     for (simd::Lines& one : scaled_) one = simd::Lines(scaled_size(rows));
   }
   bool needs_inverse() const override { return true; }
-
-  void restart(int means, const VectorView& prior) override {
-    along_x_.clear();
-    along_y_.clear();
-    maps_.restart(means, prior);
-  }
 
   void absorb(const FactorRow& row) override {
     append(0, candidates_.xs, row, along_x_);
@@ -57,9 +47,12 @@ class Grid final : public Engine {
     });
   }
 
-  const Maps& maps() const override { return maps_; }
-
  private:
+  void clear() override {
+    along_x_.clear();
+    along_y_.clear();
+  }
+
   static std::size_t scaled_size(int rows) { return static_cast<std::size_t>(rows) * simd::kStripRows * kGroup; }
 
   void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, simd::Panels& to) {
@@ -75,10 +68,6 @@ class Grid final : public Engine {
     Eigen::Map<Rows>(out, simd::kStripRows, by.size()) = from.rowwise() * by.transpose().array();
   }
 
-  Machine machine_;
-  const Kernel& kernel_;
-  const Candidates& candidates_;
-  Maps maps_;
   simd::Panels along_x_;  ///< f_x(x_i, X), a tap a row
   simd::Panels along_y_;  ///< f_y(y_i, Y), a strip a panel
   Eigen::VectorXd column_;

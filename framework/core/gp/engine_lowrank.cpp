@@ -38,18 +38,17 @@ struct Axis {
 /// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T is most of the work.
 class Lowrank final : public Engine {
  public:
-  Lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates, double tolerance)
-      : machine_(machine),
-        kernel_(kernel),
-        x_(kernel, 0, candidates.xs, tolerance),
-        y_(kernel, 1, candidates.ys, tolerance),
+  Lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates, Axis x, Axis y)
+      : Engine("lowrank", machine, kernel, candidates,
+               x.basis.mirrored ? Tiling::mirrored_grid(candidates) : Tiling::grid(candidates)),
+        x_(std::move(x)),
+        y_(std::move(y)),
         in_x_(x_.basis.rank(), simd::kPanelLines * kLine, kLine),
         in_y_(y_.basis.rank(), kRows, kRows),
         // Of a mirrored basis, the left half.
         basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns, simd::kPanelLines * kLine,
                  kLine),
         basis_y_(candidates.rows, simd::kPanelLines * kLine, kLine),
-        maps_(x_.basis.mirrored ? Tiling::mirrored_grid(candidates) : Tiling::grid(candidates)),
         shares_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded())),
         shares_by_x_(shares_.size()),
         rows_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded())) {
@@ -62,20 +61,12 @@ class Lowrank final : public Engine {
     }
   }
 
-  const char* name() const override { return "lowrank"; }
   void reserve(int rows) override {
     reserved_ = rows;
     in_x_.reserve(rows);
     in_y_.reserve(rows);
   }
   bool needs_inverse() const override { return true; }
-
-  void restart(int means, const VectorView& prior) override {
-    for (Axis* axis : {&x_, &y_}) axis->largest = axis->left = 0.0;
-    in_x_.clear();
-    in_y_.clear();
-    maps_.restart(means, prior);
-  }
 
   void absorb(const FactorRow& row) override {
     x_.take(kernel_, 0, row);
@@ -106,9 +97,13 @@ class Lowrank final : public Engine {
     return std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
   }
 
-  const Maps& maps() const override { return maps_; }
-
  private:
+  void clear() override {
+    for (Axis* axis : {&x_, &y_}) axis->largest = axis->left = 0.0;
+    in_x_.clear();
+    in_y_.clear();
+  }
+
   /// S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
   void form_shares(const VectorView& inverse) {
     const int depth = in_x_.rows();
@@ -156,16 +151,13 @@ class Lowrank final : public Engine {
     }
   }
 
-  Machine machine_;
-  const Kernel& kernel_;
   Axis x_;
   Axis y_;
   int reserved_ = 0;
-  simd::Panels in_x_;     ///< P_x, a tap a row
-  simd::Panels in_y_;     ///< P_y
-  simd::Panels basis_x_;  ///< U_x^T
-  simd::Panels basis_y_;  ///< U_y^T
-  Maps maps_;
+  simd::Panels in_x_;           ///< P_x, a tap a row
+  simd::Panels in_y_;           ///< P_y
+  simd::Panels basis_x_;        ///< U_x^T
+  simd::Panels basis_y_;        ///< U_y^T
   simd::Lines scaled_;          ///< scratch: eight columns of P_y times c
   simd::Lines shares_;          ///< S
   simd::Lines shares_by_x_;     ///< S^T
@@ -177,7 +169,8 @@ class Lowrank final : public Engine {
 
 std::unique_ptr<Engine> make_lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates,
                                      double tolerance) {
-  return std::make_unique<Lowrank>(machine, kernel, candidates, tolerance);
+  return std::make_unique<Lowrank>(machine, kernel, candidates, Axis(kernel, 0, candidates.xs, tolerance),
+                                   Axis(kernel, 1, candidates.ys, tolerance));
 }
 
 }  // namespace palpate

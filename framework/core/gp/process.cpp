@@ -60,8 +60,6 @@ void Process::choose(double error) {
   choice_.engine->reserve(static_cast<int>(targets_.rows()));
 }
 
-void Process::add(const Target& place, double value) { add(place, Eigen::Map<const Eigen::VectorXd>(&value, 1)); }
-
 void Process::add(const Target& place, const VectorView& values) {
   reserve(size_ + 1);
   points_(size_, 0) = place.x;
@@ -262,24 +260,6 @@ void Process::read_variance(int output, VectorOut out) const {
 void Process::read_relative_variance(VectorOut out) const {
   read_standard_variance(out);
   with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) / prior; });
-}
-
-Eigen::VectorXd Process::mean(int output) const {
-  Eigen::VectorXd out(candidates_.size());
-  read_mean(output, out);
-  return out;
-}
-
-Eigen::VectorXd Process::variance(int output) const {
-  Eigen::VectorXd out(candidates_.size());
-  read_variance(output, out);
-  return out;
-}
-
-Eigen::VectorXd Process::relative_variance() const {
-  Eigen::VectorXd out(candidates_.size());
-  read_relative_variance(out);
-  return out;
 }
 
 int Process::variances_clamped() const {

@@ -3,15 +3,14 @@
 #pragma once
 
 #include "gp/candidates.hpp"
+#include "gp/engine.hpp"
 #include "gp/factor.hpp"
-#include "gp/posterior.hpp"
 
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -49,14 +48,9 @@ class Process {
   /// from 0 only for a single output. Throws Error if there is an objection() to `posterior`.
   Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
           PosteriorSettings posterior = {});
-  /// A single output.
-  Process(std::shared_ptr<Kernel> kernel, const ProcessSettings& output, const Candidates& candidates,
-          PosteriorSettings posterior = {})
-      : Process(std::move(kernel), std::vector<ProcessSettings>{output}, candidates, std::move(posterior)) {}
 
   /// Adds a tap, a value for each output, and updates the maps.
   void add(const Target& place, const VectorView& values);
-  void add(const Target& place, double value);
 
   int size() const { return size_; }
 
@@ -71,9 +65,6 @@ class Process {
   void read_variance(int output, VectorOut out) const;
   /// The same relative to the prior variance of each candidate; in [0, 1].
   void read_relative_variance(VectorOut out) const;
-  Eigen::VectorXd mean(int output = 0) const;
-  Eigen::VectorXd variance(int output = 0) const;
-  Eigen::VectorXd relative_variance() const;
 
   /// log p(targets), natural logarithm, targets in their unit. 0 without taps.
   double log_marginal_likelihood(int output = 0) const;
@@ -105,6 +96,7 @@ class Process {
 
   const ProcessSettings& settings(int output = 0) const { return outputs_at(output); }
   const Kernel& kernel() const { return *kernel_; }
+  const Candidates& candidates() const { return candidates_; }
 
   /// Lets `fitting` choose the hyperparameters from the taps, and rebuilds if it changed them. Numbers that are not
   /// finite and positive are refused: then the old ones stay.

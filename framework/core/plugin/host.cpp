@@ -4,7 +4,6 @@
 #include "config/describe.hpp"
 #include "config/hash.hpp"
 #include "config/tree.hpp"
-#include "plugin/apart.hpp"
 #include "plugin/named.hpp"
 
 #include <palpate/acquisition.hpp>
@@ -22,9 +21,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
+#include <boost/algorithm/string/split.hpp>
 #include <boost/dll/shared_library.hpp>
 
 #include <link.h>
@@ -34,10 +33,6 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 namespace {
-
-// What is said of a library by who looked at it begins with one of these.
-constexpr char kSound = 'S';
-constexpr char kBroken = 'B';
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& step, const std::string& reason,
                          const std::string& hint = {}) {
@@ -54,20 +49,19 @@ std::string dlerror_part(const std::string& what) {
   return what.substr(from, end == std::string::npos || end < from ? std::string::npos : end - from);
 }
 
+/// What is at the places of a text between `separator`s.
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> out;
+  return boost::split(out, text, [separator](char c) { return c == separator; });
+}
+
 /// "what is 32 here and 16 in the program" for the first part of the stamps that differs.
-std::string stamp_difference(std::string_view theirs, std::string_view ours) {
-  const auto part = [](std::string_view& stamp) {
-    const auto end = std::min(stamp.find(';'), stamp.size());
-    const std::string_view head = stamp.substr(0, end);
-    stamp.remove_prefix(std::min(end + 1, stamp.size()));
-    return head;
-  };
-  while (!ours.empty() || !theirs.empty()) {
-    const std::string_view mine = part(ours);
-    const std::string_view other = part(theirs);
-    if (mine != other) return fmt::format("built with {}, the program with {}", other, mine);
-  }
-  return {};
+std::string stamp_difference(const std::string& theirs, const std::string& ours) {
+  const std::vector<std::string> other = parts_of(theirs, ';');
+  const std::vector<std::string> own = parts_of(ours, ';');
+  const auto [there, here] = std::mismatch(other.begin(), other.end(), own.begin(), own.end());
+  return fmt::format("built with {}, the program with {}", there != other.end() ? *there : "",
+                     here != own.end() ? *here : "");
 }
 
 /// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
@@ -88,20 +82,18 @@ void check_complete(const fs::path& file) {
     refuse(file, "reading the header", "not a complete shared library", "build or copy it again");
   };
 
-  std::array<char, EI_NIDENT> identity{};
-  const auto known = std::min<std::uint64_t>(size, identity.size());
-  read(0, identity.data(), known);
-  if (std::memcmp(identity.data(), ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
+  ElfW(Ehdr) header{};
+  const auto known = std::min<std::uint64_t>(size, sizeof header);
+  read(0, &header, known);
+  if (std::memcmp(header.e_ident, ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
     refuse(file, "reading the header", "not a shared library", "build it with palpate_add_plugin()");
   }
-  if (known < identity.size()) incomplete();
+  if (known < EI_NIDENT) incomplete();
   constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
-  if (identity[EI_CLASS] != kNativeClass) return;
-
-  ElfW(Ehdr) header{};
+  if (header.e_ident[EI_CLASS] != kNativeClass) return;
   // Linkers write the section headers last: a file that holds them was not cut short.
-  if (!read(0, &header, sizeof header)) incomplete();
-  if (!holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize)) incomplete();
+  const bool sections = holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize);
+  if (known < sizeof header || !sections) incomplete();
   std::vector<ElfW(Phdr)> segments(header.e_phnum);
   if (!read(header.e_phoff, segments.data(), segments.size() * sizeof(ElfW(Phdr)))) incomplete();
   for (const ElfW(Phdr) & segment : segments) {
@@ -226,8 +218,7 @@ PluginHost::~PluginHost() = default;
 std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
   std::vector<fs::path> out;
   if (const char* variable = std::getenv("PALPATE_PLUGIN_PATH")) {
-    std::istringstream in(variable);
-    for (std::string folder; std::getline(in, folder, ':');) {
+    for (const std::string& folder : parts_of(variable, ':')) {
       if (!folder.empty()) out.emplace_back(folder);
     }
   }
@@ -266,13 +257,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   const std::lock_guard lock(mutex_);
   auto& slot = libraries_[{kind, name}];
   if (slot) return slot;
-  const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-  if (!plain) {
-    throw Error("", fmt::format("'{}' is not the name of a plugin", name),
-                "a name has letters, digits, '_' and '-', and no path");
-  }
+  if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
   std::vector<fs::path> found;
   for (const fs::path& folder : folders_) {
     std::error_code none;
@@ -325,36 +310,10 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
 }
 
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {
-  try {
-    std::string answer = kSound + std::string(library(kind, name)->manifest().summary);
-    describe_fields([&](Fields& fields) { describe(kind, name, fields); });
-    libraries_.clear();  // a library may break down over its end, too
-    return answer;
-  } catch (const Error& trouble) {
-    return kBroken + std::string(trouble.what());
-  }
-}
-
-std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::string& name) const {
-  std::vector<PluginListing> out;
-  for (const std::string& one : kinds()) {
-    if (!kind.empty() && one != kind) continue;
-    for (const auto& found : files(one)) {
-      const std::string& stem = found.first;
-      if (!name.empty() && stem != name) continue;
-      // The files are sorted: a name in a second folder comes right after the first, whose row names both.
-      if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
-      PluginListing row{one, stem, found.second, {}, {}};
-      try {
-        const std::string answer = look_apart([&] { return look(one, stem); });
-        (answer.front() == kSound ? row.summary : row.trouble) = answer.substr(1);
-      } catch (const Error& trouble) {
-        row.trouble = fmt::format("{}: loading: {}, build or copy it again", found.second.string(), trouble.what());
-      }
-      out.push_back(std::move(row));
-    }
-  }
-  return out;
+  std::string summary = library(kind, name)->manifest().summary;
+  describe_fields([&](Fields& fields) { describe(kind, name, fields); });
+  libraries_.clear();  // a library may break down over its end, too
+  return summary;
 }
 
 std::vector<LoadedPlugin> PluginHost::loaded(const std::set<std::pair<std::string, std::string>>& plugins) const {

@@ -24,24 +24,23 @@ const char* const kVersion = PALPATE_VERSION;
 namespace {
 
 Tree libraries() {
-  Tree out = Tree::map();
-  out.at("Eigen") = Tree::quote(fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
-  out.at("Boost") = Tree::quote(BOOST_LIB_VERSION);
-  out.at("fmt") = Tree::quote(fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100));
-  out.at("yaml-cpp") = Tree::quote(PALPATE_YAML_CPP_VERSION);
-  return out;
+  const auto version = [](int major, int minor, int patch) {
+    return Tree::quote(fmt::format("{}.{}.{}", major, minor, patch));
+  };
+  return Tree::map({{"Eigen", version(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+                    {"Boost", Tree::quote(BOOST_LIB_VERSION)},
+                    {"fmt", version(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+                    {"yaml-cpp", Tree::quote(PALPATE_YAML_CPP_VERSION)}});
 }
 
 Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {
   Tree out = Tree::list();
   for (const LoadedPlugin& one : host.loaded(plugins)) {
-    Tree row = Tree::map();
-    row.at("kind") = Tree::quote(one.kind);
-    row.at("name") = Tree::quote(one.name);
-    row.at("file") = Tree::quote(one.file.string());
-    row.at("hash") = Tree::quote(one.hash);
-    row.at("abi") = Tree::scalar(std::to_string(kPluginAbi));
-    out.items.push_back(std::move(row));
+    out.items.push_back(Tree::map({{"kind", Tree::quote(one.kind)},
+                                   {"name", Tree::quote(one.name)},
+                                   {"file", Tree::quote(one.file.string())},
+                                   {"hash", Tree::quote(one.hash)},
+                                   {"abi", Tree::scalar(std::to_string(kPluginAbi))}}));
   }
   return out;
 }
@@ -70,23 +69,19 @@ std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
 
 Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
                     const std::string& instruction_path) {
-  Tree out = Tree::map();
-  out.at("version") = Tree::quote(kVersion);
   // Kept beside the program, not in it: a commit that changes no code leaves the program's bytes alone.
   const fs::path commit = installation.plugins / "build.json";
   Tree stamp = is_there(commit) ? read_json(commit) : Tree::map();
-  for (const char* key : {"commit", "dirty"}) {
-    const Tree* value = stamp.find(key);
-    out.at(key) = value != nullptr ? *value : Tree{};
-  }
-  out.at("build") = Tree::quote(build_hash(host, plugins));
-  out.at("compiler") = Tree::quote(PALPATE_COMPILER);
-  out.at("instruction_path") = Tree::quote(instruction_path);
-  out.at("build_stamp") = Tree::quote(PALPATE_BUILD_STAMP);
-  out.at("libraries") = libraries();
-  out.at("plugins") = describe_plugins(host, plugins);
-  out.at("host") = Tree::quote(host_name());
-  return out;
+  return Tree::map({{"version", Tree::quote(kVersion)},
+                    {"commit", stamp.at("commit")},
+                    {"dirty", stamp.at("dirty")},
+                    {"build", Tree::quote(build_hash(host, plugins))},
+                    {"compiler", Tree::quote(PALPATE_COMPILER)},
+                    {"instruction_path", Tree::quote(instruction_path)},
+                    {"build_stamp", Tree::quote(PALPATE_BUILD_STAMP)},
+                    {"libraries", libraries()},
+                    {"plugins", describe_plugins(host, plugins)},
+                    {"host", Tree::quote(host_name())}});
 }
 
 }  // namespace palpate

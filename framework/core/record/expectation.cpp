@@ -7,6 +7,8 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
 #include <array>
@@ -31,16 +33,8 @@ constexpr std::array kStatistics{
     StatisticName{"p90", Statistic::quantile, 0.9},  StatisticName{"p95", Statistic::quantile, 0.95},
 };
 
-struct ComparisonName {
-  const char* name;
-  Comparison comparison;
-};
-/// The longer ones first: `>` begins `>=`.
-constexpr std::array kComparisons{
-    ComparisonName{">=", Comparison::at_least}, ComparisonName{"<=", Comparison::at_most},
-    ComparisonName{"==", Comparison::equal},    ComparisonName{">", Comparison::above},
-    ComparisonName{"<", Comparison::below},
-};
+/// In the order of Comparison, in which none begins one after it.
+constexpr std::array<std::string_view, 5> kComparisons{">=", ">", "<=", "<", "=="};
 
 /// One key with its value, once nested maps are undone.
 struct Line {
@@ -49,10 +43,9 @@ struct Line {
   const Tree* value;
 };
 
-std::string without_spaces(const std::string& text) {
-  std::string out;
-  std::copy_if(text.begin(), text.end(), std::back_inserter(out), [](char c) { return c != ' ' && c != '\t'; });
-  return out;
+std::string without_spaces(std::string text) {
+  text.erase(std::remove_if(text.begin(), text.end(), [](char c) { return c == ' ' || c == '\t'; }), text.end());
+  return text;
 }
 
 /// The key's place is the better one, unless the value came from elsewhere, laid over it.
@@ -154,19 +147,17 @@ Expectation read_comparison(const RecordField& field, Expectation out, const Tre
   if (!value.is_scalar()) refuse("is not a comparison");
   if (value.text.empty()) refuse("has no value (one that begins with > needs quotes)");
   const std::string& written = value.text;
-  const auto sign = std::find_if(kComparisons.begin(), kComparisons.end(), [&](const ComparisonName& one) {
-    return written.compare(0, std::string_view(one.name).size(), one.name) == 0;
-  });
+  const auto sign = std::find_if(kComparisons.begin(), kComparisons.end(),
+                                 [&](std::string_view one) { return boost::starts_with(written, one); });
   Tree rest = value;
   if (sign != kComparisons.end()) {
-    rest.text.erase(0, std::string_view(sign->name).size());
-    rest.text.erase(0, std::min(rest.text.find_first_not_of(" \t"), rest.text.size()));
-    out.comparison = sign->comparison;
+    rest.text = boost::trim_left_copy(written.substr(sign->size()));
+    out.comparison = static_cast<Comparison>(sign - kComparisons.begin());
   }
-  out.wanted = (sign != kComparisons.end() ? sign->name : "==") + (" " + rest.text);
+  out.wanted = fmt::format("{} {}", kComparisons[static_cast<std::size_t>(out.comparison)], rest.text);
   const bool is_flag = field.type == RecordField::Type::flag && out.statistic == Statistic::each;
   if (is_flag || field.type == RecordField::Type::text) {
-    if (out.comparison != Comparison::equal) refuse(fmt::format("'{}' does not compare with {}", written, sign->name));
+    if (out.comparison != Comparison::equal) refuse(fmt::format("'{}' does not compare with {}", written, *sign));
     if (is_flag && rest.text != "true" && rest.text != "false")
       refuse(fmt::format("'{}' is not a truth value", rest.text));
     out.bound = rest.text == "true" ? 1.0 : 0.0;

@@ -4,6 +4,8 @@
 #include "record/files.hpp"
 #include "record/tap_row.hpp"
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <string_view>
@@ -52,6 +54,39 @@ const std::vector<ErrorField>& error_list() {
   return list;
 }
 
+std::optional<std::string> if_any(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
+
+/// The fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
+void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state) {
+  if (state) {
+    for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
+  }
+  const auto add = [&](const char* field, auto get) {
+    row.add(name + "." + field, state ? std::optional(get(*state)) : std::nullopt);
+  };
+  add("signal", [](const ProcessState& s) { return s.settings.signal; });
+  add("noise", [](const ProcessState& s) { return s.settings.noise; });
+  add("mean", [](const ProcessState& s) { return s.settings.mean; });
+  add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
+  add("jitter", [](const ProcessState& s) { return s.jitter; });
+  add("condition", [](const ProcessState& s) { return s.condition; });
+  add("engine", [](const ProcessState& s) { return s.engine; });
+  add("error_bound", [](const ProcessState& s) { return s.error_bound; });
+  if (state && state->fit) {
+    row.add(name + ".fit.changed", state->fit->changed);
+    row.add(name + ".fit.objective", state->fit->objective);
+    row.add(name + ".fit.evaluations", state->fit->evaluations);
+    row.add(name + ".fit.reason", state->fit->reason);
+  }
+}
+
+/// "footprint.<number>" and "footprint.remark"; none where there is none.
+void add_footprint(Row& row, const std::optional<FootprintState>& state) {
+  if (!state) return;
+  for (const FootprintNumber& one : state->numbers) row.add("footprint." + one.name, one.value);
+  row.add("footprint.remark", if_any(state->remark));
+}
+
 /// Where the loop lays the state of its models down, in a tap and in a result alike.
 template <class Record>
 void list_models(FieldList<Record>& list, bool reasons) {
@@ -96,8 +131,6 @@ template <class T, class Member>
 auto part(const std::optional<T>& whole, Member T::*member) {
   return whole ? std::optional<Member>((*whole).*member) : std::nullopt;
 }
-
-std::optional<std::string> if_any(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
 
 /// A number of a contact, which only a touch has.
 std::optional<double> if_touched(const TapRecord& tap, double value) {
@@ -245,10 +278,6 @@ FieldList<TapTimes> make_timing_list() {
   return list;
 }
 
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 /// One line of timings.csv; none if it is damaged.
 std::optional<TapTimes> read_times(std::string_view line) {
   TapTimes out;
@@ -293,7 +322,7 @@ const RecordField* find_summary_field(const std::string& name) {
 
 Unit unit_of_column(const std::string& name) {
   if (const RecordField* field = find_summary_field(name)) return field->unit;
-  return ends_with(name, "_m") ? Unit::metre : ends_with(name, "_seconds") ? Unit::second : Unit::none;
+  return boost::ends_with(name, "_m") ? Unit::metre : boost::ends_with(name, "_seconds") ? Unit::second : Unit::none;
 }
 
 bool depends_on_machine(const std::string& name) {
@@ -318,35 +347,6 @@ Errors errors_in(const Row& row) {
   Errors out;
   for (const ErrorField& one : error_list()) out.*one.value = row.number(one.field.name);
   return out;
-}
-
-void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state) {
-  if (state) {
-    for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
-  }
-  const auto add = [&](const char* field, auto get) {
-    row.add(name + "." + field, state ? std::optional(get(*state)) : std::nullopt);
-  };
-  add("signal", [](const ProcessState& s) { return s.settings.signal; });
-  add("noise", [](const ProcessState& s) { return s.settings.noise; });
-  add("mean", [](const ProcessState& s) { return s.settings.mean; });
-  add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
-  add("jitter", [](const ProcessState& s) { return s.jitter; });
-  add("condition", [](const ProcessState& s) { return s.condition; });
-  add("engine", [](const ProcessState& s) { return s.engine; });
-  add("error_bound", [](const ProcessState& s) { return s.error_bound; });
-  if (state && state->fit) {
-    row.add(name + ".fit.changed", state->fit->changed);
-    row.add(name + ".fit.objective", state->fit->objective);
-    row.add(name + ".fit.evaluations", state->fit->evaluations);
-    row.add(name + ".fit.reason", state->fit->reason);
-  }
-}
-
-void add_footprint(Row& row, const std::optional<FootprintState>& state) {
-  if (!state) return;
-  for (const FootprintNumber& one : state->numbers) row.add("footprint." + one.name, one.value);
-  row.add("footprint.remark", if_any(state->remark));
 }
 
 Timings read_timings(const std::filesystem::path& directory) {

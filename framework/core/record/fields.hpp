@@ -61,12 +61,6 @@ inline const std::string& main_error() { return error_fields().front().name; }
 void add_errors(Row& row, const Errors& errors);
 Errors errors_in(const Row& row);
 
-/// Adds the fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
-void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state);
-
-/// Adds the fields of a footprint, "footprint.<number>" and "footprint.remark"; none where there is none.
-void add_footprint(Row& row, const std::optional<FootprintState>& state);
-
 /// What timings.csv tells: no run depends on it, and a kill may have cut its last line off, which is left out.
 struct Timings {
   std::vector<TapTimes> taps;

@@ -99,11 +99,16 @@ void refuse_link(const fs::path& path) {
   throw Error(path.string(), "is a link, and nothing is written through one", "remove it", Error::Kind::run);
 }
 
-void make_inner_folder(const fs::path& folder) {
-  refuse_link(folder);
+fs::path make_folder(const fs::path& folder) {
   std::error_code trouble;
   fs::create_directories(folder, trouble);
   if (trouble) throw Error(folder.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
+  return folder;
+}
+
+void make_inner_folder(const fs::path& folder) {
+  refuse_link(folder);
+  make_folder(folder);
 }
 
 std::string read_file(const fs::path& file) {

@@ -49,6 +49,9 @@ bool is_there(const std::filesystem::path& path);
 /// Throws Error where `path`, a part of a record, is a link: what is written would lie where another person chose.
 void refuse_link(const std::filesystem::path& path);
 
+/// Makes `folder` if need be, and returns it. Throws Error.
+std::filesystem::path make_folder(const std::filesystem::path& folder);
+
 /// Makes `folder`, a part of a record, if need be. Throws Error, where it is a link, too.
 void make_inner_folder(const std::filesystem::path& folder);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Judges runs by what their config expects: one by its summary, many, as the jobs of a sweep, by all of theirs.
+// Judges runs by what their config expects: one by its summary, many, as the jobs of a sweep, by all of theirs; in the
+// XML of JUnit, too.
 #pragma once
 
 #include "record/expectation.hpp"
-#include "record/junit.hpp"
 #include "record/row.hpp"
 
 #include <optional>
@@ -37,8 +37,20 @@ std::string verdict_line(const Verdict& verdict);
 /// The run that ended with `summary`, or failed for the reason `failure`.
 RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure);
 
+/// One test as JUnit has it, which continuous integration shows.
+struct TestCase {
+  std::string group;  ///< JUnit's classname
+  std::string name;
+  double seconds = 0.0;
+  std::string failure;     ///< one line; "" when it passed
+  bool tolerated = false;  ///< its failure is told, but not counted
+};
+
 /// A test case a run and one an expectation. `suite` is the name of the experiment.
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,
                                  const std::vector<Verdict>& verdicts);
+
+/// A document in the XML of JUnit, with one suite. Bytes that XML 1.0 cannot hold become U+FFFD.
+std::string junit_xml(const std::string& suite, const std::vector<TestCase>& cases);
 
 }  // namespace palpate

@@ -41,45 +41,43 @@ class RowReader final : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
   bool start_object(std::size_t) override {
-    ends_.push_back(name_.size());
-    if (ends_.size() > 1) name_ += '.';
+    prefixes_.push_back(prefixes_.empty() ? "" : name_ + ".");
     return true;
   }
   bool key(string_t& key) override {
-    name_.resize(prefix());
-    name_ += key;
+    name_.assign(prefixes_.back()).append(key);
     return true;
   }
   bool end_object() override {
-    name_.resize(ends_.back());
-    ends_.pop_back();
+    prefixes_.pop_back();
     return true;
   }
 
  private:
-  /// The length of what comes before the names in the innermost object: "a." in {"a": {...
-  std::size_t prefix() const { return ends_.back() + (ends_.size() > 1 ? 1 : 0); }
-
   template <class T>
   bool add(T value) {
     name_bytes_ += name_.size();
-    if (ends_.empty() || name_bytes_ > kMostNameBytes) return false;
+    if (prefixes_.empty() || name_bytes_ > kMostNameBytes) return false;
     row_.fields.emplace_back(name_, std::move(value));
     return true;
   }
 
   Row& row_;
-  std::string name_;               ///< of the value to come, dotted
-  std::vector<std::size_t> ends_;  ///< lengths of the names of the open objects
-  std::size_t name_bytes_ = 0;     ///< of the fields so far
+  std::string name_;                   ///< of the value to come, dotted
+  std::vector<std::string> prefixes_;  ///< of the names in the open objects: "a." in {"a": {...
+  std::size_t name_bytes_ = 0;         ///< of the fields so far
 };
 
-/// Builds a tree from the same events. Scalars that are no strings are kept as they are written.
+constexpr const char* kPutBack = "the file is damaged: put it back as it was, or remove it";
+
+/// Builds a tree from the same events. Throws Error for what is JSON, and yet not read. Scalars that are no strings are
+/// kept as they are written.
 class TreeReader final : public nlohmann::json_sax<Json> {
  public:
+  explicit TreeReader(const std::filesystem::path& file) : file_(file) {}
+
   Tree tree;
-  std::size_t bytes = 0;            ///< read when it was found to be no JSON
-  const char* objection = nullptr;  ///< to what is JSON, and yet not read
+  std::size_t bytes = 0;  ///< read when it was found to be no JSON
 
   bool null() override { return add({}); }
   bool boolean(bool value) override { return add(Tree::scalar(value ? "true" : "false")); }
@@ -108,35 +106,30 @@ class TreeReader final : public nlohmann::json_sax<Json> {
     Tree& inner = *open_.back();
     return inner.is_map() ? inner.entries.back().value : inner.items.emplace_back();
   }
-  Tree* put(Tree value) {
-    if (open_.empty() && !value.is_map()) objection = "is not a JSON object";
-    if (open_.size() > kMostLevels) objection = "is nested too deeply";
-    if (++values_ > kMostValues) objection = "holds too many values";
-    if (objection != nullptr) return nullptr;
-    Tree& at = place();
-    at = std::move(value);
-    return &at;
+  Tree& put(Tree value) {
+    const auto refuse = [&](const char* reason) { throw Error(file_.string(), reason, kPutBack); };
+    if (open_.empty() && !value.is_map()) refuse("is not a JSON object");
+    if (open_.size() > kMostLevels) refuse("is nested too deeply");
+    if (++values_ > kMostValues) refuse("holds too many values");
+    return place() = std::move(value);
   }
-  bool add(Tree value) { return put(std::move(value)) != nullptr; }
+  bool add(Tree value) {
+    put(std::move(value));
+    return true;
+  }
   bool open(Tree empty) {
-    open_.push_back(put(std::move(empty)));
-    return open_.back() != nullptr;
+    open_.push_back(&put(std::move(empty)));
+    return true;
   }
   bool close() {
     open_.pop_back();
     return true;
   }
 
+  const std::filesystem::path& file_;
   std::vector<Tree*> open_;
   std::size_t values_ = 0;
 };
-
-/// "file:line:column" behind so many bytes of its text.
-std::string place_behind(const std::filesystem::path& file, const std::string& text, std::size_t bytes) {
-  const std::string read = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
-  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
-  return fmt::format("{}:{}:{}", file.string(), line, read.size() - (read.rfind('\n') + 1) + 1);
-}
 
 void append(std::string& out, const Tree& tree, const std::string& indent) {
   const std::string inner = indent + "  ";
@@ -206,11 +199,9 @@ Row read_json_row(const std::filesystem::path& file, const std::string& remedy) 
 
 Tree read_json(const std::filesystem::path& file) {
   const std::string text = read_bounded(file);
-  TreeReader reader;
+  TreeReader reader(file);
   if (Json::sax_parse(text, &reader)) return std::move(reader.tree);
-  const char* const remedy = "the file is damaged: put it back as it was, or remove it";
-  if (reader.objection != nullptr) throw Error(file.string(), reader.objection, remedy);
-  throw Error(place_behind(file, text, reader.bytes), "is not valid JSON", remedy);
+  throw Error(place_in(file.string(), text, std::max<std::size_t>(reader.bytes, 1) - 1), "is not valid JSON", kPutBack);
 }
 
 std::string to_json(const Tree& tree) {

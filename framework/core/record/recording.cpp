@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "record/recording.hpp"
 
+#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <numeric>
 
 namespace palpate {
 
@@ -16,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// In the place of a backend: knows whether the scene was the truth, and makes no tap.
-class Absent final : public Backend {
+class Absent : public Backend {
  public:
   explicit Absent(bool truth_known) : truth_known_(truth_known) {}
   Contact tap(const TapRequest&) override {
@@ -28,6 +31,72 @@ class Absent final : public Backend {
  private:
   bool truth_known_;
 };
+
+/// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
+class Recorded final : public Absent {
+ public:
+  explicit Recorded(const Recording& recording) : Absent(recording.truth_known()), recording_(recording) {}
+  Contact tap(const TapRequest& request) override {
+    return recording_.taps.at(static_cast<std::size_t>(request.number - 1)).contact;
+  }
+  bool wants_prediction() const override { return recording_.rows.front().number("predicted.height").has_value(); }
+  /// What the run's own backend read when it was shown the first tap is in the second row, with what others read there.
+  Quantities reads() const override {
+    return recording_.rows.size() > 1 ? recorded_quantities(recording_.rows[1]) : Quantities();
+  }
+
+ private:
+  const Recording& recording_;
+};
+
+class Collector final : public Journal {
+ public:
+  std::vector<Row> rows;
+  void announce(const TapRecord&) override {}
+  void record(const TapRecord& tap, const std::array<double, kPhases>&) override { rows.push_back(tap_row(tap)); }
+};
+
+std::string shown(const Scalar* value) {
+  if (value == nullptr || std::holds_alternative<std::monostate>(*value)) return "null";
+  return csv_cell(*value);
+}
+
+void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& report) {
+  for (const auto& [field, value] : recorded.fields) {
+    if (depends_on_machine(field) || replayed.find(field) != nullptr) continue;
+    ++report.numbers;
+    report.differences.push_back({tap, field, shown(&value), "nothing"});
+  }
+  for (const auto& [field, value] : replayed.fields) {
+    if (depends_on_machine(field)) continue;
+    ++report.numbers;
+    const std::string before = shown(recorded.find(field));
+    const std::string now = shown(&value);
+    if (before != now) report.differences.push_back({tap, field, before, now});
+  }
+}
+
+using Seconds = std::array<double, kPhases>;
+
+/// The seconds by phase up to each tap, before the first one included.
+std::vector<Seconds> seconds_until(const fs::path& directory) {
+  std::vector<Seconds> out(1);
+  for (const TapTimes& tap : read_timings(directory).taps) {
+    Seconds sum = out.back();
+    for (std::size_t i = 0; i < kPhases; ++i) sum[i] += tap.seconds[i];
+    out.push_back(sum);
+  }
+  return out;
+}
+
+double total(const Seconds& seconds) { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
+
+/// What had been asked for in a run of that budget when it ended: after its last tap its backend was shown the belief,
+/// which the row of the next tap tells of, unless the strategy has read for that one.
+Quantities asked_after(const Recording& recording, std::size_t taps) {
+  const bool next = taps < recording.rows.size() && recording.taps[taps].source == Source::initial;
+  return recorded_quantities(recording.rows[next ? taps : taps - 1]);
+}
 
 }  // namespace
 
@@ -55,8 +124,7 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
     if (!is_intent(row)) out.rows.push_back(std::move(row));
   }
   if (out.rows.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
-  for (std::size_t i = 0; i < out.rows.size(); ++i)
-    out.taps.push_back(past_tap(out.rows[i], fmt::format("{}: tap {}", file.string(), i + 1)));
+  out.taps = past_taps(out.rows, file);
   out.summary = read_summary(directory);
   if (out.summary) check_complete(*out.summary, static_cast<int>(out.rows.size()), directory);
   return out;
@@ -71,6 +139,73 @@ void Playback::advance_to(int taps) {
   const auto begin = recording_.taps.begin();
   experiment_->resume({begin + taps_, begin + taps});
   taps_ = taps;
+}
+
+ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
+  const Recording recording = read_recording(workshop, directory);
+  const std::vector<Row>& recorded = recording.rows;
+  const auto made = static_cast<int>(recorded.size());
+  const bool cut = made < recording.config.options.taps;
+  Experiment experiment(recording.config.options, workshop.host, workshop.interrupted,
+                        std::make_shared<Recorded>(recording));
+  Collector collector;
+  experiment.run(collector, made);
+
+  ReplayReport report;
+  report.taps = made;
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    if (i < collector.rows.size()) {
+      compare(recorded[i], collector.rows[i], number, report);
+    } else {
+      report.differences.push_back({number, "tap", "made", "not made"});
+    }
+  }
+  if (!recording.summary) return report;
+  const Row& summary = *recording.summary;
+  // A run that found no further candidate had looked for one, which this one is not asked for.
+  experiment.ask(recorded_quantities(summary));
+  // A failed run asks its models nothing any more: see carry_out().
+  const bool failed = recording.failed();
+  RunResult result = failed ? experiment.counts() : experiment.result();
+  // A record that failed, or ended before its budget, did so for a reason that the taps alone do not show.
+  if (failed || cut) result.stop_reason = summary.text("stop_reason");
+  const std::string failure = failed ? result.stop_reason : std::string();
+  compare(summary, summary_list().row({result, recording.config, failure, {}, {}, {}, {}}), 0, report);
+  return report;
+}
+
+std::vector<Row> summaries_after(const Workshop& workshop, const Recording& recording, const std::vector<int>& taps) {
+  if (!taps.empty() && static_cast<std::size_t>(*std::max_element(taps.begin(), taps.end())) > recording.rows.size()) {
+    throw Error(recording.directory.string(), "its taps.jsonl holds fewer taps than its summary says",
+                "the file is damaged, run the job again");
+  }
+  const std::vector<Seconds> seconds = seconds_until(recording.directory);
+  Playback playback(workshop, recording);
+  std::vector<Row> rows;
+  for (const int count : taps) {
+    playback.advance_to(count);
+    if (count > 0) playback.experiment().ask(asked_after(recording, static_cast<std::size_t>(count)));
+    RunResult result = playback.experiment().result();
+    result.stop_reason = "tap budget";
+    // A kill may have lost lines of the times, which no run depends on.
+    const bool timed = seconds.size() == recording.taps.size() + 1;
+    const Seconds until = timed ? seconds[static_cast<std::size_t>(count)] : Seconds{};
+    const double all = total(seconds.back());
+    const std::optional<double> share = timed && all > 0.0 ? std::optional(total(until) / all) : std::nullopt;
+    const auto part = [&](const char* whole) {
+      const auto of_run = recording.summary ? recording.summary->number(whole) : std::nullopt;
+      return of_run && share ? std::optional(*of_run * *share) : std::nullopt;
+    };
+    rows.push_back(summary_list().row({result,
+                                       recording.config,
+                                       "",
+                                       part("wall_seconds"),
+                                       part("compute_seconds"),
+                                       timed ? std::optional(until) : std::nullopt,
+                                       {}}));
+  }
+  return rows;
 }
 
 }  // namespace palpate

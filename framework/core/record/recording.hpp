@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A run as its directory tells it, and its models brought back to any of its taps: for replay, reports and
-// explanations.
+// A run as its directory tells it, and its models brought back to any of its taps: for replay, reports, explanations,
+// and for what it had come to after fewer taps.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -57,5 +57,35 @@ class Playback {
   std::unique_ptr<Experiment> experiment_;
   int taps_ = 0;
 };
+
+/// A number that came out differently in a replay.
+struct Difference {
+  int tap = 0;  ///< 0: of the summary
+  std::string field;
+  std::string recorded;
+  std::string replayed;
+};
+
+struct ReplayReport {
+  int taps = 0;
+  int numbers = 0;  ///< compared
+  std::vector<Difference> differences;
+};
+
+/// Sends the recorded taps of a run through the same models and compares every number but clocks, memory and host, as
+/// text, bit for bit.
+/// Writes nothing, moves nothing: the backend is not even created.
+ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
+
+/// What a finished run had come to after fewer taps: the summary of `recording`, which ended well, after each of these
+/// numbers of taps, which ascend and are less than it made. Equal to that of a run whose budget they are, in all that
+/// depends on the config alone: choosing a tap looks at no budget, and reading a model changes none. Only the engines
+/// are those that `posterior: auto` took for the run's own budget; where it would take another for less, numbers may
+/// differ as far as `accuracy` lets them.
+///
+/// Of the rest the record knows this much: `compute.*` are the sums of timings.csv so far; `wall_seconds` and
+/// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody
+/// measured then, is null. The id is that of the run. Throws Error for a damaged record.
+std::vector<Row> summaries_after(const Workshop& workshop, const Recording& recording, const std::vector<int>& taps);
 
 }  // namespace palpate

@@ -5,6 +5,8 @@
 #include "config/yaml.hpp"
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -95,8 +97,8 @@ std::string slug(const std::string& name) {
     }
   }
   out = out.substr(0, 64);
-  out.erase(0, std::min(out.find_first_not_of(".-"), out.size()));
-  while (!out.empty() && out.back() == '-') out.pop_back();
+  boost::trim_left_if(out, boost::is_any_of(".-"));
+  boost::trim_right_if(out, boost::is_any_of("-"));
   return out.empty() ? "experiment" : out;
 }
 

@@ -5,6 +5,7 @@
 #include "config/utf8.hpp"
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +53,44 @@ std::size_t write_object(std::string& out, const Row& row, std::size_t next, con
   return next;
 }
 
+/// The value at `name`, null where there is something else.
+template <class T>
+const T* value_of(const Row& row, std::string_view name) {
+  const Scalar* value = row.find(name);
+  return value != nullptr ? std::get_if<T>(value) : nullptr;
+}
+
+/// For a spreadsheet, which computes what begins like a formula: an apostrophe makes it a text. Whatever has
+/// apostrophes in front of that gets one more, so that taking one away gives back the same text.
+std::string guarded(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of("' \t\r\n");
+  const bool computed = begin != std::string::npos && std::string_view("=+-@").find(text[begin]) != std::string::npos;
+  return computed && decimal_length(text) != text.size() ? "'" + text : text;
+}
+
+/// As it stands in a file.
+std::string file_cell(const Scalar& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text != nullptr ? csv_text(guarded(*text)) : csv_cell(value);
+}
+
+/// The names of all fields of all rows: a name stands behind the one that it follows in its row.
+std::vector<std::string> names_of(const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) {
+    std::size_t at = 0;  // where the next field of this row is expected
+    for (const auto& [name, value] : row.fields) {
+      if (at >= names.size() || names[at] != name) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        at = found != names.end() ? static_cast<std::size_t>(found - names.begin()) : at;
+        if (found == names.end()) names.insert(names.begin() + static_cast<std::ptrdiff_t>(at), name);
+      }
+      ++at;
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 const Scalar* Row::find(std::string_view name) const {
@@ -60,17 +99,6 @@ const Scalar* Row::find(std::string_view name) const {
   }
   return nullptr;
 }
-
-namespace {
-
-/// The value at `name`, null where there is something else.
-template <class T>
-const T* value_of(const Row& row, std::string_view name) {
-  const Scalar* value = row.find(name);
-  return value != nullptr ? std::get_if<T>(value) : nullptr;
-}
-
-}  // namespace
 
 std::optional<double> Row::number(std::string_view name) const {
   const Scalar* value = find(name);
@@ -103,31 +131,8 @@ std::string Row::cell(std::string_view name) const {
 
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + "\"";
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
-
-namespace {
-
-/// For a spreadsheet, which computes what begins like a formula: an apostrophe makes it a text. Whatever has
-/// apostrophes in front of that gets one more, so that taking one away gives back the same text.
-std::string guarded(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of("' \t\r\n");
-  const bool computed = begin != std::string::npos && std::string_view("=+-@").find(text[begin]) != std::string::npos;
-  return computed && decimal_length(text) != text.size() ? "'" + text : text;
-}
-
-/// As it stands in a file.
-std::string file_cell(const Scalar& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text != nullptr ? csv_text(guarded(*text)) : csv_cell(value);
-}
-
-}  // namespace
 
 std::string csv_cell(const Scalar& value) {
   struct Visitor {
@@ -176,27 +181,6 @@ std::string to_json_text(const Row& row) {
   write_object(out, row, 0, "", "  ");
   return out + "\n";
 }
-
-namespace {
-
-/// The names of all fields of all rows: a name stands behind the one that it follows in its row.
-std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
-  for (const Row& row : rows) {
-    std::size_t at = 0;  // where the next field of this row is expected
-    for (const auto& [name, value] : row.fields) {
-      if (at >= names.size() || names[at] != name) {
-        const auto found = std::find(names.begin(), names.end(), name);
-        at = found != names.end() ? static_cast<std::size_t>(found - names.begin()) : at;
-        if (found == names.end()) names.insert(names.begin() + static_cast<std::ptrdiff_t>(at), name);
-      }
-      ++at;
-    }
-  }
-  return names;
-}
-
-}  // namespace
 
 std::string to_csv(const std::vector<Row>& rows) {
   const std::vector<std::string> header = names_of(rows);

@@ -20,13 +20,6 @@ constexpr const char* kTimings = "timings.csv";
 constexpr const char* kSummary = "summary.json";
 constexpr const char* kLock = "lock";
 
-fs::path made(fs::path directory) {
-  std::error_code trouble;
-  fs::create_directories(directory, trouble);
-  if (trouble) throw Error(directory.string(), "cannot be made: " + trouble.message(), {}, Error::Kind::run);
-  return directory;
-}
-
 }  // namespace
 
 const char* state_name(RunStatus::State state) {
@@ -91,7 +84,7 @@ RunStatus read_status(const fs::path& directory) {
   return out;
 }
 
-RunDirectory::RunDirectory(fs::path directory) : path_(made(std::move(directory))), lock_(path_ / kLock) {
+RunDirectory::RunDirectory(const fs::path& directory) : path_(make_folder(directory)), lock_(path_ / kLock) {
   remove_neighbours(path_, {"config.yaml", "manifest.json", "taps.csv", "surface.csv", kSummary});
   remove_neighbours(path_ / "maps", {});
 }
@@ -119,21 +112,11 @@ std::vector<PastTap> RunDirectory::recover() {
     rows_.push_back(unknown_result_of(*intent));
     AppendFile(path_ / kTaps).append(to_json_line(rows_.back()) + "\n", true);
   }
-  recover_timings();
-  std::vector<PastTap> past;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    past.push_back(past_tap(rows_[i], fmt::format("{}: tap {}", (path_ / kTaps).string(), i + 1)));
-  }
-  return past;
-}
-
-void RunDirectory::recover_timings() {
-  if (!is_there(path_ / kTimings)) return;
-  const std::string text = read_file(path_ / kTimings);
-  cut_file(path_ / kTimings, text.rfind('\n') + 1);
+  if (is_there(path_ / kTimings)) cut_file(path_ / kTimings, read_file(path_ / kTimings).rfind('\n') + 1);
   for (const TapTimes& tap : read_timings(path_).taps) {
     for (std::size_t i = 0; i < kPhases; ++i) total_[i] += tap.seconds[i];
   }
+  return past_taps(rows_, path_ / kTaps);
 }
 
 void RunDirectory::open(bool announce, bool sync) {

@@ -60,7 +60,7 @@ const char* state_name(RunStatus::State state);
 class RunDirectory final : public Journal {
  public:
   /// Makes the directory if need be and locks it. Throws Error of kind `busy` if another process holds it.
-  explicit RunDirectory(std::filesystem::path directory);
+  explicit RunDirectory(const std::filesystem::path& directory);
 
   /// What it holds so far.
   RunStatus status() const { return read_record(path_); }
@@ -90,8 +90,6 @@ class RunDirectory final : public Journal {
   void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text, sync_); }
 
  private:
-  void recover_timings();
-
   std::filesystem::path path_;
   FileLock lock_;
   AppendFile taps_;

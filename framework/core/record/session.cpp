@@ -50,11 +50,10 @@ std::string recorded_build(const fs::path& directory) {
 /// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
 void note_resume(const Workshop& workshop, const ResolvedConfig& config, const RunDirectory& directory, int from) {
   Tree manifest = read_json(directory.path() / "manifest.json");
-  Tree entry = Tree::map();
-  entry.at("after_tap") = Tree::scalar(std::to_string(from));
-  entry.at("build") = Tree::quote(build_hash(workshop.host, config.notes.plugins));
   manifest.at("resumed").kind = Tree::Kind::list;
-  manifest.at("resumed").items.push_back(std::move(entry));
+  manifest.at("resumed").items.push_back(
+      Tree::map({{"after_tap", Tree::scalar(std::to_string(from))},
+                 {"build", Tree::quote(build_hash(workshop.host, config.notes.plugins))}}));
   directory.write("manifest.json", to_json(manifest));
 }
 

@@ -79,24 +79,6 @@ bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config,
 /// Throws Error if it has.
 void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);
 
-/// A number that came out differently in a replay.
-struct Difference {
-  int tap = 0;  ///< 0: of the summary
-  std::string field;
-  std::string recorded;
-  std::string replayed;
-};
-
-struct ReplayReport {
-  int taps = 0;
-  int numbers = 0;  ///< compared
-  std::vector<Difference> differences;
-};
-
-/// Sends the recorded taps of a run through the same models and compares every number but clocks, memory and host.
-/// Writes nothing, moves nothing: the backend is not even created.
-ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
-
 /// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);
 

@@ -5,6 +5,8 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -27,6 +29,18 @@ std::size_t name_at(const Row& row, const char* field, const std::array<const ch
   const auto found = std::find(names.begin(), names.end(), row.text(field));
   if (found == names.end()) throw Error(where, std::string("has no valid '") + field + "'", "the file is damaged");
   return static_cast<std::size_t>(found - names.begin());
+}
+
+PastTap past_tap(const Row& row, const std::string& where) {
+  PastTap out;
+  out.source = static_cast<Source>(name_at(row, "source", kSources, where));
+  out.target = {number_at(row, "x", 0.0, where), number_at(row, "y", 0.0, where)};
+  out.contact.outcome = static_cast<Outcome>(name_at(row, "outcome", kOutcomes, where));
+  out.contact.height = number_at(row, "height", 0.0, where);
+  out.contact.force = number_at(row, "force", 0.0, where);
+  out.contact.seconds = number_at(row, "robot_seconds", 0.0, where);
+  out.contact.reason = row.text("reason");
+  return out;
 }
 
 }  // namespace
@@ -57,15 +71,9 @@ Row unknown_result_of(const Row& intent) {
   return row;
 }
 
-PastTap past_tap(const Row& row, const std::string& where) {
-  PastTap out;
-  out.source = static_cast<Source>(name_at(row, "source", kSources, where));
-  out.target = {number_at(row, "x", 0.0, where), number_at(row, "y", 0.0, where)};
-  out.contact.outcome = static_cast<Outcome>(name_at(row, "outcome", kOutcomes, where));
-  out.contact.height = number_at(row, "height", 0.0, where);
-  out.contact.force = number_at(row, "force", 0.0, where);
-  out.contact.seconds = number_at(row, "robot_seconds", 0.0, where);
-  out.contact.reason = row.text("reason");
+std::vector<PastTap> past_taps(const std::vector<Row>& rows, const std::filesystem::path& file) {
+  std::vector<PastTap> out;
+  for (const Row& row : rows) out.push_back(past_tap(row, fmt::format("{}: tap {}", file.string(), out.size() + 1)));
   return out;
 }
 

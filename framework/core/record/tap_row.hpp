@@ -5,8 +5,10 @@
 #include "experiment/tap_record.hpp"
 #include "record/row.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace palpate {
 
@@ -22,8 +24,8 @@ bool is_intent(const Row& row);
 /// An intent as the result of a tap that nobody saw the end of.
 Row unknown_result_of(const Row& intent);
 
-/// What a resumed run must know of a recorded tap. Throws Error, naming `where`, for a row that is not a tap.
-PastTap past_tap(const Row& row, const std::string& where);
+/// What a resumed run must know of recorded taps. Throws Error, naming `file` and the tap, for a row that is none.
+std::vector<PastTap> past_taps(const std::vector<Row>& rows, const std::filesystem::path& file);
 
 const char* outcome_name(Outcome outcome);
 const char* source_name(Source source);

@@ -1,140 +1,137 @@
 // SPDX-License-Identifier: MIT
-#include "scene/effect_options.hpp"
+// The part `scene.effects:` of a config.
+#include "scene/scene_options.hpp"
 
 namespace palpate {
+namespace {
 
-template <>
-void EffectGroup<ForceNoise>::list(Fields& fields) {
-  fields.real(value.deviation,
+void list(ForceNoise& effect, Fields& fields) {
+  fields.real(effect.deviation,
               Field("deviation", "standard deviation of a sample; 100 samples a second")
                   .in(Unit::newton)
                   .at_least(0)
                   .from("1.5 N: assumed for Baxter's estimate from its joint springs; none published"));
 }
 
-template <>
-void EffectGroup<ForceDrift>::list(Fields& fields) {
+void list(ForceDrift& effect, Fields& fields) {
   fields.real(
-      value.per_metre,
+      effect.per_metre,
       Field("per_metre", "standard deviation of the slope at which the zero wanders, drawn anew for each tap")
           .in(Unit::newton_per_metre)
           .at_least(0)
           .from("10 N/m: 1.5 N over a descent, an estimate; the zero of Baxter's wrench changes with its pose"));
 }
 
-template <>
-void EffectGroup<Stiffness>::list(Fields& fields) {
-  fields.real(value.object, Field("object", "force over the depth to which the tip sinks in: 10 N at 1500 N/m, 7 mm")
-                                .in(Unit::newton_per_metre)
-                                .above(0)
-                                .from("1500 N/m: a contact of the order that reproduces Baxter's tapping errors"));
-  fields.real(value.arm, Field("arm", "force over the way that the joints give; the measured pose does not suffer")
-                             .in(Unit::newton_per_metre)
-                             .above(0));
+void list(Stiffness& effect, Fields& fields) {
+  fields.real(effect.object, Field("object", "force over the depth to which the tip sinks in: 10 N at 1500 N/m, 7 mm")
+                                 .in(Unit::newton_per_metre)
+                                 .above(0)
+                                 .from("1500 N/m: a contact of the order that reproduces Baxter's tapping errors"));
+  fields.real(effect.arm, Field("arm", "force over the way that the joints give; the measured pose does not suffer")
+                              .in(Unit::newton_per_metre)
+                              .above(0));
 }
 
-template <>
-void EffectGroup<JointLag>::list(Fields& fields) {
-  fields.real(value.delay, Field("delay", "the arm trails its set-point by this times its speed")
-                               .in(Unit::second)
-                               .at_least(0)
-                               .at_most(10)
-                               .from("0.3-0.4 s: measured on a Baxter at 0.12 to 0.5 rad/s"));
-  fields.real(value.overshoot, Field("overshoot", "how far a step is overshot, as a share of it; 0 does not overshoot")
-                                   .at_least(0)
-                                   .at_most(0.9)
-                                   .from("0: Baxter's arm creeps up to its set-point"));
+void list(JointLag& effect, Fields& fields) {
+  fields.real(effect.delay, Field("delay", "the arm trails its set-point by this times its speed")
+                                .in(Unit::second)
+                                .at_least(0)
+                                .at_most(10)
+                                .from("0.3-0.4 s: measured on a Baxter at 0.12 to 0.5 rad/s"));
+  fields.real(effect.overshoot, Field("overshoot", "how far a step is overshot, as a share of it; 0 does not overshoot")
+                                    .at_least(0)
+                                    .at_most(0.9)
+                                    .from("0: Baxter's arm creeps up to its set-point"));
 }
 
-template <>
-void EffectGroup<TipRadius>::list(Fields& fields) {
-  fields.real(value.radius, Field("radius", "of the sphere at the end of the tool")
-                                .in(Unit::metre)
-                                .above(0)
-                                .at_most(0.1)
-                                .from("5 mm: a fingertip-like probe, an estimate"));
-}
-
-template <>
-void EffectGroup<PoseNoise>::list(Fields& fields) {
-  fields.real(value.lateral, Field("lateral", "standard deviation of the place, along x and along y")
+void list(TipRadius& effect, Fields& fields) {
+  fields.real(effect.radius, Field("radius", "of the sphere at the end of the tool")
                                  .in(Unit::metre)
-                                 .at_least(0)
-                                 .from("2 mm: relative; objects are localised to 2 mm with Baxter, absolute 2-10 mm"));
-  fields.real(value.vertical, Field("vertical", "standard deviation of the height")
+                                 .above(0)
+                                 .at_most(0.1)
+                                 .from("5 mm: a fingertip-like probe, an estimate"));
+}
+
+void list(PoseNoise& effect, Fields& fields) {
+  fields.real(effect.lateral, Field("lateral", "standard deviation of the place, along x and along y")
                                   .in(Unit::metre)
                                   .at_least(0)
-                                  .from("1 mm: settled joint errors of 0.004 rad, most of them alike from tap to tap"));
+                                  .from("2 mm: relative; objects are localised to 2 mm with Baxter, absolute 2-10 mm"));
+  fields.real(effect.vertical,
+              Field("vertical", "standard deviation of the height")
+                  .in(Unit::metre)
+                  .at_least(0)
+                  .from("1 mm: settled joint errors of 0.004 rad, most of them alike from tap to tap"));
 }
 
-template <>
-void EffectGroup<MissedContacts>::list(Fields& fields) {
-  fields.real(value.probability, Field("probability", "per tap, that no force is felt all the way down")
-                                     .at_least(0)
-                                     .at_most(1)
-                                     .from("2 %: an estimate"));
+void list(MissedContacts& effect, Fields& fields) {
+  fields.real(effect.probability, Field("probability", "per tap, that no force is felt all the way down")
+                                      .at_least(0)
+                                      .at_most(1)
+                                      .from("2 %: an estimate"));
 }
 
-template <>
-void EffectGroup<FalseContacts>::list(Fields& fields) {
-  fields.real(value.probability, Field("probability", "per tap, of a jerk on the way down that feels like a contact")
-                                     .at_least(0)
-                                     .at_most(1)
-                                     .from("2 %: an estimate"));
+void list(FalseContacts& effect, Fields& fields) {
+  fields.real(effect.probability, Field("probability", "per tap, of a jerk on the way down that feels like a contact")
+                                      .at_least(0)
+                                      .at_most(1)
+                                      .from("2 %: an estimate"));
 }
 
-template <>
-void EffectGroup<Reach>::list(Fields& fields) {
-  fields.reals(value.base, 2,
+void list(Reach& effect, Fields& fields) {
+  fields.reals(effect.base, 2,
                Field("base", "place of the shoulder: x, y in the frame of the area")
                    .in(Unit::metre)
                    .from("an area whose near edge is 55 cm in front of the arm"));
-  fields.real(value.radius, Field("radius", "of the reach; places farther from the base fail as unreachable")
-                                .in(Unit::metre)
-                                .above(0)
-                                .from("Baxter with its tool straight down: gaps from 0.70 m, half of all at 0.80 m"));
+  fields.real(effect.radius, Field("radius", "of the reach; places farther from the base fail as unreachable")
+                                 .in(Unit::metre)
+                                 .above(0)
+                                 .from("Baxter with its tool straight down: gaps from 0.70 m, half of all at 0.80 m"));
 }
 
-template <>
-void EffectGroup<Shaft>::list(Fields& fields) {
-  fields.real(value.radius, Field("radius", "of the tool's shaft")
-                                .in(Unit::metre)
-                                .above(0)
-                                .at_most(0.2)
-                                .from("1.5 cm: a gripper's finger, an estimate"));
-  fields.real(value.length, Field("length", "from the tip to where the shaft begins")
-                                .in(Unit::metre)
-                                .above(0)
-                                .from("8 cm: less than the paper's objects are high, an estimate"));
+void list(Shaft& effect, Fields& fields) {
+  fields.real(effect.radius, Field("radius", "of the tool's shaft")
+                                 .in(Unit::metre)
+                                 .above(0)
+                                 .at_most(0.2)
+                                 .from("1.5 cm: a gripper's finger, an estimate"));
+  fields.real(effect.length, Field("length", "from the tip to where the shaft begins")
+                                 .in(Unit::metre)
+                                 .above(0)
+                                 .from("8 cm: less than the paper's objects are high, an estimate"));
 }
 
-template <class Self, class Visit>
-void EffectOptions::each(Self& self, const Visit& visit) {
-  visit(self.force_noise, &Effects::force_noise, Field("force_noise", "white noise of the force sensor"));
-  visit(self.force_drift, &Effects::force_drift,
-        Field("force_drift", "the force sensor's zero wanders during the descent"));
-  visit(self.stiffness, &Effects::stiffness, Field("stiffness", "the object, and the arm, give way"));
-  visit(self.joint_lag, &Effects::joint_lag,
-        Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
-  visit(self.tip_radius, &Effects::tip_radius,
-        Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
-  visit(self.pose_noise, &Effects::pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
-  visit(self.missed_contacts, &Effects::missed_contacts, Field("missed_contacts", "contacts that are not felt"));
-  visit(self.false_contacts, &Effects::false_contacts, Field("false_contacts", "contacts in the air"));
-  visit(self.reach, &Effects::reach, Field("reach", "places that the arm cannot reach"));
-  visit(self.shaft, &Effects::shaft, Field("shaft", "the tool's shaft touches tall objects beside the tip"));
+/// An effect as a group of options.
+template <class Effect>
+struct Group : Options {
+  Effect effect;
+  void list(Fields& fields) override { palpate::list(effect, fields); }
+};
+
+/// An effect that may be absent.
+template <class Effect>
+void section(Fields& fields, std::optional<Effect>& effect, const Field& field) {
+  bool present = effect.has_value();
+  Group<Effect> group;
+  group.effect = effect.value_or(Effect{});
+  fields.section(present, group, field);
+  effect = present ? std::optional(group.effect) : std::nullopt;
 }
+
+}  // namespace
 
 void EffectOptions::list(Fields& fields) {
-  each(*this, [&](auto& group, auto, const Field& field) { fields.section(group, field); });
-}
-
-Effects EffectOptions::values() const {
-  Effects out;
-  each(*this, [&](const auto& group, auto effect, const Field&) {
-    if (group) out.*effect = group->value;
-  });
-  return out;
+  section(fields, values.force_noise, Field("force_noise", "white noise of the force sensor"));
+  section(fields, values.force_drift, Field("force_drift", "the force sensor's zero wanders during the descent"));
+  section(fields, values.stiffness, Field("stiffness", "the object, and the arm, give way"));
+  section(fields, values.joint_lag,
+          Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
+  section(fields, values.tip_radius, Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
+  section(fields, values.pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
+  section(fields, values.missed_contacts, Field("missed_contacts", "contacts that are not felt"));
+  section(fields, values.false_contacts, Field("false_contacts", "contacts in the air"));
+  section(fields, values.reach, Field("reach", "places that the arm cannot reach"));
+  section(fields, values.shaft, Field("shaft", "the tool's shaft touches tall objects beside the tip"));
 }
 
 }  // namespace palpate

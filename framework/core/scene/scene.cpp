@@ -17,7 +17,7 @@ class Desk final : public Scene {
       : area_{options.area.width, options.area.depth},
         desk_(options.desk),
         margin_(options.on_surface_above),
-        effects_(options.effects.values()),
+        effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
     // Shapes see a desk that is still bare.
     std::vector<Body> bodies;

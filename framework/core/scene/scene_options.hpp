@@ -2,8 +2,7 @@
 // The part `scene:` of a config: the area, the desk and the objects on it.
 #pragma once
 
-#include "scene/effect_options.hpp"
-
+#include <palpate/effects.hpp>
 #include <palpate/options.hpp>
 #include <palpate/scene.hpp>
 
@@ -27,6 +26,12 @@ struct ObjectOptions : Options {
   double at[2] = {0.115, 0.115};
   double rotation = 0.0;
   double tilt = 0.0;
+  void list(Fields& fields) override;
+};
+
+/// One group for each member of Effects, absent by default.
+struct EffectOptions : Options {
+  Effects values;
   void list(Fields& fields) override;
 };
 

@@ -22,12 +22,6 @@ Error cannot(const fs::path& what, const std::string& why) {
   return Error(what.string(), "cannot be made: " + why, {}, Error::Kind::run);
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code trouble;
-  fs::create_directories(folder, trouble);
-  if (trouble) throw cannot(folder, trouble.message());
-}
-
 constexpr const char* kPrefix = ".sweep-";
 
 /// A draft is abandoned when nobody holds its lock. Young ones are left alone: theirs may not be taken yet.

@@ -2,9 +2,9 @@
 #include "sweep/earlier_results.hpp"
 
 #include "config/hash.hpp"
-#include "record/earlier.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
+#include "record/recording.hpp"
 
 #include <palpate/error.hpp>
 

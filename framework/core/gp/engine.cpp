@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gp/posterior.hpp"
+#include "gp/engine.hpp"
 
 #include "gp/axis_basis.hpp"
 

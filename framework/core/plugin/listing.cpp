@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// A look at every library there is, each in a process of its own: one that is damaged may crash or hang whoever looks.
+#include "children/child_process.hpp"
+#include "plugin/host.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <memory>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace palpate {
+namespace {
+
+constexpr double kPatience = 5.0;  ///< s
+
+// How a process that looked ends, unless the library has ended it.
+constexpr int kSound = 100;
+constexpr int kBroken = 101;
+
+/// In the process of its own.
+void be_quiet() {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, standard);
+  for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(crash, SIG_DFL);
+}
+
+/// What has ended a process in which nobody said what is to be said; "" for nothing.
+std::string trouble_of(int status) {
+  if (WIFSIGNALED(status))
+    return fmt::format("crashed, signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  const int ended = WEXITSTATUS(status);
+  return ended == kSound || ended == kBroken ? "" : fmt::format("ended the program with status {}", ended);
+}
+
+/// Notes in `row` the summary that `look` returns, or what is wrong.
+void look_apart(const std::function<std::string()>& look, PluginListing& row) {
+  const std::unique_ptr<ChildProcess> child = ChildProcess::fork([&](const ChildProcess::Say& say) {
+    be_quiet();
+    try {
+      say(look());
+    } catch (const Error& trouble) {  // told by who waits
+      say(trouble.what());
+      return kBroken;
+    }
+    return kSound;
+  });
+  const std::string trouble = !child ? fmt::format("no process to look at it: {}", std::strerror(errno))
+                              : !child->wait(kPatience) ? fmt::format("came to no end within {:.0f} s", kPatience)
+                                                        : trouble_of(child->status());
+  if (!trouble.empty()) {
+    row.trouble = fmt::format("{}: loading: {}, build or copy it again", row.file.string(), trouble);
+  } else {
+    (WEXITSTATUS(child->status()) == kSound ? row.summary : row.trouble) = child->said();
+  }
+}
+
+}  // namespace
+
+std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::string& name) const {
+  std::vector<PluginListing> out;
+  for (const std::string& one : kinds()) {
+    if (!kind.empty() && one != kind) continue;
+    for (const auto& [stem, file] : files(one)) {
+      if (!name.empty() && stem != name) continue;
+      // The files are sorted: a name in a second folder comes right after the first, whose row names both.
+      if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
+      out.push_back({one, stem, file, {}, {}});
+      look_apart([this, &row = out.back()] { return look(row.kind, row.name); }, out.back());
+    }
+  }
+  return out;
+}
+
+}  // namespace palpate
