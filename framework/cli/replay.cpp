@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "record/recording.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>

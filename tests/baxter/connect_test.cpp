@@ -20,6 +20,7 @@ namespace palpate::test {
 namespace {
 
 using baxter::connect;
+using baxter::Joints;
 using baxter::Robot;
 using baxter::Snapshot;
 using baxter::Wishes;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/figures/sheet.hpp"
 
+#include "support/process.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +92,7 @@ TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
   Points middle(1, 2);
   middle << 0.1, 0.1;
   const Area area{0.2, 0.2};
-  const Ground ground{scattered(middle), area};
+  const Ground ground{test::scattered(middle), area};
   const Relief bare = relief_of({flat_moment(0.0)}, ground);
   const Relief hill = relief_of({flat_moment(0.0), flat_moment(0.5)}, ground);
   EXPECT_EQ(hill.low, 0.0);

@@ -6,23 +6,25 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
-#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <optional>
+#include <map>
+#include <memory>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 namespace palpate {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1 << 20;
-/// Aliases share nodes in yaml-cpp, so nine lines can unfold to 10^9 values: count what is unfolded.
+/// Nine lines of aliases can unfold to 10^9 values: what is unfolded counts.
 constexpr int kMaxValues = 100'000;
-constexpr int kMaxDepth = 100;
+constexpr std::size_t kMaxDepth = 100;
 /// Nobody writes so many, and keys are looked for one after the other.
 constexpr std::size_t kMaxKeys = 1000;
 
@@ -41,140 +43,139 @@ bool is_closed(std::string_view text) {
   return false;
 }
 
-class Converter {
+/// A second document begins where the text should end.
+class SecondDocument : public YAML::Exception {
  public:
-  /// `text` is what the nodes come from. Without `lines` a place is the file alone: within one word of a command line
-  /// they would only confuse.
-  Converter(const std::string& file, std::string_view text, bool lines = true)
-      : file_(std::make_shared<const std::string>(file)), text_(text), lines_(lines) {}
+  explicit SecondDocument(const YAML::Mark& at) : Exception(at, "a second document begins here") {}
+};
 
-  Tree convert(const YAML::Node& node, int depth = 0) {
-    Tree tree;
-    tree.place = place(node.Mark());
-    if (++values_ > kMaxValues) throw Error(tree.place.text(), "too many values", "aliases unfold to over 100000");
-    if (depth > kMaxDepth) throw Error(tree.place.text(), "nested too deeply", "at most 100 levels");
-    // "?" is a plain value, "!" one in quotes or a block; all other tags are written by hand.
-    if (const std::string& tag = node.Tag(); !tag.empty() && tag != "?" && tag != "!") {
-      throw Error(tree.place.text(), fmt::format("tags ('{}') are not read", tag), "remove it");
-    }
-    switch (node.Type()) {
-      case YAML::NodeType::Undefined:
-      case YAML::NodeType::Null:
-        break;
-      case YAML::NodeType::Scalar:
-        tree.kind = Tree::Kind::scalar;
-        tree.text = node.Scalar();
-        tree.quoted = node.Tag() == "!";
-        check_quote(node, tree.place);
-        break;
-      case YAML::NodeType::Sequence:
-        tree.kind = Tree::Kind::list;
-        for (const auto& item : node) tree.items.push_back(convert(item, depth + 1));
-        break;
-      case YAML::NodeType::Map:
-        tree.kind = Tree::Kind::map;
-        for (const auto& entry : node) add_entry(tree, entry.first, entry.second, depth);
-        break;
-    }
-    return tree;
+/// Builds the tree of a text from what the parser meets in it.
+class Reader final : public YAML::EventHandler {
+ public:
+  /// Without `lines` a place is the file alone: within one word of a command line they would only confuse.
+  Reader(const std::string& file, bool lines) : file_(std::make_shared<const std::string>(file)), lines_(lines) {
+    tree_.place.file = file_;
   }
+
+  /// The tree of the only document, null for an empty one. Throws Error, and YAML::Exception for what is no YAML.
+  Tree read(const std::string& text) {
+    // Marks do not count it.
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    text_ = std::string_view(text).substr(text.rfind(kByteOrderMark, 0) == 0 ? kByteOrderMark.size() : 0);
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    // It is not asked for a third: after a stray comma yaml-cpp finds one document after the other without ever going
+    // on.
+    for (; documents_ < 2; ++documents_) parser.HandleNextDocument(*this);
+    return std::move(tree_);
+  }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { put(mark, "", anchor, Tree()); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);  // none where it stands for what it is a part of
+    if (found == anchors_.end()) throw Error(place(mark).text(), "nested too deeply", "at most 100 levels");
+    put(mark, "", YAML::NullAnchor, found->second);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    put(mark, tag, anchor, Tree::scalar(value, tag == "!"));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open_.push_back({put(mark, tag, YAML::NullAnchor, Tree::list()), anchor, false});
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open_.push_back({put(mark, tag, YAML::NullAnchor, Tree::map()), anchor, false});
+  }
+  void OnMapEnd() override { close(); }
 
  private:
-  void check_quote(const YAML::Node& node, const Place& at) const {
-    const YAML::Mark mark = node.Mark();
-    if (node.Tag() != "!" || mark.is_null()) return;
-    const std::string_view rest = text_.substr(std::min(text_.size(), static_cast<std::size_t>(mark.pos)));
-    if (rest.empty() || (rest.front() != '"' && rest.front() != '\'') || is_closed(rest)) return;
-    throw Error(at.text(), "the quote that begins here does not end", "close it");
+  /// A list or map to which the next values belong. It does not move: only the innermost grows.
+  struct Open {
+    Tree* tree;
+    YAML::anchor_t anchor;
+    bool has_key;  ///< of a map: what comes next is the value of its last key
+  };
+
+  void close() {
+    if (open_.back().anchor != YAML::NullAnchor) anchors_[open_.back().anchor] = *open_.back().tree;
+    open_.pop_back();
   }
 
-  void add_entry(Tree& map, const YAML::Node& key, const YAML::Node& value, int depth) {
-    const Place at = place(key.Mark());
-    if (!key.IsScalar()) throw Error(at.text(), "a key must be plain text");
-    const std::string& name = key.Scalar();
-    check_quote(key, at);
-    if (map.entries.size() == kMaxKeys) throw Error(at.text(), "too many keys", "a map has at most 1000");
-    if (name == "<<") {
-      throw Error(at.text(), "merge keys ('<<') are not read",
+  /// Takes the next key or value; what an alias stands for has its place. Returns where a value went.
+  Tree* put(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Tree value) {
+    if (documents_ > 0) throw SecondDocument(mark);
+    if (!value.place.file) value.place = place(mark);
+    if (value.quoted) check_quote(mark);
+    if (anchor != YAML::NullAnchor) anchors_[anchor] = value;
+    Tree* slot = &tree_;
+    if (!open_.empty()) {
+      Tree& around = *open_.back().tree;
+      bool& has_key = open_.back().has_key;
+      if (around.is_map() && !std::exchange(has_key, !has_key)) return add_key(around, value);
+      slot = around.is_map() ? &around.entries.back().value : &around.items.emplace_back();
+      // An absent value (`key:`) has a mark of its own, which may lie on a later line: the key is the better place.
+      if (around.is_map() && value.kind == Tree::Kind::null) value.place = around.entries.back().place;
+    }
+    // "?" is a plain value, "!" one in quotes or a block; all other tags are written by hand.
+    if (!tag.empty() && tag != "?" && tag != "!") {
+      throw Error(value.place.text(), fmt::format("tags ('{}') are not read", tag), "remove it");
+    }
+    count(value, open_.size());
+    *slot = std::move(value);
+    return slot;
+  }
+
+  static Tree* add_key(Tree& map, const Tree& key) {
+    const std::string at = key.place.text();
+    if (!key.is_scalar()) throw Error(at, "a key must be plain text");
+    if (map.entries.size() == kMaxKeys) throw Error(at, "too many keys", "a map has at most 1000");
+    if (key.text == "<<") {
+      throw Error(at, "merge keys ('<<') are not read",
                   "repeat the options, or put them into a group file and name it under 'defaults'");
     }
-    const auto twin = std::find_if(map.entries.begin(), map.entries.end(),
-                                   [&](const Tree::Entry& entry) { return entry.key == name; });
-    if (twin != map.entries.end()) {
-      throw Error(at.text(), fmt::format("duplicate key '{}'", name),
-                  twin->place.line == 0
+    for (const Tree::Entry& twin : map.entries) {
+      if (twin.key != key.text) continue;
+      throw Error(at, fmt::format("duplicate key '{}'", key.text),
+                  twin.place.line == 0
                       ? "write it once"
-                      : fmt::format("it is already at line {}, column {}", twin->place.line, twin->place.column));
+                      : fmt::format("it is already at line {}, column {}", twin.place.line, twin.place.column));
     }
-    map.entries.push_back({name, at, convert(value, depth + 1)});
-    // An absent value (`key:`) has a mark of its own, which may lie on a later line: the key is the better place.
-    if (map.entries.back().value.kind == Tree::Kind::null) map.entries.back().value.place = at;
+    map.entries.push_back({key.text, key.place, {}});
+    return nullptr;
+  }
+
+  /// Counts a value that lies so deep, and all in it, which only an alias brings along.
+  void count(const Tree& value, std::size_t depth) {
+    if (++values_ > kMaxValues) throw Error(value.place.text(), "too many values", "aliases unfold to over 100000");
+    if (depth > kMaxDepth) throw Error(value.place.text(), "nested too deeply", "at most 100 levels");
+    for (const Tree& item : value.items) count(item, depth + 1);
+    for (const Tree::Entry& entry : value.entries) count(entry.value, depth + 1);
+  }
+
+  void check_quote(const YAML::Mark& mark) const {
+    const std::string_view rest = text_.substr(std::min(text_.size(), static_cast<std::size_t>(mark.pos)));
+    if (rest.empty() || (rest.front() != '"' && rest.front() != '\'') || is_closed(rest)) return;
+    throw Error(place(mark).text(), "the quote that begins here does not end", "close it");
   }
 
   Place place(const YAML::Mark& mark) const {
-    return mark.is_null() || !lines_ ? Place{file_, 0, 0} : Place{file_, mark.line + 1, mark.column + 1};
+    return lines_ ? Place{file_, mark.line + 1, mark.column + 1} : Place{file_, 0, 0};
   }
 
   std::shared_ptr<const std::string> file_;
-  std::string_view text_;
   bool lines_;
+  std::string_view text_;
+  int documents_ = 0;  ///< that were read
   int values_ = 0;
+  Tree tree_;
+  std::vector<Open> open_;  ///< the innermost last
+  std::map<YAML::anchor_t, Tree> anchors_;
 };
-
-std::string place_text(const std::string& file, const YAML::Mark& mark) {
-  return mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
-}
-
-/// Keeps where a document's content begins.
-class Beginning : public YAML::EventHandler {
- public:
-  std::optional<YAML::Mark> mark;
-
-  void OnDocumentStart(const YAML::Mark&) override { mark.reset(); }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& at, YAML::anchor_t) override { note(at); }
-  void OnAlias(const YAML::Mark& at, YAML::anchor_t) override { note(at); }
-  void OnScalar(const YAML::Mark& at, const std::string&, YAML::anchor_t, const std::string&) override { note(at); }
-  void OnSequenceStart(const YAML::Mark& at, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    note(at);
-  }
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark& at, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    note(at);
-  }
-  void OnMapEnd() override {}
-
- private:
-  void note(const YAML::Mark& at) {
-    if (!mark) mark = at;
-  }
-};
-
-/// Where the second document of `text` begins, if there is one. It is not asked for a third: after a stray comma
-/// yaml-cpp finds one document after the other without ever going on.
-std::optional<YAML::Mark> second_document(const std::string& text) {
-  std::istringstream in(text);
-  YAML::Parser parser(in);
-  Beginning beginning;
-  parser.HandleNextDocument(beginning);
-  return parser.HandleNextDocument(beginning) ? beginning.mark : std::nullopt;
-}
-
-YAML::Node load(const std::string& text, const std::string& file) {
-  try {
-    if (const std::optional<YAML::Mark> second = second_document(text)) {
-      throw Error(place_text(file, *second), "a second document begins here",
-                  "remove a '---' or a stray sign here or before");
-    }
-    return YAML::Load(text);
-  } catch (const YAML::Exception& trouble) {  // thrown on as an Error: the library's own goes no further
-    // yaml-cpp's message for deep nesting is "bad file", which misleads.
-    const bool deep = dynamic_cast<const YAML::DeepRecursion*>(&trouble) != nullptr;
-    throw Error(
-        place_text(file, trouble.mark), deep ? "nested too deeply" : fmt::format("not valid YAML: {}", trouble.msg),
-        deep ? "at most 100 levels" : "look here or above for a missing bracket or quote, a wrong indent or a tab");
-  }
-}
 
 void emit(YAML::Emitter& out, const Tree& tree) {
   switch (tree.kind) {
@@ -207,7 +208,7 @@ void emit(YAML::Emitter& out, const Tree& tree) {
   }
 }
 
-/// As Converter counts them.
+/// As Reader counts them.
 int count_values(const Tree& tree) {
   int count = 1;
   for (const Tree& item : tree.items) count += count_values(item);
@@ -234,13 +235,18 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
   if (const std::size_t valid = utf8_prefix(text); valid < text.size()) {
     throw Error(place_in(file, text, valid), "not UTF-8", "save the file as UTF-8");
   }
-  // Marks do not count it.
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  const std::string_view content =
-      std::string_view(text).substr(text.rfind(kByteOrderMark, 0) == 0 ? kByteOrderMark.size() : 0);
-  Tree tree = Converter(file, content).convert(load(text, file));
-  if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;
-  return tree;
+  try {
+    Tree tree = Reader(file, true).read(text);
+    if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;
+    return tree;
+  } catch (const YAML::Exception& trouble) {  // thrown on as an Error: the library's own goes no further
+    const YAML::Mark& mark = trouble.mark;
+    const std::string at = mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
+    if (dynamic_cast<const SecondDocument*>(&trouble) != nullptr)
+      throw Error(at, trouble.msg, "remove a '---' or a stray sign here or before");
+    throw Error(at, "not valid YAML: " + trouble.msg,
+                "look here or above for a missing bracket or quote, a wrong indent or a tab");
+  }
 }
 
 Tree read_yaml(const std::filesystem::path& path) {
@@ -271,12 +277,13 @@ Tree parse_value(const std::string& text, const std::string& file) {
   // A block has lines below its sign; here, `>1` is what someone expects of a number.
   const bool is_block = !text.empty() && (text.front() == '>' || text.front() == '|');
   if (utf8_prefix(text) < text.size()) throw Error(file, "not UTF-8", "write it in UTF-8");
-  std::optional<YAML::Node> document;
   try {
-    if (!is_block && !second_document(text)) document = YAML::Load(text);
+    if (!is_block) {
+      YAML::Load(text);  // beforehand: what does not parse is text, whatever else is wrong in it
+      return Reader(file, false).read(text);
+    }
   } catch (const YAML::Exception&) {  // then it is text: see below
   }
-  if (document) return Converter(file, text, false).convert(*document);
   Tree tree = Tree::scalar(text, true);
   tree.place.file = std::make_shared<const std::string>(file);
   return tree;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
-#include <algorithm>
+#include <array>
 #include <charconv>
 #include <ctime>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,42 +21,29 @@ double thread_cpu_seconds() {
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
 
 /// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: to_chars, the fastest there is,
-/// and once for the coordinates and for a map that stands there twice.
+/// and once for the coordinates.
 std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
-  constexpr std::size_t kLongest = 24;  // a double in shortest form
-  std::vector<char> line((columns.size() + 2) * (kLongest + 1));
-  const auto put = [](char* to, double value) { return std::to_chars(to, to + kLongest, value).ptr; };
-  const auto text = [&](double value) { return std::string(line.data(), put(line.data(), value)); };
-  std::vector<std::string> xs;
-  for (int i = 0; i < candidates.columns; ++i) xs.push_back(text(candidates.points(i, 0)) + ',');
-
   std::string out = "x,y";
-  std::vector<std::size_t> twins;  // the first column of the same map
-  for (const Column& column : columns) {
-    out += std::string(",") + column.first;
-    const auto same = [&](const Column& one) { return one.second == column.second; };
-    twins.push_back(static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same) - columns.begin()));
-  }
+  for (const Column& column : columns) out += std::string(",") + column.first;
   out += '\n';
   out.reserve(out.size() + static_cast<std::size_t>(candidates.size()) * (columns.size() + 2) * 20);
-  std::vector<std::string_view> cells(columns.size());  // of one line
-  for (int row = 0; row < candidates.rows; ++row) {
-    const std::string y = text(candidates.points(row * candidates.columns, 1));
-    for (int i = 0; i < candidates.columns; ++i) {
-      const std::string& x = xs[static_cast<std::size_t>(i)];
-      char* end = std::copy(y.begin(), y.end(), std::copy(x.begin(), x.end(), line.data()));
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        *end++ = ',';
-        char* const begin = end;
-        if (twins[c] < c) {
-          end = std::copy(cells[twins[c]].begin(), cells[twins[c]].end(), end);
-        } else if (columns[c].second != nullptr) {
-          end = put(end, (*columns[c].second)(row * candidates.columns + i));
-        }
-        cells[c] = {begin, static_cast<std::size_t>(end - begin)};
+  const auto append = [](std::string& to, double value) {
+    std::array<char, 24> text;  // as long as a double in shortest form may be
+    to.append(text.data(), std::to_chars(text.begin(), text.end(), value).ptr);
+  };
+  std::vector<std::string> xs(static_cast<std::size_t>(candidates.columns));
+  for (std::size_t i = 0; i < xs.size(); ++i) append(xs[i], candidates.points(static_cast<Eigen::Index>(i), 0));
+  for (int row = 0, cell = 0; row < candidates.rows; ++row) {
+    std::string y = ",";
+    append(y, candidates.points(cell, 1));
+    for (const std::string& x : xs) {
+      out.append(x).append(y);
+      for (const Column& column : columns) {
+        out += ',';
+        if (column.second != nullptr) append(out, (*column.second)(cell));
       }
-      *end++ = '\n';
-      out.append(line.data(), static_cast<std::size_t>(end - line.data()));
+      out += '\n';
+      ++cell;
     }
   }
   return out;
