@@ -85,7 +85,7 @@ TEST(Yaml, RefusesWhatIsNoPlainConfigWithItsPlace) {
       {"a: 1\nb: !include x.yaml\n", "c.yaml:2:4: tags ('!include') are not read, remove it"},
       {"a: 1\n---\nb: 2\n", "c.yaml:3:1: a second document begins here, remove a '---' or a stray sign here or before"},
       {"---\na: 1\n...\n", "accepted"},
-      {"a: &x {b: *x}\n", "c.yaml:1:8: nested too deeply, at most 100 levels"},
+      {"a: &x {b: *x}\n", "c.yaml:1:11: nested too deeply, at most 100 levels"},
       {"a: " + repeated("[", 99) + repeated("]", 99), "accepted"},
       {"a: " + repeated("[", 101) + repeated("]", 101), "c.yaml:1:104: nested too deeply, at most 100 levels"},
       {"a: 1\n  b: 2\n",

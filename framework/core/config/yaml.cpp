@@ -6,6 +6,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
@@ -14,6 +15,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -57,7 +59,8 @@ class Reader final : public YAML::EventHandler {
     tree_.place.file = file_;
   }
 
-  /// The tree of the only document, null for an empty one. Throws Error, and YAML::Exception for what is no YAML.
+  /// The tree of the only document, null for an empty one. Throws YAML::Exception for what is no YAML, whatever else is
+  /// wrong in it, and Error for what is.
   Tree read(const std::string& text) {
     // Marks do not count it.
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
@@ -67,6 +70,7 @@ class Reader final : public YAML::EventHandler {
     // It is not asked for a third: after a stray comma yaml-cpp finds one document after the other without ever going
     // on.
     for (; documents_ < 2; ++documents_) parser.HandleNextDocument(*this);
+    if (refused_) throw *refused_;
     return std::move(tree_);
   }
 
@@ -75,8 +79,8 @@ class Reader final : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { put(mark, "", anchor, Tree()); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);  // none where it stands for what it is a part of
-    if (found == anchors_.end()) throw Error(place(mark).text(), "nested too deeply", "at most 100 levels");
-    put(mark, "", YAML::NullAnchor, found->second);
+    if (found == anchors_.end()) refuse(place(mark), "nested too deeply", "at most 100 levels");
+    put(mark, "", YAML::NullAnchor, found == anchors_.end() ? Tree() : found->second);
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
@@ -96,19 +100,20 @@ class Reader final : public YAML::EventHandler {
  private:
   /// A list or map to which the next values belong. It does not move: only the innermost grows.
   struct Open {
-    Tree* tree;
+    Tree* tree;  ///< null once the text is refused
     YAML::anchor_t anchor;
     bool has_key;  ///< of a map: what comes next is the value of its last key
   };
 
   void close() {
-    if (open_.back().anchor != YAML::NullAnchor) anchors_[open_.back().anchor] = *open_.back().tree;
+    if (open_.back().anchor != YAML::NullAnchor && !refused_) anchors_[open_.back().anchor] = *open_.back().tree;
     open_.pop_back();
   }
 
   /// Takes the next key or value; what an alias stands for has its place. Returns where a value went.
   Tree* put(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Tree value) {
     if (documents_ > 0) throw SecondDocument(mark);
+    if (refused_) return nullptr;
     if (!value.place.file) value.place = place(mark);
     if (value.quoted) check_quote(mark);
     if (anchor != YAML::NullAnchor) anchors_[anchor] = value;
@@ -123,27 +128,26 @@ class Reader final : public YAML::EventHandler {
     }
     // "?" is a plain value, "!" one in quotes or a block; all other tags are written by hand.
     if (!tag.empty() && tag != "?" && tag != "!") {
-      throw Error(value.place.text(), fmt::format("tags ('{}') are not read", tag), "remove it");
+      refuse(value.place, fmt::format("tags ('{}') are not read", tag), "remove it");
     }
     count(value, open_.size());
     *slot = std::move(value);
     return slot;
   }
 
-  static Tree* add_key(Tree& map, const Tree& key) {
-    const std::string at = key.place.text();
-    if (!key.is_scalar()) throw Error(at, "a key must be plain text");
-    if (map.entries.size() == kMaxKeys) throw Error(at, "too many keys", "a map has at most 1000");
+  Tree* add_key(Tree& map, const Tree& key) {
+    if (!key.is_scalar()) refuse(key.place, "a key must be plain text");
+    if (map.entries.size() == kMaxKeys) refuse(key.place, "too many keys", "a map has at most 1000");
     if (key.text == "<<") {
-      throw Error(at, "merge keys ('<<') are not read",
-                  "repeat the options, or put them into a group file and name it under 'defaults'");
+      refuse(key.place, "merge keys ('<<') are not read",
+             "repeat the options, or put them into a group file and name it under 'defaults'");
     }
     for (const Tree::Entry& twin : map.entries) {
       if (twin.key != key.text) continue;
-      throw Error(at, fmt::format("duplicate key '{}'", key.text),
-                  twin.place.line == 0
-                      ? "write it once"
-                      : fmt::format("it is already at line {}, column {}", twin.place.line, twin.place.column));
+      refuse(key.place, fmt::format("duplicate key '{}'", key.text),
+             twin.place.line == 0
+                 ? "write it once"
+                 : fmt::format("it is already at line {}, column {}", twin.place.line, twin.place.column));
     }
     map.entries.push_back({key.text, key.place, {}});
     return nullptr;
@@ -151,16 +155,22 @@ class Reader final : public YAML::EventHandler {
 
   /// Counts a value that lies so deep, and all in it, which only an alias brings along.
   void count(const Tree& value, std::size_t depth) {
-    if (++values_ > kMaxValues) throw Error(value.place.text(), "too many values", "aliases unfold to over 100000");
-    if (depth > kMaxDepth) throw Error(value.place.text(), "nested too deeply", "at most 100 levels");
+    if (++values_ > kMaxValues) refuse(value.place, "too many values", "aliases unfold to over 100000");
+    if (depth > kMaxDepth) refuse(value.place, "nested too deeply", "at most 100 levels");
+    if (refused_) return;
     for (const Tree& item : value.items) count(item, depth + 1);
     for (const Tree::Entry& entry : value.entries) count(entry.value, depth + 1);
   }
 
-  void check_quote(const YAML::Mark& mark) const {
+  void check_quote(const YAML::Mark& mark) {
     const std::string_view rest = text_.substr(std::min(text_.size(), static_cast<std::size_t>(mark.pos)));
     if (rest.empty() || (rest.front() != '"' && rest.front() != '\'') || is_closed(rest)) return;
-    throw Error(place(mark).text(), "the quote that begins here does not end", "close it");
+    refuse(place(mark), "the quote that begins here does not end", "close it");
+  }
+
+  /// Of what is refused the first is told, and only if the text is YAML to its end.
+  void refuse(const Place& at, const std::string& reason, const std::string& hint = {}) {
+    if (!refused_) refused_ = Error(at.text(), reason, hint);
   }
 
   Place place(const YAML::Mark& mark) const {
@@ -175,6 +185,7 @@ class Reader final : public YAML::EventHandler {
   Tree tree_;
   std::vector<Open> open_;  ///< the innermost last
   std::map<YAML::anchor_t, Tree> anchors_;
+  std::optional<Error> refused_;
 };
 
 void emit(YAML::Emitter& out, const Tree& tree) {
@@ -244,6 +255,9 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
     const std::string at = mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
     if (dynamic_cast<const SecondDocument*>(&trouble) != nullptr)
       throw Error(at, trouble.msg, "remove a '---' or a stray sign here or before");
+    // yaml-cpp's own words are "bad file", which mislead.
+    if (dynamic_cast<const YAML::DeepRecursion*>(&trouble) != nullptr)
+      throw Error(at, "nested too deeply", "at most 100 levels");
     throw Error(at, "not valid YAML: " + trouble.msg,
                 "look here or above for a missing bracket or quote, a wrong indent or a tab");
   }
@@ -278,10 +292,7 @@ Tree parse_value(const std::string& text, const std::string& file) {
   const bool is_block = !text.empty() && (text.front() == '>' || text.front() == '|');
   if (utf8_prefix(text) < text.size()) throw Error(file, "not UTF-8", "write it in UTF-8");
   try {
-    if (!is_block) {
-      YAML::Load(text);  // beforehand: what does not parse is text, whatever else is wrong in it
-      return Reader(file, false).read(text);
-    }
+    if (!is_block) return Reader(file, false).read(text);
   } catch (const YAML::Exception&) {  // then it is text: see below
   }
   Tree tree = Tree::scalar(text, true);
