@@ -75,9 +75,7 @@ int pareto(Program&, const ParetoArguments& arguments) {
   fmt::print(asked ? stderr : stdout, "{}", pareto_table(pareto));
   // First what was asked for: the directory may be one where nothing can be written.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
-  const Tree config = read_run_config(sweep.directory);
-  const Tree* name = config.find("name");
-  write_files(sweep, pareto, name != nullptr ? name->text : "sweep", bound, chosen);
+  write_files(sweep, pareto, sweep_name(sweep), bound, chosen);
   if (!bound || chosen != nullptr) return kDone;
   const Setting* best = best_bounded(pareto);
   throw Error("", fmt::format("no setting keeps to {} within {}", pareto.error.name, bound_words(pareto, *bound)),

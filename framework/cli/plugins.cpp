@@ -17,14 +17,13 @@ std::vector<FieldDescription> options_of(const PluginHost& host, const PluginLis
 }
 
 Tree row_tree(const PluginHost& host, const PluginListing& row) {
-  Tree out = Tree::map();
-  out.at("kind") = Tree::quote(row.kind);
-  out.at("name") = Tree::quote(row.name);
-  out.at("summary") = Tree::quote(row.summary);
-  out.at("file") = Tree::quote(row.file.string());
-  out.at("trouble") = row.trouble.empty() ? Tree{} : Tree::quote(row.trouble);
-  out.at("options") = row.trouble.empty() ? describe_tree(options_of(host, row)) : Tree::list();
-  return out;
+  const bool sound = row.trouble.empty();
+  return Tree::map({{"kind", Tree::quote(row.kind)},
+                    {"name", Tree::quote(row.name)},
+                    {"summary", Tree::quote(row.summary)},
+                    {"file", Tree::quote(row.file.string())},
+                    {"trouble", sound ? Tree{} : Tree::quote(row.trouble)},
+                    {"options", sound ? describe_tree(options_of(host, row)) : Tree::list()}});
 }
 
 void print_one(const PluginHost& host, const PluginListing& row) {

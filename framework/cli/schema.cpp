@@ -24,17 +24,11 @@ std::vector<FieldDescription::CaseDescription> plugins_of(const PluginHost& host
 }
 
 Tree of_type(const char* type, const char* description = nullptr) {
-  Tree out = Tree::map();
-  if (description != nullptr) out.at("description") = Tree::quote(description);
-  out.at("type") = Tree::quote(type);
-  return out;
+  if (description == nullptr) return Tree::map({{"type", Tree::quote(type)}});
+  return Tree::map({{"description", Tree::quote(description)}, {"type", Tree::quote(type)}});
 }
 
-Tree any_of(std::vector<Tree> schemas) {
-  Tree out = Tree::map();
-  out.at("anyOf") = Tree::list(std::move(schemas));
-  return out;
-}
+Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(std::move(schemas))}}); }
 
 /// A group of a kind: its name as plain text, or the options of one of its plugins. The type may be left to a group
 /// named under `defaults`, so it is not required.

@@ -264,20 +264,18 @@ int sweep(Program& program, const SweepArguments& arguments) {
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
   check_sbatch_words(arguments.launch.sbatch);
   const ResumeOptions options{arguments.retry_failed, arguments.force};
-  if (arguments.step) {
-    throw Error("command line", "--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
-  }
+  const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
+  if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
   const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
   Campaign campaign{program, sweep, config_of, options, arguments.launch, {}, false};
-  if (!arguments.jobs.empty()) campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
-  if (!arguments.jobs.empty() && arguments.launch.jobs_per_task.value_or(1) > 1) {
-    throw Error("command line", "--jobs and --jobs-per-task do not go together: a task carries on all of its jobs",
-                "leave one of them out");
-  }
-  if (!arguments.jobs.empty() && !arguments.launch.junit.empty()) {
-    throw Error("command line", "--jobs and --junit do not go together: what is expected is judged of the whole sweep",
-                "leave one of them out");
+  if (!arguments.jobs.empty()) {
+    campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
+    const char* const hint = "leave one of them out";
+    if (arguments.launch.jobs_per_task.value_or(1) > 1)
+      refuse("--jobs and --jobs-per-task do not go together: a task carries on all of its jobs", hint);
+    if (!arguments.launch.junit.empty())
+      refuse("--jobs and --junit do not go together: what is expected is judged of the whole sweep", hint);
   }
   check_builds(campaign, false);
   return run_campaign(campaign);

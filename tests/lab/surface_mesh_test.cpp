@@ -26,6 +26,13 @@ Eigen::VectorXd heights(const Candidates& candidates, const Height& height) {
   return out;
 }
 
+/// Over oblong().
+template <class Height>
+SurfaceMesh mesh_of(const Height& height) {
+  const Candidates candidates = oblong();
+  return surface_mesh(candidates, heights(candidates, height));
+}
+
 Eigen::Vector3d corner(const SurfaceMesh& mesh, int vertex) { return mesh.points.row(vertex).transpose(); }
 
 /// Twice the area of a triangle, along its normal by the order of its corners.
@@ -45,17 +52,14 @@ TEST(SurfaceMesh, HasTheCandidatesAsVerticesInTheirOrder) {
 TEST(SurfaceMesh, OfAPlaneHasThePlanesNormalAtEveryVertexTheEdgesIncluded) {
   const double along_x = 0.7;
   const double along_y = -1.9;
-  const Candidates candidates = oblong();
-  const SurfaceMesh mesh = surface_mesh(
-      candidates, heights(candidates, [&](double x, double y) { return 0.03 + along_x * x + along_y * y; }));
+  const SurfaceMesh mesh = mesh_of([&](double x, double y) { return 0.03 + along_x * x + along_y * y; });
   const Eigen::RowVector3d expected = Eigen::RowVector3d(-along_x, -along_y, 1.0).normalized();
   for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i)
     EXPECT_LT((mesh.normals.row(i) - expected).cwiseAbs().maxCoeff(), kRounding) << i;
 }
 
 TEST(SurfaceMesh, OfALevelSurfaceLooksStraightUpWithoutAMinusBeforeAnyZero) {
-  const Candidates candidates = oblong();
-  const SurfaceMesh mesh = surface_mesh(candidates, Eigen::VectorXd::Constant(candidates.size(), 0.07));
+  const SurfaceMesh mesh = mesh_of([](double, double) { return 0.07; });
   for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i) {
     EXPECT_EQ(mesh.normals.row(i), Eigen::RowVector3d(0.0, 0.0, 1.0));
     EXPECT_FALSE(std::signbit(mesh.normals(i, 0)) || std::signbit(mesh.normals(i, 1)));
@@ -66,8 +70,7 @@ TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
   // Of a parabola along x the central difference is the slope itself; at an edge it is that half a step inside.
   const double bend = 3.0;
   const Candidates candidates = oblong();
-  const SurfaceMesh mesh =
-      surface_mesh(candidates, heights(candidates, [&](double x, double) { return bend * x * x; }));
+  const SurfaceMesh mesh = mesh_of([&](double x, double) { return bend * x * x; });
   const double step = candidates.xs(1) - candidates.xs(0);
   for (int row = 0; row < candidates.rows; ++row) {
     for (int column = 0; column < candidates.columns; ++column) {
@@ -81,9 +84,7 @@ TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
 }
 
 TEST(SurfaceMesh, HasNormalsOfLengthOneOnTheSideOfItsTriangles) {
-  const Candidates candidates = oblong();
-  const SurfaceMesh mesh = surface_mesh(
-      candidates, heights(candidates, [](double x, double y) { return 0.1 * std::sin(90 * x) * std::cos(50 * y); }));
+  const SurfaceMesh mesh = mesh_of([](double x, double y) { return 0.1 * std::sin(90 * x) * std::cos(50 * y); });
   for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i) {
     EXPECT_NEAR(mesh.normals.row(i).norm(), 1.0, kRounding);
     EXPECT_GT(mesh.normals(i, 2), 0.0);
@@ -92,9 +93,8 @@ TEST(SurfaceMesh, HasNormalsOfLengthOneOnTheSideOfItsTriangles) {
 }
 
 TEST(SurfaceMesh, CoversTheRectangleOfItsVerticesOnce) {
-  const Candidates candidates = oblong();
   const double tilt = 2.0;
-  const SurfaceMesh mesh = surface_mesh(candidates, heights(candidates, [&](double x, double) { return tilt * x; }));
+  const SurfaceMesh mesh = mesh_of([&](double x, double) { return tilt * x; });
   double seen_from_above = 0.0;
   double area = 0.0;
   for (const auto& triangle : mesh.triangles) {
@@ -106,8 +106,7 @@ TEST(SurfaceMesh, CoversTheRectangleOfItsVerticesOnce) {
 }
 
 TEST(SurfaceMesh, IsADiscWhoseInnerEdgesHaveATriangleOnEitherSide) {
-  const Candidates candidates = oblong();
-  const SurfaceMesh mesh = surface_mesh(candidates, Eigen::VectorXd::Zero(candidates.size()));
+  const SurfaceMesh mesh = mesh_of([](double, double) { return 0.0; });
   std::set<std::pair<int, int>> directed;
   std::set<std::pair<int, int>> edges;
   std::set<int> vertices;

@@ -171,8 +171,8 @@ std::vector<Row> check(const Case& one) {
   const Problem problem(one);
   const Spectrum spectrum = stability::spectrum(problem);
   const bool separable = test::make<Kernel>(test::shared_host(), one.kernel)->separable();
-  std::optional<OracleRoute> route;
-  if (one.points <= kOraclePoints) route.emplace(problem);
+  std::optional<Oracle> oracle;
+  if (one.points <= kOraclePoints) oracle.emplace(one, problem.places, problem.values);
   std::optional<double> jitter;
   std::optional<Reference> truth;
   std::optional<Reference> exact;
@@ -183,8 +183,8 @@ std::vector<Row> check(const Case& one) {
     // All engines meet the same matrix, and thus most often raise the same jitter.
     if (!jitter || *jitter != answer.jitter) {
       jitter = answer.jitter;
-      truth = route ? route->solve(*jitter) : refined(problem, *jitter);
-      exact = *jitter == 0.0 ? truth : (route ? route->solve(0.0) : std::nullopt);
+      truth = oracle ? by_oracle(problem, *oracle, *jitter) : refined(problem, *jitter);
+      exact = *jitter == 0.0 ? truth : (oracle ? by_oracle(problem, *oracle, 0.0) : std::nullopt);
     }
     Row row;
     row.name = one.name;

@@ -9,11 +9,8 @@
 namespace palpate::stability {
 
 Oracle::Oracle(const Case& one, const Points& places, const Eigen::VectorXd& values) : case_(one), places_(places) {
-  const auto n = static_cast<std::size_t>(places.rows());
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto a = static_cast<Eigen::Index>(i);
+  for (Eigen::Index a = 0; a < places.rows(); ++a) {
     Row row;
-    row.reserve(i + 1);
     for (Eigen::Index b = 0; b <= a; ++b) row.push_back(kernel(places(a, 0), places(a, 1), places(b, 0), places(b, 1)));
     covariance_.push_back(std::move(row));
     targets_.push_back((Real(values(a)) - one.mean) / one.signal);
@@ -68,7 +65,6 @@ void Oracle::backward(Row& b) const {
 
 Oracle::Row Oracle::covariances_with(double x, double y) const {
   Row row;
-  row.reserve(alpha_.size());
   for (Eigen::Index i = 0; i < places_.rows(); ++i) row.push_back(kernel(x, y, places_(i, 0), places_(i, 1)));
   return row;
 }

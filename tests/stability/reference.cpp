@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "stability/reference.hpp"
 
-#include "stability/oracle.hpp"
 #include "support/eigenvalues.hpp"
 
 #include <Eigen/LU>
@@ -88,18 +87,7 @@ Spectrum spectrum(const Problem& problem) {
   return {largest, std::isfinite(inverse) ? 1.0 / inverse : 0.0};
 }
 
-struct OracleRoute::State {
-  explicit State(const Problem& all) : problem(all), oracle(all.one, all.places, all.values) {}
-  const Problem& problem;
-  Oracle oracle;
-};
-
-OracleRoute::OracleRoute(const Problem& problem) : state_(std::make_unique<State>(problem)) {}
-OracleRoute::~OracleRoute() = default;
-
-std::optional<Reference> OracleRoute::solve(double jitter) {
-  const Problem& problem = state_->problem;
-  Oracle& oracle = state_->oracle;
+std::optional<Reference> by_oracle(const Problem& problem, Oracle& oracle, double jitter) {
   if (!oracle.factorise(jitter)) return std::nullopt;
   Reference out;
   out.mean.resize(problem.probes.rows());

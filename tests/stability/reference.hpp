@@ -2,9 +2,8 @@
 // What the posterior of a case truly is, by one of two routes that share nothing with the framework.
 #pragma once
 
-#include "stability/cases.hpp"
+#include "stability/oracle.hpp"
 
-#include <memory>
 #include <optional>
 
 namespace palpate::stability {
@@ -43,18 +42,9 @@ Spectrum spectrum(const Problem& problem);
 /// Up to so many points the oracle ends in seconds.
 constexpr int kOraclePoints = 500;
 
-/// With the 100-digit oracle; nothing if the model with `jitter` on its diagonal is not positive definite. Of several
-/// jitters in a row, the covariances are computed once.
-class OracleRoute {
- public:
-  explicit OracleRoute(const Problem& problem);
-  ~OracleRoute();
-  std::optional<Reference> solve(double jitter);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
+/// With the 100-digit oracle of the problem; nothing if the model with `jitter` on its diagonal is not positive
+/// definite.
+std::optional<Reference> by_oracle(const Problem& problem, Oracle& oracle, double jitter);
 
 /// For more points: covariances in long double, an LU factorisation in double, and iterative refinement with residuals
 /// in long double until they are at the last digit.

@@ -16,6 +16,10 @@ namespace {
 constexpr std::size_t kMaxValues = 1'000'000;
 constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
 
+[[noreturn]] void refuse(const Tree& tree, const std::string& key, const std::string& reason, const std::string& hint) {
+  throw Error(tree.place.text(), fmt::format("{}: '{}' {}", key, tree.text, reason), hint);
+}
+
 /// Splits at commas that stand in no bracket and no quotes.
 std::vector<std::string> split_top(const std::string& text) {
   std::vector<std::string> parts(1);
@@ -63,14 +67,8 @@ std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree,
   const double step = from.size() == 3 ? from[2].value : 1.0;
   // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
-  if (!(count >= 1.0)) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' has no value", key, tree.text),
-                "the end must lie beyond the start");
-  }
-  if (count > static_cast<double>(kMaxValues)) {
-    throw Error(tree.place.text(), fmt::format("{}: '{}' has more than a million values", key, tree.text),
-                "take a wider step");
-  }
+  if (!(count >= 1.0)) refuse(tree, key, "has no value", "the end must lie beyond the start");
+  if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "take a wider step");
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     out.push_back(number(as_decimal(from[0].value + i * step), from[0].unit, tree));
@@ -83,8 +81,7 @@ std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, c
   const double last = from[1].value;
   const double count = from[2].value;
   if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0) {
-    throw Error(tree.place.text(),
-                fmt::format("{}: '{}' needs two positive ends and a count of 2 to 10000", key, tree.text), kHowTo);
+    refuse(tree, key, "needs two positive ends and a count of 2 to 10000", kHowTo);
   }
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
@@ -105,8 +102,8 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
   Call call{value.text.substr(0, open), {}};
   if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
   if (value.text.back() != ')') {
-    throw Error(value.place.text(), fmt::format("{}: '{}' lacks its ')'", key, value.text),
-                fmt::format("within braces, where commas part entries, put it into quotes: \"{}(...)\"", call.name));
+    refuse(value, key, "lacks its ')'",
+           fmt::format("within braces, where commas part entries, put it into quotes: \"{}(...)\"", call.name));
   }
   for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
     call.bounds.push_back(parse_bound(boost::trim_copy(part), value, key, how_to));
@@ -136,9 +133,7 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
   const bool right_count = is_range ? parts.size() == 2 || parts.size() == 3 : parts.size() == 3;
   const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
                          (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
-  if (!same_unit) {
-    throw Error(value.place.text(), fmt::format("{}: '{}' is not understood", key, value.text), kHowTo);
-  }
+  if (!same_unit) refuse(value, key, "is not understood", kHowTo);
   return is_range ? expand_range(parts, value, key) : expand_log(parts, value, key);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "config/quantity.hpp"
 
+#include "config/trouble.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
@@ -186,11 +188,10 @@ std::optional<AnyQuantity> any_quantity(const std::string& text) {
     if (known == kUnits.end()) return std::nullopt;
     unit = known->unit;
   }
-  try {
-    return AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit};
-  } catch (const Error&) {  // 1e999 m, say: a text like others, for whoever asks whether it is a quantity
-    return std::nullopt;
-  }
+  std::optional<AnyQuantity> out;
+  // 1e999 m, say, is a text like others for whoever asks whether it is a quantity.
+  trouble_in([&] { out = AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit}; });
+  return out;
 }
 
 std::int64_t read_integer(const Tree& tree, const std::string& name) {

@@ -209,27 +209,21 @@ void Tree::append_canonical(std::string& out) const {
       out += '~';
       break;
     case Kind::scalar:
-      out += std::to_string(text.size());
-      out += ':';
-      out += text;
+      out.append(std::to_string(text.size())).append(":").append(text);
       break;
     case Kind::list:
-      out += '[';
+    case Kind::map:
+      out += is_map() ? '{' : '[';
       for (const Tree& item : items) {
         item.append_canonical(out);
         out += ',';
       }
-      out += ']';
-      break;
-    case Kind::map:
-      out += '{';
       for (const Entry& entry : entries) {
-        out += entry.key;
-        out += '=';
+        out.append(entry.key).append("=");
         entry.value.append_canonical(out);
         out += ',';
       }
-      out += '}';
+      out += is_map() ? '}' : ']';
       break;
   }
 }

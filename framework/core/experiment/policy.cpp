@@ -81,19 +81,11 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
                                 std::uint64_t seed) {
   const auto count = static_cast<std::size_t>(options.count);
   Random random(seed, "initial");
-  std::vector<int> design;
-  switch (options.design) {
-    case InitialOptions::Design::random:
-      return draw_random(static_cast<int>(count), candidates.size(), random);
-    case InitialOptions::Design::sobol:
-      design = draw_sobol(count, candidates, area, random);
-      break;
-    case InitialOptions::Design::grid:
-      design = draw_lattice(count, candidates, area);
-      break;
-    case InitialOptions::Design::search:
-      return {};  // one at a time: see Search
-  }
+  using Design = InitialOptions::Design;
+  if (options.design == Design::search) return {};  // one at a time: see Search
+  if (options.design == Design::random) return draw_random(static_cast<int>(count), candidates.size(), random);
+  std::vector<int> design = options.design == Design::sobol ? draw_sobol(count, candidates, area, random)
+                                                            : draw_lattice(count, candidates, area);
   // A design nearly as fine as the candidates themselves meets some of them twice: the free ones follow in order.
   for (int i = 0; design.size() < count; ++i) {
     if (std::find(design.begin(), design.end(), i) == design.end()) design.push_back(i);

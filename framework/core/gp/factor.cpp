@@ -88,13 +88,12 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd left = covariance.diagonal();  // variance that the chosen rows do not explain
   const Eigen::VectorXd own = left;
   std::vector<int> order;
-  std::vector<bool> chosen(static_cast<std::size_t>(n), false);
   Eigen::MatrixXd columns(n, n);
   while (static_cast<int>(order.size()) < n) {
     int best = -1;
     for (int i = 0; i < n; ++i) {
       const bool independent = left(i) > kPivotGuard * n * kEpsilon * own(i) && left(i) > 0.0;
-      if (!chosen[static_cast<std::size_t>(i)] && independent && (best < 0 || left(i) > left(best))) best = i;
+      if (independent && (best < 0 || left(i) > left(best))) best = i;
     }
     if (best < 0) break;
     const auto k = static_cast<Eigen::Index>(order.size());
@@ -103,7 +102,7 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance) {
     if (k > 0) column.noalias() -= columns.leftCols(k) * columns.row(best).head(k).transpose();
     column /= std::sqrt(left(best));
     left -= column.cwiseAbs2();
-    chosen[static_cast<std::size_t>(best)] = true;
+    left(best) = 0.0;  // it is not chosen again
     order.push_back(best);
   }
   return order;

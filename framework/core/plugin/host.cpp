@@ -178,29 +178,24 @@ std::set<std::pair<std::string, std::string>> plugins_of_build(const fs::path& f
 /// One loaded library. Closed when the last object made by it is gone.
 class PluginHost::Library {
  public:
-  Library(const fs::path& file, const std::string& kind, const std::string& name) : file_(file) {
+  Library(const fs::path& from, const std::string& kind, const std::string& name) : file(from) {
     std::error_code trouble;
     if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a file that is not there");
     if (!fs::is_regular_file(file, trouble)) refuse(file, "opening", "not a regular file");
     check_complete(file);
     try {
-      library_.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+      library.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
     } catch (const std::exception& failure) {
       refuse(file, "loading", dlerror_part(failure.what()), "a plugin links all that it uses");
     }
-    manifest_ = &check_manifest(library_, file, kind, name);
-    hash_ = hash_of_file(file);
+    manifest = &check_manifest(library, file, kind, name);
+    hash = hash_of_file(file);
   }
 
-  const PluginManifest& manifest() const { return *manifest_; }
-  const fs::path& file() const { return file_; }
-  const std::string& hash() const { return hash_; }
-
- private:
-  fs::path file_;
-  std::string hash_;
-  boost::dll::shared_library library_;
-  const PluginManifest* manifest_ = nullptr;
+  fs::path file;
+  std::string hash;
+  boost::dll::shared_library library;
+  const PluginManifest* manifest = nullptr;
 };
 
 PluginHost::PluginHost(const std::vector<fs::path>& folders) {
@@ -228,7 +223,7 @@ std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
 
 bool PluginHost::one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const {
   return std::any_of(plugins.begin(), plugins.end(),
-                     [this](const auto& one) { return library(one.first, one.second)->manifest().one_at_a_time; });
+                     [this](const auto& one) { return library(one.first, one.second)->manifest->one_at_a_time; });
 }
 
 bool PluginHost::has(const std::string& kind, const std::string& name) const {
@@ -295,22 +290,22 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
 
 void PluginHost::describe(const std::string& kind, const std::string& name, Fields& fields) const {
   const std::shared_ptr<const Library> holder = library(kind, name);
-  guarded(nullptr, kind + "/" + name, "cannot list its options", [&] { holder->manifest().describe(fields); });
+  guarded(nullptr, kind + "/" + name, "cannot list its options", [&] { holder->manifest->describe(fields); });
 }
 
 std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Context& context) const {
   const std::shared_ptr<const Library> holder = library(choice.kind, choice.type);
-  const PluginManifest& manifest = holder->manifest();
   void* object = nullptr;
   guarded(choice.options.get(), choice.kind + "/" + choice.type, "cannot be created", [&] {
-    fill(*choice.options, *this, choice.kind, [&](Fields& fields) { object = manifest.create(fields, context); });
+    fill(*choice.options, *this, choice.kind,
+         [&](Fields& fields) { object = holder->manifest->create(fields, context); });
   });
   // The deleter owns the library, which therefore outlives the object.
-  return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest().destroy(gone); }});
+  return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
 }
 
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {
-  std::string summary = library(kind, name)->manifest().summary;
+  std::string summary = library(kind, name)->manifest->summary;
   describe_fields([&](Fields& fields) { describe(kind, name, fields); });
   libraries_.clear();  // a library may break down over its end, too
   return summary;
@@ -320,7 +315,7 @@ std::vector<LoadedPlugin> PluginHost::loaded(const std::set<std::pair<std::strin
   std::vector<LoadedPlugin> out;
   for (const auto& [kind, name] : plugins) {
     const std::shared_ptr<const Library> holder = library(kind, name);
-    out.push_back({kind, name, holder->file(), holder->hash()});
+    out.push_back({kind, name, holder->file, holder->hash});
   }
   return out;
 }

@@ -121,21 +121,9 @@ const RecordField& read_key(const Line& line, Expectation& out) {
 std::string example(const RecordField& field, Statistic statistic) {
   if (field.type == RecordField::Type::text) return "write the text that it has to be";
   if (field.type == RecordField::Type::flag && statistic == Statistic::each) return "write true or false";
-  switch (field.unit) {
-    case Unit::metre:
-      return "write a comparison like '<= 2 cm'";
-    case Unit::second:
-      return "write a comparison like '<= 90 s'";
-    default:
-      return "write a comparison like '>= 9', with >=, <=, >, < or ==";
-  }
-}
-
-/// What stands behind the last digit or point of a quantity.
-std::string unit_in(const std::string& text) {
-  const auto last = text.find_last_of("0123456789.");
-  const auto begin = text.find_first_not_of(" \t", last == std::string::npos ? 0 : last + 1);
-  return begin == std::string::npos ? std::string() : text.substr(begin);
+  if (field.unit == Unit::metre) return "write a comparison like '<= 2 cm'";
+  if (field.unit == Unit::second) return "write a comparison like '<= 90 s'";
+  return "write a comparison like '>= 9', with >=, <=, >, < or ==";
 }
 
 Expectation read_comparison(const RecordField& field, Expectation out, const Tree& value) {
@@ -167,7 +155,7 @@ Expectation read_comparison(const RecordField& field, Expectation out, const Tre
   if (sign == kComparisons.end()) refuse(fmt::format("'{}' has no comparison", written));
   rest.place = value.place;
   out.bound = read_quantity(rest, name, field.unit);
-  out.unit = field.unit == Unit::none ? std::string() : unit_in(rest.text);
+  out.unit = boost::trim_copy(rest.text.substr(decimal_length(rest.text)));
   return out;
 }
 

@@ -101,8 +101,7 @@ Judgement judge_statistic(const Expectation& one, const std::vector<RunOutcome>&
   std::vector<double> values;
   std::vector<const RunOutcome*> without;
   for (const RunOutcome& run : runs) {
-    const std::optional<double> value = number_at(run, one.field);
-    if (value) {
+    if (const std::optional<double> value = number_at(run, one.field)) {
       values.push_back(*value);
     } else {
       without.push_back(&run);

@@ -177,16 +177,11 @@ std::optional<Row> parse_json_row(const std::string& text) {
 JsonLines read_json_lines(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   JsonLines out;
-  int line = 0;
-  for (std::size_t begin = 0;;) {
-    const auto end = text.find('\n', begin);
-    if (end == std::string::npos) break;
-    ++line;
-    std::optional<Row> row = parse_json_row(text.substr(begin, end - begin));
+  for (std::size_t end; (end = text.find('\n', out.bytes)) != std::string::npos; out.bytes = end + 1) {
+    std::optional<Row> row = parse_json_row(text.substr(out.bytes, end - out.bytes));
+    const std::size_t line = out.rows.size() + 1;
     if (!row) throw Error(fmt::format("{}:{}", file.string(), line), "is not a JSON object", "the file is damaged");
     out.rows.push_back(std::move(*row));
-    begin = end + 1;
-    out.bytes = begin;
   }
   return out;
 }

@@ -2,6 +2,8 @@
 #include "record/resolved.hpp"
 
 #include "config/hash.hpp"
+#include "config/quantity.hpp"
+#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +12,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 
 namespace palpate {
 namespace {
@@ -36,11 +37,10 @@ struct SeedOptions : Options {
 
 void check_format(const Tree& config) {
   const Tree* format = config.find("format");
-  if (format == nullptr || !format->is_scalar()) return;
+  if (format == nullptr) return;
   std::int64_t number = 0;
-  const char* const end = format->text.data() + format->text.size();
-  const auto read = std::from_chars(format->text.data(), end, number);
-  if (read.ec != std::errc() || read.ptr != end || number <= kFormat) return;  // resolving says what else is wrong
+  trouble_in([&] { number = read_integer(*format, "format"); });  // resolving says what else is wrong
+  if (number <= kFormat) return;
   throw Error(format->place.text(), fmt::format("format: {} is newer than {}, the latest known here", number, kFormat),
               "take a palpate as new as the one that wrote it");
 }

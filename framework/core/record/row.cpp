@@ -189,18 +189,11 @@ std::string to_csv(const std::vector<Row>& rows) {
   for (const std::string& name : header) out += (out.empty() ? "" : ",") + csv_text(guarded(name));
   out += "\n";
   for (const Row& row : rows) {
-    std::string line;
-    std::size_t at = 0;
     for (const std::string& name : header) {
-      if (&name != &header.front()) line += ",";
-      // Rows have their fields in the same order, some lacking: a second look from the start is rarely needed.
-      if (at < row.fields.size() && row.fields[at].first == name) {
-        line += file_cell(row.fields[at++].second);
-      } else if (const Scalar* value = row.find(name)) {
-        line += file_cell(*value);
-      }
+      const Scalar* value = row.find(name);
+      if (value != nullptr) out += file_cell(*value);
+      out += &name == &header.back() ? "\n" : ",";
     }
-    out += line + "\n";
   }
   return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_directory.hpp"
 
+#include "config/trouble.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
@@ -37,14 +38,12 @@ std::optional<Row> read_summary(const fs::path& directory) {
 }
 
 std::optional<Row> read_outcome(const fs::path& directory) {
-  try {
-    return read_summary(directory);
-  } catch (const Error& trouble) {  // it is told as the reason of a run that failed
-    Row failed;
-    failed.add("status", "failed");
-    failed.add("stop_reason", trouble.what());
-    return failed;
+  std::optional<Row> out;
+  if (const auto trouble = trouble_in([&] { out = read_summary(directory); })) {
+    out.emplace().add("status", "failed");
+    out->add("stop_reason", trouble->what());
   }
+  return out;
 }
 
 void check_complete(const Row& summary, int recorded, const fs::path& directory) {

@@ -77,10 +77,8 @@ void conduct(Launcher& launcher, const Sweep& sweep, const Standing& begun, cons
     }
     state = launcher.poll(kPollSeconds);
     counts.running = state.running;
-    if (gone) {
-      counts.last = state.empty_handed();
-      continue;
-    }
+    counts.last = state.empty_handed();
+    if (gone) continue;
     for (const std::size_t job : state.returned) {
       const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
       const RunStatus::State now = read_ending(directory).state;
@@ -90,7 +88,6 @@ void conduct(Launcher& launcher, const Sweep& sweep, const Standing& begun, cons
       counts.done += done ? 1 : 0;
       counts.failed += now == RunStatus::State::failed || lost ? 1 : 0;
     }
-    counts.last = state.empty_handed();
     progress(counts);
   } while (!counts.last);
   if (!gone && !is_gone(sweep)) return;

@@ -32,9 +32,8 @@ class Attempt {
  public:
   Attempt(const fs::path& directory, int taps) : number_(attempts_of(directory) + 1) {
     const fs::path file = directory / kAttempts;
-    std::error_code none;
     // A kill or a full disk may have left half a line, of the first attempt, too.
-    if (fs::exists(file, none)) cut_file(file, read_json_lines(file).bytes);
+    if (is_there(file)) cut_file(file, read_json_lines(file).bytes);
     log_ = AppendFile(file);
     Row row = line();
     row.add("after_tap", taps);
@@ -83,7 +82,6 @@ void write_failure(const fs::path& directory, const std::string& reason) {
 JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of, RunDirectory& held,
                    const ResumeOptions& options) {
   const fs::path& directory = held.path();
-  std::error_code none;
   JobEnd end = JobEnd::failed;
   std::optional<Attempt> attempt;
   const std::optional<Error> trouble = trouble_in([&] {
@@ -92,7 +90,7 @@ JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig(
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   });
   if (trouble) {  // ends the job alone, not the sweep
-    if (!fs::exists(directory / "config.yaml", none)) throw *trouble;
+    if (!is_there(directory / "config.yaml")) throw *trouble;
     // What failed before the run could begin has left no summary.
     write_failure(directory, trouble->what());
   }
@@ -124,8 +122,7 @@ bool has_ended(const fs::path& directory) {
 }
 
 int attempts_of(const fs::path& directory) {
-  std::error_code none;
-  if (!fs::exists(directory / kAttempts, none)) return 0;
+  if (!is_there(directory / kAttempts)) return 0;
   int attempts = 0;
   std::istringstream lines(read_file(directory / kAttempts));
   // A damaged line was one, too: asking how often is no time to fail.

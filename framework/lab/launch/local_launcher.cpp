@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "launch/local_launcher.hpp"
 
+#include "record/files.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
@@ -55,9 +57,8 @@ JobEnd LocalLauncher::run(std::size_t job) const {
     return run_job(
         workshop_, [&] { return config_of_(job); }, directory_of(job), options_.resume);
   } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
-    std::error_code none;
     // Who conducts the sweep says once that all of it is gone. fmt::print would throw where a terminal was closed.
-    if (std::filesystem::exists(sweep_.directory, none)) {
+    if (is_there(sweep_.directory)) {
       std::fputs(fmt::format("job {}: {}\n", job, trouble.what()).c_str(), stderr);
     }
   }

@@ -182,8 +182,7 @@ void SlurmLauncher::submit(const std::vector<std::size_t>& jobs) {
 bool SlurmLauncher::has_ended(std::size_t job) const {
   // A failed job that is tried again has its old result until it begins: only the queue tells.
   if (options_.resume.retry_failed) return false;
-  std::error_code none;
-  return fs::exists(job_directory(sweep_, sweep_.jobs[job]) / "summary.json", none);
+  return is_there(job_directory(sweep_, sweep_.jobs[job]) / "summary.json");
 }
 
 Launcher::State SlurmLauncher::poll(double seconds) {

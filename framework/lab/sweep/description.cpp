@@ -7,6 +7,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <map>
@@ -19,24 +20,15 @@ constexpr std::size_t kMaxCombinations = 1'000'000;
 /// Of a group or a type that is swept: above the options that are swept beside it.
 constexpr Layer kChoiceLayer = kSweepLayer + 1;
 
-const std::vector<std::string>& block_names() {
-  static const std::vector<std::string> names{"grid", "zip", "list", "sobol", "where"};
-  return names;
-}
-
-bool begins_with(const std::string& text, const std::string& start) {
-  return text.compare(0, start.size(), start) == 0;
-}
-
 /// Whether `key` is that group, or lies in it.
 bool is_below(const std::string& key, const std::string& group) {
-  return key == group || begins_with(key, group + ".");
+  return key == group || boost::starts_with(key, group + ".");
 }
 
 Place place_of(const Axis& axis) { return axis.values.front().place; }
 
 void check_block(const std::string& name, const Place& place) {
-  const std::vector<std::string>& names = block_names();
+  static const std::vector<std::string> names{"grid", "zip", "list", "sobol", "where"};
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
   throw Error(place.text(), fmt::format("unknown option '{}' of sweep", name), suggestion(name, names));
 }

@@ -2,6 +2,7 @@
 #include "sweep/draft.hpp"
 
 #include "config/yaml.hpp"
+#include "record/files.hpp"
 
 #include <palpate/error.hpp>
 
@@ -78,8 +79,7 @@ void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
 void SweepDraft::replace_lost(const Sweep& sweep) const {
   for (const Job& job : sweep.jobs) {
     const fs::path directory = job_directory(sweep, job);
-    std::error_code none;
-    if (fs::exists(directory / "config.yaml", none)) continue;
+    if (is_there(directory / "config.yaml")) continue;
     refuse_link(directory.parent_path());
     make_inner_folder(directory);
     write_file(directory / "config.yaml", read_file(folder_ / "jobs" / job.id / "config.yaml"));

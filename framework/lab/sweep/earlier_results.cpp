@@ -52,8 +52,7 @@ bool EarlierResults::is_longer(std::size_t job, int taps) const {
 
 std::optional<Row> EarlierResults::kept(std::size_t job, int taps) const {
   const fs::path file = file_of(job_directory(sweep_, sweep_.jobs[job]), taps);
-  std::error_code none;
-  if (!fs::exists(file, none)) return std::nullopt;
+  if (!is_there(file)) return std::nullopt;
   std::optional<Row> row = parse_json_row(read_file(file));
   if (!row) return std::nullopt;
   const Scalar* of = row->find(kOf);

@@ -34,23 +34,18 @@ struct Range {
 
 Range parse_range(const Tree::Entry& entry) {
   const Tree& value = entry.value;
-  const std::string place = value.place.text();
+  const auto refuse = [&](const std::string& reason, const char* hint) {
+    throw Error(value.place.text(), entry.key + ": " + reason, hint);
+  };
+  const std::string shown = value.is_scalar() ? "'" + value.text + "'" : "this";
   const std::optional<Call> call = parse_call(value, entry.key, {"uniform", "log"}, kHowToDraw);
-  if (!call || call->bounds.size() != 2) {
-    throw Error(
-        place,
-        fmt::format("{}: {} is no continuous range", entry.key, value.is_scalar() ? "'" + value.text + "'" : "this"),
-        kHowToDraw);
-  }
+  if (!call || call->bounds.size() != 2) refuse(shown + " is no continuous range", kHowToDraw);
   Range range{call->name == "log", call->bounds[0].value, call->bounds[1].value, call->bounds[0].unit};
-  if (call->bounds[1].unit != range.unit) {
-    throw Error(place, fmt::format("{}: the ends of '{}' have unlike units", entry.key, value.text), kHowToDraw);
-  }
+  if (call->bounds[1].unit != range.unit) refuse("the ends of " + shown + " have unlike units", kHowToDraw);
   if (!(range.first < range.last) || (range.logarithmic && !(range.first > 0.0)) ||
       !std::isfinite(range.last - range.first)) {
-    throw Error(place, fmt::format("{}: '{}' is no range", entry.key, value.text),
-                range.logarithmic ? "both ends must be above 0, the first below the last"
-                                  : "the first end must lie below the last");
+    refuse(shown + " is no range", range.logarithmic ? "both ends must be above 0, the first below the last"
+                                                     : "the first end must lie below the last");
   }
   return range;
 }
