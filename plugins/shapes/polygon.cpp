@@ -24,10 +24,8 @@ bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
   const double d_side = cross(a, b, d);
   const double a_side = cross(c, d, a);
   const double b_side = cross(c, d, b);
-  if (((c_side > 0) != (d_side > 0)) && ((a_side > 0) != (b_side > 0)) && c_side != 0 && d_side != 0 && a_side != 0 &&
-      b_side != 0) {
-    return true;
-  }
+  const auto apart = [](double one, double other) { return one != 0 && other != 0 && (one > 0) != (other > 0); };
+  if (apart(a_side, b_side) && apart(c_side, d_side)) return true;
   return (c_side == 0 && within_box(a, b, c)) || (d_side == 0 && within_box(a, b, d)) ||
          (a_side == 0 && within_box(c, d, a)) || (b_side == 0 && within_box(c, d, b));
 }

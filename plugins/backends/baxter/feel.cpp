@@ -166,7 +166,10 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   const Contact contact = signed_tap.tap().result();
   if (contact.outcome != Outcome::contact) return contact;
   rest_from_above(column);
-  if (!believed(at_hover, force_at_rest(at(plan.hover)), motion.threshold)) {
+  // The two zeros must be the same. Sideways the robot's estimate is at its worst.
+  const Eigen::Vector3d moved = force_at_rest(at(plan.hover)) - at_hover;
+  const double most = std::max(kLeastMoved, 0.5 * motion.threshold);
+  if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop)) {
     return failed(Outcome::aborted,
                   "the force did not go back to its zero when the tool was clear: its zero moved during the tap, and "
                   "the contact may be none");
@@ -218,12 +221,6 @@ void Tapper::learn_moving(double difference) {
              ? ", too much to be taken for its zero: calibrate the robot (rosrun baxter_tools tare.py) or take a lower "
                "motion.speed"
              : ": taken for its zero while the arm comes down, from the next tap on"));
-}
-
-/// Whether two zeros, felt at rest before and after a tap, are the same. Sideways the robot's estimate is at its worst.
-bool Tapper::believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const {
-  const Eigen::Vector3d moved = after - before;
-  return std::abs(moved.z()) < std::max(kLeastMoved, 0.5 * threshold) && moved.head<2>().norm() < options_.force_stop;
 }
 
 /// The median of a few new readings, while the arm is where it is sent: one of them may be far off.

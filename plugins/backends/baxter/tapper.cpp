@@ -67,9 +67,7 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
                                                     : -1.0) {}
 
 Contact Tapper::failed(Outcome outcome, const std::string& reason, bool ends_run) {
-  Contact out{outcome, 0.0, 0.0, 0.0, reason};
-  out.ends_run = ends_run;
-  return out;
+  return {outcome, 0.0, 0.0, 0.0, reason, ends_run};
 }
 
 Contact Tapper::tap(const TapRequest& request) {

@@ -67,7 +67,6 @@ class Tapper {
   void retreat(const Path& up);
   void learn_moving(double difference);
   Eigen::Vector3d force_at_rest(const Joints& joints);
-  bool believed(const Eigen::Vector3d& before, const Eigen::Vector3d& after, double threshold) const;
   std::string recover(const Fault& fault);
   static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
   static Fault standstill();

@@ -209,8 +209,7 @@ void Child::find_kin() {
     for (const Process& one : all) {
       if (one.ended || kin_.count(one.pid) != 0) continue;
       const bool left_behind = one.parent == ::getpid() && carries(one.pid, mark_);
-      if (kin_.count(one.parent) == 0 && !left_behind) continue;
-      kin_.insert(one.pid);
+      if (kin_.count(one.parent) != 0 || left_behind) kin_.insert(one.pid);
     }
   }
 }

@@ -4,7 +4,6 @@
 #include <palpate/error.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,16 +14,14 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <fmt/printf.h>
+
 namespace palpate::process {
 namespace {
 
 constexpr const char* kNote = "\n[here %15lld bytes are left out]\n";
 
-std::string note_of(long long bytes) {
-  std::array<char, 64> line{};
-  std::snprintf(line.data(), line.size(), kNote, bytes);
-  return line.data();
-}
+std::string note_of(long long bytes) { return fmt::sprintf(kNote, bytes); }
 
 const auto kNoteLength = static_cast<off_t>(note_of(0).size());
 

@@ -93,12 +93,9 @@ double contact_height(const Scene& scene, const Effects& effects, double x, doub
       return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
     });
   }
-  if (effects.shaft) {
-    const double length = effects.shaft->length;
-    // Cheaper than a search, and nearly always enough: nothing is that tall.
-    if (scene.highest() - length > height) {
-      height = search(scene, x, y, effects.shaft->radius, height, [length](double) { return length; });
-    }
+  // The look at the highest is cheaper than a search, and nearly always enough: nothing is that tall.
+  if (effects.shaft && scene.highest() - effects.shaft->length > height) {
+    height = search(scene, x, y, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
   }
   return height;
 }

@@ -13,25 +13,13 @@
 #include <fmt/format.h>
 
 namespace palpate::backends {
-namespace {
-
-bool change_motion(const Effects& effects) {
-  return effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
-         effects.missed_contacts || effects.false_contacts;
-}
-
-bool any(const Effects& effects) {
-  return change_motion(effects) || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft;
-}
-
-}  // namespace
 
 Simulator::Simulator(const Options& options, const Context& context)
-    : options_(options),
-      context_(context),
-      scene_(context.scene),
-      perfect_(!any(scene_.effects())),
-      moves_(change_motion(scene_.effects())) {
+    : options_(options), context_(context), scene_(context.scene) {
+  const Effects& effects = scene_.effects();
+  moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
+           effects.missed_contacts || effects.false_contacts;
+  perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft);
   if (scene_.highest() >= scene_.desk() + options.motion.hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",

@@ -26,27 +26,20 @@ double Model::total(double value) const {
 
 Model model_of(const FitProblem& problem, bool fit_means) {
   Model model{problem.points, {}, {}, {}, problem.kernel, problem.mean_ratio, {}, fit_means, {}};
-  std::vector<double> centres;
-  std::vector<double> scales;
+  const bool open = fit_means || problem.mean_ratio > 0.0;
   for (std::size_t i = 0; i < problem.outputs.size(); ++i) {
     const FitOutput& output = problem.outputs[i];
-    const bool open = fit_means || problem.mean_ratio > 0.0;
     const double centre = open ? output.targets.mean() : output.mean;
     const double scale = (output.targets.array() - centre).abs().maxCoeff();
     if (!std::isfinite(scale) || !(scale > kRounding * output.targets.cwiseAbs().maxCoeff())) continue;
+    const Eigen::Index last = model.outputs();
     model.used.push_back(i);
-    centres.push_back(centre);
-    scales.push_back(scale);
-  }
-  const auto outputs = static_cast<Eigen::Index>(model.used.size());
-  model.centres = Eigen::Map<const Eigen::VectorXd>(centres.data(), outputs);
-  model.scales = Eigen::Map<const Eigen::VectorXd>(scales.data(), outputs);
-  model.targets.resize(problem.points.rows(), outputs);
-  model.means.resize(outputs);
-  for (Eigen::Index i = 0; i < outputs; ++i) {
-    const FitOutput& output = problem.outputs[model.used[static_cast<std::size_t>(i)]];
-    model.targets.col(i) = (output.targets.array() - model.centres(i)) / model.scales(i);
-    model.means(i) = (output.mean - model.centres(i)) / model.scales(i);
+    model.targets.conservativeResize(problem.points.rows(), last + 1);
+    model.targets.col(last) = (output.targets.array() - centre) / scale;
+    for (Eigen::VectorXd* one : {&model.centres, &model.scales, &model.means}) one->conservativeResize(last + 1);
+    model.centres(last) = centre;
+    model.scales(last) = scale;
+    model.means(last) = (output.mean - centre) / scale;
   }
   return model;
 }

@@ -3,9 +3,12 @@
 // sections 3.4 and 3.9): a latent function f ~ GP(mean, signal^2 k), and p(on | x) = Phi(f(x)).
 #pragma once
 
+#include <palpate/footprint.hpp>
 #include <palpate/kernel.hpp>
-#include <palpate/options.hpp>
+#include <palpate/plugin.hpp>
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace palpate::footprints {
@@ -70,6 +73,39 @@ class Laplace {
   Eigen::MatrixXd factor_;       ///< lower, of I + W^1/2 K W^1/2
   double log_evidence_ = 0.0;
   int steps_ = 0;
+};
+
+/// The footprint of all touches so far.
+class Classifier final : public Footprint {
+ public:
+  using Options = LaplaceOptions;
+  Classifier(const Options& options, const Context& context)
+      : kernel_(context.create<Kernel>(options.kernel)), settings_{options.signal, options.prior_mean} {}
+
+  void add(const Touch& touch) override {
+    points_.conservativeResize(points_.rows() + 1, 2);
+    points_.bottomRows<1>() << touch.place.x, touch.place.y;
+    on_.push_back(touch.on);
+    posterior_.reset();
+  }
+
+  void probability(const PointsView& places, VectorOut out) override {
+    if (!posterior_) posterior_.emplace(*kernel_, settings_, points_, on_);
+    posterior_->probability(places, out);
+  }
+
+  std::vector<FootprintNumber> numbers() const override {
+    const double evidence =
+        posterior_ ? posterior_->log_evidence() : Laplace(*kernel_, settings_, points_, on_).log_evidence();
+    return {{"log_evidence", evidence}};
+  }
+
+ private:
+  std::shared_ptr<Kernel> kernel_;
+  LaplaceSettings settings_;
+  Points points_{0, 2};
+  std::vector<bool> on_;
+  std::optional<Laplace> posterior_;  ///< of all touches; none between one and the next question
 };
 
 }  // namespace palpate::footprints

@@ -7,12 +7,6 @@
 #include <limits>
 
 namespace palpate::footprints {
-namespace {
-
-/// Whether a piece is large enough that another may be taken from it.
-bool may_lose(const Piece& piece, double smallest) { return piece.a >= smallest; }
-
-}  // namespace
 
 double Piece::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
@@ -114,7 +108,8 @@ Outline OutlinePrior::draw(Random& random) const {
     out.first = draw_piece(random);
     if (kind >= settings_.two + settings_.without) return out;
     out.kind = kind < settings_.two ? Outline::Kind::two : Outline::Kind::without;
-    if (out.kind == Outline::Kind::without && !may_lose(out.first, settings_.smallest)) continue;
+    // Nothing can be taken from a piece that is smaller.
+    if (out.kind == Outline::Kind::without && out.first.a < settings_.smallest) continue;
     out.second = draw_second(out.kind, out.first, random);
     return out;
   }
@@ -143,7 +138,7 @@ double OutlinePrior::centre_density(const Piece& piece) const {
 double OutlinePrior::second_centre_density(const Outline& outline) const {
   if (outline.kind == Outline::Kind::two) return centre_density(outline.second);
   const Piece& first = outline.first;
-  if (!may_lose(first, settings_.smallest)) return 0.0;
+  if (first.a < settings_.smallest) return 0.0;  // as in draw()
   if (2.0 * outline.second.b < settings_.smallest || outline.second.a > first.a) return 0.0;
   return first.contains(outline.second.x, outline.second.y) ? 1.0 / first.extent() : 0.0;
 }

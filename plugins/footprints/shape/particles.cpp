@@ -291,7 +291,7 @@ double Particles::add(const Touch& touch) {
     sum += weight;
     sum_of_squares += weight * weight;
   }
-  resample(weights);
+  resample(weights, sum);
   const auto count = static_cast<double>(particles_.size());
   const double left = sum * sum / (sum_of_squares * count);
   const int moves = std::min(settings_.most_moves, static_cast<int>(std::ceil(settings_.moves / left)));
@@ -302,9 +302,7 @@ double Particles::add(const Touch& touch) {
 }
 
 /// Systematic resampling: one draw, and each outline comes as often as its weight says but for less than one.
-void Particles::resample(const std::vector<double>& weights) {
-  double sum = 0.0;
-  for (const double weight : weights) sum += weight;
+void Particles::resample(const std::vector<double>& weights, double sum) {
   const double step = sum / static_cast<double>(weights.size());
   const double first = random_.uniform() * step;
   std::vector<Particle> drawn;

@@ -51,7 +51,7 @@ class Particles {
   const std::vector<Particle>& particles() const { return particles_; }
 
  private:
-  void resample(const std::vector<double>& weights);
+  void resample(const std::vector<double>& weights, double sum);
   void move(Particle& particle);
 
   OutlinePrior prior_;

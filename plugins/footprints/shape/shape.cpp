@@ -4,9 +4,6 @@
 #include "../classifier/laplace.hpp"
 #include "particles.hpp"
 
-#include <palpate/footprint.hpp>
-#include <palpate/plugin.hpp>
-
 #include <string>
 
 namespace palpate::footprints {
@@ -44,27 +41,21 @@ class Shape final : public Footprint {
   Shape(const Options& options, const Context& context)
       : mistaken_(options.mistaken),
         contradictions_(options.contradictions),
-        kernel_(context.create<Kernel>(options.kernel)),
-        settings_{options.signal, options.prior_mean},
+        classifier_(options, context),
         particles_(prior(options, context.scene.area()), {static_cast<int>(options.particles), options.mistaken},
                    context.random("footprint/shape")) {}
 
   void add(const Touch& touch) override {
-    points_.conservativeResize(points_.rows() + 1, 2);
-    points_.bottomRows<1>() << touch.place.x, touch.place.y;
-    on_.push_back(touch.on);
+    ++touches_;
+    classifier_.add(touch);
     if (handed_over_at_ > 0) return;
     particles_.add(touch);
-    const auto touches = static_cast<int>(on_.size());
-    const double unexpected = particles_.mean_mistakes() - mistaken_ * touches;
-    if (unexpected > contradictions_) handed_over_at_ = touches;
+    const double unexpected = particles_.mean_mistakes() - mistaken_ * touches_;
+    if (unexpected > contradictions_) handed_over_at_ = touches_;
   }
 
   void probability(const PointsView& places, VectorOut out) override {
-    if (handed_over_at_ > 0) {
-      Laplace(*kernel_, settings_, points_, on_).probability(places, out);
-      return;
-    }
+    if (handed_over_at_ > 0) return classifier_.probability(places, out);
     particles_.count_inside(places, out);
     out /= particles_.size();
   }
@@ -94,11 +85,9 @@ class Shape final : public Footprint {
 
   double mistaken_;
   double contradictions_;
-  std::shared_ptr<Kernel> kernel_;
-  LaplaceSettings settings_;
+  Classifier classifier_;
   Particles particles_;
-  Points points_{0, 2};
-  std::vector<bool> on_;
+  int touches_ = 0;
   int handed_over_at_ = 0;  ///< touches; 0: not yet
 };
 

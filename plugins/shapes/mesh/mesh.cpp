@@ -28,10 +28,82 @@ using Eigen::Vector3d;
 class Mesh final : public Shape {
  public:
   using Options = MeshOptions;
-  Mesh(const Options& options, const Context&);
+  Mesh(const Options& options, const Context&) : mesh_(read_surface(options)) {
+    Box all;
+    for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
+      if (i % kFew == 0) boxes_.emplace_back();
+      boxes_.back().extend(mesh_.points[i]);
+      all.extend(mesh_.points[i]);
+    }
+    centre_ = all.center();
+    radius_ = 1.001 * (all.max() - centre_).norm();
 
-  double first_hit(const Line& line) const override;
-  double support(const Vector3d& direction) const override;
+    device_.reset(rtcNewDevice("threads=1,verbose=0"), rtcReleaseDevice);
+    check_embree();
+    scene_.reset(rtcNewScene(device_.get()), rtcReleaseScene);
+    // Else a line could slip through between two triangles.
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh_.points.size()));
+    auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh_.corners.size()));
+    check_embree();
+    for (const Vector3d& point : mesh_.points) {
+      for (Eigen::Index k = 0; k < 3; ++k) *points++ = static_cast<float>(point(k) - centre_(k));
+    }
+    for (const auto& triangle : mesh_.corners) corners = std::copy(triangle.begin(), triangle.end(), corners);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_.get(), geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_.get());
+    check_embree();
+  }
+
+  /// Which triangle is met is found in single precision around the middle of the mesh, within 1e-6 of its size; where
+  /// on that triangle is computed in double precision.
+  double first_hit(const Line& line) const override {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    // The ray begins where the line enters a ball around the mesh, so that its numbers are small.
+    const double begin = (centre_ - line.origin).dot(line.direction) - radius_;
+    const Eigen::Vector3f from = (line.origin + begin * line.direction - centre_).cast<float>();
+    const Eigen::Vector3f along = line.direction.cast<float>();
+    const auto length = static_cast<float>(2.1 * radius_);
+    RTCRayHit ray{{from.x(), from.y(), from.z(), 0, along.x(), along.y(), along.z(), 0, length, ~0U, 0, 0}, {}};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if PALPATE_EMBREE == 3
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_.get(), &context, &ray);
+#else
+    rtcIntersect1(scene_.get(), &ray);
+#endif
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kInfinity;
+
+    const auto& triangle = mesh_.corners[ray.hit.primID];
+    const Vector3d a = mesh_.points[triangle[0]] - line.origin;
+    const Vector3d b = mesh_.points[triangle[1]] - line.origin;
+    const Vector3d c = mesh_.points[triangle[2]] - line.origin;
+    const Vector3d normal = (b - a).cross(c - a);
+    // A triangle along the line, a wall, has no single point on it, but the hit lies between its ends.
+    const auto [least, most] = std::minmax({a.dot(line.direction), b.dot(line.direction), c.dot(line.direction)});
+    const double slope = normal.dot(line.direction);
+    return slope == 0.0 ? least : std::clamp(normal.dot(a) / slope, least, most);
+  }
+
+  /// Without looking at all points: the box around a few tells whether one of them can be the best.
+  double support(const Vector3d& direction) const override {
+    const std::vector<Vector3d>& points = mesh_.points;
+    double best = direction.dot(points.front());
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      const Vector3d low = direction.cwiseProduct(boxes_[i].min());
+      const Vector3d high = direction.cwiseProduct(boxes_[i].max());
+      if (low.cwiseMax(high).sum() <= best) continue;
+      const std::size_t end = std::min((i + 1) * kFew, points.size());
+      for (std::size_t j = i * kFew; j < end; ++j) best = std::max(best, direction.dot(points[j]));
+    }
+    return best;
+  }
 
  private:
   void check_embree() const {
@@ -50,89 +122,6 @@ class Mesh final : public Shape {
   std::shared_ptr<RTCDeviceTy> device_;
   std::shared_ptr<RTCSceneTy> scene_;
 };
-
-Mesh::Mesh(const Options& options, const Context&) : mesh_(read_surface(options)) {
-  Box all;
-  for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
-    if (i % kFew == 0) boxes_.emplace_back();
-    boxes_.back().extend(mesh_.points[i]);
-    all.extend(mesh_.points[i]);
-  }
-  centre_ = all.center();
-  radius_ = 1.001 * (all.max() - centre_).norm();
-
-  device_.reset(rtcNewDevice("threads=1,verbose=0"), rtcReleaseDevice);
-  check_embree();
-  scene_.reset(rtcNewScene(device_.get()), rtcReleaseScene);
-  // Else a line could slip through between two triangles.
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-  const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                             3 * sizeof(float), mesh_.points.size()));
-  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                 3 * sizeof(unsigned), mesh_.corners.size()));
-  check_embree();
-  for (const Vector3d& point : mesh_.points) {
-    for (Eigen::Index k = 0; k < 3; ++k) *points++ = static_cast<float>(point(k) - centre_(k));
-  }
-  for (const auto& triangle : mesh_.corners) corners = std::copy(triangle.begin(), triangle.end(), corners);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_.get());
-  check_embree();
-}
-
-/// Which triangle is met is found in single precision around the middle of the mesh, within 1e-6 of its size; where on
-/// that triangle is computed in double precision.
-double Mesh::first_hit(const Line& line) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  // The ray begins where the line enters a ball around the mesh, so that its numbers are small.
-  const double begin = (centre_ - line.origin).dot(line.direction) - radius_;
-  const Vector3d origin = line.origin + begin * line.direction - centre_;
-  RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(origin.x());
-  ray.ray.org_y = static_cast<float>(origin.y());
-  ray.ray.org_z = static_cast<float>(origin.z());
-  ray.ray.dir_x = static_cast<float>(line.direction.x());
-  ray.ray.dir_y = static_cast<float>(line.direction.y());
-  ray.ray.dir_z = static_cast<float>(line.direction.z());
-  ray.ray.tfar = static_cast<float>(2.1 * radius_);
-  ray.ray.mask = ~0U;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if PALPATE_EMBREE == 3
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene_.get(), &context, &ray);
-#else
-  rtcIntersect1(scene_.get(), &ray);
-#endif
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kInfinity;
-
-  const auto& triangle = mesh_.corners[ray.hit.primID];
-  const Vector3d a = mesh_.points[triangle[0]] - line.origin;
-  const Vector3d b = mesh_.points[triangle[1]] - line.origin;
-  const Vector3d c = mesh_.points[triangle[2]] - line.origin;
-  const Vector3d normal = (b - a).cross(c - a);
-  // A triangle along the line, a wall, has no single point on it, but the hit lies between its ends.
-  const auto [least, most] = std::minmax({a.dot(line.direction), b.dot(line.direction), c.dot(line.direction)});
-  const double slope = normal.dot(line.direction);
-  return slope == 0.0 ? least : std::clamp(normal.dot(a) / slope, least, most);
-}
-
-/// Without looking at all points: the box around a few tells whether one of them can be the best.
-double Mesh::support(const Vector3d& direction) const {
-  const std::vector<Vector3d>& points = mesh_.points;
-  double best = direction.dot(points.front());
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    const Vector3d low = direction.cwiseProduct(boxes_[i].min());
-    const Vector3d high = direction.cwiseProduct(boxes_[i].max());
-    if (low.cwiseMax(high).sum() <= best) continue;
-    const std::size_t end = std::min((i + 1) * kFew, points.size());
-    for (std::size_t j = i * kFew; j < end; ++j) best = std::max(best, direction.dot(points[j]));
-  }
-  return best;
-}
 
 PALPATE_PLUGIN(Shape, Mesh, "mesh", "triangles from an STL, OBJ or PLY file")
 

@@ -25,9 +25,7 @@ std::string place(const Vector3d& point) {
 }
 
 Vector3d upright(const std::array<float, 3>& corner, bool y_is_up) {
-  const double x = corner[0];
-  const double y = corner[1];
-  const double z = corner[2];
+  const auto [x, y, z] = corner;
   return y_is_up ? Vector3d(x, -z, y) : Vector3d(x, y, z);
 }
 

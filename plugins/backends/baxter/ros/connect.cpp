@@ -179,7 +179,16 @@ class Visit {
     for (std::size_t i = 0; i < came.size(); ++i) {
       if (!came[i]) return why_silent(Link::needed()[i], graph, link.read().malformed);
     }
-    return why_nobody_listens(graph);
+    const auto& nodes = Graph::of(graph.subscribers, kCommandTopic);
+    if (nodes.empty()) {
+      return trouble(kCommandTopic, "nobody listens to it",
+                     "the robot may be starting; set dry_run: true to do without");
+    }
+    const std::string name = network_.own_name.empty() ? boost::asio::ip::host_name() : network_.own_name;
+    return trouble(
+        kCommandTopic,
+        listed(nodes) + " listens to it but has not come to this machine, which it is told to find as " + name,
+        "set ROS_IP to this machine's address on the robot's network");
   }
 
   Error why_silent(const Topic& needed, const Graph& graph, const std::string& malformed) const {
@@ -190,7 +199,13 @@ class Visit {
       if (!place) continue;
       try {
         const Offer offer = ask_publisher(*place, needed.name, within(kOnePublisher, until(kTold)));
-        if (offer.md5 != needed.md5) return other_message(needed, node, offer);
+        if (offer.md5 != needed.md5) {
+          return trouble(needed.name,
+                         fmt::format("{} sends {} with md5 sum {}, this driver knows {} with {}", node, offer.type,
+                                     offer.md5, needed.type, needed.md5),
+                         offer.md5 == kOldState ? "which came with the robot's software 1.2: update the robot"
+                                                : "the robot's software must be 1.2");
+        }
         mute.push_back(node);
       } catch (const Unreached& reason) {
         why = no_publisher(needed.name, node, *place, reason);
@@ -202,31 +217,10 @@ class Visit {
                    "look at it with rostopic echo; the robot may be starting");
   }
 
-  static Error other_message(const Topic& needed, const std::string& node, const Offer& offer) {
-    return trouble(needed.name,
-                   fmt::format("{} sends {} with md5 sum {}, this driver knows {} with {}", node, offer.type, offer.md5,
-                               needed.type, needed.md5),
-                   offer.md5 == kOldState ? "which came with the robot's software 1.2: update the robot"
-                                          : "the robot's software must be 1.2");
-  }
-
   static Error no_publisher(const std::string& topic, const std::string& node, const Place& place,
                             const Unreached& reason) {
     return unreachable(topic, "its publisher " + node, place, reason,
                        "start it again, or remove what is left of it with rosnode cleanup");
-  }
-
-  Error why_nobody_listens(const Graph& graph) const {
-    const auto& nodes = Graph::of(graph.subscribers, kCommandTopic);
-    if (nodes.empty()) {
-      return trouble(kCommandTopic, "nobody listens to it",
-                     "the robot may be starting; set dry_run: true to do without");
-    }
-    const std::string name = network_.own_name.empty() ? boost::asio::ip::host_name() : network_.own_name;
-    return trouble(
-        kCommandTopic,
-        listed(nodes) + " listens to it but has not come to this machine, which it is told to find as " + name,
-        "set ROS_IP to this machine's address on the robot's network");
   }
 
   Wishes wishes_;

@@ -96,19 +96,6 @@ bool is_sound(std::string_view xml) {
   return open.empty();
 }
 
-/// The third part of ROS' answers, whose first is 1 for success; an invalid value if it was not a success.
-XmlRpcValue read_answer(const std::string& xml) {
-  const std::size_t start = xml.find("<value>");
-  int offset = static_cast<int>(start);
-  XmlRpcValue parts;
-  if (start == std::string::npos || xml.find("<fault>") != std::string::npos || !is_sound(xml) ||
-      !parts.fromXml(xml, &offset) || parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
-    throw no_ros();
-  }
-  if (static_cast<int>(parts[0]) != 1) return {};
-  return parts[2];
-}
-
 /// The answer to a question, as it came.
 std::string ask(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
                 Deadline deadline) {
@@ -122,12 +109,20 @@ std::string ask(const Address& address, const std::string& method, const std::ve
   return http_body(wire, deadline);
 }
 
-/// What `read` makes of an answer, with what the library throws at those of another form.
+/// What `read` makes of the third part of an answer of ROS, whose first is 1 for success, or of an invalid value if it
+/// was none; with what the library throws at those of another form.
 template <class Read>
 auto understood(const std::string& xml, const Read& read) {
+  const std::size_t start = xml.find("<value>");
+  int offset = static_cast<int>(start);
   try {
-    XmlRpcValue answer = read_answer(xml);
-    return read(answer);
+    XmlRpcValue parts;
+    if (start == std::string::npos || xml.find("<fault>") != std::string::npos || !is_sound(xml) ||
+        !parts.fromXml(xml, &offset) || parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
+      throw no_ros();
+    }
+    XmlRpcValue failure;
+    return read(static_cast<int>(parts[0]) == 1 ? parts[2] : failure);
   } catch (const XmlRpc::XmlRpcException& exception) {
     throw Unreached(Why::nonsense, "its answer makes no sense: " + exception.getMessage());
   }
