@@ -180,8 +180,8 @@ std::string tics(const std::vector<std::string>& values) {
   return "(" + out + ")";
 }
 
-/// Of two swept keys but the seed that have two values or more; empty where there are none.
-std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& results) {
+/// Of two swept keys but the seed that have two values or more; none where there are none.
+std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   if (keys.size() < 2) return {};
   const Axis y = axis_of(sweep, keys[0]);
@@ -252,9 +252,7 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
                  " matrix using 1:2:3 with image pixels, \\\n"
                  "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
   sheet.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);
-  std::vector<Figure> out;
-  out.push_back({"heat_map", std::move(sheet)});
-  return out;
+  return Figure{"heat_map", std::move(sheet)};
 }
 
 }  // namespace
@@ -264,7 +262,7 @@ Figures write_sweep_figures(const Sweep& sweep) {
   if (std::none_of(results.begin(), results.end(), is_done))
     throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
   std::vector<Figure> figures{distributions_figure(sweep, results)};
-  for (Figure& one : heat_maps(sweep, results)) figures.push_back(std::move(one));
+  if (auto map = heat_map(sweep, results)) figures.push_back(std::move(*map));
   return {write_gallery(sweep.directory / "figures", figures), {}};
 }
 

@@ -11,8 +11,6 @@
 #include "report/page/json.hpp"
 #include "report/page/page.hpp"
 
-#include <palpate/error.hpp>
-
 #include <algorithm>
 #include <map>
 
