@@ -43,12 +43,7 @@ SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights
       mesh.normals.row(i) = Eigen::RowVector3d(fall(heights, candidates.xs, i, column, columns, 1),
                                                fall(heights, candidates.ys, i, row, rows, columns), 1.0)
                                 .normalized();
-    }
-  }
-  mesh.triangles.reserve(static_cast<std::size_t>(std::max(0, 2 * (columns - 1) * (rows - 1))));
-  for (int row = 0; row + 1 < rows; ++row) {
-    for (int column = 0; column + 1 < columns; ++column) {
-      const int i = row * columns + column;
+      if (row + 1 == rows || column + 1 == columns) continue;
       mesh.triangles.push_back({i, i + 1, i + columns + 1});
       mesh.triangles.push_back({i, i + columns + 1, i + columns});
     }

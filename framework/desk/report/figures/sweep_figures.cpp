@@ -43,14 +43,6 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
   return groups;
 }
 
-/// The name in at most three lines.
-std::string in_lines(const std::string& name) {
-  std::vector<std::string> lines = wrapped(name, kLongestName);
-  if (lines.size() > 3) lines[2] += "...";
-  lines.resize(std::min<std::size_t>(lines.size(), 3));
-  return fmt::format("{}", fmt::join(lines, "\n"));
-}
-
 /// An axis for these values, with few enough tics for their numbers.
 std::string value_axis(const std::vector<double>& values, double factor) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -138,10 +130,11 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   sheet.text(words, 24, 42, 11);
   const double step = height / static_cast<double>(std::max<std::size_t>(groups.size(), 1));
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::string name = in_lines(groups[g].name);
-    const auto lines = 1 + std::count(name.begin(), name.end(), '\n');
+    std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
+    if (lines.size() > 3) lines[2] += "...";
+    lines.resize(std::min<std::size_t>(lines.size(), 3));
     const double middle = kTop + step * (static_cast<double>(g) + 0.5);
-    sheet.text(name, 24, middle - 8.8 * static_cast<double>(lines), 11);
+    sheet.text(fmt::format("{}", fmt::join(lines, "\n")), 24, middle - 8.8 * static_cast<double>(lines.size()), 11);
   }
   for (std::size_t m = 0; m < metrics.size(); ++m) {
     std::vector<std::vector<double>> values;
