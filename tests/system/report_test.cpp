@@ -22,9 +22,9 @@ class Report : public Shell {
     EXPECT_EQ(ended.out, (directory / "report.html").string() + "\n");
     const Ended unpacked = test::run_program(
         {"python3", "-c",
-         "import base64, gzip, re, sys\n"
+         "import base64, re, sys, zlib\n"
          "packed = re.search(r'id=\"data\">([^<]*)<', open(sys.argv[1], encoding='utf-8').read()).group(1)\n"
-         "sys.stdout.write(gzip.decompress(base64.b64decode(packed)).decode())",
+         "sys.stdout.write(zlib.decompress(base64.b64decode(packed)).decode())",
          (directory / "report.html").string()},
         here());
     EXPECT_EQ(unpacked.status, 0) << unpacked.err;

@@ -52,22 +52,6 @@ void draw(Random& random, std::uint64_t count, const Take& take) {
   if (count % 2 == 1) at(random.bits() >> 32);
 }
 
-/// The sums of samples drawn from `distances` with replacement.
-std::vector<double> resampled_sums(const std::vector<double>& distances) {
-  Random random(0, "bootstrap");
-  std::vector<double> sums(resamples_of(distances.size()));
-  for (double& sum : sums) draw(random, distances.size(), [&](std::size_t i) { sum += distances[i]; });
-  return sums;
-}
-
-/// quantile() of sums that are not sorted: the two that it looks at are put where they belong.
-double quantile_of(std::vector<double>& sums, double share) {
-  const auto below = sums.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sums.size() - 1));
-  std::nth_element(sums.begin(), below, sums.end());
-  if (below + 1 != sums.end()) std::iter_swap(below + 1, std::min_element(below + 1, sums.end()));
-  return quantile(sums, share);
-}
-
 double normal_share(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
 /// How far the median of resampled values is from their centre, in standard deviations. Those within `rounding` of it
@@ -101,16 +85,16 @@ double share_below_end(double side, std::size_t count, double bias, double accel
   return normal_share(bias + shifted / (1.0 - acceleration * shifted));
 }
 
-/// BCa of resampled values, whose places in order it may change, about what was estimated.
+/// BCa of resampled values, which it sorts, about what was estimated.
 MeanInterval interval_of(std::vector<double>& values, double centre, double rounding,
                          const std::vector<double>& influences) {
+  std::sort(values.begin(), values.end());
   const double bias = bias_of(values, centre, rounding);
   const double acceleration = acceleration_of(influences);
   const auto end = [&](double side) {
-    return quantile_of(values, share_below_end(side, influences.size(), bias, acceleration));
+    return quantile(values, share_below_end(side, influences.size(), bias, acceleration));
   };
-  const double low = end(-1.0);
-  return {low, end(1.0)};
+  return {end(-1.0), end(1.0)};
 }
 
 }  // namespace
@@ -122,7 +106,9 @@ MeanEstimate bootstrap_mean(const std::vector<double>& values) {
   const Centred centred = centre(values, out.mean);
   if (centred.unit == 0.0 || !std::isfinite(centred.unit)) return out;
   const auto count = static_cast<double>(values.size());
-  std::vector<double> sums = resampled_sums(centred.distances);
+  Random random(0, "bootstrap");
+  std::vector<double> sums(resamples_of(values.size()));
+  for (double& sum : sums) draw(random, values.size(), [&](std::size_t i) { sum += centred.distances[i]; });
   const MeanInterval ends = interval_of(sums, 0.0, 1e-12 * count, centred.distances);
   const double low = ends.low * centred.unit / count;
   const double high = ends.high * centred.unit / count;

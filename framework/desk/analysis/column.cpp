@@ -53,19 +53,16 @@ CellNumber number_of(const Scalar* cell) {
   return read.ec == std::errc() && read.ptr == end ? CellNumber{number} : CellNumber{{}, true};
 }
 
-std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option) {
-  const CellNumber number = number_of(row.find(column));
-  if (!number.is_text) return number.value;
-  throw Error("command line",
-              fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row.cell(column)),
-              "name one that can be averaged");
-}
-
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option) {
   if (row == nullptr) return {Fate::unfinished};
   if (!is_done(*row)) return {Fate::failed};
-  const std::optional<double> value = number_in(*row, column, option);
-  return value ? JobValue{Fate::counted, *value} : JobValue{Fate::without_value};
+  const CellNumber number = number_of(row->find(column));
+  if (number.is_text) {
+    throw Error("command line",
+                fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row->cell(column)),
+                "name one that can be averaged");
+  }
+  return number.value ? JobValue{Fate::counted, *number.value} : JobValue{Fate::without_value};
 }
 
 bool is_done(const Row& row) { return row.text("status") == "done"; }

@@ -36,9 +36,6 @@ struct CellNumber {
 };
 CellNumber number_of(const Scalar* cell);
 
-/// That of a row. Throws Error, of the command line, for other text.
-std::optional<double> number_in(const Row& row, const std::string& column, const std::string& option);
-
 /// What became of a job of which a column is asked. Where a pair of jobs is, it has the fate that stands first.
 enum class Fate {
   left_out,  ///< by a condition, which fails where it asks for what a job has not
@@ -54,7 +51,8 @@ struct JobValue {
   double value = 0.0;  ///< if it counts
 };
 
-/// The value of a job by its row, null for one that has not ended. Throws Error as number_in().
+/// The value of a job by its row, null for one that has not ended. Throws Error, of the command
+/// line, where `option` names a column that holds other text.
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option);
 
 /// Some jobs, or pairs of them, by what became of each. What is left out counts as that alone, however it ended.

@@ -68,12 +68,6 @@ std::string text_of(const std::string& name, const Scalar& value) {
   return csv_cell(value);
 }
 
-/// A list may hold the same job more than once: each is the counterpart of its like.
-void insert(Outcomes& outcomes, Values pairing, const JobValue& outcome) {
-  pairing.emplace_back();
-  for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat) pairing.back() = std::to_string(repeat);
-}
-
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, Comparison& out) {
@@ -100,23 +94,20 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       }
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
-      insert(groups.back().outcomes, std::move(pairing), outcome);
+      // A list may hold the same job more than once: each is the counterpart of its like.
+      pairing.emplace_back();
+      Outcomes& outcomes = groups.back().outcomes;
+      for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat)
+        pairing.back() = std::to_string(repeat);
     }
   }
   return groups;
 }
 
-/// An option that the plugin of a group does not have is named as such: nothing would look like a slip.
-Values shown(const Values& values) {
-  Values out = values;
-  std::replace(out.begin(), out.end(), std::string(), std::string("(none)"));
-  for (std::string& one : out) one = one_line(one);
-  return out;
-}
-
 ComparedGroup summarise(const Collected& collected, bool only_mean) {
   ComparedGroup out;
-  out.values = shown(collected.values);
+  // An option that the plugin of a group does not have is named as such: nothing would look like a slip.
+  for (const std::string& one : collected.values) out.values.push_back(one.empty() ? "(none)" : one_line(one));
   out.name = fmt::format("{}", fmt::join(out.values, ", "));
   std::vector<double> values;
   for (const auto& [pairing, outcome] : collected.outcomes) {
@@ -131,12 +122,6 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   out.low_10 = quantile(values, 0.1);
   out.high_90 = quantile(values, 0.9);
   return out;
-}
-
-/// None where the group has no such job.
-JobValue value_at(const Outcomes& outcomes, const Values& pairing) {
-  const auto found = outcomes.find(pairing);
-  return found != outcomes.end() ? found->second : JobValue{Fate::without_partner};
 }
 
 ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second, bool ratio) {
@@ -158,7 +143,10 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
       out.lost.add(fate);
     }
   };
-  for (const auto& [pairing, outcome] : a) add(outcome, value_at(b, pairing));
+  for (const auto& [pairing, outcome] : a) {
+    const auto partner = b.find(pairing);
+    add(outcome, partner != b.end() ? partner->second : JobValue{Fate::without_partner});
+  }
   for (const auto& [pairing, outcome] : b) {
     if (a.count(pairing) == 0) add({Fate::without_partner}, outcome);
   }
@@ -202,17 +190,12 @@ std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::s
 
 /// Adds to `apart` the places in the pairing of which the two groups have no value in common.
 void find_apart(const Outcomes& a, const Outcomes& b, std::set<std::size_t>& apart) {
-  const auto values_at = [](const Outcomes& outcomes, std::size_t place) {
-    std::set<std::string> values;
-    for (const auto& [pairing, outcome] : outcomes) values.insert(pairing[place]);
-    return values;
-  };
   const std::size_t places = a.begin()->first.size() - 1;  // the last one tells equal jobs apart
   for (std::size_t place = 0; place < places; ++place) {
-    const std::set<std::string> others = values_at(b, place);
-    const std::set<std::string> own = values_at(a, place);
-    if (std::none_of(own.begin(), own.end(), [&](const std::string& one) { return others.count(one) > 0; }))
-      apart.insert(place);
+    std::set<std::string> values;
+    for (const auto& [pairing, outcome] : a) values.insert(pairing[place]);
+    const auto is_new = [&](const auto& job) { return values.count(job.first[place]) == 0; };
+    if (std::all_of(b.begin(), b.end(), is_new)) apart.insert(place);
   }
 }
 

@@ -30,7 +30,7 @@ struct JobGroup {
 std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
                                  const std::vector<std::string>& keys);
 
-/// The values of a column in those jobs that are done and have one, ascending. Throws Error as number_in().
+/// The values of a column in those jobs that are done and have one, ascending. Throws Error as value_of_job().
 std::vector<double> values_of(const JobGroup& group, const std::string& column, const std::string& option);
 
 /// The swept keys that make a setting: all but the seed.

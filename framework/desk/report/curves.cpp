@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/curves.hpp"
 
-#include "config/quantity.hpp"
 #include "record/fields.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +9,6 @@
 #include <array>
 #include <iterator>
 #include <limits>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -23,19 +21,14 @@ Curve curve_of(const History& history, const std::string& name, const Get& get) 
   return curve;
 }
 
-using Numbers = std::vector<std::pair<std::string, double>>;
-
 /// A curve for each name that the last moment has.
-template <class NumbersAt>
-std::vector<Curve> named_curves(const History& history, const NumbersAt& numbers_at) {
+template <class RowAt>
+std::vector<Curve> named_curves(const History& history, const RowAt& row_at) {
   std::vector<Curve> out;
-  for (const auto& [name, last] : numbers_at(history.moments.back())) {
-    out.push_back(curve_of(history, name, [&, wanted = name](const Moment& moment) -> std::optional<double> {
-      for (const auto& [known, value] : numbers_at(moment)) {
-        if (known == wanted) return value;
-      }
-      return std::nullopt;
-    }));
+  const Row last = row_at(history.moments.back());
+  for (const auto& field : last.fields) {
+    const std::string& name = field.first;
+    out.push_back(curve_of(history, name, [&](const Moment& moment) { return row_at(moment).number(name); }));
   }
   return out;
 }
@@ -48,34 +41,36 @@ constexpr std::array<NamedState, 3> kStates{{{"heights", &RunResult::height_proc
                                              {"labels", &RunResult::weight_process},
                                              {"object", &RunResult::surface_process}}};
 
-Numbers likelihoods_of(const Moment& moment) {
-  Numbers out;
+Row likelihoods_of(const Moment& moment) {
+  Row out;
   for (const NamedState& one : kStates) {
-    if (const auto& state = moment.result.*one.state) out.emplace_back(one.name, state->log_marginal_likelihood);
+    if (const auto& state = moment.result.*one.state) out.add(one.name, state->log_marginal_likelihood);
   }
   return out;
 }
 
-Numbers parameters_of(const std::optional<ProcessState>& state) {
+Row parameters_of(const std::optional<ProcessState>& state) {
   if (!state) return {};
-  Numbers out{{"signal", state->settings.signal}, {"noise", state->settings.noise}};
-  for (const KernelParameter& one : state->kernel) out.emplace_back(one.name, one.value);
+  Row out{{{"signal", state->settings.signal}, {"noise", state->settings.noise}}};
+  for (const KernelParameter& one : state->kernel) out.add(one.name, one.value);
   return out;
 }
 
-Numbers numbers_of(const std::optional<FootprintState>& state) {
-  if (!state) return {};
-  Numbers out;
-  for (const FootprintNumber& one : state->numbers) out.emplace_back(one.name, one.value);
-  for (auto& [name, value] : out) std::replace(name.begin(), name.end(), '_', ' ');
+Row numbers_of(const std::optional<FootprintState>& state) {
+  Row out;
+  if (!state) return out;
+  for (auto [name, value] : state->numbers) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    out.add(name, value);
+  }
   return out;
 }
 
 /// Milliseconds by phase. Not every tap has a line: one during which the program was killed has none.
 std::vector<Curve> times(const Recording& recording, const History& history) {
   std::vector<Curve> out;
-  for (const char* phase : kPhaseNames) out.push_back({phase, {}});
-  for (Curve& curve : out) curve.values.resize(history.moments.size());
+  for (const char* phase : kPhaseNames)
+    out.push_back({phase, std::vector<std::optional<double>>(history.moments.size())});
   for (const TapTimes& tap : read_timings(recording.directory).taps) {
     const auto moment = static_cast<std::size_t>(tap.tap);
     if (moment >= history.moments.size()) continue;

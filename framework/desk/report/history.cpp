@@ -26,8 +26,7 @@ bool own_scores(const Snapshot& now) {
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
 }
 
-}  // namespace
-
+/// The run as `playback` has it now, after as many of the taps of `recording`.
 Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   Experiment& experiment = playback.experiment();
   const TapBelief& belief = experiment.belief();
@@ -52,6 +51,8 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   out.result = experiment.result();
   return out;
 }
+
+}  // namespace
 
 std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps) {
   std::vector<Snapshot> out;

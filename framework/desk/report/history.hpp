@@ -49,9 +49,6 @@ struct Snapshot : Moment {
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, where there is w
 };
 
-/// The run as `playback` has it now, after as many of the taps of `recording`.
-Snapshot snapshot_of(Playback& playback, const Recording& recording);
-
 /// The run after each of these numbers of taps, which ascend and lie between 1 and all.
 std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
 

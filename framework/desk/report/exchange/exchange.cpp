@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 namespace palpate {
@@ -17,14 +16,6 @@ using Buffer = fmt::memory_buffer;
 template <class... Values>
 void put(Buffer& out, const char* format, const Values&... values) {
   fmt::format_to(std::back_inserter(out), fmt::runtime(format), values...);
-}
-
-void begin_header(Buffer& out, const std::string& run, const char* units) {
-  put(out, "ply\nformat ascii 1.0\ncomment palpate, {}\ncomment {}\n", header_text(run), units);
-}
-
-void declare(Buffer& out, const char* type, std::initializer_list<const char*> names) {
-  for (const char* name : names) put(out, "property {} {}\n", type, name);
 }
 
 /// How fast the heights fall along one axis, at position `at` of `count`, whose neighbours are `step` apart.
@@ -52,12 +43,7 @@ SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights
       mesh.normals.row(i) = Eigen::RowVector3d(fall(heights, candidates.xs, i, column, columns, 1),
                                                fall(heights, candidates.ys, i, row, rows, columns), 1.0)
                                 .normalized();
-    }
-  }
-  mesh.triangles.reserve(static_cast<std::size_t>(std::max(0, 2 * (columns - 1) * (rows - 1))));
-  for (int row = 0; row + 1 < rows; ++row) {
-    for (int column = 0; column + 1 < columns; ++column) {
-      const int i = row * columns + column;
+      if (row + 1 == rows || column + 1 == columns) continue;
       mesh.triangles.push_back({i, i + 1, i + columns + 1});
       mesh.triangles.push_back({i, i + columns + 1, i + columns});
     }
@@ -88,11 +74,14 @@ ReconstructedSurface reconstruct(Experiment& experiment) {
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run) {
   const SurfaceMesh& mesh = surface.mesh;
   Buffer out;
-  begin_header(out, run, "lengths in metres; quality: standard deviation of the height");
-  put(out, "element vertex {}\n", mesh.points.rows());
-  declare(out, "double", {"x", "y", "z", "nx", "ny", "nz"});
-  declare(out, "float", {"quality", "on_surface_probability"});
-  if (surface.true_height) declare(out, "float", {"true_height"});
+  put(out,
+      "ply\nformat ascii 1.0\ncomment palpate, {}\n"
+      "comment lengths in metres; quality: standard deviation of the height\nelement vertex {}\n"
+      "property double x\nproperty double y\nproperty double z\n"
+      "property double nx\nproperty double ny\nproperty double nz\n"
+      "property float quality\nproperty float on_surface_probability\n",
+      header_text(run), mesh.points.rows());
+  if (surface.true_height) put(out, "property float true_height\n");
   if (!mesh.triangles.empty()) {  // a list of none is more than some readers expect
     put(out, "element face {}\n", mesh.triangles.size());
     put(out, "property list uchar int vertex_indices\n");
@@ -119,14 +108,11 @@ std::string taps_ply(const Recording& recording, const std::string& run) {
     put(points, "{} {} {} {} {}\n", tap.target.x, tap.target.y, tap.contact.height, i + 1, hit ? 1 : 0);
     ++contacts;
   }
-  Buffer out;
-  begin_header(out, run, "lengths in metres; contacts only");
-  put(out, "element vertex {}\n", contacts);
-  declare(out, "double", {"x", "y", "z"});
-  declare(out, "int", {"tap"});
-  declare(out, "uchar", {"on_surface"});
-  put(out, "end_header\n");
-  return to_string(out) + to_string(points);
+  return fmt::format(
+      "ply\nformat ascii 1.0\ncomment palpate, {}\ncomment lengths in metres; contacts only\nelement vertex {}\n"
+      "property double x\nproperty double y\nproperty double z\nproperty int tap\nproperty uchar on_surface\n"
+      "end_header\n{}",
+      header_text(run), contacts, to_string(points));
 }
 
 }  // namespace palpate

@@ -36,10 +36,6 @@ constexpr double kStep = 312;   // from panel to panel
 constexpr double kHead = 48;    // for the title
 constexpr double kSurface = 200;
 
-std::string iteration_words(int iteration, const Snapshot& snapshot) {
-  return fmt::format("iteration {}, after tap {}\n{}", iteration, snapshot.taps, count_words(snapshot.result));
-}
-
 /// The least and the largest value of a map over the snapshots of a run.
 std::pair<double, double> extent(const PanelRow& row) {
   std::pair<double, double> out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -148,9 +144,11 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Progress& run = rows[i].run;
     for (std::size_t k = 0; begins_run(i) && k < columns; ++k) {
-      failed = failed || run.snapshots[k].result.failed_taps > 0;
-      sheet.text(iteration_words(run.iterations[k], run.snapshots[k]),
-                 map.left + kStep * static_cast<double>(k) + 0.5 * map.width, tops[i] - 52, 11, Sheet::Align::centre);
+      const Snapshot& snapshot = run.snapshots[k];
+      failed = failed || snapshot.result.failed_taps > 0;
+      sheet.text(
+          fmt::format("iteration {}, after tap {}\n{}", run.iterations[k], snapshot.taps, count_words(snapshot.result)),
+          map.left + kStep * static_cast<double>(k) + 0.5 * map.width, tops[i] - 52, 11, Sheet::Align::centre);
     }
     if (several) sheet.upright(run.strategy, 22, tops[i] + 0.5 * height_of(rows[i], map), 14);
     draw_row(sheet, rows[i], tops[i], map);
@@ -190,9 +188,18 @@ std::string titled(const std::string& title, const Sweep& sweep, const Job& job)
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
 
-/// The paper's figures of a sweep; adds to `notes` which job is missing for which.
-std::vector<Figure> paper_figures(const Workshop& workshop, const Sweep& sweep, std::vector<std::string>& notes) {
+}  // namespace
+
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording) {
+  const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
+  return {write_gallery(recording.directory / "figures",
+                        {progress_figure("paper_progress", recording.config.options.name, progress)}),
+          {}};
+}
+
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
   std::vector<Figure> figures;
+  std::vector<std::string> notes;  // which job is missing for which
   const auto progress = [&](const Job& job, const std::vector<int>& iterations) {
     return progress_of(workshop, read_recording(workshop, job_directory(sweep, job)), iterations);
   };
@@ -245,23 +252,7 @@ std::vector<Figure> paper_figures(const Workshop& workshop, const Sweep& sweep, 
                 "paper's figures",
                 kAllOfThem);
   }
-  return figures;
-}
-
-}  // namespace
-
-Figures write_paper_figures(const Workshop& workshop, const Recording& recording) {
-  const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
-  return {write_gallery(recording.directory / "figures",
-                        {progress_figure("paper_progress", recording.config.options.name, progress)}),
-          {}};
-}
-
-Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
-  Figures out;
-  const std::vector<Figure> figures = paper_figures(workshop, sweep, out.notes);
-  out.pictures = write_gallery(sweep.directory / "figures", figures);
-  return out;
+  return {write_gallery(sweep.directory / "figures", figures), notes};
 }
 
 }  // namespace palpate

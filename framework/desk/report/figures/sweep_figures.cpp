@@ -43,14 +43,6 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
   return groups;
 }
 
-/// The name in at most three lines.
-std::string in_lines(const std::string& name) {
-  std::vector<std::string> lines = wrapped(name, kLongestName);
-  if (lines.size() > 3) lines[2] += "...";
-  lines.resize(std::min<std::size_t>(lines.size(), 3));
-  return fmt::format("{}", fmt::join(lines, "\n"));
-}
-
 /// An axis for these values, with few enough tics for their numbers.
 std::string value_axis(const std::vector<double>& values, double factor) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -138,10 +130,11 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   sheet.text(words, 24, 42, 11);
   const double step = height / static_cast<double>(std::max<std::size_t>(groups.size(), 1));
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::string name = in_lines(groups[g].name);
-    const auto lines = 1 + std::count(name.begin(), name.end(), '\n');
+    std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
+    if (lines.size() > 3) lines[2] += "...";
+    lines.resize(std::min<std::size_t>(lines.size(), 3));
     const double middle = kTop + step * (static_cast<double>(g) + 0.5);
-    sheet.text(name, 24, middle - 8.8 * static_cast<double>(lines), 11);
+    sheet.text(fmt::format("{}", fmt::join(lines, "\n")), 24, middle - 8.8 * static_cast<double>(lines.size()), 11);
   }
   for (std::size_t m = 0; m < metrics.size(); ++m) {
     std::vector<std::vector<double>> values;
@@ -180,8 +173,8 @@ std::string tics(const std::vector<std::string>& values) {
   return "(" + out + ")";
 }
 
-/// Of two swept keys but the seed that have two values or more; empty where there are none.
-std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& results) {
+/// Of two swept keys but the seed that have two values or more; none where there are none.
+std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& results) {
   const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
   if (keys.size() < 2) return {};
   const Axis y = axis_of(sweep, keys[0]);
@@ -252,9 +245,7 @@ std::vector<Figure> heat_maps(const Sweep& sweep, const std::vector<Row>& result
                  " matrix using 1:2:3 with image pixels, \\\n"
                  "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
   sheet.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);
-  std::vector<Figure> out;
-  out.push_back({"heat_map", std::move(sheet)});
-  return out;
+  return Figure{"heat_map", std::move(sheet)};
 }
 
 }  // namespace
@@ -264,7 +255,7 @@ Figures write_sweep_figures(const Sweep& sweep) {
   if (std::none_of(results.begin(), results.end(), is_done))
     throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
   std::vector<Figure> figures{distributions_figure(sweep, results)};
-  for (Figure& one : heat_maps(sweep, results)) figures.push_back(std::move(one));
+  if (auto map = heat_map(sweep, results)) figures.push_back(std::move(*map));
   return {write_gallery(sweep.directory / "figures", figures), {}};
 }
 

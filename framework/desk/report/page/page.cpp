@@ -15,29 +15,20 @@ extern "C" const char palpate_asset_style[], palpate_asset_common[];
 namespace palpate {
 namespace {
 
-/// Bytes that a script of the page unpacks: no browser takes this type for a script of its own.
-std::string packed(const char* name, std::string_view gzipped) {
-  return fmt::format("<script type=\"application/gzip\" id=\"{}\">{}</script>\n", name, base64(gzipped));
+/// Bytes that a script of the page unpacks by their `format`: no browser takes these types for scripts of its own.
+std::string packed(const char* name, const char* format, std::string_view bytes) {
+  return fmt::format("<script type=\"application/{}\" id=\"{}\">{}</script>\n", format, name, base64(bytes));
 }
 
 }  // namespace
 
-std::string gzip(std::string_view bytes) {
-  constexpr int kWithGzipHeader = 15 + 16;
-  constexpr int kMemory = 9;
-  z_stream stream{};
-  if (::deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kWithGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+std::string deflated(std::string_view bytes) {
+  uLongf size = ::compressBound(bytes.size());
+  std::string out(size, '\0');
+  if (::compress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                 bytes.size()) != Z_OK)
     throw Error("report", "no memory to compress it", {}, Error::Kind::run);
-  std::string out(::deflateBound(&stream, bytes.size()), '\0');
-  // zlib does not write to its input, whatever the type says.
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int ended = ::deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  ::deflateEnd(&stream);
-  if (ended != Z_STREAM_END) throw Error("report", "its data could not be compressed", {}, Error::Kind::run);
+  out.resize(size);
   return out;
 }
 
@@ -59,10 +50,10 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n"
       "<body>\n<noscript>This page draws itself by a script, which your browser does not run.</noscript>\n",
       kPolicy, palpate_asset_style);
-  out += packed("plotly",
+  out += packed("plotly", "gzip",
                 {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});
-  out += packed("data", gzip(data.dump(-1, ' ', false, Json::error_handler_t::replace)));
-  out += packed("maps", gzip(maps));
+  out += packed("data", "deflate", deflated(data.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  out += packed("maps", "deflate", deflated(maps));
   out += fmt::format("<script>\n\"use strict\";\n{}{}</script>\n</body>\n</html>\n", palpate_asset_common, script);
   return out;
 }

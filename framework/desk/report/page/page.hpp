@@ -19,8 +19,8 @@ namespace palpate {
 /// A page that runs `script` (behind the common one) on the data and on maps as bytes.
 std::string make_page(std::string_view script, const Json& data, const std::string& maps);
 
-/// Compressed by gzip; equal bytes for equal input.
-std::string gzip(std::string_view bytes);
+/// Compressed as zlib does (RFC 1950), which browsers call "deflate"; equal bytes for equal input.
+std::string deflated(std::string_view bytes);
 
 std::string base64(std::string_view bytes);
 

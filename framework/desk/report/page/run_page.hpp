@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostPageBytes = 2'900'000;
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress);
 
 /// Maps in a few bytes a cell. Smooth maps have small steps from cell to cell: steps of 16-bit numbers, their low and
-/// their high bytes apart, are what gzip makes least of.
+/// their high bytes apart, are what zlib makes least of.
 struct PackedMaps {
   double least = 0.0;
   double most = 0.0;

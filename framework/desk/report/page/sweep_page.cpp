@@ -11,8 +11,6 @@
 #include "report/page/json.hpp"
 #include "report/page/page.hpp"
 
-#include <palpate/error.hpp>
-
 #include <algorithm>
 #include <map>
 
@@ -118,20 +116,17 @@ std::vector<std::string> first_looks() {
   return names;
 }
 
-std::string id_of(const Sweep& sweep) {
-  return fs::absolute(sweep.directory / "").lexically_normal().parent_path().filename().string();
-}
-
 }  // namespace
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   const std::vector<Row> results = sweep_results(sweep);
   const std::vector<JobResult> jobs = group_jobs(sweep, results, {}).front().jobs;
+  const fs::path directory = fs::absolute(sweep.directory / "").lexically_normal().parent_path();
   Json keys = Json::array();
   for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, key));
   const Json data{{"version", kVersion},
                   {"name", sweep_name(sweep)},
-                  {"id", id_of(sweep)},
+                  {"id", directory.filename().string()},
                   {"keys", keys},
                   {"jobs", json_of_jobs(sweep, jobs, progress)},
                   {"columns", json_of_columns(results, jobs)},

@@ -31,13 +31,6 @@ int first_drift(const Recording& recording, const History& history) {
   return 0;
 }
 
-/// Taps that the acquisition chose without a reason.
-int stalls(const Recording& recording) {
-  return static_cast<int>(std::count_if(recording.rows.begin(), recording.rows.end(), [](const Row& row) {
-    return row.text("source") == source_name(Source::acquisition) && row.number("score").value_or(1.0) <= 0.0;
-  }));
-}
-
 void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
   if (recording.failed()) {
     const std::string reason = recording.summary->text("stop_reason");
@@ -62,7 +55,10 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
         "no candidate apart (so it is until the first hit).",
         fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
   }
-  if (const int stalled = stalls(recording); stalled > 0) {
+  const auto without_reason = [](const Row& row) {
+    return row.text("source") == source_name(Source::acquisition) && row.number("score").value_or(1.0) <= 0.0;
+  };
+  if (const auto stalled = std::count_if(recording.rows.begin(), recording.rows.end(), without_reason); stalled > 0) {
     out.push_back(
         fmt::format("{} chosen by the acquisition although no candidate had a positive score: where nothing speaks for "
                     "any of them the first one is taken. fallback=uncertainty looks for the object instead.",

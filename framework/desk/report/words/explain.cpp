@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explain.hpp"
 
-#include "experiment/metrics.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
-#include "report/words/words.hpp"
+#include "report/words/models.hpp"
 
 #include <palpate/error.hpp>
 
@@ -17,142 +16,6 @@
 
 namespace palpate {
 namespace {
-
-/// One process: whose fields, in what unit, and what the program holds of it now.
-struct Subject {
-  const char* title;
-  std::string prefix;  ///< of its fields, with the dot
-  bool metric;         ///< targets are metres, not labels
-  const PluginChoice& kernel;
-  const PluginChoice& fitting;
-  const std::optional<ProcessState>& now;
-  const Row& row;
-
-  std::string amount(double value) const { return metric ? length_words(value) : plain_words(value); }
-  std::string amount(const char* name) const {
-    return number_words(row, prefix + name, metric ? length_words : plain_words);
-  }
-  std::optional<double> number(const char* name) const { return row.number(prefix + name); }
-  std::string words(const char* name) const { return number_words(row, prefix + name); }
-  std::string text(const char* name) const { return row.text(prefix + name); }
-};
-
-/// The fields with a number whose names begin with `prefix`, without it.
-std::vector<std::string> numbers_below(const Row& row, const std::string& prefix) {
-  std::vector<std::string> out;
-  for (const auto& [name, value] : row.fields) {
-    if (name.compare(0, prefix.size(), prefix) == 0 && row.number(name)) out.push_back(name.substr(prefix.size()));
-  }
-  return out;
-}
-
-/// "length_scale" is shown as "length scale", "kernels.0.length_scale" as "kernels.0: length scale".
-std::string parameter_words(std::string name) {
-  const auto dot = name.rfind('.');
-  if (dot != std::string::npos) name.replace(dot, 1, ": ");
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
-std::string kernel_words(const Subject& subject) {
-  const std::string prefix = subject.prefix + "kernel.";
-  std::string out = subject.kernel.type;
-  for (const std::string& name : numbers_below(subject.row, prefix)) {
-    Unit unit = Unit::none;  // which unit a parameter has, no record says and no fit changes
-    if (subject.now) {
-      for (const KernelParameter& one : subject.now->kernel) unit = one.name == name ? one.unit : unit;
-    }
-    out += fmt::format(", {} {}", parameter_words(name),
-                       number_words(subject.row, prefix + name, unit == Unit::metre ? length_words : plain_words));
-  }
-  return out;
-}
-
-std::string settings_words(const Subject& subject) {
-  return fmt::format("signal {} and noise {} (standard deviations), prior mean {}{}", subject.amount("signal"),
-                     subject.amount("noise"), subject.amount("mean"), subject.metric ? " above the desk" : "");
-}
-
-std::string fit_words(const Subject& subject) {
-  const std::optional<bool> changed = subject.row.flag(subject.prefix + "fit.changed");
-  if (!changed) {
-    return subject.fitting.type == "fixed"
-               ? "Its hyperparameters are those of the config (fitting: fixed)."
-               : fmt::format("No fit ({}) was due after its latest tap: it keeps the hyperparameters that it had.",
-                             subject.fitting.type);
-  }
-  std::string out = fmt::format("Its latest tap was followed by a fit ({}), which {}", subject.fitting.type,
-                                *changed ? "changed the hyperparameters" : "left the hyperparameters as they were");
-  if (const std::string value = subject.words("fit.objective"); !value.empty()) out += "; objective " + value;
-  if (const auto count = subject.number("fit.evaluations"))
-    out += " after " + counted(std::lround(*count), "evaluation");
-  const std::string reason = subject.text("fit.reason");
-  return out + (reason.empty() ? "." : ": " + reason + ".");
-}
-
-void explain_likelihood(Page& page, const Subject& subject) {
-  std::vector<std::string> parts;
-  if (const std::string value = subject.words("log_marginal_likelihood"); !value.empty())
-    parts.push_back("Log marginal likelihood " + value + " (of its taps under these hyperparameters: more is better)");
-  if (const auto least = subject.number("condition")) {
-    const auto digits = static_cast<int>(std::floor(std::log10(std::max(1.0, *least))));
-    parts.push_back(fmt::format(
-        "{}ondition of its matrix at least {:.2g}: {} the 16 digits of a number", parts.empty() ? "C" : "c", *least,
-        digits == 0 ? "rounding costs none of" : fmt::format("rounding costs about {} of", digits)));
-  }
-  if (!parts.empty()) page.say(fmt::format("{}.", fmt::join(parts, "; ")));
-}
-
-/// The engine, and what had to be done because numbers have sixteen digits.
-std::string rounding_words(const Subject& subject) {
-  const double bound = subject.number("error_bound").value_or(0.0);
-  const double jitter = subject.number("jitter").value_or(0.0);
-  return fmt::format(
-      "Posterior engine: {}; it adds {} to the rounding{}. {}", subject.text("engine"),
-      bound > 0.0 ? fmt::format("at most {:.1e}", bound) : "nothing", bound > 0.0 ? ", in signals" : "",
-      jitter > 0.0
-          ? fmt::format("Its matrix was singular in double precision, so jitter was added to the diagonal, as if every "
-                        "tap had a noise of {} more: the model is a little less sure of its taps.",
-                        subject.amount(std::sqrt(jitter)))
-          : "No jitter was needed.");
-}
-
-void explain_process(Page& page, const Subject& subject) {
-  if (!subject.number("signal")) return;
-  page.say(fmt::format("{}: kernel {}; {}. {}", subject.title, kernel_words(subject), settings_words(subject),
-                       fit_words(subject)));
-  explain_likelihood(page, subject);
-  page.say(rounding_words(subject));
-}
-
-void explain_range_of_weight(Page& page, const Row& row, bool clipped) {
-  const auto least = row.number("min_weight");
-  const auto greatest = row.number("max_weight");
-  if (!least || !greatest) return;
-  std::string out = fmt::format("w runs from {} to {}", plain_words(*least), plain_words(*greatest));
-  constexpr double kRounding = 1e-12;
-  if (*least < -kRounding || *greatest > 1.0 + kRounding) {
-    out += fmt::format(
-        ". It leaves [0, 1] because it is a regression on the labels 0 and 1, not a probability: between near taps "
-        "with "
-        "different labels it overshoots. {}",
-        clipped ? "The score takes it clipped to [0, 1] (weight.clip: true)."
-                : "The score takes it as it comes (weight.clip: false).");
-    return page.say(out);
-  }
-  page.say(out + (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
-}
-
-/// Of a footprint that is not the weight: what it is, what it tells of itself, and its remark.
-void explain_footprint(Page& page, const Row& row, const std::string& type) {
-  const std::string prefix = "footprint.";
-  std::vector<std::string> numbers = numbers_below(row, prefix);
-  for (std::string& one : numbers) one = parameter_words(one) + " " + number_words(row, prefix + one);
-  page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
-                       numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
-  if (const std::string remark = row.text("footprint.remark"); !remark.empty())
-    page.say(fmt::format("Its remark: {}.", remark));
-}
 
 /// What the maps say of the place of the tap: u, and w and e or the probability of `footprint`, whichever the record of
 /// the tap has.
@@ -167,29 +30,6 @@ void explain_place(Page& page, const Row& row, const std::string& footprint) {
     text += fmt::format(", w = {} (what speaks for an object: 0 desk, 1 object), e = u w = {}", number_words(row, "w"),
                         number_words(row, "e"));
   page.say(text + ".");
-}
-
-/// A paragraph for each process that the record of the tap has: hyperparameters and their fit, likelihood, condition,
-/// engine, jitter, and how far its map goes. `now` is the choice as computed now, which knows the units of kernels.
-void explain_models(Page& page, const Row& row, const ExperimentOptions& options, const TapRecord& now) {
-  const HeightOptions& height = options.height;
-  const WeightOptions& weight = options.weight;
-  const bool shared = weight.hyperparameters == WeightOptions::Hyperparameters::shared;
-  const PluginChoice& height_kernel = height.kernel ? *height.kernel : options.kernel;
-  const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
-  const PluginChoice& weight_kernel = shared ? height_kernel : weight.kernel ? *weight.kernel : options.kernel;
-  const PluginChoice& weight_fitting = shared ? height_fitting : weight.fitting ? *weight.fitting : options.fitting;
-  explain_process(page,
-                  {"Height process", "height_process.", true, height_kernel, height_fitting, now.height_process, row});
-  if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
-    page.say(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
-                         number_words(row, "max_standard_deviation", length_words)));
-  explain_process(page,
-                  {"Weight process", "weight_process.", false, weight_kernel, weight_fitting, now.weight_process, row});
-  explain_range_of_weight(page, row, weight.clip);
-  if (row.number("p")) explain_footprint(page, row, options.footprint.type);
-  explain_process(page, {"Surface process (of the taps on an object alone, whose level is free)", "surface_process.",
-                         true, height_kernel, height_fitting, now.surface_process, row});
 }
 
 class Explanation {
@@ -329,13 +169,16 @@ class Explanation {
     } else {
       text += fmt::format(
           ". {} of {} are tied: within {:.2g} of the best (tie_tolerance), where rounding must not decide. Of these "
-          "the "
-          "lowest index is taken (they are counted along x, row by row).",
+          "the lowest index is taken (they are counted along x, row by row).",
           ties == allowed ? "All" : fmt::format("{}", ties), counted(allowed, "candidate"), bound);
     }
     page_.say(text);
     if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
-    explain_left_out(out);
+    const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
+                          ? "because tapped before (repeat: forbid)"
+                          : "because a tap failed there; others may be tapped again (repeat: allow)";
+    page_.say(out == 0 ? std::string("No candidate is left out.")
+                       : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
     explain_runner_up(*score);
   }
 
@@ -349,14 +192,6 @@ class Explanation {
       page_.say(fmt::format("The best score, {}, is as good as 0, but it is positive: so no fallback stepped in.",
                             plain_words(best)));
     }
-  }
-
-  void explain_left_out(int out) {
-    const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
-                          ? "because tapped before (repeat: forbid)"
-                          : "because a tap failed there; others may be tapped again (repeat: allow)";
-    page_.say(out == 0 ? std::string("No candidate is left out.")
-                       : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
   }
 
   void explain_runner_up(double score) {

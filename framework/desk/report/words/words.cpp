@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <sstream>
 
 namespace palpate {
 
@@ -38,17 +39,13 @@ void Page::say(const std::string& text) {
   constexpr std::size_t kWidth = 100;
   constexpr std::size_t kIndent = 3;
   std::string line = "  -";
-  const std::string words = one_line(text);
-  for (std::size_t at = 0; at < words.size();) {
-    const std::size_t end = std::min(words.find(' ', at), words.size());
-    if (end > at) {
-      if (line.size() > kIndent && line.size() + 1 + (end - at) > kWidth) {
-        text_ += line + "\n";
-        line = "   ";
-      }
-      line += " " + words.substr(at, end - at);
+  std::istringstream words(one_line(text));
+  for (std::string word; words >> word;) {
+    if (line.size() > kIndent && line.size() + 1 + word.size() > kWidth) {
+      text_ += line + "\n";
+      line = "   ";
     }
-    at = end + 1;
+    line += " " + word;
   }
   text_ += line + "\n";
 }

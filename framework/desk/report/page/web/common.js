@@ -4,9 +4,9 @@
 
 /// Bytes of a packed element of this page, decompressed, as a response to read.
 function unpack(id) {
-  const packed = atob(document.getElementById(id).textContent);
-  const bytes = Uint8Array.from(packed, (c) => c.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
+  const { type, textContent } = document.getElementById(id);
+  const bytes = Uint8Array.from(atob(textContent), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(type.replace("application/", ""))));
 }
 
 /// Runs plotly, which then is the global Plotly.
