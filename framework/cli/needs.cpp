@@ -25,7 +25,7 @@ void Needs::record(const std::string& directory) {
 
 void Needs::listing(const std::string& what) {
   for (const auto& [kind, name] : plugins_of_build(program_.installation.plugins)) {
-    if (what.empty() || what == kind || what == kind + "/" + name) plugins_.emplace(kind, name);
+    if (what.empty() || what == kind || what == fmt::format("{}/{}", kind, name)) plugins_.emplace(kind, name);
   }
 }
 

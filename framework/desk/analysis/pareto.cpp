@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 Column make_key(const std::string& name, const std::vector<std::string>& columns, const char* option) {
-  const Column column = find_column(name, columns, option);
+  Column column = find_column(name, columns, option);
   if (name == "coverage_95") {
     throw Error("command line", fmt::format("{}: coverage_95 is best at 0.95, neither small nor large", option),
                 "nlpd judges heights and intervals together");
