@@ -18,8 +18,9 @@ std::string hash_of(std::string_view bytes) {
 }
 
 std::string hash_of_file(const std::filesystem::path& file) {
-  std::string bytes(std::filesystem::file_size(file), '\0');
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
+  in.seekg(0);
   if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw Error(file.string(), "cannot be read");
   return hash_of(bytes);
 }
