@@ -52,6 +52,8 @@ void become(const std::vector<char*>& arguments, const fs::path& folder, const s
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);  // the test was gone before the line above
   for (const std::string& one : environment) ::putenv(const_cast<char*>(one.c_str()));
+  for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(number, SIG_DFL);  // a script's background ignores some
   if (::chdir(folder.c_str()) == 0) ::execvp(arguments.front(), arguments.data());
   ::_exit(127);
 }
