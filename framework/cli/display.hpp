@@ -15,7 +15,6 @@ namespace palpate::cli {
 class TapTable final : public Journal {
  public:
   explicit TapTable(std::int64_t budget);
-  bool follows_errors() const override { return true; }
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 

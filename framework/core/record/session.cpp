@@ -93,7 +93,7 @@ class Relay final : public Journal {
   }
 
   void announce(const TapRecord& tap) override {
-    if (company_.observer != nullptr && company_.observer->follows_errors()) look_at_errors();
+    if (company_.observer != nullptr) look_at_errors();
     {
       const PhaseClock::Scope log(experiment_.clock(), Phase::log);
       if (maps_) write_maps(tap.number);
@@ -108,7 +108,6 @@ class Relay final : public Journal {
       directory_.record(tap, seconds);
     }
     if (company_.observer == nullptr) return;
-    if (!company_.observer->follows_errors()) return company_.observer->record(tap, seconds);
     TapRecord told = tap;
     told.errors = errors_;
     company_.observer->record(told, seconds);
@@ -135,7 +134,7 @@ class Relay final : public Journal {
   Experiment& experiment_;
   RunDirectory& directory_;
   Company company_;
-  Errors errors_;  ///< of the state that the tap under way was chosen from, for who follows them
+  Errors errors_;  ///< of the state that the tap under way was chosen from, for the observer
 };
 
 /// Builds the experiment. What only building finds out names an option; the config knows where that was written.

@@ -48,7 +48,8 @@ std::vector<ModelReader> readers_of(const Workshop& workshop, const ResolvedConf
 /// <runs>/<slug>/<id>.
 std::filesystem::path directory_of(const ResolvedConfig& config, const std::filesystem::path& runs);
 
-/// Runs `config` in `directory` and writes its files. `observer` (may be null) hears of every tap, after the log.
+/// Runs `config` in `directory` and writes its files. `observer` (may be null) hears of every tap, after the log, and
+/// with the errors of the state that it was chosen from, however little the strategy reads.
 ///
 /// A finished run of the same build is left alone and reported. A finished run of another build, a failed or a broken
 /// one throws Error with the remedy; with `force` the old directory is moved to <id>.old-N first. When the run itself
