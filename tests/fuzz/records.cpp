@@ -37,7 +37,7 @@ fs::path sound_run() {
   std::vector<Override> overrides;
   for (const std::string& one : kSmall) overrides.push_back(parse_override(one));
   const ResolvedConfig config =
-      load_experiment(composer, host(), shipped_configs() / "paper" / "object_i.yaml", overrides);
+      resolve_experiment(composer.compose(shipped_configs() / "paper" / "object_i.yaml", overrides), host());
   const fs::path directory = directory_of(config, ground().path() / "runs");
   start_run(workshop(), config, directory, true, nullptr, nullptr);
   return directory;

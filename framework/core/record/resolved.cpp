@@ -63,11 +63,6 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   return out;
 }
 
-ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
-                               const std::vector<Override>& overrides) {
-  return resolve_experiment(composer.compose(file, overrides), plugins);
-}
-
 void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins) {
   Tree input = Tree::map();
   input.at("seed") = seed;

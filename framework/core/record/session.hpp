@@ -2,7 +2,6 @@
 // One run from its config to its summary, with the directory in between: started, carried on, or played again.
 #pragma once
 
-#include "config/compose.hpp"
 #include "experiment/tap_record.hpp"
 #include "plugin/host.hpp"
 #include "record/build_info.hpp"
