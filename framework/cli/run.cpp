@@ -123,16 +123,15 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   const GateOutput gate{config.options.name, output.junit, output.table};
   RunReport report;
   const std::optional<Error> trouble = trouble_in([&] { report = action(display.get(), step.get()); });
+  std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
   // A run that failed is a result, too: continuous integration shall see it as one.
-  if (trouble && trouble->kind() == Error::Kind::run) {
-    const std::vector<RunOutcome> runs{outcome_of(config.id, {}, trouble->what())};
-    write_junit(judge(config.expectations, runs), runs, gate);
-  }
+  if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
   if (output.json) fmt::print("{}", to_json_text(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;
-  return conclude(config.expectations, {outcome_of(config.id, report.summary, "")}, gate) ? kDone : kFailed;
+  runs.front().summary = report.summary;
+  return conclude(config.expectations, runs, gate) ? kDone : kFailed;
 }
 
 }  // namespace palpate::cli
