@@ -77,19 +77,15 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
     return values;
   };
   std::map<std::vector<std::string>, std::optional<int>> known;
-  const auto initial_taps = [&](std::size_t job) {
-    const std::vector<std::string> values = deciding(sweep.jobs[job]);
-    const auto [taps, is_new] = known.try_emplace(values);
-    for (std::size_t other = 0; is_new && !taps->second && other < sweep.jobs.size(); ++other) {
-      if (deciding(sweep.jobs[other]) != values) continue;
-      const std::optional<ResolvedConfig> config = readable_config(campaign, other);
-      if (!config) continue;
-      // All taps until the first hit are the search's: its dead starts are those that never hit.
-      const ExperimentOptions& options = config->options;
-      taps->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
-    }
-    return taps->second;
-  };
+  for (std::size_t job = 0; job < sweep.jobs.size(); ++job) {
+    std::optional<int>& taps = known[deciding(sweep.jobs[job])];
+    const std::optional<ResolvedConfig> config = taps ? std::nullopt : readable_config(campaign, job);
+    if (!config) continue;
+    // All taps until the first hit are the search's: its dead starts are those that never hit.
+    const ExperimentOptions& options = config->options;
+    taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+  }
+  const auto initial_taps = [&](std::size_t job) { return known[deciding(sweep.jobs[job])]; };
   fmt::print("{}", sweep_table(sweep, sweep_results(sweep, summaries), initial_taps));
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
