@@ -112,7 +112,7 @@ int workers_of(const Campaign& campaign) {
 /// conduct(), with a line of progress.
 void conduct_shown(const Campaign& campaign, Launcher& launcher, const Standing& begun) {
   SweepLine line(campaign.launch.quiet);
-  conduct(launcher, campaign.sweep, begun, campaign.program.workshop.interrupted,
+  conduct(launcher, campaign.sweep, begun, campaign.program.interrupted,
           [&](const SweepProgress& progress) { line.show(progress); });
 }
 
@@ -141,7 +141,7 @@ bool run_on_slurm(const Campaign& campaign, const Standing& begun) {
     std::fflush(stdout);
     ids += fmt::format(" {}", array.id);
   });
-  if (campaign.program.workshop.interrupted->load()) return true;  // before anything was submitted
+  if (campaign.program.interrupted->load()) return true;  // before anything was submitted
   if (launch.wait) {
     // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
@@ -187,12 +187,12 @@ int run_campaign(const Campaign& campaign) {
   if (launch.launcher == kSlurm) {
     if (!begun.open.empty() && !run_on_slurm(campaign, begun)) return kDone;
   } else {
-    LocalLauncher launcher(campaign.program.workshop, sweep, campaign.config_of,
+    LocalLauncher launcher(campaign.program, sweep, campaign.config_of,
                            {workers_of(campaign), campaign.options, launch.attempts, whole});
     conduct_shown(campaign, launcher, begun);
   }
   const Standing end = standing_of(sweep, jobs);
-  const bool interrupted = campaign.program.workshop.interrupted->load();
+  const bool interrupted = campaign.program.interrupted->load();
   return whole ? conclude_whole(campaign, end, interrupted) : conclude_part(sweep, end, interrupted);
 }
 
@@ -259,12 +259,11 @@ int sweep(Program& program, const SweepArguments& arguments) {
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
   check_sbatch_words(arguments.launch.sbatch);
-  const ResumeOptions options{arguments.retry_failed, arguments.force};
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
   const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
-  Campaign campaign{program, sweep, config_of, options, arguments.launch, {}, false};
+  Campaign campaign{program, sweep, config_of, arguments.options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) {
     campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
     const char* const hint = "leave one of them out";
