@@ -165,9 +165,9 @@ void check_builds(Campaign& campaign, bool done_too) {
     const std::optional<ResolvedConfig> config = readable_config(campaign, job);
     if (!config) continue;
     campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
-    bool elsewhere = false;
-    trouble_in([&] { elsewhere = is_of_another_build(campaign.program.workshop, *config, directory); });
-    if (elsewhere && !campaign.options.force) check_build(campaign.program.workshop, *config, directory);
+    std::optional<Error> objection;
+    trouble_in([&] { objection = objection_to_build(campaign.program, *config, directory); });
+    if (objection && !campaign.options.force) throw *objection;
   }
 }
 

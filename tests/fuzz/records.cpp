@@ -93,7 +93,7 @@ void record(const std::string& bytes) {
   const auto [name, content] = divided(bytes, files);
   const Changed changed(run / name, content);
   attempt([&] { read_status(run); });
-  attempt([&] { check_build(workshop(), load_run(host(), run), run); });
+  attempt([&] { objection_to_build(workshop(), load_run(host(), run), run); });
   attempt([&] { replay_run(workshop(), run); });
 }
 

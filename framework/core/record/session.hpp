@@ -9,8 +9,11 @@
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
 
+#include <palpate/error.hpp>
+
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,12 +75,10 @@ RunReport resume_run(const Workshop& workshop, const std::filesystem::path& dire
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                       const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
 
-/// Whether the run in `directory` has taps of another build than this one. Throws Error for a damaged one.
-bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config,
-                         const std::filesystem::path& directory);
-
-/// Throws Error if it has.
-void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);
+/// Why the run in `directory` is not to be carried on: it has taps of another build than this one. None if it has not.
+/// Throws Error for a damaged one.
+std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
+                                        const std::filesystem::path& directory);
 
 /// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);
