@@ -221,7 +221,6 @@ TapBelief::Output TapBelief::output(const Model& model, int output) {
 
 void TapBelief::map_heights() {
   const Process& process = *heights_.process;
-  for (Eigen::VectorXd* map : {&uncertainty_, &variance_}) map->resize(candidates_.size());
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
   if (!two_part_) map_surface(process);
@@ -230,7 +229,6 @@ void TapBelief::map_heights() {
 }
 
 void TapBelief::map_labels() {
-  weight_mean_.resize(candidates_.size());
   labels().process->read_mean(label_output(), weight_mean_);
   const auto clipped = weight_mean_.cwiseMax(0.0).cwiseMin(1.0);
   if (clip_) weight_ = clipped;
@@ -240,13 +238,11 @@ void TapBelief::map_labels() {
 
 void TapBelief::map_object() {
   map_surface(*object_.process);
-  object_variance_.resize(candidates_.size());
   object_.process->read_variance(0, object_variance_);
   object_.stale = false;
 }
 
 void TapBelief::map_surface(const Process& process) {
-  height_mean_.resize(candidates_.size());
   process.read_mean(0, height_mean_);
   height_mean_.array() += desk_;
 }
