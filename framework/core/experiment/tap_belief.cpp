@@ -21,8 +21,6 @@ constexpr double kFreeLevel = 1000.0;
 
 namespace {
 
-constexpr std::array<const char*, 4> kEngineNames{"auto", "dense", "grid", "lowrank"};
-
 PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   PosteriorSettings out;
   out.engine = static_cast<PosteriorSettings::Kind>(options.posterior);
@@ -57,9 +55,8 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
   if (!refusal.empty()) throw Error(fitting.options->place.text(), refusal);
   const std::string why = objection(posterior_, *model.kernel, candidates_);
   if (!why.empty()) {
-    throw Error("posterior",
-                fmt::format("{} cannot be used with the kernel {}, {}",
-                            kEngineNames[static_cast<std::size_t>(posterior_.engine)], kernel.type, why),
+    const char* const engine = posterior_.engine == PosteriorSettings::Kind::grid ? "grid" : "lowrank";
+    throw Error("posterior", fmt::format("{} cannot be used with the kernel {}, {}", engine, kernel.type, why),
                 "posterior: dense serves every kernel");
   }
   return model;
