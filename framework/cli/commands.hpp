@@ -21,11 +21,8 @@ constexpr int kBusy = 75;
 constexpr int kInterrupted = 130;
 
 /// What all commands share.
-struct Program {
-  const Installation& installation;
-  const PluginHost& host;
+struct Program : Workshop {
   Composer& composer;
-  Workshop workshop;
 };
 
 struct RunArguments {
@@ -85,8 +82,7 @@ int sweep(Program& program, const SweepArguments& arguments);
 
 struct ResumeArguments {
   std::string directory;
-  bool retry_failed = false;
-  bool force = false;
+  ResumeOptions options;
   bool step = false;
   std::string jobs;  ///< of a sweep: "0-7,12"; "" for all
   LaunchArguments launch;
@@ -137,10 +133,7 @@ int report(Program& program, const ReportArguments& arguments);
 
 int explain(Program& program, const std::string& directory, int tap);
 
-struct ExportArguments {
-  std::string directory;
-  std::string to;  ///< a folder; "" for export/ of the run
-};
-int export_run(Program& program, const ExportArguments& arguments);
+/// `to`: a folder; "" for export/ of the run.
+int export_run(Program& program, const std::string& directory, const std::string& to);
 
 }  // namespace palpate::cli

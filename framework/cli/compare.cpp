@@ -50,8 +50,8 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
   };
   listen_for_interrupts();
   const bool all = in_children(
-      missing.size(), together, [&](std::size_t i) { earlier.compute(program.workshop, missing[i]); },
-      program.workshop.interrupted, show);
+      missing.size(), together, [&](std::size_t i) { earlier.compute(program, missing[i]); }, program.interrupted,
+      show);
   if (!all) return std::nullopt;
   std::vector<std::vector<Row>> out;
   for (const int count : taps) out.push_back(earlier.write(count));

@@ -15,13 +15,10 @@ namespace palpate::cli {
 class TapTable final : public Journal {
  public:
   explicit TapTable(std::int64_t budget);
-  bool follows_errors() const override { return true; }
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 
  private:
-  void clear_live_line() const;
-
   std::int64_t budget_;
   bool terminal_;
   bool header_ = false;

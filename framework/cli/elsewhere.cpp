@@ -16,7 +16,7 @@ namespace palpate::cli {
 namespace {
 
 [[noreturn]] int hand_over(const Program& program) {
-  std::vector<std::string> words = program.workshop.command_line;
+  std::vector<std::string> words = program.command_line;
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
@@ -35,7 +35,7 @@ int pareto(Program& program, const ParetoArguments&) { return hand_over(program)
 int compare(Program& program, const CompareArguments&) { return hand_over(program); }
 int report(Program& program, const ReportArguments&) { return hand_over(program); }
 int explain(Program& program, const std::string&, int) { return hand_over(program); }
-int export_run(Program& program, const ExportArguments&) { return hand_over(program); }
+int export_run(Program& program, const std::string&, const std::string&) { return hand_over(program); }
 int resume_sweep(Program& program, const ResumeArguments&) { return hand_over(program); }
 int status_of_sweep(Program& program, const std::string&) { return hand_over(program); }
 std::size_t jobs_of_sweep(Program& program, const std::string&) { return hand_over(program); }

@@ -9,8 +9,8 @@ namespace palpate::cli {
 
 int explain(Program& program, const std::string& directory, int tap) {
   check_one_run(directory);
-  const Recording recording = read_recording(program.workshop, directory);
-  fmt::print("{}", explain_tap(program.workshop, recording, tap));
+  const Recording recording = read_recording(program, directory);
+  fmt::print("{}", explain_tap(program, recording, tap));
   return kDone;
 }
 

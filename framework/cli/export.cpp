@@ -14,16 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder to write into.
-fs::path prepare_folder(const ExportArguments& arguments) {
-  if (arguments.to.empty()) {
-    fs::path folder = fs::path(arguments.directory) / "export";
-    make_inner_folder(folder);
-    return folder;
-  }
-  return make_folder(arguments.to);
-}
-
 /// That more taps may follow is no mistake, but whoever reads the files should know.
 void mention_state(const Recording& recording) {
   const RunStatus status = read_status(recording.directory);
@@ -36,14 +26,14 @@ void mention_state(const Recording& recording) {
 
 }  // namespace
 
-int export_run(Program& program, const ExportArguments& arguments) {
-  check_one_run(arguments.directory);
-  const Recording recording = read_recording(program.workshop, arguments.directory);
-  Playback playback(program.workshop, recording);
+int export_run(Program& program, const std::string& directory, const std::string& to) {
+  check_one_run(directory);
+  const Recording recording = read_recording(program, directory);
+  Playback playback(program, recording);
   playback.advance_to(static_cast<int>(recording.taps.size()));
   const ReconstructedSurface surface = reconstruct(playback.experiment());
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
-  const fs::path folder = prepare_folder(arguments);
+  const fs::path folder = to.empty() ? make_inner_folder(recording.directory / "export") : make_folder(to);
   mention_state(recording);
   const auto write = [&](const char* name, const std::string& text) {
     write_file(folder / name, text);

@@ -43,8 +43,8 @@ struct CommandLine {
   ParetoArguments pareto;
   CompareArguments compare;
   ReportArguments report;
-  ExportArguments exported;
   std::string directory;  ///< of a command that has no arguments of its own
+  std::string to;
   std::vector<std::string> configs;
   std::string plugin;
   bool json = false;
@@ -135,8 +135,8 @@ void add_resume(CommandLine& line) {
       "resume", "Carry on a broken run or sweep", [&line](Needs& needs) { needs.record(line.resume.directory); },
       resume, line.resume);
   sub->add_option("DIR", line.resume.directory, "its directory")->required();
-  sub->add_flag("--retry-failed", line.resume.retry_failed, "carry on what failed, too");
-  sub->add_flag("--force", line.resume.force, "carry on what another build began");
+  sub->add_flag("--retry-failed", line.resume.options.retry_failed, "carry on what failed, too");
+  sub->add_flag("--force", line.resume.options.force, "carry on what another build began");
   sub->add_option("--jobs", line.resume.jobs,
                   "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
   add_launch(sub, line.resume.launch);
@@ -222,9 +222,9 @@ void add_about_one(CommandLine& line) {
   sub->add_option("RUN", line.directory, "the run's directory")->required();
   sub->add_option("TAP", line.tap, "the number of the tap, from 1")->required();
 
-  sub = line.add("export", "Write the surface and the taps of a run for other programs",
-                 all_about(line.exported.directory), export_run, line.exported);
-  sub->add_option("RUN", line.exported.directory, "the run's directory")->required();
+  sub = line.add("export", "Write the surface and the taps of a run for other programs", all_about(line.directory),
+                 export_run, line.directory, line.to);
+  sub->add_option("RUN", line.directory, "the run's directory")->required();
   sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
       ->check(CLI::Validator(
           [](const std::string& format) -> std::string {
@@ -233,7 +233,7 @@ void add_about_one(CommandLine& line) {
                                    : fmt::format("{} is not known, write ply", format);
           },
           "ply"));
-  sub->add_option("--to", line.exported.to, "the folder to write into; if not given, export/ of the run");
+  sub->add_option("--to", line.to, "the folder to write into; if not given, export/ of the run");
 }
 
 /// CLI11's own words, on one line, but of a command that there is not, and of many directories where one belongs, which
@@ -263,7 +263,7 @@ int perform(const CommandLine& line, bool asked, int argc, char** argv) {
   const Installation installation = find_installation();
   const PluginHost host(PluginHost::search_path(installation.plugins));
   Composer composer(installation.configs, config_keys());
-  Program program{installation, host, composer, {host, installation, {argv, argv + argc}, &interrupted}};
+  Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
   if (!asked) return line.perform(program);
   Needs needs(program);
   line.need(needs);

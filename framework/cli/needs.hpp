@@ -5,9 +5,7 @@
 
 #include "cli/commands.hpp"
 
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace palpate::cli {
@@ -43,7 +41,7 @@ class Needs final : public PluginSource {
   Program& program_;
   bool whole_ = false;
   bool every_plugin_ = false;
-  mutable std::set<std::pair<std::string, std::string>> plugins_;  ///< kind and name
+  mutable PluginNames plugins_;
 };
 
 }  // namespace palpate::cli

@@ -18,7 +18,7 @@ void check_one_run(const std::filesystem::path& directory) {
 int replay(Program& program, const std::string& directory) {
   constexpr std::size_t kShown = 10;
   check_one_run(directory);
-  const ReplayReport report = replay_run(program.workshop, directory);
+  const ReplayReport report = replay_run(program, directory);
   if (report.differences.empty()) {
     fmt::print("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
     return kDone;

@@ -67,7 +67,7 @@ void report_sweep(const Workshop& workshop, const ReportArguments& arguments) {
 int report(Program& program, const ReportArguments& arguments) {
   // Here is no tap to be ended first, and files appear whole: what interrupts may do so at once.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-  (is_sweep(arguments.directory) ? report_sweep : report_run)(program.workshop, arguments);
+  (is_sweep(arguments.directory) ? report_sweep : report_run)(program, arguments);
   return kDone;
 }
 

@@ -34,17 +34,14 @@ void check_launch(const LaunchArguments& launch) {
 int resume(Program& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
   if (is_sweep(arguments.directory)) return resume_sweep(program, arguments);
-  if (!arguments.jobs.empty()) {
-    throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");
-  }
-  if (arguments.launch.launcher == kSlurm) {
-    throw Error("command line", "--launcher slurm: " + arguments.directory + " is no sweep", "leave it out");
+  if (!arguments.jobs.empty() || arguments.launch.launcher == kSlurm) {
+    const char* const option = arguments.jobs.empty() ? "--launcher slurm" : "--jobs";
+    throw Error("command line", fmt::format("{}: {} is no sweep", option, arguments.directory), "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   const RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
   return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
-    const ResumeOptions options{arguments.retry_failed, arguments.force};
-    return resume_run(program.workshop, arguments.directory, options, display, step);
+    return resume_run(program, arguments.directory, arguments.options, display, step);
   });
 }
 

@@ -58,7 +58,7 @@ Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector
 void print_models(const Program& program, const ResolvedConfig& config) {
   std::map<std::string, std::string> models;
   const std::optional<Error> trouble = trouble_in([&] {
-    for (const ModelReader& one : readers_of(program.workshop, config)) {
+    for (const ModelReader& one : readers_of(program, config)) {
       std::string& who = models[one.model];
       who += (who.empty() ? "" : ", ") + one.who;
     }
@@ -110,29 +110,28 @@ int run(Program& program, const RunArguments& arguments) {
   check_junit(arguments.junit);
   const RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
   return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
-    return start_run(program.workshop, config, directory, arguments.force, display, step);
+    return start_run(program, config, directory, arguments.force, display, step);
   });
 }
 
 int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
                 const RunAction& action) {
   listen_for_interrupts();
-  const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.workshop.interrupted);
+  const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
   std::unique_ptr<Journal> display;
   if (output.table) display = std::make_unique<TapTable>(config.options.taps);
   const GateOutput gate{config.options.name, output.junit, output.table};
   RunReport report;
   const std::optional<Error> trouble = trouble_in([&] { report = action(display.get(), step.get()); });
+  std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
   // A run that failed is a result, too: continuous integration shall see it as one.
-  if (trouble && trouble->kind() == Error::Kind::run) {
-    const std::vector<RunOutcome> runs{outcome_of(config.id, {}, trouble->what())};
-    write_junit(judge(config.expectations, runs), runs, gate);
-  }
+  if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
   if (output.json) fmt::print("{}", to_json_text(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;
-  return conclude(config.expectations, {outcome_of(config.id, report.summary, "")}, gate) ? kDone : kFailed;
+  runs.front().summary = report.summary;
+  return conclude(config.expectations, runs, gate) ? kDone : kFailed;
 }
 
 }  // namespace palpate::cli

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 namespace palpate::cli {
-namespace {
 
-/// Reads the config without resolving it: a status needs no plugin.
-void print_run(const std::filesystem::path& directory) {
+int status(Program& program, const std::string& directory) {
+  if (is_sweep(directory)) return status_of_sweep(program, directory);
+  // The config is read and not resolved: a status needs no plugin.
   const Tree config = read_run_config(directory);
   const RunStatus status = read_status(directory);
   const auto text_at = [&](const char* key) {
@@ -18,13 +18,6 @@ void print_run(const std::filesystem::path& directory) {
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
   fmt::print("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
              reason);
-}
-
-}  // namespace
-
-int status(Program& program, const std::string& directory) {
-  if (is_sweep(directory)) return status_of_sweep(program, directory);
-  print_run(directory);
   return kDone;
 }
 

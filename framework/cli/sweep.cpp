@@ -77,19 +77,15 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
     return values;
   };
   std::map<std::vector<std::string>, std::optional<int>> known;
-  const auto initial_taps = [&](std::size_t job) {
-    const std::vector<std::string> values = deciding(sweep.jobs[job]);
-    const auto [taps, is_new] = known.try_emplace(values);
-    for (std::size_t other = 0; is_new && !taps->second && other < sweep.jobs.size(); ++other) {
-      if (deciding(sweep.jobs[other]) != values) continue;
-      const std::optional<ResolvedConfig> config = readable_config(campaign, other);
-      if (!config) continue;
-      // All taps until the first hit are the search's: its dead starts are those that never hit.
-      const ExperimentOptions& options = config->options;
-      taps->second = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
-    }
-    return taps->second;
-  };
+  for (std::size_t job = 0; job < sweep.jobs.size(); ++job) {
+    std::optional<int>& taps = known[deciding(sweep.jobs[job])];
+    const std::optional<ResolvedConfig> config = taps ? std::nullopt : readable_config(campaign, job);
+    if (!config) continue;
+    // All taps until the first hit are the search's: its dead starts are those that never hit.
+    const ExperimentOptions& options = config->options;
+    taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+  }
+  const auto initial_taps = [&](std::size_t job) { return known[deciding(sweep.jobs[job])]; };
   fmt::print("{}", sweep_table(sweep, sweep_results(sweep, summaries), initial_taps));
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
@@ -116,7 +112,7 @@ int workers_of(const Campaign& campaign) {
 /// conduct(), with a line of progress.
 void conduct_shown(const Campaign& campaign, Launcher& launcher, const Standing& begun) {
   SweepLine line(campaign.launch.quiet);
-  conduct(launcher, campaign.sweep, begun, campaign.program.workshop.interrupted,
+  conduct(launcher, campaign.sweep, begun, campaign.program.interrupted,
           [&](const SweepProgress& progress) { line.show(progress); });
 }
 
@@ -145,7 +141,7 @@ bool run_on_slurm(const Campaign& campaign, const Standing& begun) {
     std::fflush(stdout);
     ids += fmt::format(" {}", array.id);
   });
-  if (campaign.program.workshop.interrupted->load()) return true;  // before anything was submitted
+  if (campaign.program.interrupted->load()) return true;  // before anything was submitted
   if (launch.wait) {
     // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
@@ -169,9 +165,9 @@ void check_builds(Campaign& campaign, bool done_too) {
     const std::optional<ResolvedConfig> config = readable_config(campaign, job);
     if (!config) continue;
     campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
-    bool elsewhere = false;
-    trouble_in([&] { elsewhere = is_of_another_build(campaign.program.workshop, *config, directory); });
-    if (elsewhere && !campaign.options.force) check_build(campaign.program.workshop, *config, directory);
+    std::optional<Error> objection;
+    trouble_in([&] { objection = objection_to_build(campaign.program, *config, directory); });
+    if (objection && !campaign.options.force) throw *objection;
   }
 }
 
@@ -191,12 +187,12 @@ int run_campaign(const Campaign& campaign) {
   if (launch.launcher == kSlurm) {
     if (!begun.open.empty() && !run_on_slurm(campaign, begun)) return kDone;
   } else {
-    LocalLauncher launcher(campaign.program.workshop, sweep, campaign.config_of,
+    LocalLauncher launcher(campaign.program, sweep, campaign.config_of,
                            {workers_of(campaign), campaign.options, launch.attempts, whole});
     conduct_shown(campaign, launcher, begun);
   }
   const Standing end = standing_of(sweep, jobs);
-  const bool interrupted = campaign.program.workshop.interrupted->load();
+  const bool interrupted = campaign.program.interrupted->load();
   return whole ? conclude_whole(campaign, end, interrupted) : conclude_part(sweep, end, interrupted);
 }
 
@@ -263,12 +259,11 @@ int sweep(Program& program, const SweepArguments& arguments) {
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
   check_sbatch_words(arguments.launch.sbatch);
-  const ResumeOptions options{arguments.retry_failed, arguments.force};
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
   const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
-  Campaign campaign{program, sweep, config_of, options, arguments.launch, {}, false};
+  Campaign campaign{program, sweep, config_of, arguments.options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) {
     campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
     const char* const hint = "leave one of them out";

@@ -114,9 +114,9 @@ class Session {
 const BaxterOptions& shipped_options() {
   static const BaxterOptions options = [] {
     const std::filesystem::path configs = palpate::test::source_folder() / "configs";
-    Composer composer(configs, config_keys());
-    const ResolvedConfig config = load_experiment(composer, shared_host(), configs / "paper" / "object_i.yaml",
-                                                  {parse_override("backend=fake_baxter")});
+    const Tree composed = Composer(configs, config_keys())
+                              .compose(configs / "paper" / "object_i.yaml", {parse_override("backend=fake_baxter")});
+    const ResolvedConfig config = resolve_experiment(composed, shared_host());
     BaxterOptions out;
     fill(*config.options.backend.options, shared_host(), "backend", [&](Fields& fields) { out.list(fields); });
     return out;

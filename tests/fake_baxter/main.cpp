@@ -55,7 +55,7 @@ ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
   Composer composer(std::filesystem::path(PALPATE_SOURCE_FOLDER) / "configs", config_keys());
   std::vector<Override> overrides;
   for (const std::string& text : a.overrides) overrides.push_back(parse_override(text));
-  return load_experiment(composer, plugins, a.config, overrides);
+  return resolve_experiment(composer.compose(a.config, overrides), plugins);
 }
 
 BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter, std::uint64_t seed) {

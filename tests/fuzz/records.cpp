@@ -37,7 +37,7 @@ fs::path sound_run() {
   std::vector<Override> overrides;
   for (const std::string& one : kSmall) overrides.push_back(parse_override(one));
   const ResolvedConfig config =
-      load_experiment(composer, host(), shipped_configs() / "paper" / "object_i.yaml", overrides);
+      resolve_experiment(composer.compose(shipped_configs() / "paper" / "object_i.yaml", overrides), host());
   const fs::path directory = directory_of(config, ground().path() / "runs");
   start_run(workshop(), config, directory, true, nullptr, nullptr);
   return directory;
@@ -93,7 +93,7 @@ void record(const std::string& bytes) {
   const auto [name, content] = divided(bytes, files);
   const Changed changed(run / name, content);
   attempt([&] { read_status(run); });
-  attempt([&] { check_build(workshop(), load_run(host(), run), run); });
+  attempt([&] { objection_to_build(workshop(), load_run(host(), run), run); });
   attempt([&] { replay_run(workshop(), run); });
 }
 

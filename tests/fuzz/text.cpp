@@ -21,9 +21,9 @@ void config(const std::string& bytes) {
   try {
     const std::filesystem::path file = ground().write("config.yaml", bytes);
     Composer composer(shipped_configs(), config_keys());
-    const ResolvedConfig first = load_experiment(composer, host(), file, {});
-    Composer again(shipped_configs(), config_keys());
-    const ResolvedConfig second = load_experiment(again, host(), ground().write("again.yaml", to_yaml(first.tree)), {});
+    const ResolvedConfig first = resolve_experiment(composer.compose(file, {}), host());
+    const std::filesystem::path written = ground().write("again.yaml", to_yaml(first.tree));
+    const ResolvedConfig second = resolve_experiment(composer.compose(written, {}), host());
     if (first.id != second.id) throw std::logic_error("written and read again, it is another config");
   } catch (const Error&) {
   }

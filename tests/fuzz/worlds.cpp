@@ -3,6 +3,7 @@
 #include "fuzz/ground.hpp"
 #include "fuzz/harness.hpp"
 
+#include "config/compose.hpp"
 #include "experiment/experiment.hpp"
 #include "record/resolved.hpp"
 
@@ -19,7 +20,7 @@ ResolvedConfig with(const std::vector<std::string>& words) {
   Composer composer(shipped_configs(), config_keys());
   std::vector<Override> overrides{parse_override("candidates.count=5"), parse_override("taps=4")};
   for (const std::string& one : words) overrides.push_back(parse_override(one));
-  return load_experiment(composer, host(), shipped_configs() / "paper" / "object_i.yaml", overrides);
+  return resolve_experiment(composer.compose(shipped_configs() / "paper" / "object_i.yaml", overrides), host());
 }
 
 }  // namespace

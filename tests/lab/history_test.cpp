@@ -6,7 +6,7 @@
 #include "record/tap_row.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"
-#include "support/support.hpp"
+#include "support/runs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,11 +25,7 @@ using ::testing::HasSubstr;
 class Recorded {
  public:
   Recorded(const std::string& base, const std::vector<std::string>& words) {
-    Composer composer(test::source_folder() / "configs", config_keys());
-    std::vector<Override> overrides;
-    for (const std::string& word : words) overrides.push_back(parse_override(word));
-    const ResolvedConfig config =
-        load_experiment(composer, test::shared_host(), test::source_folder() / "configs" / base, overrides);
+    const ResolvedConfig config = test::shipped_config(base, words);
     directory = start_run(workshop, config, folder_.path() / "run", false, nullptr).directory;
   }
 

@@ -40,7 +40,7 @@ class Process : public palpate::Process {
  private:
   template <class Read>
   Eigen::VectorXd filled(const Read& read) const {
-    Eigen::VectorXd out(candidates().size());
+    Eigen::VectorXd out;
     read(out);
     return out;
   }

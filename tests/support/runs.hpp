@@ -21,7 +21,7 @@ inline ResolvedConfig shipped_config(const std::string& file, const std::vector<
   Composer composer(source_folder() / "configs", config_keys());
   std::vector<Override> parsed;
   for (const std::string& text : overrides) parsed.push_back(parse_override(text));
-  return load_experiment(composer, shared_host(), source_folder() / "configs" / file, parsed);
+  return resolve_experiment(composer.compose(source_folder() / "configs" / file, parsed), shared_host());
 }
 
 /// Keeps every record, and does what the test wants done meanwhile.

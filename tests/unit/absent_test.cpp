@@ -33,7 +33,7 @@ class WithoutLibraries : public InFolder {
   ResolvedConfig resolved(const std::vector<Override>& overrides) const {
     const fs::path configs = source_folder() / "configs";
     Composer composer(configs, config_keys());
-    return load_experiment(composer, host_, configs / "paper" / "object_i.yaml", overrides);
+    return resolve_experiment(composer.compose(configs / "paper" / "object_i.yaml", overrides), host_);
   }
 
   const PluginHost host_{std::vector<fs::path>{folder_.path() / "plugins"}};

@@ -25,8 +25,8 @@ TEST(Factor, GrownRowByRowEqualsTheFactorOfTheWholeMatrix) {
   Factor factor;
   for (int i = 0; i < n; ++i) {
     ASSERT_TRUE(factor.append(matrix.col(i).head(i), matrix(i, i)));
-    EXPECT_LT((factor.last_row() - whole.row(i).head(i).transpose()).norm(), 1e-12);
-    EXPECT_NEAR(factor.last_pivot(), whole(i, i), 1e-12);
+    EXPECT_LT((factor.row(i) - whole.row(i).head(i).transpose()).norm(), 1e-12);
+    EXPECT_NEAR(factor.pivot(i), whole(i, i), 1e-12);
   }
   EXPECT_NEAR(factor.log_determinant(), 2.0 * whole.diagonal().array().log().sum(), 1e-10);
 }
@@ -38,7 +38,7 @@ TEST(Factor, RefusesARowThatMakesTheMatrixSingularAndStaysAsItWas) {
   EXPECT_FALSE(factor.append(duplicate, 1.0));
   EXPECT_EQ(factor.size(), 1);
   EXPECT_TRUE(factor.append(duplicate, 1.0 + 1e-8)) << "with noise a duplicate is legal";
-  EXPECT_NEAR(factor.last_pivot(), 1e-4, 1e-11);
+  EXPECT_NEAR(factor.pivot(1), 1e-4, 1e-11);
 }
 
 TEST(Factor, RefusesWhatIsNotANumber) {

@@ -95,6 +95,21 @@ void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
   }
 }
 
+/// Fills what inherits from another key (Field::inherits()), where present, so that it may name only what differs.
+void inherit_shared(Tree& tree, const ConfigKeys& keys) {
+  for (const auto& [heir, from] : keys.heirs()) {
+    const Tree* own = tree.find_path(heir);
+    const Tree* base = tree.find_path(from);
+    if (own == nullptr || base == nullptr || !own->is_map() || !base->is_map()) continue;
+    Tree merged = *base;
+    // What the shared one says is older than anything said for this process alone.
+    merged.shift_layer(-2 * kCommandLineLayer);
+    merged.merge(*own);
+    merged.place = own->place;
+    tree.at_path(heir, own->place) = std::move(merged);
+  }
+}
+
 }  // namespace
 
 void check_path(const std::string& path, const std::string& place) {
@@ -201,10 +216,10 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
   for (std::size_t i = 0; i < bases.size(); ++i) {
     const Choice& base = bases[i];
     if (base.path != group) {
-      throw Error(base.place.text(), fmt::format("a {} may build only on another {}", group, group),
+      throw Error(base.value.place.text(), fmt::format("a {} may build only on another {}", group, group),
                   fmt::format("write '- {}: name'", group));
     }
-    Tree below = group_content(group, base.name, base.place, root_of(file, group), chain);
+    Tree below = group_content(group, base.value.text, base.value.place, root_of(file, group), chain);
     below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
     content.merge(below);
   }
@@ -246,7 +261,8 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
       throw Error(entry.place.text(), fmt::format("unknown group '{}'", entry.key),
                   suggestion(entry.key, keys_.groups()));
     }
-    choices.push_back({entry.key, entry.value.text, entry.value.place, kGroupLayer});
+    choices.push_back({entry.key, entry.value});
+    choices.back().value.layer = kGroupLayer;
   }
   own.erase("defaults");
   return choices;
@@ -258,7 +274,7 @@ void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choic
     if (path.empty() && entry.key == "sweep") continue;
     const std::string here = path.empty() ? entry.key : path + "." + entry.key;
     if (keys_.is_group(here) && entry.value.is_scalar()) {
-      choices.push_back({here, entry.value.text, entry.value.place, entry.value.layer});
+      choices.push_back({here, entry.value});
       taken.push_back(entry.key);
     } else if (entry.value.is_map() && !keys_.is_plugin(here)) {
       take_names(entry.value, here, choices);
@@ -269,10 +285,10 @@ void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choic
 
 Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer layer) {
   std::vector<std::string> chain;
-  Tree content = group_content(last_key(choice.path), choice.name, choice.place, beside, chain);
+  Tree content = group_content(last_key(choice.path), choice.value.text, choice.value.place, beside, chain);
   note_group(choice, beside);
   content.shift_layer(layer);
-  set_layer_of_type(content, std::max(choice.layer, layer), choice.place);
+  set_layer_of_type(content, std::max(choice.value.layer, layer), choice.value.place);
   return content;
 }
 
@@ -280,7 +296,7 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
   const auto lay = [&](const Choice& choice) {
     const Tree content = take_group(choice, beside, layer);
     layer += kLayersOfGroup;
-    Tree& slot = tree.at_path(choice.path, choice.place);
+    Tree& slot = tree.at_path(choice.path, choice.value.place);
     if (slot.kind == Tree::Kind::null || keys_.is_part(choice.path)) slot = Tree::map();
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
@@ -300,9 +316,9 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   if (last == choices.rend()) return kGroupLayer;
   const Choice choice = *last;
   drop(choices, is_strategy);
-  add_link(kStrategy, choice.name, choice.place, chain);
-  const fs::path file = find_group(kStrategy, choice.name, choice.place, beside);
-  if (file.empty()) throw no_file(kStrategy, choice.name, choice.place, beside);
+  add_link(kStrategy, choice.value.text, choice.value.place, chain);
+  const fs::path file = find_group(kStrategy, choice.value.text, choice.value.place, beside);
+  if (file.empty()) throw no_file(kStrategy, choice.value.text, choice.value.place, beside);
   note_group(choice, beside);
   Tree own = load(file);
   own.set_layer(kGroupLayer);
@@ -316,12 +332,12 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   own.set_layer(layer);
   layer += kLayersOfGroup;
   tree.merge(own);
-  return choice.layer;
+  return choice.value.layer;
 }
 
 void Composer::note_group(const Choice& choice, const fs::path& beside) {
-  fs::path file = find_group(last_key(choice.path), choice.name, choice.place, beside);
-  if (!file.empty()) groups_.push_back({choice.path, choice.name, std::move(file)});
+  fs::path file = find_group(last_key(choice.path), choice.value.text, choice.value.place, beside);
+  if (!file.empty()) groups_.push_back({choice.path, choice.value.text, std::move(file)});
 }
 
 Tree Composer::compose(const fs::path& file, const std::vector<Override>& overrides) {
@@ -333,7 +349,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   for (const Override& one : overrides) {
     if (!keys_.is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
     drop(choices, [&](const Choice& choice) { return choice.path == one.path; });
-    choices.push_back({one.path, one.value.text, one.value.place, one.value.layer});
+    choices.push_back(one);
   }
 
   Tree tree = Tree::map();
@@ -342,14 +358,14 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   std::vector<std::string> chain;
   if (lay_strategy(tree, choices, beside, layer, chain) >= kSweepLayer) {
     drop(choices,
-         [&](const Choice& older) { return older.layer < kSweepLayer && tree.find(first_key(older.path)) != nullptr; });
+         [&](const Choice& one) { return one.value.layer < kSweepLayer && tree.find(first_key(one.path)) != nullptr; });
     for (const Tree::Entry& entry : tree.entries) own.erase(entry.key);
   }
   lay_groups(tree, choices, beside, layer);
   tree.merge(own);
   for (const Override& one : overrides) {
     if (keys_.is_group(one.path) && one.value.is_scalar()) {
-      if (is_inner(one.path)) choose_inner(tree, {one.path, one.value.text, one.value.place, one.value.layer}, beside);
+      if (is_inner(one.path)) choose_inner(tree, one, beside);
       continue;
     }
     Tree& slot = tree.at_path(one.path, one.value.place);
@@ -364,7 +380,7 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
 }
 
 void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& beside) {
-  Tree& slot = tree.at_path(choice.path, choice.place);
+  Tree& slot = tree.at_path(choice.path, choice.value.place);
   Tree content = take_group(choice, beside, kFileLayer - 1);
   if (slot.is_map() && !keys_.is_part(choice.path)) {
     const Tree* const type = content.find("type");
@@ -373,20 +389,6 @@ void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& be
     if (type != nullptr) content.at("type") = chosen;
   }
   slot = std::move(content);
-}
-
-void inherit_shared(Tree& tree, const ConfigKeys& keys) {
-  for (const auto& [heir, from] : keys.heirs()) {
-    const Tree* own = tree.find_path(heir);
-    const Tree* base = tree.find_path(from);
-    if (own == nullptr || base == nullptr || !own->is_map() || !base->is_map()) continue;
-    Tree merged = *base;
-    // What the shared one says is older than anything said for this process alone.
-    merged.shift_layer(-2 * kCommandLineLayer);
-    merged.merge(*own);
-    merged.place = own->place;
-    tree.at_path(heir, own->place) = std::move(merged);
-  }
 }
 
 }  // namespace palpate

@@ -65,12 +65,8 @@ class Composer {
   const std::vector<Group>& groups() const { return groups_; }
 
  private:
-  struct Choice {
-    std::string path;  ///< where the group goes
-    std::string name;
-    Place place;  ///< of the choice
-    Layer layer;  ///< of the choice: the type that it brings has this layer
-  };
+  /// Of a group by its name, which is the value: the type that the group brings has the layer of that.
+  using Choice = Override;
 
   const Tree& load(const std::filesystem::path& file);
   std::vector<Choice> take_defaults(Tree& own) const;
@@ -111,8 +107,5 @@ class Composer {
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.
   mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
 };
-
-/// Fills what inherits from another key (Field::inherits()), where present, so that it may name only what differs.
-void inherit_shared(Tree& tree, const ConfigKeys& keys);
 
 }  // namespace palpate

@@ -36,7 +36,9 @@ class Resolver final : public Fields {
   Tree finish(const std::vector<std::string>& elsewhere = {}) {
     for (const Tree::Entry& entry : input_.entries) {
       if (silent_ || is_known(entry.key)) continue;
-      if (entry.value.highest_layer() < type_layer_) {
+      Layer highest = entry.value.layer;  // of the last who had a say in it
+      for_all(entry.value, [&](const Tree& one) { highest = std::max(highest, one.layer); });
+      if (highest < type_layer_) {
         notes_.dropped.push_back({path_ + entry.key, entry.value.place.text()});
         continue;
       }

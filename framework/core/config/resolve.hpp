@@ -24,15 +24,18 @@ class PluginSource {
   virtual bool is_silent(const std::string&, const std::string&) const { return false; }
 };
 
+/// Plugins by kind and name.
+using PluginNames = std::set<std::pair<std::string, std::string>>;
+
 /// What resolving found out beside the values.
 struct ResolveNotes {
   struct Origin {
     std::string path;   ///< dotted, for example "kernel.length_scale"
     std::string place;  ///< "file:line:column", "command line", or "default"
   };
-  std::vector<Origin> origins;                            ///< of every value, in the order of the resolved config
-  std::vector<Origin> dropped;                            ///< options left behind by a type that was chosen after them
-  std::set<std::pair<std::string, std::string>> plugins;  ///< kind and name of every plugin that the config names
+  std::vector<Origin> origins;  ///< of every value, in the order of the resolved config
+  std::vector<Origin> dropped;  ///< options left behind by a type that was chosen after them
+  PluginNames plugins;          ///< every plugin that the config names
 };
 
 /// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first

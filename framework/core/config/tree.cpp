@@ -86,14 +86,6 @@ const Tree* find_child(const Tree& tree, std::string_view name) {
   return tree.kind == Tree::Kind::list ? find_item(tree, name) : tree.find(name);
 }
 
-/// Visits a tree and all below.
-template <class AnyTree, class Visit>
-void for_all(AnyTree& tree, const Visit& visit) {
-  visit(tree);
-  for (auto& item : tree.items) for_all(item, visit);
-  for (auto& entry : tree.entries) for_all(entry.value, visit);
-}
-
 /// Edit distance with swaps of neighbours (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -167,12 +159,6 @@ Place Tree::place_of(std::string_view path) const {
     rest = tail;
   }
   return best;
-}
-
-Layer Tree::highest_layer() const {
-  Layer highest = layer;
-  for_all(*this, [&](const Tree& one) { highest = std::max(highest, one.layer); });
-  return highest;
 }
 
 void Tree::set_layer(Layer value) {

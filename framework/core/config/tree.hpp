@@ -51,8 +51,7 @@ struct Tree {
   static Tree scalar(std::string text, bool quoted = false);
   /// A scalar that is text whatever it looks like.
   static Tree quote(std::string text) { return scalar(std::move(text), true); }
-  static Tree list() { return Tree(Kind::list); }
-  static Tree list(std::vector<Tree> items);
+  static Tree list(std::vector<Tree> items = {});
   static Tree map(std::initializer_list<std::pair<const char*, Tree>> entries = {});
 
   bool is_map() const { return kind == Kind::map; }
@@ -73,8 +72,6 @@ struct Tree {
   /// The place of the value at a dotted path or, where that has none, of what encloses it; none if nothing is there.
   Place place_of(std::string_view path) const;
 
-  /// The highest layer of this tree and all below: the last who had a say in it.
-  Layer highest_layer() const;
   /// Marks this tree and all below as coming from `layer`.
   void set_layer(Layer layer);
   /// Moves this tree and all below by `steps` layers, keeping their order among themselves.
@@ -94,6 +91,14 @@ struct Tree::Entry {
   Place place;  ///< of the key
   Tree value;
 };
+
+/// Visits a tree and all below.
+template <class AnyTree, class Visit>
+void for_all(AnyTree& tree, const Visit& visit) {
+  visit(tree);
+  for (auto& item : tree.items) for_all(item, visit);
+  for (auto& entry : tree.entries) for_all(entry.value, visit);
+}
 
 /// Whether `text` can be the name of a plugin or of a file of a group; and what to say if not.
 bool is_name(const std::string& text);

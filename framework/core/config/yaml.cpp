@@ -219,14 +219,6 @@ void emit(YAML::Emitter& out, const Tree& tree) {
   }
 }
 
-/// As Reader counts them.
-int count_values(const Tree& tree) {
-  int count = 1;
-  for (const Tree& item : tree.items) count += count_values(item);
-  for (const Tree::Entry& entry : tree.entries) count += count_values(entry.value);
-  return count;
-}
-
 /// The config beside `missing` whose name is nearest to its own, as a hint.
 std::string similar_file(const std::filesystem::path& missing) {
   std::vector<std::string> names;
@@ -283,7 +275,9 @@ void check_readable(const Tree& config, const std::string& file) {
   // To write it takes longer than to resolve it, and hardly any config comes near the limit.
   constexpr std::size_t kSmall = 1 << 16;
   if (config.canonical().size() < kSmall) return;
-  if (to_yaml(config).size() <= kMaxBytes && count_values(config) <= kMaxValues) return;
+  int values = 0;  // as Reader counts them
+  for_all(config, [&](const Tree&) { ++values; });
+  if (to_yaml(config).size() <= kMaxBytes && values <= kMaxValues) return;
   throw Error(file, "too large with all that it leaves to defaults", "at most 1 MiB and 100000 values in config.yaml");
 }
 

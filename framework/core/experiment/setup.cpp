@@ -3,14 +3,6 @@
 #include "experiment/experiment.hpp"
 
 namespace palpate {
-namespace {
-
-Candidates make_candidates(const CandidateOptions& options, const Area& area) {
-  if (options.spacing) return grid_by_spacing(area, *options.spacing);
-  return grid_by_count(area, static_cast<int>(*options.count));
-}
-
-}  // namespace
 
 Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,
                        const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend,
@@ -18,7 +10,9 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
     : options_(options),
       scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
       context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
-      candidates_(make_candidates(options.candidates, scene_->area())),
+      candidates_(options.candidates.spacing
+                      ? grid_by_spacing(scene_->area(), *options.candidates.spacing)
+                      : grid_by_count(scene_->area(), static_cast<int>(*options.candidates.count))),
       belief_(options_, candidates_, context_, clock_),
       chooser_(options_, candidates_, context_),
       backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)),

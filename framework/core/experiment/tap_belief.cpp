@@ -21,8 +21,6 @@ constexpr double kFreeLevel = 1000.0;
 
 namespace {
 
-constexpr std::array<const char*, 4> kEngineNames{"auto", "dense", "grid", "lowrank"};
-
 PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   PosteriorSettings out;
   out.engine = static_cast<PosteriorSettings::Kind>(options.posterior);
@@ -57,9 +55,8 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
   if (!refusal.empty()) throw Error(fitting.options->place.text(), refusal);
   const std::string why = objection(posterior_, *model.kernel, candidates_);
   if (!why.empty()) {
-    throw Error("posterior",
-                fmt::format("{} cannot be used with the kernel {}, {}",
-                            kEngineNames[static_cast<std::size_t>(posterior_.engine)], kernel.type, why),
+    const char* const engine = posterior_.engine == PosteriorSettings::Kind::grid ? "grid" : "lowrank";
+    throw Error("posterior", fmt::format("{} cannot be used with the kernel {}, {}", engine, kernel.type, why),
                 "posterior: dense serves every kernel");
   }
   return model;
@@ -221,7 +218,6 @@ TapBelief::Output TapBelief::output(const Model& model, int output) {
 
 void TapBelief::map_heights() {
   const Process& process = *heights_.process;
-  for (Eigen::VectorXd* map : {&uncertainty_, &variance_}) map->resize(candidates_.size());
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
   if (!two_part_) map_surface(process);
@@ -230,7 +226,6 @@ void TapBelief::map_heights() {
 }
 
 void TapBelief::map_labels() {
-  weight_mean_.resize(candidates_.size());
   labels().process->read_mean(label_output(), weight_mean_);
   const auto clipped = weight_mean_.cwiseMax(0.0).cwiseMin(1.0);
   if (clip_) weight_ = clipped;
@@ -240,13 +235,11 @@ void TapBelief::map_labels() {
 
 void TapBelief::map_object() {
   map_surface(*object_.process);
-  object_variance_.resize(candidates_.size());
   object_.process->read_variance(0, object_variance_);
   object_.stale = false;
 }
 
 void TapBelief::map_surface(const Process& process) {
-  height_mean_.resize(candidates_.size());
   process.read_mean(0, height_mean_);
   height_mean_.array() += desk_;
 }

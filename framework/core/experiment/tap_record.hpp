@@ -120,9 +120,6 @@ class Journal {
   virtual bool permits(const TapRecord& /*tap*/) { return true; }
   /// The tap is chosen; nothing has moved.
   virtual void announce(const TapRecord& tap) = 0;
-  /// Whether taps are told with the errors of the state that they were chosen from, however little the strategy reads;
-  /// else with those that the record has.
-  virtual bool follows_errors() const { return false; }
   /// The tap is over. `seconds` is the time since the last tap, by phase.
   virtual void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) = 0;
 };

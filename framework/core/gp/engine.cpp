@@ -18,8 +18,12 @@ struct Choice {
   std::string reason;
 };
 
-Choice choose_separable(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
-                        double error) {
+Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
+                   double error) {
+  if (settings.engine != Kind::automatic) return {settings.engine, "asked for"};
+  if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
+  if (!candidates.is_grid()) return {Kind::dense, "the candidates are no product grid"};
+  if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};
   if (error > settings.accuracy) {
     return {Kind::grid,
             fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy)};
@@ -37,15 +41,6 @@ Choice choose_separable(const PosteriorSettings& settings, const Kernel& kernel,
   const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
   return {of_lowrank < of_grid ? Kind::lowrank : Kind::grid,
           fmt::format("separable kernel of rank {} x {} on a grid and {} taps", x, y, settings.taps)};
-}
-
-Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
-                   double error) {
-  if (settings.engine != Kind::automatic) return {settings.engine, "asked for"};
-  if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
-  if (!candidates.is_grid()) return {Kind::dense, "the candidates are no product grid"};
-  if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};
-  return choose_separable(settings, kernel, candidates, error);
 }
 
 }  // namespace

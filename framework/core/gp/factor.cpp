@@ -52,7 +52,7 @@ void Factor::inverse_row(int i, VectorOut out) {
 
 void Factor::follow(Extreme& extreme, bool largest) const {
   const int n = size_ - 1;
-  const double pivot = last_pivot();
+  const double pivot = this->pivot(n);
   if (n == 0) {
     extreme.vector(0) = 1.0;
     extreme.value = pivot * pivot;
@@ -60,7 +60,7 @@ void Factor::follow(Extreme& extreme, bool largest) const {
   }
   // Among the vectors (s x, c), s^2 + c^2 = 1, |L (s x, c)|^2 is the form [s c] [[v + a^2, a d], [a d, d^2]] [s c]^T
   // with a = l.x, d the pivot and v the value so far.
-  const double a = last_row().dot(extreme.vector.head(n));
+  const double a = row(n).dot(extreme.vector.head(n));
   const double angle = 0.5 * std::atan2(2.0 * a * pivot, extreme.value + a * a - pivot * pivot);
   double s = std::cos(angle);
   double c = std::sin(angle);

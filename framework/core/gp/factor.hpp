@@ -32,8 +32,6 @@ class Factor {
   /// Row i without its pivot: l = L^-1 covariance; i values.
   VectorView row(int i) const { return Eigen::Map<const Eigen::VectorXd>(packed(i), i); }
   double pivot(int i) const { return packed(i)[i]; }
-  VectorView last_row() const { return row(size_ - 1); }
-  double last_pivot() const { return pivot(size_ - 1); }
 
   /// Row i of L^-1, i + 1 values, into `out` of as many. O(i^2).
   void inverse_row(int i, VectorOut out);

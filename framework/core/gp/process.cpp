@@ -80,12 +80,12 @@ bool Process::append(int tap) {
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));
   if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() + jitter_)) return false;
 
-  const VectorView before = factor_.last_row();
+  const VectorView before = factor_.row(row);
   const auto reduce = [&](Eigen::Index column, double value) {
-    reduced_(row, column) = (value - before.dot(reduced_.col(column).head(row))) / factor_.last_pivot();
+    reduced_(row, column) = (value - before.dot(reduced_.col(column).head(row))) / factor_.pivot(row);
   };
   for (Eigen::Index k = 0; k < targets_.cols(); ++k) {
-    const ProcessSettings& output = outputs_at(static_cast<int>(k));
+    const ProcessSettings& output = settings(static_cast<int>(k));
     reduce(k, (targets_(tap, k) - output.mean) / output.signal);
   }
   if (with_constant()) reduce(targets_.cols(), 1.0);
@@ -232,17 +232,19 @@ void Process::with_prior(const Use& use) const {
   }
 }
 
-void Process::read_mean(int output, VectorOut out) const {
+void Process::read_mean(int output, Eigen::VectorXd& out) const {
+  out.resize(candidates_.size());
   maps().read_mean(output, out);
   if (with_constant()) {
     Eigen::VectorXd explained(out.size());
     maps().read_mean(shown_, explained);
     out.array() += constant_mean() * (1.0 - explained.array());
   }
-  out.array() = outputs_at(output).signal * out.array() + outputs_at(output).mean;
+  out.array() = settings(output).signal * out.array() + settings(output).mean;
 }
 
-void Process::read_standard_variance(VectorOut out) const {
+void Process::read_standard_variance(Eigen::VectorXd& out) const {
+  out.resize(candidates_.size());
   maps().read_variance(out);
   if (with_constant()) {
     Eigen::VectorXd explained(out.size());
@@ -251,19 +253,19 @@ void Process::read_standard_variance(VectorOut out) const {
   }
 }
 
-void Process::read_variance(int output, VectorOut out) const {
-  const double signal = outputs_at(output).signal;
+void Process::read_variance(int output, Eigen::VectorXd& out) const {
+  const double signal = settings(output).signal;
   read_standard_variance(out);
   with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) * (signal * signal); });
 }
 
-void Process::read_relative_variance(VectorOut out) const {
+void Process::read_relative_variance(Eigen::VectorXd& out) const {
   read_standard_variance(out);
   with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) / prior; });
 }
 
 int Process::variances_clamped() const {
-  Eigen::VectorXd variance(candidates_.size());
+  Eigen::VectorXd variance;
   read_standard_variance(variance);
   // A last digit above the prior is no news; below 0 every digit is.
   Eigen::Index clamped = 0;
@@ -285,7 +287,7 @@ double Process::log_marginal_likelihood(int output) const {
   if (n == 0) return 0.0;
   double log_determinant = factor_.log_determinant();
   if (with_constant()) log_determinant += std::log(constant_precision() * prior_of_constant());
-  return -0.5 * (misfit(output) + log_determinant + n * kLogTwoPi) - n * std::log(outputs_at(output).signal);
+  return -0.5 * (misfit(output) + log_determinant + n * kLogTwoPi) - n * std::log(settings(output).signal);
 }
 
 }  // namespace palpate

@@ -59,12 +59,13 @@ class Process {
   void show(int outputs);
   int shown() const { return shown_; }
 
+  // These size `out`.
   /// Posterior mean over the candidates, unit of the targets, of an output that is shown.
-  void read_mean(int output, VectorOut out) const;
+  void read_mean(int output, Eigen::VectorXd& out) const;
   /// Posterior variance over the candidates, noise excluded, square of the unit of the targets; in [0, prior].
-  void read_variance(int output, VectorOut out) const;
+  void read_variance(int output, Eigen::VectorXd& out) const;
   /// The same relative to the prior variance of each candidate; in [0, 1].
-  void read_relative_variance(VectorOut out) const;
+  void read_relative_variance(Eigen::VectorXd& out) const;
 
   /// log p(targets), natural logarithm, targets in their unit. 0 without taps.
   double log_marginal_likelihood(int output = 0) const;
@@ -75,7 +76,7 @@ class Process {
   double misfit(int output = 0) const;
 
   /// The variance added to the diagonal by need, square of the unit of the targets.
-  double jitter(int output = 0) const { return jitter_ * outputs_at(output).signal * outputs_at(output).signal; }
+  double jitter(int output = 0) const { return jitter_ * settings(output).signal * settings(output).signal; }
   /// How often jitter was raised, and how often pivoting was the last resort.
   int jitter_raised() const { return jitter_raised_; }
   int pivoted() const { return pivoted_; }
@@ -94,16 +95,14 @@ class Process {
   const std::string& engine_reason() const { return choice_.reason; }
   double error_bound() const;
 
-  const ProcessSettings& settings(int output = 0) const { return outputs_at(output); }
+  const ProcessSettings& settings(int output = 0) const { return outputs_[static_cast<std::size_t>(output)]; }
   const Kernel& kernel() const { return *kernel_; }
-  const Candidates& candidates() const { return candidates_; }
 
   /// Lets `fitting` choose the hyperparameters from the taps, and rebuilds if it changed them. Numbers that are not
   /// finite and positive are refused: then the old ones stay.
   FitSummary fit(const Fitting& fitting, Random& random);
 
  private:
-  const ProcessSettings& outputs_at(int output) const { return outputs_[static_cast<std::size_t>(output)]; }
   bool with_constant() const { return outputs_.front().mean_ratio > 0.0; }
   double noise_ratio() const { return outputs_.front().noise / outputs_.front().signal; }
   double prior_of_constant() const { return outputs_.front().mean_ratio * outputs_.front().mean_ratio; }
@@ -123,7 +122,7 @@ class Process {
   double constant_precision() const;
   /// Posterior mean of the constant in signals.
   double constant_mean() const;
-  void read_standard_variance(VectorOut out) const;
+  void read_standard_variance(Eigen::VectorXd& out) const;
   /// Calls use(prior variance with that of the constant, at each candidate).
   template <class Use>
   void with_prior(const Use& use) const;

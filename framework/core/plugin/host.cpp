@@ -165,8 +165,8 @@ std::string trouble_of_folder(const fs::path& folder) {
 
 }  // namespace
 
-std::set<std::pair<std::string, std::string>> plugins_of_build(const fs::path& folder) {
-  std::set<std::pair<std::string, std::string>> out;
+PluginNames plugins_of_build(const fs::path& folder) {
+  PluginNames out;
   std::ifstream in(folder / "plugins.txt");
   for (std::string line; std::getline(in, line);) {
     const auto slash = line.find('/');
@@ -221,7 +221,7 @@ std::vector<fs::path> PluginHost::search_path(const fs::path& shipped) {
   return out;
 }
 
-bool PluginHost::one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const {
+bool PluginHost::one_at_a_time(const PluginNames& plugins) const {
   return std::any_of(plugins.begin(), plugins.end(),
                      [this](const auto& one) { return library(one.first, one.second)->manifest->one_at_a_time; });
 }
@@ -311,7 +311,7 @@ std::string PluginHost::look(const std::string& kind, const std::string& name) c
   return summary;
 }
 
-std::vector<LoadedPlugin> PluginHost::loaded(const std::set<std::pair<std::string, std::string>>& plugins) const {
+std::vector<LoadedPlugin> PluginHost::loaded(const PluginNames& plugins) const {
   std::vector<LoadedPlugin> out;
   for (const auto& [kind, name] : plugins) {
     const std::shared_ptr<const Library> holder = library(kind, name);

@@ -37,7 +37,7 @@ struct LoadedPlugin {
 
 /// Kind and name of the plugins of a build, whether they are built or not: what its plugin folder lists. Empty for any
 /// other folder, an installed one too.
-std::set<std::pair<std::string, std::string>> plugins_of_build(const std::filesystem::path& folder);
+PluginNames plugins_of_build(const std::filesystem::path& folder);
 
 /// Keeps every library that it loaded until it dies; so does every object that it made. Safe to use from several
 /// threads.
@@ -62,10 +62,10 @@ class PluginHost final : public PluginSource, public PluginFactory {
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 
   /// File and hash of the given plugins (kind, name), in their order; loads them if need be. Throws Error.
-  std::vector<LoadedPlugin> loaded(const std::set<std::pair<std::string, std::string>>& plugins) const;
+  std::vector<LoadedPlugin> loaded(const PluginNames& plugins) const;
 
   /// Whether one of the given plugins moves something that exists only once; loads them if need be. Throws Error.
-  bool one_at_a_time(const std::set<std::pair<std::string, std::string>>& plugins) const;
+  bool one_at_a_time(const PluginNames& plugins) const;
 
   /// Whether a folder has a library of that name, whatever is in it.
   bool has(const std::string& kind, const std::string& name) const;

@@ -6,9 +6,7 @@
 #include "plugin/host.hpp"
 
 #include <filesystem>
-#include <set>
 #include <string>
-#include <utility>
 
 namespace palpate {
 
@@ -27,9 +25,6 @@ Installation find_installation();
 std::string host_name();
 
 extern const char* const kVersion;
-
-/// The plugins of one run, by kind and name.
-using PluginNames = std::set<std::pair<std::string, std::string>>;
 
 /// A hash over all of core as it was compiled, and over what is linked into it: cmake/CoreHash.cmake makes it, for
 /// every program that core is linked to.

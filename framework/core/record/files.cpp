@@ -106,9 +106,9 @@ fs::path make_folder(const fs::path& folder) {
   return folder;
 }
 
-void make_inner_folder(const fs::path& folder) {
+fs::path make_inner_folder(const fs::path& folder) {
   refuse_link(folder);
-  make_folder(folder);
+  return make_folder(folder);
 }
 
 std::string read_file(const fs::path& file) {

@@ -52,8 +52,8 @@ void refuse_link(const std::filesystem::path& path);
 /// Makes `folder` if need be, and returns it. Throws Error.
 std::filesystem::path make_folder(const std::filesystem::path& folder);
 
-/// Makes `folder`, a part of a record, if need be. Throws Error, where it is a link, too.
-void make_inner_folder(const std::filesystem::path& folder);
+/// The same for a part of a record. Throws Error, where it is a link, too.
+std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 
 /// The whole content. Throws Error.
 std::string read_file(const std::filesystem::path& file);

@@ -56,36 +56,31 @@ std::string absence(const Expectation& one, const RunOutcome& run) {
   return reason.empty() ? fmt::format("the summary has no {}", one.field) : reason;
 }
 
-struct Judgement {
-  bool holds = false;
-  std::string got;
-};
-
 /// One run by a field of its summary.
-Judgement judge_run(const Expectation& one, const RunOutcome& run) {
+Verdict judge_run(const Expectation& one, const RunOutcome& run) {
   const RecordField* field = find_summary_field(one.field);
   if (field != nullptr && field->type == RecordField::Type::text) {
     const std::string text = run.summary ? run.summary->text(one.field) : std::string();
-    if (text.empty()) return {false, "no value: " + absence(one, run)};
-    return {text == one.text, text};
+    if (text.empty()) return {one, false, "no value: " + absence(one, run)};
+    return {one, text == one.text, text};
   }
   const std::optional<double> value = number_at(run, one.field);
-  if (!value) return {false, "no value: " + absence(one, run)};
-  return {holds(one.comparison, *value, one.bound), shown(one, *value)};
+  if (!value) return {one, false, "no value: " + absence(one, run)};
+  return {one, holds(one.comparison, *value, one.bound), shown(one, *value)};
 }
 
 /// Every run on its own: names the first that misses, and how many do.
-Judgement judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
+Verdict judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) {
   int missed = 0;
   std::string got;
   for (const RunOutcome& run : runs) {
-    Judgement judgement = judge_run(one, run);
-    if (runs.size() == 1) return judgement;
-    if (judgement.holds) continue;
-    if (missed++ == 0) got = fmt::format("{} in {}", judgement.got, run.label);
+    Verdict verdict = judge_run(one, run);
+    if (runs.size() == 1) return verdict;
+    if (verdict.holds) continue;
+    if (missed++ == 0) got = fmt::format("{} in {}", verdict.got, run.label);
   }
   if (missed > 1) got += fmt::format(", and {} of {} runs miss it", missed, runs.size());
-  return {missed == 0, got};
+  return {one, missed == 0, got};
 }
 
 double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
@@ -97,7 +92,7 @@ double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
 }
 
 /// A statistic over all runs, those without a value at the worst end. An equality has to hold at either.
-Judgement judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
+Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
   std::vector<double> values;
   std::vector<const RunOutcome*> without;
   for (const RunOutcome& run : runs) {
@@ -107,10 +102,10 @@ Judgement judge_statistic(const Expectation& one, const std::vector<RunOutcome>&
       without.push_back(&run);
     }
   }
-  if (without.size() == 1 && runs.size() == 1) return {false, "no value: " + absence(one, *without.front())};
+  if (without.size() == 1 && runs.size() == 1) return {one, false, "no value: " + absence(one, *without.front())};
   std::vector<double> worst{wants_more(one.comparison) ? -kInfinity : kInfinity};
   if (one.comparison == Comparison::equal) worst.push_back(-kInfinity);
-  Judgement out{true, {}};
+  Verdict out{one, true, {}};
   for (const double end : worst) {
     std::vector<double> sorted = values;
     sorted.insert(sorted.end(), without.size(), end);
@@ -127,10 +122,10 @@ Judgement judge_statistic(const Expectation& one, const std::vector<RunOutcome>&
   return out;
 }
 
-Judgement judge_count(const Expectation& one, const std::vector<RunOutcome>& runs) {
+Verdict judge_count(const Expectation& one, const std::vector<RunOutcome>& runs) {
   const auto failed =
       std::count_if(runs.begin(), runs.end(), [](const RunOutcome& run) { return !run.failure.empty(); });
-  return {holds(one.comparison, static_cast<double>(failed), one.bound),
+  return {one, holds(one.comparison, static_cast<double>(failed), one.bound),
           fmt::format("{}{}", failed, runs.size() == 1 ? std::string() : fmt::format(" of {}", runs.size()))};
 }
 
@@ -160,10 +155,9 @@ std::string xml_text(const std::string& text) {
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs) {
   std::vector<Verdict> verdicts;
   for (const Expectation& one : expectations) {
-    const Judgement judgement = one.field == kFailedRuns           ? judge_count(one, runs)
-                                : one.statistic == Statistic::each ? judge_each(one, runs)
-                                                                   : judge_statistic(one, runs);
-    verdicts.push_back({one, judgement.holds, judgement.got});
+    verdicts.push_back(one.field == kFailedRuns           ? judge_count(one, runs)
+                       : one.statistic == Statistic::each ? judge_each(one, runs)
+                                                          : judge_statistic(one, runs));
   }
   return verdicts;
 }
@@ -171,10 +165,6 @@ std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const s
 std::string verdict_line(const Verdict& verdict) {
   const Expectation& one = verdict.expectation;
   return fmt::format("{}: expected {} {}, got {}", one.place, one.key, one.wanted, verdict.got);
-}
-
-RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure) {
-  return {"run " + id, "", failure, summary};
 }
 
 std::vector<TestCase> test_cases(const std::string& suite, const std::vector<RunOutcome>& runs,

@@ -34,9 +34,6 @@ std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const s
 /// "file:line:column: expected median(on_surface_taps) >= 12, got 11"
 std::string verdict_line(const Verdict& verdict);
 
-/// The run that ended with `summary`, or failed for the reason `failure`.
-RunOutcome outcome_of(const std::string& id, const std::optional<Row>& summary, const std::string& failure);
-
 /// One test as JUnit has it, which continuous integration shows.
 struct TestCase {
   std::string group;  ///< JUnit's classname

@@ -54,18 +54,12 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   std::vector<std::string> beside;
   for (const Field& field : keys_beside_options()) beside.emplace_back(field.name);
   out.tree = resolve(out.options, input, plugins, out.notes, beside);
-  if (const Tree* expect = composed.find("expect")) {
-    out.expectations = read_expectations(expect);
-    if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
-  }
+  const Tree* expect = composed.find("expect");
+  out.expectations = read_expectations(expect);
+  if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
   check_readable(out.tree, composed.place.text());
   out.id = id_of(out.tree);
   return out;
-}
-
-ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
-                               const std::vector<Override>& overrides) {
-  return resolve_experiment(composer.compose(file, overrides), plugins);
 }
 
 void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins) {

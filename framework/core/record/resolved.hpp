@@ -2,12 +2,10 @@
 // A config ready to run: options, the resolved tree, and the id that it has because of its content.
 #pragma once
 
-#include "config/compose.hpp"
 #include "config/resolve.hpp"
 #include "experiment/experiment_options.hpp"
 #include "record/expectation.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -27,12 +25,8 @@ void check_format(const Tree& config);
 /// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
 
-/// Composes and resolves. Throws Error with a place in `file`, in a group, or on the command line.
-ResolvedConfig load_experiment(Composer& composer, const PluginSource& plugins, const std::filesystem::path& file,
-                               const std::vector<Override>& overrides);
-
-/// Gives `config` another seed, with all that follows from it: what load_experiment() would give, but at a tenth of the
-/// cost, because no other option depends on the seed. Throws the same Error for what is no seed.
+/// Gives `config` another seed, with all that follows from it: what composing and resolving would give, but at a tenth
+/// of the cost, because no other option depends on the seed. Throws the same Error for what is no seed.
 void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins);
 
 /// Hex digits of an id.

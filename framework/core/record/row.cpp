@@ -26,6 +26,13 @@ bool is_plain(char c) {
   return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
 }
 
+/// As csv_cell(), but as a value of JSON: null for null and for what is not a finite number.
+std::string json_value(const Scalar& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return json_quoted(*text);
+  const std::string cell = csv_cell(value);
+  return cell.empty() ? "null" : cell;
+}
+
 /// Writes the fields from `next` on that share the prefix `prefix`; returns behind the last of them.
 std::size_t write_object(std::string& out, const Row& row, std::size_t next, const std::string& prefix,
                          const std::string& indent) {
@@ -143,12 +150,6 @@ std::string csv_cell(const Scalar& value) {
     std::string operator()(const std::string& text) const { return csv_text(text); }
   };
   return std::visit(Visitor{}, value);
-}
-
-std::string json_value(const Scalar& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return json_quoted(*text);
-  const std::string cell = csv_cell(value);
-  return cell.empty() ? "null" : cell;
 }
 
 std::string json_quoted(const std::string& text) {

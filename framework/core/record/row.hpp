@@ -18,19 +18,10 @@ using Scalar = std::variant<std::monostate, bool, std::int64_t, double, std::str
 struct Row {
   std::vector<std::pair<std::string, Scalar>> fields;
 
-  void add(std::string name, bool value) { fields.emplace_back(std::move(name), value); }
-  void add(std::string name, int value) { fields.emplace_back(std::move(name), std::int64_t{value}); }
-  void add(std::string name, std::int64_t value) { fields.emplace_back(std::move(name), value); }
-  void add(std::string name, double value) { fields.emplace_back(std::move(name), value); }
-  void add(std::string name, std::string value) { fields.emplace_back(std::move(name), std::move(value)); }
-  void add(std::string name, const char* value) { fields.emplace_back(std::move(name), std::string(value)); }
+  void add(std::string name, Scalar value) { fields.emplace_back(std::move(name), std::move(value)); }
   template <class T>
   void add(std::string name, const std::optional<T>& value) {
-    if (value) {
-      add(std::move(name), *value);
-    } else {
-      fields.emplace_back(std::move(name), std::monostate{});
-    }
+    add(std::move(name), value ? Scalar(*value) : Scalar());
   }
 
   /// The value at `name`, or null if there is none.
@@ -53,9 +44,6 @@ std::string csv_cell(const Scalar& value);
 
 /// Text quoted for CSV where it needs to be.
 std::string csv_text(const std::string& text);
-
-/// The same as a value of JSON: null for null and for what is not a finite number.
-std::string json_value(const Scalar& value);
 
 /// One line of JSON without line end. Numbers as in csv_cell; what is not finite is null.
 std::string to_json_line(const Row& row);

@@ -62,9 +62,6 @@ class RunDirectory final : public Journal {
   /// Makes the directory if need be and locks it. Throws Error of kind `busy` if another process holds it.
   explicit RunDirectory(const std::filesystem::path& directory);
 
-  /// What it holds so far.
-  RunStatus status() const { return read_record(path_); }
-
   const std::filesystem::path& path() const { return path_; }
 
   /// Reads the recorded taps and cuts off what a kill left behind: half a line, or an intent without its result, which

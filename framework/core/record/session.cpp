@@ -8,8 +8,6 @@
 #include "record/recording.hpp"
 #include "record/summary.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 namespace palpate {
@@ -93,7 +91,7 @@ class Relay final : public Journal {
   }
 
   void announce(const TapRecord& tap) override {
-    if (company_.observer != nullptr && company_.observer->follows_errors()) look_at_errors();
+    if (company_.observer != nullptr) look_at_errors();
     {
       const PhaseClock::Scope log(experiment_.clock(), Phase::log);
       if (maps_) write_maps(tap.number);
@@ -108,7 +106,6 @@ class Relay final : public Journal {
       directory_.record(tap, seconds);
     }
     if (company_.observer == nullptr) return;
-    if (!company_.observer->follows_errors()) return company_.observer->record(tap, seconds);
     TapRecord told = tap;
     told.errors = errors_;
     company_.observer->record(told, seconds);
@@ -135,7 +132,7 @@ class Relay final : public Journal {
   Experiment& experiment_;
   RunDirectory& directory_;
   Company company_;
-  Errors errors_;  ///< of the state that the tap under way was chosen from, for who follows them
+  Errors errors_;  ///< of the state that the tap under way was chosen from, for the observer
 };
 
 /// Builds the experiment. What only building finds out names an option; the config knows where that was written.
@@ -233,7 +230,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
   if (status.state != RunStatus::State::absent) move_away(directory);
   RunDirectory held(directory);
   // Another process may have run it, whole or in part, while this one was still building.
-  if (held.status().state != RunStatus::State::absent) {
+  if (read_record(directory).state != RunStatus::State::absent) {
     throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
                 Error::Kind::busy);
   }
@@ -261,16 +258,13 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   return config;
 }
 
-bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
+std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
+                                        const fs::path& directory) {
   const std::string build = recorded_build(directory);
-  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins)) return false;
-  return read_record(directory).taps > 0;
-}
-
-void check_build(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
-  if (!is_of_another_build(workshop, config, directory)) return;
-  throw Error(directory.string(), "this run was begun by another build of palpate or its plugins",
-              "--force carries on all the same, and the manifest will say so");
+  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins)) return std::nullopt;
+  if (read_record(directory).taps == 0) return std::nullopt;
+  return Error(directory.string(), "this run was begun by another build of palpate or its plugins",
+               "--force carries on all the same, and the manifest will say so");
 }
 
 RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options,
@@ -285,13 +279,14 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
                       const ResumeOptions& options, Journal* observer, Supervisor* supervisor) {
   const Stopwatch watch;
   const fs::path& directory = held.path();
-  const RunStatus status = held.status();
+  const RunStatus status = read_record(directory);
   if (status.state == RunStatus::State::done) return report_done(directory);
   if (status.state == RunStatus::State::failed && !options.retry_failed) {
     throw Error(directory.string(), fmt::format("this run failed: {}", status.stop_reason),
                 "--retry-failed carries on all the same", Error::Kind::run);
   }
-  if (!options.force) check_build(workshop, config, directory);
+  const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, directory);
+  if (objection) throw *objection;
   const std::vector<PastTap> past = held.recover();
   Experiment experiment = build_experiment(workshop, config, directory);
   if (supervisor != nullptr) check_worth_asking(config, experiment);

@@ -2,7 +2,6 @@
 // One run from its config to its summary, with the directory in between: started, carried on, or played again.
 #pragma once
 
-#include "config/compose.hpp"
 #include "experiment/tap_record.hpp"
 #include "plugin/host.hpp"
 #include "record/build_info.hpp"
@@ -10,8 +9,11 @@
 #include "record/row.hpp"
 #include "record/run_directory.hpp"
 
+#include <palpate/error.hpp>
+
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,7 +50,8 @@ std::vector<ModelReader> readers_of(const Workshop& workshop, const ResolvedConf
 /// <runs>/<slug>/<id>.
 std::filesystem::path directory_of(const ResolvedConfig& config, const std::filesystem::path& runs);
 
-/// Runs `config` in `directory` and writes its files. `observer` (may be null) hears of every tap, after the log.
+/// Runs `config` in `directory` and writes its files. `observer` (may be null) hears of every tap, after the log, and
+/// with the errors of the state that it was chosen from, however little the strategy reads.
 ///
 /// A finished run of the same build is left alone and reported. A finished run of another build, a failed or a broken
 /// one throws Error with the remedy; with `force` the old directory is moved to <id>.old-N first. When the run itself
@@ -72,12 +75,10 @@ RunReport resume_run(const Workshop& workshop, const std::filesystem::path& dire
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                       const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
 
-/// Whether the run in `directory` has taps of another build than this one. Throws Error for a damaged one.
-bool is_of_another_build(const Workshop& workshop, const ResolvedConfig& config,
-                         const std::filesystem::path& directory);
-
-/// Throws Error if it has.
-void check_build(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory);
+/// Why the run in `directory` is not to be carried on: it has taps of another build than this one. None if it has not.
+/// Throws Error for a damaged one.
+std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
+                                        const std::filesystem::path& directory);
 
 /// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);

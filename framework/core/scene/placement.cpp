@@ -39,17 +39,8 @@ void draw_inside(Body& body, const Area& area, Random& random, std::size_t numbe
               "make the object smaller or the area larger");
 }
 
-bool all_separate(const std::vector<Body>& bodies) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (!separate(bodies[j], bodies[i])) return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
-
+/// Whether a vertical plane separates two bodies, so that neither is over the other. May say no of two that are apart
+/// by less than a thousandth of their size; never says yes of two that overlap.
 bool separate(const Body& a, const Body& b) {
   const double dx = b.x() - a.x();
   const double dy = b.y() - a.y();
@@ -68,6 +59,17 @@ bool separate(const Body& a, const Body& b) {
   }
   return false;
 }
+
+bool all_separate(const std::vector<Body>& bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!separate(bodies[j], bodies[i])) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 void check_inside(const std::vector<Body>& bodies, const Area& area) {
   constexpr double kRounding = 1e-9;

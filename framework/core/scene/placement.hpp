@@ -11,10 +11,6 @@
 
 namespace palpate {
 
-/// Whether a vertical plane separates two bodies, so that neither is over the other. May say no of two that are apart
-/// by less than a thousandth of their size; never says yes of two that overlap.
-bool separate(const Body& a, const Body& b);
-
 /// Throws Error, its `where` the path in the config, for the first body that does not lie wholly inside the area: no
 /// tap would find what is outside, and no error measure would miss it.
 void check_inside(const std::vector<Body>& bodies, const Area& area);
