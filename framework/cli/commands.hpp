@@ -3,6 +3,7 @@
 #pragma once
 
 #include "config/compose.hpp"
+#include "launch/launcher.hpp"
 #include "plugin/host.hpp"
 #include "record/session.hpp"
 
@@ -52,17 +53,14 @@ struct RunOutput {
 using RunAction = std::function<RunReport(Journal* display, Supervisor* step)>;
 int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
 
-/// A launcher that is not this machine.
-constexpr const char* kSlurm = "slurm";
-
 /// Who runs the jobs of a sweep, and how.
 struct LaunchArguments {
-  std::string launcher = "local";
+  std::string launcher = kLocal;
   std::optional<int> workers;  ///< jobs at a time, of one task where there are several
   int attempts = 3;            ///< a job is begun at most so often before it stays failed
   bool quiet = false;
   std::string junit;
-  // Only with the launcher slurm:
+  // Only for a cluster:
   std::string partition, time, account;
   std::vector<std::string> sbatch;
   std::optional<int> jobs_per_task;

@@ -102,7 +102,7 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
   sub->add_flag("--quiet", launch.quiet, "show no progress");
   sub->add_option("--junit", launch.junit, kJunitHelp);
   sub->add_option("--launcher", launch.launcher, "who runs the jobs: this machine, or a cluster under Slurm")
-      ->check(CLI::IsMember({"local", kSlurm}))
+      ->check(CLI::IsMember(std::vector<std::string>(kLaunchers.begin(), kLaunchers.end())))
       ->capture_default_str();
   const char* group = "With --launcher slurm";
   sub->add_option("--partition", launch.partition, "of the cluster; its default one if not given")->group(group);

@@ -12,7 +12,7 @@
 namespace palpate::cli {
 
 void check_launch(const LaunchArguments& launch) {
-  const bool on_slurm = launch.launcher == kSlurm;
+  const bool on_cluster = launch.launcher != kLocal;
   const std::pair<const char*, bool> given[]{{"--partition", !launch.partition.empty()},
                                              {"--time", !launch.time.empty()},
                                              {"--account", !launch.account.empty()},
@@ -20,11 +20,11 @@ void check_launch(const LaunchArguments& launch) {
                                              {"--jobs-per-task", launch.jobs_per_task.has_value()},
                                              {"--wait", launch.wait}};
   for (const auto& [name, is_given] : given) {
-    if (!is_given || on_slurm) continue;
+    if (!is_given || on_cluster) continue;
     throw Error("command line", fmt::format("{} is for a cluster, and the launcher is '{}'", name, launch.launcher),
                 "add --launcher slurm, or leave it out");
   }
-  if (on_slurm && !launch.junit.empty() && !launch.wait) {
+  if (on_cluster && !launch.junit.empty() && !launch.wait) {
     throw Error("command line", "--junit: there is no result before the jobs have ended",
                 "add --wait, or give it to 'palpate resume' afterwards");
   }
@@ -34,9 +34,13 @@ void check_launch(const LaunchArguments& launch) {
 int resume(Program& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
   if (is_sweep(arguments.directory)) return resume_sweep(program, arguments);
-  if (!arguments.jobs.empty() || arguments.launch.launcher == kSlurm) {
-    const char* const option = arguments.jobs.empty() ? "--launcher slurm" : "--jobs";
-    throw Error("command line", fmt::format("{}: {} is no sweep", option, arguments.directory), "leave it out");
+  if (!arguments.jobs.empty()) {
+    throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");
+  }
+  if (arguments.launch.launcher != kLocal) {
+    throw Error("command line",
+                fmt::format("--launcher {}: {} is no sweep", arguments.launch.launcher, arguments.directory),
+                "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   const RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};

@@ -9,9 +9,9 @@
 #include "config/trouble.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
-#include "launch/local_launcher.hpp"
 #include "launch/slurm_launcher.hpp"
 #include "record/files.hpp"
+#include "report/words/words.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
@@ -22,7 +22,9 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -33,7 +35,7 @@ namespace {
 struct Campaign {
   const Program& program;
   const Sweep& sweep;
-  LocalLauncher::Configs config_of;  ///< of a job
+  std::function<ResolvedConfig(std::size_t job)> config_of;
   ResumeOptions options;
   const LaunchArguments& launch;
   std::vector<std::size_t> only;  ///< these jobs; none for all
@@ -102,58 +104,56 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
   return sweep_status(config->expectations, all_hold, !end.failures.empty() || !end.open.empty());
 }
 
-/// Jobs at a time on this machine or, on a cluster, in a task: one where only one can be.
-int workers_of(const Campaign& campaign) {
-  if (campaign.one_at_a_time) return 1;
-  const bool on_slurm = campaign.launch.launcher == kSlurm;
-  return campaign.launch.workers.value_or(on_slurm ? 1 : cores());
-}
+bool is_on_cluster(const Campaign& campaign) { return campaign.launch.launcher != kLocal; }
 
-/// conduct(), with a line of progress.
-void conduct_shown(const Campaign& campaign, Launcher& launcher, const Standing& begun) {
-  SweepLine line(campaign.launch.quiet);
-  conduct(launcher, campaign.sweep, begun, campaign.program.interrupted,
-          [&](const SweepProgress& progress) { line.show(progress); });
-}
-
-/// "1000 jobs".
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
-/// Submits what is open to Slurm. Then it says how to go on and returns false or, with --wait, waits for the end
-/// and returns true.
-bool run_on_slurm(const Campaign& campaign, const Standing& begun) {
+LaunchOptions launch_options(const Campaign& campaign) {
   const LaunchArguments& launch = campaign.launch;
-  const SlurmOptions options{launch.partition,
-                             launch.time,
-                             launch.account,
-                             launch.sbatch,
-                             launch.jobs_per_task.value_or(1),
-                             workers_of(campaign),
-                             campaign.one_at_a_time,
-                             launch.attempts,
-                             campaign.options};
-  std::string ids;
-  SlurmLauncher launcher(campaign.program.installation.program, campaign.sweep, options, [&](const SlurmArray& array) {
-    fmt::print("array {}: {}, {}, logs in {}\n", array.id, counted(static_cast<std::size_t>(array.tasks), "task"),
-               counted(static_cast<std::size_t>(array.jobs), "job"), array.logs.string());
-    std::fflush(stdout);
-    ids += fmt::format(" {}", array.id);
-  });
-  if (campaign.program.interrupted->load()) return true;  // before anything was submitted
-  if (launch.wait) {
-    // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
-    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-    conduct_shown(campaign, launcher, begun);
-    return true;
-  }
-  launcher.submit(begun.open);
+  const int workers = launch.workers.value_or(is_on_cluster(campaign) ? 1 : cores());
+  return {campaign.one_at_a_time ? 1 : workers,
+          campaign.options,
+          launch.attempts,
+          campaign.only.empty(),
+          campaign.one_at_a_time,
+          launch.partition,
+          launch.time,
+          launch.account,
+          launch.sbatch,
+          launch.jobs_per_task.value_or(1)};
+}
+
+/// Says how to go on with what a cluster has in hand.
+void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
   const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
   fmt::print("look: palpate status {}\n", directory);
-  fmt::print("carry on what is missing then: palpate resume {} --launcher slurm\n", directory);
-  fmt::print("stop: scancel{}\n", ids);
-  return false;
+  fmt::print("carry on what is missing then: palpate resume {} --launcher {}\n", directory, campaign.launch.launcher);
+  fmt::print("stop: {}\n", launcher.stop_command());
+}
+
+/// Has the launcher run what is open and returns true at the end, or false where that is not awaited: on a cluster
+/// without --wait.
+bool launch_open(const Campaign& campaign, const Standing& begun) {
+  const auto print_array = [](const TaskArray& array) {
+    fmt::print("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
+               array.logs.string());
+    std::fflush(stdout);
+  };
+  const Program& program = campaign.program;
+  const std::unique_ptr<Launcher> launcher = make_launcher(
+      campaign.launch.launcher, {program, campaign.sweep, campaign.config_of, launch_options(campaign), print_array});
+  if (is_on_cluster(campaign)) {
+    if (begun.open.empty() || program.interrupted->load()) return true;  // there is nothing to submit
+    if (!campaign.launch.wait) {
+      launcher->submit(begun.open);
+      print_ways_on(campaign, *launcher);
+      return false;
+    }
+    // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
+    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  }
+  SweepLine line(campaign.launch.quiet);
+  conduct(*launcher, campaign.sweep, begun, program.interrupted,
+          [&](const SweepProgress& progress) { line.show(progress); });
+  return true;
 }
 
 /// Throws Error if a job that is to run, or with `done_too` one that is done, was begun by another build, unless that
@@ -174,23 +174,16 @@ void check_builds(Campaign& campaign, bool done_too) {
 /// Runs what is missing, prints the result and judges it. Returns the exit status.
 int run_campaign(const Campaign& campaign) {
   const Sweep& sweep = campaign.sweep;
-  const LaunchArguments& launch = campaign.launch;
   check_locks(sweep.directory);
   listen_for_interrupts();
   const bool whole = campaign.only.empty();
   const std::vector<std::size_t> jobs = jobs_of(campaign);
   Standing begun = standing_of(sweep, jobs);
-  if (campaign.options.retry_failed) try_again(begun, launch.attempts);
-  if (campaign.one_at_a_time && begun.open.size() > 1 && !launch.quiet) {
+  if (campaign.options.retry_failed) try_again(begun, campaign.launch.attempts);
+  if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
     mention("one job at a time: the backend has but one thing to move\n");
   }
-  if (launch.launcher == kSlurm) {
-    if (!begun.open.empty() && !run_on_slurm(campaign, begun)) return kDone;
-  } else {
-    LocalLauncher launcher(campaign.program, sweep, campaign.config_of,
-                           {workers_of(campaign), campaign.options, launch.attempts, whole});
-    conduct_shown(campaign, launcher, begun);
-  }
+  if (!launch_open(campaign, begun)) return kDone;
   const Standing end = standing_of(sweep, jobs);
   const bool interrupted = campaign.program.interrupted->load();
   return whole ? conclude_whole(campaign, end, interrupted) : conclude_part(sweep, end, interrupted);
@@ -240,18 +233,19 @@ int sweep(Program& program, const SweepArguments& arguments) {
                                     });
   const auto config_of = [&](std::size_t job) { return planned_config(plan, program.host, job); };
   Campaign campaign{program, plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
+  const std::string jobs = counted(static_cast<long>(plan.sweep.jobs.size()), "job");
   if (arguments.list) {
     for (const Job& job : plan.sweep.jobs) {
       fmt::print("{}  {}{}\n", job.index, job.id, values_text(plan.sweep, job, "  "));
     }
-    if (!arguments.launch.quiet) mention(counted(plan.sweep.jobs.size(), "job") + "\n");
+    if (!arguments.launch.quiet) mention(jobs + "\n");
     return kDone;
   }
   const bool is_new = draft->publish(plan);
   draft.reset();
   if (!is_new) check_builds(campaign, true);
   if (!arguments.launch.quiet) {
-    mention(fmt::format("{} in {}{}\n", counted(plan.sweep.jobs.size(), "job"), plan.sweep.directory.string(),
+    mention(fmt::format("{} in {}{}\n", jobs, plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: what is missing is run"));
   }
   return run_campaign(campaign);

@@ -21,7 +21,7 @@ TEST(LocalLauncher, AJobThatIsKilledBeforeItsAttemptIsNotedIsNotBegunForEver) {
     std::raise(SIGKILL);
     throw std::logic_error("survived");
   };
-  LocalLauncher launcher(workshop, sweep, dies, {1, {}, 3, true});
+  LocalLauncher launcher({workshop, sweep, dies, {1, {}, 3, true}, {}});
   launcher.submit({0});
   Launcher::State state;
   int polls = 0;

@@ -52,7 +52,7 @@ TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
 /// Runs the script as Slurm would and returns the words that its program was called with.
 class Script : public ::testing::Test {
  protected:
-  std::vector<std::string> words_of(const SlurmOptions& options, const std::string& index,
+  std::vector<std::string> words_of(const LaunchOptions& options, const std::string& index,
                                     const std::vector<std::string>& arguments = {},
                                     std::vector<std::string> environment = {}) {
     const fs::path jobs = folder_.write("it's a list/jobs", "0-3\n4-7\n8-9\n");
@@ -84,7 +84,7 @@ class Script : public ::testing::Test {
 TEST_F(Script, CarriesOnTheJobsOfItsLine) {
   EXPECT_THAT(words_of({}, "0"), ElementsAre("unset", "resume", directory_.string(), "--jobs", "0-3", "-j", "1",
                                              "--attempts", "3", "--quiet"));
-  SlurmOptions options;
+  LaunchOptions options;
   options.workers = 2;
   options.most_attempts = 5;
   options.resume = {true, true};
@@ -133,8 +133,8 @@ class FakeSlurm : public ::testing::Test {
   std::vector<std::string> calls(const std::string& name) const {
     return lines_of(test::text_of(folder_.path() / ("calls." + name)));
   }
-  SlurmLauncher launcher(const SlurmOptions& options = {}) {
-    return SlurmLauncher("/bin/palpate", sweep_, options, [this](const SlurmArray& array) { heard_.push_back(array); });
+  SlurmLauncher launcher(const LaunchOptions& options = {}) {
+    return SlurmLauncher("/bin/palpate", sweep_, options, [this](const TaskArray& array) { heard_.push_back(array); });
   }
   /// Asks until jobs return, which they must.
   static std::vector<std::size_t> returned(SlurmLauncher& launcher) {
@@ -146,7 +146,7 @@ class FakeSlurm : public ::testing::Test {
 
   test::TemporaryFolder folder_;
   Sweep sweep_{folder_.path() / "runs/name/id", {}, {}};
-  std::vector<SlurmArray> heard_;
+  std::vector<TaskArray> heard_;
 
  private:
   std::string path_;
@@ -154,7 +154,7 @@ class FakeSlurm : public ::testing::Test {
 
 TEST_F(FakeSlurm, HearsOptionsOnlyIfTheyAreGivenAndUsersWordsBeforeThem) {
   launcher().submit({3});
-  SlurmOptions options;
+  LaunchOptions options;
   options.partition = "long";
   options.time = "1:00";
   options.account = "me";
@@ -174,7 +174,7 @@ TEST_F(FakeSlurm, HearsOptionsOnlyIfTheyAreGivenAndUsersWordsBeforeThem) {
 }
 
 TEST_F(FakeSlurm, GivesEveryJobToOneTaskWithinTheLimits) {
-  SlurmOptions options;
+  LaunchOptions options;
   options.jobs_per_task = 3;
   for (const int limit : {2, 3, 100}) {
     answer("scontrol", fmt::format("echo 'MaxArraySize = {}'", limit));
@@ -185,7 +185,7 @@ TEST_F(FakeSlurm, GivesEveryJobToOneTaskWithinTheLimits) {
     EXPECT_EQ(test::text_of(heard_.front().logs / "jobs"), "0-2\n3-6\n7-9\n20-22\n24-24\n");
     int tasks = 0;
     int jobs = 0;
-    for (const SlurmArray& array : heard_) {
+    for (const TaskArray& array : heard_) {
       EXPECT_THAT(calls("sbatch")[static_cast<std::size_t>(array.id / 100) - 1],
                   AllOf(HasSubstr(fmt::format("--array=0-{} ", array.tasks - 1)),
                         ::testing::EndsWith(fmt::format("task.sh {}", tasks))));
@@ -210,7 +210,7 @@ TEST_F(FakeSlurm, SeesNoSettingsOfTheUsersThatWouldChangeWhatItPrints) {
 }
 
 TEST_F(FakeSlurm, LetsTasksRunOneAtATimeThoughTheArrayIsSplit) {
-  SlurmOptions options;
+  LaunchOptions options;
   options.one_at_a_time = true;
   launcher(options).submit({8, 9, 10, 11, 24});
   EXPECT_THAT(calls("sbatch"),
@@ -239,7 +239,7 @@ TEST_F(FakeSlurm, AsksNothingWhenThereIsNothingToSubmit) {
 }
 
 TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
-  SlurmOptions options;
+  LaunchOptions options;
   options.jobs_per_task = 4;
   options.workers = 2;
   SlurmLauncher one = launcher(options);

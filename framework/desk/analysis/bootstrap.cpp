@@ -76,25 +76,19 @@ double acceleration_of(const std::vector<double>& influences) {
   return cubes / (6.0 * squares * std::sqrt(squares));
 }
 
-/// The share of the resampled values that lie below an end of the interval: the lower one with `side` -1, else the
-/// upper.
-double share_below_end(double side, std::size_t count, double bias, double acceleration) {
-  const auto n = static_cast<double>(count);
-  const double z = student_factor(count - 1) * std::sqrt(n / (n - 1.0));
-  const double shifted = bias + side * z;
-  return normal_share(bias + shifted / (1.0 - acceleration * shifted));
-}
-
 /// BCa of resampled values, which it sorts, about what was estimated.
 MeanInterval interval_of(std::vector<double>& values, double centre, double rounding,
                          const std::vector<double>& influences) {
   std::sort(values.begin(), values.end());
   const double bias = bias_of(values, centre, rounding);
   const double acceleration = acceleration_of(influences);
-  const auto end = [&](double side) {
-    return quantile(values, share_below_end(side, influences.size(), bias, acceleration));
+  const auto n = static_cast<double>(influences.size());
+  const double z = student_factor(influences.size() - 1) * std::sqrt(n / (n - 1.0));
+  const auto end = [&](double place) {
+    const double shifted = bias + place;
+    return quantile(values, normal_share(bias + shifted / (1.0 - acceleration * shifted)));
   };
-  return {end(-1.0), end(1.0)};
+  return {end(-z), end(z)};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -63,6 +64,16 @@ JobValue value_of_job(const Row* row, const std::string& column, const std::stri
                 "name one that can be averaged");
   }
   return number.value ? JobValue{Fate::counted, *number.value} : JobValue{Fate::without_value};
+}
+
+std::string FateCounts::words(const std::vector<Fate>& fates, const std::string& behind) const {
+  constexpr const char* kWords[] = {"with one job that --where leaves out", "without a counterpart", "unfinished",
+                                    "failed", "without a value"};  // by Fate
+  std::vector<std::string> out;
+  for (const Fate fate : fates) {
+    if (of(fate) > 0) out.push_back(fmt::format("{}{} {}", of(fate), behind, kWords[static_cast<std::size_t>(fate)]));
+  }
+  return fmt::format("{}", fmt::join(out, ", "));
 }
 
 bool is_done(const Row& row) { return row.text("status") == "done"; }

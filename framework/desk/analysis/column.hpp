@@ -62,6 +62,8 @@ class FateCounts {
   int of(Fate fate) const { return counts_.at(static_cast<std::size_t>(fate)); }
   int all() const { return std::accumulate(counts_.begin(), counts_.end(), 0); }
   bool all_are(Fate fate) const { return of(fate) == all(); }
+  /// "2 failed, 1 unfinished": of `fates` those that there are, with `behind` behind each number.
+  std::string words(const std::vector<Fate>& fates, const std::string& behind = "") const;
 
  private:
   std::array<int, 6> counts_{};

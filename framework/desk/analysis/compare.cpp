@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/compare.hpp"
 
-#include "analysis/bootstrap.hpp"
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "config/quantity.hpp"

@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace palpate {
@@ -63,8 +62,7 @@ std::string group_table(const Comparison& comparison, const Scale& scale) {
     lines.push_back(
         {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()),
          some_left_out ? count(Fate::left_out) : "", count(Fate::failed), count(Fate::unfinished),
-         count(Fate::without_value), std::to_string(one.mean.count),
-         any ? fmt::format("{} {}", scale.number(one.mean.mean), scale.interval(one.mean.interval)) : "-",
+         count(Fate::without_value), std::to_string(one.mean.count), scale.estimate(one.mean),
          any ? short_number(scale, one.median) : "-",
          any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
   }
@@ -96,8 +94,7 @@ std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const Si
 /// "0.85 [0.79, 0.91]"
 std::string ratio_text(const ComparedPair& pair) {
   if (!pair.ratio) return "-";
-  const auto number = [](double value) { return fmt::format("{:.3f}", value); };
-  return number(pair.ratio->ratio) + " " + interval_text(pair.ratio->interval, number);
+  return with_interval(pair.ratio->ratio, pair.ratio->interval, [](double one) { return fmt::format("{:.3f}", one); });
 }
 
 std::string pair_table(const Comparison& comparison, const Scale& scale) {
@@ -107,8 +104,8 @@ std::string pair_table(const Comparison& comparison, const Scale& scale) {
                fmt::format("{}/equal/{}", words.up, words.down), "p", many ? "p (Holm)" : "", "effect"}};
   for (const ComparedPair& pair : comparison.pairs) {
     const auto [up, down] = sides(comparison, pair.test);
-    const auto number = [&](double value) { return scale.difference(value); };
-    const std::string mean = number(pair.difference.mean) + " " + interval_text(pair.difference.interval, number);
+    const std::string mean = with_interval(pair.difference.mean, pair.difference.interval,
+                                           [&](double value) { return scale.difference(value); });
     lines.push_back({pair_name(comparison, pair), std::to_string(pair.difference.count),
                      std::to_string(pair.lost.all()), pair.difference.count > 0 ? mean : "-",
                      comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
@@ -131,25 +128,10 @@ std::string contrary_note(const Comparison& comparison, const ComparedPair& pair
                      pair.difference.count);
 }
 
-/// Why a pair may not be complete.
-struct Loss {
-  Fate fate;
-  const char* column;
-  const char* words;
-};
-constexpr std::array<Loss, 5> kLosses{{{Fate::left_out, "lost_left_out", "with one job that --where leaves out"},
-                                       {Fate::without_partner, "lost_without_partner", "without a counterpart"},
-                                       {Fate::unfinished, "lost_unfinished", "unfinished"},
-                                       {Fate::failed, "lost_failed", "failed"},
-                                       {Fate::without_value, "lost_without_value", "without a value"}}};
-
 std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
-  std::vector<std::string> reasons;
-  for (const Loss& one : kLosses) {
-    if (const int count = pair.lost.of(one.fate); count > 0) reasons.push_back(fmt::format("{} {}", count, one.words));
-  }
-  if (reasons.empty()) return {};
-  return fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), fmt::join(reasons, ", "));
+  const std::string reasons =
+      pair.lost.words({Fate::left_out, Fate::without_partner, Fate::unfinished, Fate::failed, Fate::without_value});
+  return reasons.empty() ? "" : fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), reasons);
 }
 
 std::string remarks(const Comparison& comparison) {
@@ -157,11 +139,8 @@ std::string remarks(const Comparison& comparison) {
   const std::size_t groups = comparison.compared;
   if (const FateCounts& left_out = comparison.left_out; left_out.all() > 0) {
     out += fmt::format("--where leaves out {} of {} jobs", left_out.all(), comparison.jobs);
-    std::vector<std::string> ends;
-    if (const int failed = left_out.of(Fate::failed); failed > 0) ends.push_back(fmt::format("{} failed", failed));
-    if (const int open = left_out.of(Fate::unfinished); open > 0) ends.push_back(fmt::format("{} unfinished", open));
-    if (!ends.empty()) out += fmt::format(", of which {}", fmt::join(ends, ", "));
-    out += "\n";
+    const std::string ends = left_out.words({Fate::failed, Fate::unfinished});
+    out += (ends.empty() ? "" : ", of which " + ends) + "\n";
   }
   if (groups < 2) out += "one group: there is nothing to compare it with\n";
   if (comparison.pairs.size() < groups * (groups - 1) / 2) {
@@ -259,7 +238,11 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
       row.add("ratio", one.ratio ? std::optional(one.ratio->ratio) : std::nullopt);
       add_interval(row, "ratio_", one.ratio ? one.ratio->interval : std::nullopt);
     }
-    for (const Loss& loss : kLosses) row.add(loss.column, one.lost.of(loss.fate));
+    row.add("lost_left_out", one.lost.of(Fate::left_out));
+    row.add("lost_without_partner", one.lost.of(Fate::without_partner));
+    row.add("lost_unfinished", one.lost.of(Fate::unfinished));
+    row.add("lost_failed", one.lost.of(Fate::failed));
+    row.add("lost_without_value", one.lost.of(Fate::without_value));
     row.add("higher", static_cast<std::int64_t>(one.test.higher));
     row.add("equal", static_cast<std::int64_t>(one.test.equal));
     row.add("lower", static_cast<std::int64_t>(one.test.lower));

@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-const std::string& value_of(const Sweep& sweep, const Job& job, const std::string& key) {
+std::string value_of(const Sweep& sweep, const Job& job, const std::string& key) {
   const auto at = std::find(sweep.keys.begin(), sweep.keys.end(), key);
-  return job.values.at(static_cast<std::size_t>(at - sweep.keys.begin()));
+  return at != sweep.keys.end() ? job.values[static_cast<std::size_t>(at - sweep.keys.begin())] : std::string();
 }
 
 std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
@@ -56,11 +56,11 @@ std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std:
   return out;
 }
 
-std::string key_words(const std::vector<std::string>& keys, const std::vector<std::string>& values, bool with_keys) {
+std::string key_words(const Sweep& sweep, const Job& job, const std::vector<std::string>& keys, bool with_keys) {
   std::string out;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (values[i].empty()) continue;
-    out += (out.empty() ? "" : ", ") + (with_keys ? keys[i] + "=" : std::string()) + values[i];
+  for (const std::string& key : keys) {
+    const std::string value = value_of(sweep, job, key);
+    if (!value.empty()) out += (out.empty() ? "" : ", ") + (with_keys ? key + "=" : std::string()) + value;
   }
   return one_line(out);
 }

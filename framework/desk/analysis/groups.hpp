@@ -39,11 +39,11 @@ std::vector<std::string> setting_keys(const Sweep& sweep);
 /// Those of `keys` that have more than one value in the sweep.
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
-/// The value of a swept key in a job.
-const std::string& value_of(const Sweep& sweep, const Job& job, const std::string& key);
+/// The value of a key in a job; "" where it is not swept.
+std::string value_of(const Sweep& sweep, const Job& job, const std::string& key);
 
-/// "acquisition=weighted, taps=17", or "weighted, 17" where the keys go without saying, on one line. A key without a
-/// value is left out.
-std::string key_words(const std::vector<std::string>& keys, const std::vector<std::string>& values, bool with_keys);
+/// What a job has of some keys: "acquisition=weighted, taps=17", or "weighted, 17" where the keys go without saying, on
+/// one line. A key without a value is left out.
+std::string key_words(const Sweep& sweep, const Job& job, const std::vector<std::string>& keys, bool with_keys);
 
 }  // namespace palpate

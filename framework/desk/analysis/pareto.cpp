@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/pareto.hpp"
 
-#include "analysis/column.hpp"
 #include "analysis/groups.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
@@ -48,6 +47,11 @@ Setting make_setting(const JobGroup& group, const Column& cost, const Column& er
 /// As a quantity of which less is better.
 double loss(const Pareto& pareto, double value) { return pareto.more_is_better() ? -value : value; }
 
+/// The loss that a setting with an interval keeps to: at its upper end, or at the lower one where more is better.
+double cautious_loss(const Pareto& pareto, const Setting& setting) {
+  return loss(pareto, pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high);
+}
+
 /// Of settings in the order of cost, and of loss where costs are equal: such a one is beaten if one before it is at
 /// most as large in loss, but for its twins.
 void number_front(Pareto& pareto) {
@@ -81,9 +85,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
   const std::vector<std::string> differing = varying_keys(sweep, pareto.keys);
   for (const JobGroup& group : group_jobs(sweep, results, pareto.keys)) {
     Setting setting = make_setting(group, pareto.cost, pareto.error);
-    std::vector<std::string> values;
-    for (const std::string& key : differing) values.push_back(value_of(sweep, *group.jobs.front().job, key));
-    setting.name = key_words(differing, values, true);
+    setting.name = key_words(sweep, *group.jobs.front().job, differing, true);
     if (setting.name.empty()) setting.name = "the only setting";
     pareto.jobs += setting.counts.all();
     pareto.unfinished += setting.counts.of(Fate::unfinished);
@@ -104,14 +106,10 @@ double read_bound(const Pareto& pareto, const std::string& within) {
   return read_quantity(parse_value(within, "command line"), "--within", pareto.error.unit);
 }
 
-double cautious_end(const Pareto& pareto, const Setting& setting) {
-  return pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high;
-}
-
 const Setting* cheapest_within(const Pareto& pareto, double bound) {
   // They stand in the order of cost, and of error where costs are equal.
   const auto found = std::find_if(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& one) {
-    return one.complete() && one.error.interval && loss(pareto, cautious_end(pareto, one)) <= loss(pareto, bound);
+    return one.complete() && one.error.interval && cautious_loss(pareto, one) <= loss(pareto, bound);
   });
   return found != pareto.settings.end() ? &*found : nullptr;
 }
@@ -120,8 +118,7 @@ const Setting* best_bounded(const Pareto& pareto) {
   const Setting* best = nullptr;
   for (const Setting& one : pareto.settings) {
     if (!one.complete() || !one.error.interval) continue;
-    const double end = loss(pareto, cautious_end(pareto, one));
-    if (best == nullptr || end < loss(pareto, cautious_end(pareto, *best))) best = &one;
+    if (best == nullptr || cautious_loss(pareto, one) < cautious_loss(pareto, *best)) best = &one;
   }
   return best;
 }

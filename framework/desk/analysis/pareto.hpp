@@ -49,11 +49,9 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
 /// Reads what `--within` says, in the unit of the error. Throws Error.
 double read_bound(const Pareto& pareto, const std::string& within);
 
-/// The end of the error's interval that has to keep to a bound: the upper one, or the lower where more is better.
-double cautious_end(const Pareto& pareto, const Setting& setting);
-
-/// The complete setting of the least mean cost whose interval keeps to `bound` at its cautious end; of equal costs the
-/// one with the better error. Null if there is none. A setting of one seed has no interval and is never chosen.
+/// The complete setting of the least mean cost whose interval keeps to `bound` at its cautious end: the upper one, or
+/// the lower where more is better. Of equal costs the one with the better error. Null if there is none. A setting of
+/// one seed has no interval and is never chosen.
 const Setting* cheapest_within(const Pareto& pareto, double bound);
 
 /// The complete setting whose interval ends best, whatever it costs. Null if none has an interval.

@@ -22,29 +22,11 @@ Scale scale_of(const Pareto& pareto, const Column& key, Pick pick) {
   return readable_scale(key.unit, means);
 }
 
-std::string note_of(const Setting& setting) {
-  std::string note;
-  const FateCounts& counts = setting.counts;
-  const auto add = [&](Fate fate, const char* what) {
-    if (counts.of(fate) == 0) return;
-    note += fmt::format("{}{} of {} {}", note.empty() ? "" : ", ", counts.of(fate), counts.all(), what);
-  };
-  add(Fate::failed, "failed");
-  add(Fate::unfinished, "unfinished");
-  add(Fate::without_value, "without a value");
-  return note;
-}
-
 std::string cost_text(const Setting& setting, const Scale& scale) {
   const MeanEstimate& cost = setting.cost;
   if (cost.count == 0) return "-";
   const std::string half = cost.interval ? scale.number((cost.interval->high - cost.interval->low) / 2) : "-";
   return fmt::format("{} +- {}", scale.number(cost.mean), half);
-}
-
-std::string error_text(const Setting& setting, const Scale& scale) {
-  if (setting.error.count == 0) return "-";
-  return fmt::format("{} {}", scale.number(setting.error.mean), scale.interval(setting.error.interval));
 }
 
 }  // namespace
@@ -55,8 +37,10 @@ std::string pareto_table(const Pareto& pareto) {
   std::vector<std::vector<std::string>> lines{
       {"front", "setting", "jobs", cost.title(pareto.cost.name), error.title(pareto.error.name), ""}};
   for (const Setting& one : pareto.settings) {
-    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, std::to_string(one.counts.all()),
-                     cost_text(one, cost), error_text(one, error), note_of(one)});
+    const std::string jobs = std::to_string(one.counts.all());
+    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, jobs, cost_text(one, cost),
+                     error.estimate(one.error),
+                     one.counts.words({Fate::failed, Fate::unfinished, Fate::without_value}, " of " + jobs)});
   }
   std::string out = aligned(lines, "rlrrrl");
   out += fmt::format(
@@ -85,7 +69,7 @@ std::vector<Row> pareto_rows(const Pareto& pareto) {
 
 std::string error_words(const Pareto& pareto, const Setting& setting) {
   const Scale scale = scale_of(pareto, pareto.error, &Setting::error);
-  return pareto.error.name + " " + scale.with_unit(error_text(setting, scale));
+  return pareto.error.name + " " + scale.with_unit(scale.estimate(setting.error));
 }
 
 std::string cost_words(const Pareto& pareto, const Setting& setting) {

@@ -17,14 +17,16 @@ std::string Scale::difference(double value) const {
   return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
 }
 
-std::string Scale::interval(const std::optional<MeanInterval>& ends) const {
-  return interval_text(ends, [&](double end) { return number(end); });
+std::string Scale::estimate(const MeanEstimate& mean) const {
+  if (mean.count == 0) return "-";
+  return with_interval(mean.mean, mean.interval, [&](double value) { return number(value); });
 }
 
 std::string Scale::title(const std::string& name) const { return name + (unit.empty() ? "" : " [" + unit + "]"); }
 
-std::string interval_text(const std::optional<MeanInterval>& ends, const std::function<std::string(double)>& number) {
-  return ends ? fmt::format("[{}, {}]", number(ends->low), number(ends->high)) : "[-]";
+std::string with_interval(double value, const std::optional<MeanInterval>& ends,
+                          const std::function<std::string(double)>& number) {
+  return number(value) + (ends ? fmt::format(" [{}, {}]", number(ends->low), number(ends->high)) : " [-]");
 }
 
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits) {

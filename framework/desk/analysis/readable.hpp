@@ -24,16 +24,17 @@ struct Scale {
   std::string number(double value) const;
   /// With its sign: "+0.3". What rounds to 0 has none.
   std::string difference(double value) const;
-  /// "[3.02, 3.40]", "[-]" where there is none.
-  std::string interval(const std::optional<MeanInterval>& ends) const;
+  /// "3.21 [3.02, 3.40]", "-" of no values.
+  std::string estimate(const MeanEstimate& mean) const;
   /// "5 mm"
   std::string with_unit(const std::string& number) const { return number + (unit.empty() ? "" : " " + unit); }
   /// "robot_seconds [s]"
   std::string title(const std::string& name) const;
 };
 
-/// "[3.02, 3.40]" of ends that `number` writes, "[-]" where there are none.
-std::string interval_text(const std::optional<MeanInterval>& ends, const std::function<std::string(double)>& number);
+/// "3.21 [3.02, 3.40]" of numbers that `number` writes, "3.21 [-]" where there is no interval.
+std::string with_interval(double value, const std::optional<MeanInterval>& ends,
+                          const std::function<std::string(double)>& number);
 
 /// For values of these sizes: millimetres and milliseconds if all are below one, and `digits` digits of the smallest
 /// that is not 0, but at most four decimals.

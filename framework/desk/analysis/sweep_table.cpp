@@ -54,7 +54,7 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
       if (const auto error = row->number("rmse_height_m")) height_live.push_back(*error);
     }
     if (runs == 0) continue;
-    std::string name = key_words(keys, group.values, sweep.keys.size() > 2);
+    std::string name = key_words(sweep, *group.jobs.front().job, keys, sweep.keys.size() > 2);
     // Where the seed alone is swept there is but one, and it has no value of its own.
     if (name.empty()) name = keys.empty() ? "all seeds" : "(none)";
     longest = std::max(longest, name.size());

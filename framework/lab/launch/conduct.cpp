@@ -57,11 +57,10 @@ void try_again(Standing& standing, int most_attempts) {
   std::sort(standing.open.begin(), standing.open.end());
 }
 
-void conduct(Launcher& launcher, const Sweep& sweep, const Standing& begun, const std::atomic<bool>* interrupted,
+void conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress) {
   SweepProgress counts;
-  const auto ended_well = begun.counts.find(RunStatus::State::done);
-  counts.done = ended_well != begun.counts.end() ? ended_well->second : 0;
+  counts.done = begun.counts[RunStatus::State::done];
   counts.failed = static_cast<int>(begun.failures.size());
   counts.before = counts.done + counts.failed;
   counts.jobs = counts.before + static_cast<int>(begun.open.size());

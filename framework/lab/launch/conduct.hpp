@@ -49,7 +49,7 @@ void try_again(Standing& standing, int most_attempts);
 /// Has `launcher` run what is open, where jobs stand as in `begun`, and waits until it has none in its hands, or until
 /// `interrupted`, when it cancels them. `progress` is called when something changed and at least every half second.
 /// Throws Error where the sweep's directory is moved or removed meanwhile, when it has cancelled them.
-void conduct(Launcher& launcher, const Sweep& sweep, const Standing& begun, const std::atomic<bool>* interrupted,
+void conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress);
 
 }  // namespace palpate

@@ -15,7 +15,6 @@
 #include <chrono>
 #include <optional>
 #include <sstream>
-#include <utility>
 
 #include <unistd.h>
 
@@ -35,25 +34,18 @@ class Attempt {
     // A kill or a full disk may have left half a line, of the first attempt, too.
     if (is_there(file)) cut_file(file, read_json_lines(file).bytes);
     log_ = AppendFile(file);
-    Row row = line();
-    row.add("after_tap", taps);
-    row.add("host", host_name());
-    row.add("pid", static_cast<std::int64_t>(::getpid()));
-    log_.append(to_json_line(row) + "\n", false);
+    note({{{"after_tap", std::int64_t{taps}}, {"host", host_name()}, {"pid", std::int64_t{::getpid()}}}});
   }
 
-  void end(const char* how) {
-    Row row = line();
-    row.add("end", how);
-    log_.append(to_json_line(row) + "\n", false);
-  }
+  void end(const std::string& how) { note({{{"end", how}}}); }
 
  private:
-  Row line() const {
+  void note(const Row& what) {
     Row row;
     row.add("attempt", number_);
     row.add("at", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now())));
-    return row;
+    row.fields.insert(row.fields.end(), what.fields.begin(), what.fields.end());
+    log_.append(to_json_line(row) + "\n", false);
   }
 
   AppendFile log_;

@@ -14,7 +14,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <utility>
 
 #include <sys/wait.h>
 
@@ -31,9 +30,7 @@ bool is_crash(int signal) {
 
 }  // namespace
 
-LocalLauncher::LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of,
-                             const LocalOptions& options)
-    : workshop_(workshop), sweep_(sweep), config_of_(std::move(config_of)), options_(options) {}
+std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order) { return std::make_unique<LocalLauncher>(order); }
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
@@ -55,10 +52,10 @@ bool LocalLauncher::start(std::size_t job) {
 JobEnd LocalLauncher::run(std::size_t job) const {
   try {
     return run_job(
-        workshop_, [&] { return config_of_(job); }, directory_of(job), options_.resume);
+        order_.workshop, [&] { return order_.config_of(job); }, directory_of(job), order_.options.resume);
   } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
     // Who conducts the sweep says once that all of it is gone. fmt::print would throw where a terminal was closed.
-    if (is_there(sweep_.directory)) {
+    if (is_there(order_.sweep.directory)) {
       std::fputs(fmt::format("job {}: {}\n", job, trouble.what()).c_str(), stderr);
     }
   }
@@ -70,7 +67,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
     submit(later_);
     later_.clear();
   }
-  while (!waiting_.empty() && static_cast<int>(running_.size()) < options_.workers && start(waiting_.front())) {
+  while (!waiting_.empty() && static_cast<int>(running_.size()) < order_.options.workers && start(waiting_.front())) {
     waiting_.pop_front();
   }
   std::vector<ChildProcess*> processes;
@@ -92,7 +89,7 @@ void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
   if (wait_status < 0) throw Error("", "a job's process is lost", {}, Error::Kind::run);
   if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
   const auto end = static_cast<JobEnd>(WEXITSTATUS(wait_status));
-  if (end == JobEnd::busy && options_.wait_for_others && !cancelled_) {
+  if (end == JobEnd::busy && order_.options.wait_for_others && !cancelled_) {
     again_ = Clock::now() + kBusyPause;
     later_.push_back(job);
     return;
@@ -114,7 +111,7 @@ void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
     record_failure(directory_of(job), "crashed: " + name);
   } else if (cancelled_) {
     // As wished.
-  } else if (attempts >= options_.most_attempts) {
+  } else if (attempts >= order_.options.most_attempts) {
     record_failure(directory_of(job),
                    fmt::format("was killed by {}{} in attempt {}", name,
                                signal == SIGKILL ? ", as is done when memory runs out," : "", attempts));

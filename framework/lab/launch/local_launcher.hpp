@@ -7,31 +7,20 @@
 #include "children/child_process.hpp"
 #include "launch/job.hpp"
 #include "launch/launcher.hpp"
-#include "sweep/sweep.hpp"
 
 #include <chrono>
 #include <deque>
-#include <functional>
 #include <map>
 #include <memory>
-#include <optional>
+#include <utility>
 #include <vector>
 
 namespace palpate {
 
-struct LocalOptions {
-  int workers = 1;              ///< jobs at a time
-  ResumeOptions resume;         ///< for every job
-  int most_attempts = 3;        ///< a job that was begun so often and always killed has failed
-  bool wait_for_others = true;  ///< jobs that other processes have in hand are awaited, in case those die
-};
-
 class LocalLauncher final : public Launcher {
  public:
-  /// `config_of` is called in the child. All must outlive the launcher.
-  using Configs = std::function<ResolvedConfig(std::size_t job)>;
   /// At its end it kills what still runs.
-  LocalLauncher(const Workshop& workshop, const Sweep& sweep, Configs config_of, const LocalOptions& options);
+  explicit LocalLauncher(LaunchOrder order) : order_(std::move(order)) {}
 
   void submit(const std::vector<std::size_t>& jobs) override;
   State poll(double seconds) override;
@@ -51,12 +40,11 @@ class LocalLauncher final : public Launcher {
   JobEnd run(std::size_t job) const;
   void conclude(std::size_t job, int wait_status, State& state);
   void was_killed(std::size_t job, int signal, State& state);
-  std::filesystem::path directory_of(std::size_t job) const { return job_directory(sweep_, sweep_.jobs[job]); }
+  std::filesystem::path directory_of(std::size_t job) const {
+    return job_directory(order_.sweep, order_.sweep.jobs[job]);
+  }
 
-  const Workshop& workshop_;
-  const Sweep& sweep_;
-  Configs config_of_;
-  LocalOptions options_;
+  LaunchOrder order_;
   std::deque<std::size_t> waiting_;
   std::vector<std::size_t> later_;  ///< that others had in hand, to be looked at again
   Clock::time_point again_;         ///< when

@@ -48,18 +48,13 @@ std::optional<int> setting(const std::string& text, const std::string& name) {
   return whole_number(found[1]);
 }
 
-/// Whether it is none by which users change what these commands print or how long they stay, behind the back of who
-/// reads it.
-bool is_seen(const std::string& variable) {
-  static const std::regex users("SQUEUE_|SINFO_|SBATCH_WAIT=");
-  return !std::regex_search(variable, users, std::regex_constants::match_continuous);
-}
-
 std::unique_ptr<ChildProcess> start(const std::vector<std::string>& words) {
   Program program{words};
+  // By these users change what the commands print or how long they stay, behind the back of who reads it.
+  static const std::regex users("^(SQUEUE_|SINFO_|SBATCH_WAIT=)");
+  const auto is_users = [](const std::string& one) { return std::regex_search(one, users); };
   auto& sees = program.environment;
-  sees.erase(std::remove_if(sees.begin(), sees.end(), [](const std::string& one) { return !is_seen(one); }),
-             sees.end());
+  sees.erase(std::remove_if(sees.begin(), sees.end(), is_users), sees.end());
   std::unique_ptr<ChildProcess> out = ChildProcess::start(program);
   if (out) return out;
   if (errno == ENOENT) throw Error(words.front(), "is not installed, or not on PATH", kAskedElsewhere);

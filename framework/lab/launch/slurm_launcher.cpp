@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <set>
 #include <sstream>
-#include <utility>
 
 namespace palpate {
 
@@ -79,7 +78,7 @@ void check_sbatch_words(const std::vector<std::string>& words) {
 }
 
 std::string task_script(const fs::path& program, const fs::path& directory, const fs::path& jobs,
-                        const SlurmOptions& options, const std::optional<std::string>& plugin_path) {
+                        const LaunchOptions& options, const std::optional<std::string>& plugin_path) {
   std::string out =
       "#!/bin/sh\n"
       "# A task of a Slurm array carries on the sweep's jobs on a line of a list: that of the first argument, 0 if "
@@ -95,13 +94,10 @@ std::string task_script(const fs::path& program, const fs::path& directory, cons
   return out;
 }
 
-SlurmLauncher::SlurmLauncher(fs::path program, const Sweep& sweep, SlurmOptions options,
-                             std::function<void(const SlurmArray&)> submitted)
-    : program_(std::move(program)),
-      sweep_(sweep),
-      directory_(fs::absolute(sweep.directory / "").lexically_normal().parent_path()),
-      options_(std::move(options)),
-      submitted_(std::move(submitted)) {}
+std::unique_ptr<Launcher> slurm_launcher(const LaunchOrder& order) {
+  return std::make_unique<SlurmLauncher>(order.workshop.installation.program, order.sweep, order.options,
+                                         order.submitted);
+}
 
 void SlurmLauncher::check_cores() const {
   const char* elsewhere = std::getenv("SBATCH_PARTITION");
@@ -168,7 +164,7 @@ void SlurmLauncher::submit(const std::vector<std::size_t>& jobs) {
   write_file(folder / kScript, task_script(program_, directory_, folder / kJobs, options_, own_plugin_path()));
   for (std::size_t first = 0; first < tasks.size(); first += most) {
     const std::size_t count = std::min(most, tasks.size() - first);
-    SlurmArray array{slurm::submit(words_for(first, count, folder)), static_cast<int>(count), 0, folder};
+    TaskArray array{slurm::submit(words_for(first, count, folder)), static_cast<int>(count), 0, folder};
     arrays_.push_back(array.id);
     for (std::size_t index = 0; index < count; ++index) {
       std::vector<std::size_t>& own = tasks[first + index];
@@ -177,12 +173,6 @@ void SlurmLauncher::submit(const std::vector<std::size_t>& jobs) {
     }
     submitted_(array);
   }
-}
-
-bool SlurmLauncher::has_ended(std::size_t job) const {
-  // A failed job that is tried again has its old result until it begins: only the queue tells.
-  if (options_.resume.retry_failed) return false;
-  return is_there(job_directory(sweep_, sweep_.jobs[job]) / "summary.json");
 }
 
 Launcher::State SlurmLauncher::poll(double seconds) {
@@ -200,8 +190,10 @@ Launcher::State SlurmLauncher::poll(double seconds) {
       const auto found = present.find(at->first);
       const bool gone = found == present.end();
       task.waiting = !gone && found->second;
+      // A failed job that is tried again has its old result until it begins: only the queue tells.
+      const bool by_queue = task.waiting || options_.resume.retry_failed;
       const auto still = std::stable_partition(task.jobs.begin(), task.jobs.end(), [&](std::size_t job) {
-        return !gone && (task.waiting || !has_ended(job));
+        return !gone && (by_queue || !is_there(job_directory(sweep_, sweep_.jobs[job]) / "summary.json"));
       });
       state.returned.insert(state.returned.end(), still, task.jobs.end());
       task.jobs.erase(still, task.jobs.end());
@@ -222,5 +214,7 @@ void SlurmLauncher::cancel() {
   for (const auto& [place, task] : tasks_) arrays.insert(place.first);
   if (!arrays.empty()) slurm::cancel({arrays.begin(), arrays.end()});
 }
+
+std::string SlurmLauncher::stop_command() const { return fmt::format("scancel {}", fmt::join(arrays_, " ")); }
 
 }  // namespace palpate

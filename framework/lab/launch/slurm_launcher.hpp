@@ -6,8 +6,6 @@
 
 #include "launch/launcher.hpp"
 #include "launch/slurm.hpp"
-#include "record/session.hpp"
-#include "sweep/sweep.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -19,24 +17,6 @@
 
 namespace palpate {
 
-struct SlurmOptions {
-  std::string partition, time, account;  ///< passed on as given; "" for the cluster's own choice
-  std::vector<std::string> more;         ///< words for sbatch, each with its dashes
-  int jobs_per_task = 1;
-  int workers = 1;             ///< jobs of a task at a time, each with a core of its own
-  bool one_at_a_time = false;  ///< tasks, of all arrays together
-  int most_attempts = 3;
-  ResumeOptions resume;  ///< for every job
-};
-
-/// An array in the queue.
-struct SlurmArray {
-  int id = 0;
-  int tasks = 0;
-  int jobs = 0;  ///< that are missing
-  std::filesystem::path logs;
-};
-
 /// `text` as one word of a shell, in quotes only where it needs them.
 std::string shell_word(const std::string& text);
 
@@ -47,15 +27,16 @@ void check_sbatch_words(const std::vector<std::string>& words);
 /// line t, from 0, of the file `jobs`. All paths are absolute; `plugin_path` is what PALPATE_PLUGIN_PATH is to be, none
 /// for unset.
 std::string task_script(const std::filesystem::path& program, const std::filesystem::path& directory,
-                        const std::filesystem::path& jobs, const SlurmOptions& options,
+                        const std::filesystem::path& jobs, const LaunchOptions& options,
                         const std::optional<std::string>& plugin_path);
 
 class SlurmLauncher final : public Launcher {
  public:
   /// `submitted` hears of every array as soon as Slurm has taken it. `program` is palpate, on a file system that the
   /// nodes share, as the sweep is. The sweep must outlive the launcher; what was submitted does not end with it.
-  SlurmLauncher(std::filesystem::path program, const Sweep& sweep, SlurmOptions options,
-                std::function<void(const SlurmArray&)> submitted);
+  SlurmLauncher(std::filesystem::path program, const Sweep& sweep, LaunchOptions options,
+                std::function<void(const TaskArray&)> submitted)
+      : program_(std::move(program)), sweep_(sweep), options_(std::move(options)), submitted_(std::move(submitted)) {}
 
   /// Writes the script, and which task has which of `jobs`, to slurm/N in the sweep's directory, where the logs will
   /// be, and submits it. Throws Error when Slurm cannot be asked, when no node has as many cores as a
@@ -68,6 +49,8 @@ class SlurmLauncher final : public Launcher {
 
   void cancel() override;
 
+  std::string stop_command() const override;
+
  private:
   using Place = std::pair<int, int>;  ///< array and index
   struct TaskState {
@@ -79,13 +62,12 @@ class SlurmLauncher final : public Launcher {
   std::filesystem::path make_folder() const;
   /// For an array of `count` tasks from `first` on.
   std::vector<std::string> words_for(std::size_t first, std::size_t count, const std::filesystem::path& folder) const;
-  bool has_ended(std::size_t job) const;
 
   std::filesystem::path program_;
   const Sweep& sweep_;
-  std::filesystem::path directory_;  ///< of the sweep, absolute
-  SlurmOptions options_;
-  std::function<void(const SlurmArray&)> submitted_;
+  std::filesystem::path directory_ = absolute(sweep_.directory / "").lexically_normal().parent_path();
+  LaunchOptions options_;
+  std::function<void(const TaskArray&)> submitted_;
   std::vector<int> arrays_;
   std::map<Place, TaskState> tasks_;
   slurm::Watch watch_;

@@ -2,7 +2,6 @@
 #include "sweep/draft.hpp"
 
 #include "config/yaml.hpp"
-#include "record/files.hpp"
 
 #include <palpate/error.hpp>
 

@@ -309,12 +309,11 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
                 "ask for less, or sweep other values");
   }
   planner.finish();
-  SweepPlan plan{first->options.name,
-                 {{}, description.keys(), planner.take_jobs()},
+  SweepPlan plan{{{}, description.keys(), planner.take_jobs()},
                  written_config(file, base, alone, description, *first),
                  planner.take_configs()};
   check_readable(plan.config, file.string());
-  plan.sweep.directory = runs / slug(plan.name) / sweep_id(plan.config, plan.sweep);
+  plan.sweep.directory = runs / slug(first->options.name) / sweep_id(plan.config, plan.sweep);
   return plan;
 }
 

@@ -25,9 +25,8 @@ struct PlannedConfig {
 
 /// What a sweep will run.
 struct SweepPlan {
-  std::string name;  ///< of the experiment
-  Sweep sweep;       ///< its directory is where it would be
-  Tree config;       ///< what `palpate sweep` would make the same jobs of: whole where the sweep leaves it alone
+  Sweep sweep;  ///< its directory is where it would be
+  Tree config;  ///< what `palpate sweep` would make the same jobs of: whole where the sweep leaves it alone
   std::vector<PlannedConfig> configs;  ///< of each job
 };
 

@@ -6,17 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace palpate {
 namespace {
-
-using Buffer = fmt::memory_buffer;
-
-template <class... Values>
-void put(Buffer& out, const char* format, const Values&... values) {
-  fmt::format_to(std::back_inserter(out), fmt::runtime(format), values...);
-}
 
 /// How fast the heights fall along one axis, at position `at` of `count`, whose neighbours are `step` apart.
 double fall(const VectorView& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
@@ -73,46 +65,44 @@ ReconstructedSurface reconstruct(Experiment& experiment) {
 
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run) {
   const SurfaceMesh& mesh = surface.mesh;
-  Buffer out;
-  put(out,
+  std::string out = fmt::format(
       "ply\nformat ascii 1.0\ncomment palpate, {}\n"
       "comment lengths in metres; quality: standard deviation of the height\nelement vertex {}\n"
       "property double x\nproperty double y\nproperty double z\n"
       "property double nx\nproperty double ny\nproperty double nz\n"
       "property float quality\nproperty float on_surface_probability\n",
       header_text(run), mesh.points.rows());
-  if (surface.true_height) put(out, "property float true_height\n");
-  if (!mesh.triangles.empty()) {  // a list of none is more than some readers expect
-    put(out, "element face {}\n", mesh.triangles.size());
-    put(out, "property list uchar int vertex_indices\n");
-  }
-  put(out, "end_header\n");
+  if (surface.true_height) out += "property float true_height\n";
+  if (!mesh.triangles.empty())  // a list of none is more than some readers expect
+    out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
+  out += "end_header\n";
   for (Eigen::Index i = 0; i < mesh.points.rows(); ++i) {
-    put(out, "{} {} {} {} {} {} {} {}", mesh.points(i, 0), mesh.points(i, 1), mesh.points(i, 2), mesh.normals(i, 0),
-        mesh.normals(i, 1), mesh.normals(i, 2), static_cast<float>(surface.standard_deviation(i)),
-        static_cast<float>(surface.on_surface_probability(i)));
-    if (surface.true_height) put(out, " {}", static_cast<float>((*surface.true_height)(i)));
-    put(out, "\n");
+    out += fmt::format("{} {} {} {} {} {} {} {}", mesh.points(i, 0), mesh.points(i, 1), mesh.points(i, 2),
+                       mesh.normals(i, 0), mesh.normals(i, 1), mesh.normals(i, 2),
+                       static_cast<float>(surface.standard_deviation(i)),
+                       static_cast<float>(surface.on_surface_probability(i)));
+    if (surface.true_height) out += fmt::format(" {}", static_cast<float>((*surface.true_height)(i)));
+    out += "\n";
   }
-  for (const auto& [a, b, c] : mesh.triangles) put(out, "3 {} {} {}\n", a, b, c);
-  return to_string(out);
+  for (const auto& [a, b, c] : mesh.triangles) out += fmt::format("3 {} {} {}\n", a, b, c);
+  return out;
 }
 
 std::string taps_ply(const Recording& recording, const std::string& run) {
-  Buffer points;
+  std::string points;
   int contacts = 0;
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const PastTap& tap = recording.taps[i];
     if (tap.contact.outcome != Outcome::contact) continue;
     const bool hit = recording.rows[i].flag("on_surface").value_or(false);
-    put(points, "{} {} {} {} {}\n", tap.target.x, tap.target.y, tap.contact.height, i + 1, hit ? 1 : 0);
+    points += fmt::format("{} {} {} {} {}\n", tap.target.x, tap.target.y, tap.contact.height, i + 1, hit ? 1 : 0);
     ++contacts;
   }
   return fmt::format(
       "ply\nformat ascii 1.0\ncomment palpate, {}\ncomment lengths in metres; contacts only\nelement vertex {}\n"
       "property double x\nproperty double y\nproperty double z\nproperty int tap\nproperty uchar on_surface\n"
       "end_header\n{}",
-      header_text(run), contacts, to_string(points));
+      header_text(run), contacts, points);
 }
 
 }  // namespace palpate

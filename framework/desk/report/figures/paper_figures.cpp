@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
-#include <tuple>
 
 namespace palpate {
 namespace {
@@ -165,17 +164,11 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
 
 constexpr const char* kAllOfThem = "configs/paper/figures.yaml has them all";
 
-/// The value of a key in a job; "" where it is not swept.
-std::string swept_value(const Sweep& sweep, const Job& job, const std::string& key) {
-  const bool is_swept = std::find(sweep.keys.begin(), sweep.keys.end(), key) != sweep.keys.end();
-  return is_swept ? value_of(sweep, job, key) : "";
-}
-
 /// The jobs of this scene and strategy that ended well, in the order of the sweep.
 std::vector<const Job*> finished_jobs(const Sweep& sweep, const std::string& scene, const std::string& acquisition) {
   std::vector<const Job*> out;
   for (const Job& job : sweep.jobs) {
-    if (swept_value(sweep, job, "scene") == scene && swept_value(sweep, job, "acquisition") == acquisition &&
+    if (value_of(sweep, job, "scene") == scene && value_of(sweep, job, "acquisition") == acquisition &&
         read_ending(job_directory(sweep, job)).state == RunStatus::State::done)
       out.push_back(&job);
   }
@@ -184,7 +177,7 @@ std::vector<const Job*> finished_jobs(const Sweep& sweep, const std::string& sce
 
 /// A title with the seed, where one is swept.
 std::string titled(const std::string& title, const Sweep& sweep, const Job& job) {
-  const std::string seed = swept_value(sweep, job, "seed");
+  const std::string seed = value_of(sweep, job, "seed");
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
 
@@ -219,22 +212,20 @@ Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
   // Figures 4 and 5: two jobs that differ in nothing but the strategy.
   const auto rivals = finished_jobs(sweep, "object_i_right", "uncertainty");
   const auto explorers = finished_jobs(sweep, "object_i_right", "weighted");
-  const Job* rival = nullptr;
-  const Job* explorer = nullptr;
-  for (auto one = rivals.begin(); one != rivals.end() && explorer == nullptr; ++one) {
-    for (auto other = explorers.begin(); other != explorers.end() && explorer == nullptr; ++other) {
-      const bool alike = std::all_of(sweep.keys.begin(), sweep.keys.end(), [&](const std::string& key) {
-        return key == "acquisition" || value_of(sweep, **one, key) == value_of(sweep, **other, key);
-      });
-      if (alike) std::tie(rival, explorer) = std::pair(*one, *other);
-    }
-  }
-  if (explorer != nullptr) {
-    const Progress above = progress(*rival, {1, 10, 16});
-    const Progress below = progress(*explorer, {1, 10, 16});
+  const auto alike = [&](const Job* one, const Job* other) {
+    return std::all_of(sweep.keys.begin(), sweep.keys.end(), [&](const std::string& key) {
+      return key == "acquisition" || value_of(sweep, *one, key) == value_of(sweep, *other, key);
+    });
+  };
+  const auto rival = std::find_first_of(rivals.begin(), rivals.end(), explorers.begin(), explorers.end(), alike);
+  if (rival != rivals.end()) {
+    const auto explorer =
+        std::find_if(explorers.begin(), explorers.end(), [&](const Job* job) { return alike(*rival, job); });
+    const Progress above = progress(**rival, {1, 10, 16});
+    const Progress below = progress(**explorer, {1, 10, 16});
     const auto add = [&](const char* name, const char* what, Eigen::VectorXd Snapshot::*map) {
       const std::string title = fmt::format("Object I on the right: {}", what);
-      figures.push_back(panels_figure(name, titled(title, sweep, *rival), {{above, map}, {below, map}}));
+      figures.push_back(panels_figure(name, titled(title, sweep, **rival), {{above, map}, {below, map}}));
     };
     add("figure_4", "where to tap next", &Snapshot::scores);
     add("figure_5", "uncertainty", &Snapshot::uncertainty);

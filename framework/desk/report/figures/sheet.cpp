@@ -119,9 +119,8 @@ Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground) {
         (y - 0.5 * ground.area.depth) * std::cos(kTurn) - (x - 0.5 * ground.area.width) * std::sin(kTurn);
     return back * std::cos(kTilt) + (height - ground.desk) * std::sin(kTilt);
   };
-  const double desk = ground.desk;
-  const double far = up(0.0, ground.area.depth, desk);
-  Relief out{desk, desk, desk + 0.01, far, far};
+  const double far = up(0.0, ground.area.depth, ground.desk);
+  Relief out{ground.desk, ground.desk + 0.01, far, far};
   const auto include = [&](double x, double y, double height) {
     out.low = std::min(out.low, height);
     out.top = std::max(out.top, height);
@@ -186,16 +185,12 @@ void Sheet::data(const std::string& name, const std::string& lines) {
 }
 
 void Sheet::taps(const std::string& name, const Snapshot& snapshot) {
-  std::string on;
-  std::string off;
-  std::string failed;
-  for (const TapMark& mark : snapshot.marks) {
-    std::string& lines = mark.kind == TapMark::Kind::on ? on : mark.kind == TapMark::Kind::off ? off : failed;
-    lines += fmt::format("{} {} {} {}\n", centimetres(mark.x), centimetres(mark.y), centimetres(mark.height), mark.tap);
-  }
-  data("on_" + name, on);
-  data("off_" + name, off);
-  data("failed_" + name, failed);
+  constexpr const char* kKinds[] = {"on_", "off_", "failed_"};  // by TapMark::Kind
+  std::string lines[std::size(kKinds)];
+  for (const TapMark& mark : snapshot.marks)
+    lines[static_cast<std::size_t>(mark.kind)] +=
+        fmt::format("{} {} {} {}\n", centimetres(mark.x), centimetres(mark.y), centimetres(mark.height), mark.tap);
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) data(kKinds[i] + name, lines[i]);
   if (snapshot.next)
     data("next_" + name, centimetres(snapshot.next->target.x) + " " + centimetres(snapshot.next->target.y) + "\n");
 }
@@ -266,7 +261,7 @@ void Sheet::surface(const Box& box, const Ground& ground, const std::string& sur
   const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
   const double scale = std::min(box.width / wide, box.height / (relief.above + relief.below));     // pixels a metre
   const double middle = box.top + 0.5 * box.height + 0.5 * scale * (relief.above - relief.below);  // of the desk
-  const double lift = scale * (0.5 * (relief.low + relief.top) - relief.desk) * std::sin(kTilt);
+  const double lift = scale * (0.5 * (relief.low + relief.top) - ground.desk) * std::sin(kTilt);
   // gnuplot puts the longer side of the area to the shorter one of the margins, and the middle of all into theirs.
   const double side = scale * std::max(area.width, area.depth);
   const Box inner{box.left + 0.5 * (box.width - side), middle - lift - 0.5 * side, side, side};
@@ -274,7 +269,7 @@ void Sheet::surface(const Box& box, const Ground& ground, const std::string& sur
   settings += fmt::format("set zrange [{}:{}]\nset ztics 5 font ',9' offset 0.7,0\n", centimetres(relief.low),
                           centimetres(relief.top));
   settings +=
-      fmt::format("unset colorbox\nset border 31 lc rgb '#777777'\nset xyplane at {}\n", centimetres(relief.desk));
+      fmt::format("unset colorbox\nset border 31 lc rgb '#777777'\nset xyplane at {}\n", centimetres(ground.desk));
   settings += "set xlabel 'x [cm]' font ',10' rotate parallel offset 1.2,-0.3\n";
   settings += "set ylabel 'y [cm]' font ',10' rotate parallel offset -1.5,-0.3\n";
   settings += "set zlabel 'height [cm]' font ',10' rotate by 90 offset 3.2,0\n";

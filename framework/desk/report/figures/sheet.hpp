@@ -71,7 +71,6 @@ std::string surface_of(const Ground& ground, const Eigen::VectorXd& height, cons
 
 /// The room that surfaces take when they are seen from the side, metres.
 struct Relief {
-  double desk = 0.0;
   double low = 0.0;  ///< least and largest height; the desk lies between them
   double top = 0.0;
   double above = 0.0;  ///< in the picture, from the middle of the desk to the upper edge, and to the lower one

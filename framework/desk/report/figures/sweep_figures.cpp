@@ -37,7 +37,7 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
   for (JobGroup& one : group_jobs(sweep, results, keys)) {
     const auto done = std::count_if(one.jobs.begin(), one.jobs.end(),
                                     [](const JobResult& job) { return job.row != nullptr && is_done(*job.row); });
-    const std::string name = key_words(keys, one.values, keys.size() > 1);
+    const std::string name = key_words(sweep, *one.jobs.front().job, keys, keys.size() > 1);
     if (done > 0) groups.push_back({name.empty() ? "all jobs" : name, std::move(one), static_cast<std::size_t>(done)});
   }
   return groups;

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <unordered_map>
 
 namespace palpate {

@@ -69,13 +69,9 @@ Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResul
 
 /// What became of a job: from its row, or, without one, from its directory as it is now.
 RunStatus standing_of(const Row* row, const fs::path& directory) {
-  RunStatus out;
-  if (row != nullptr) {
-    out.state = is_done(*row) ? RunStatus::State::done : RunStatus::State::failed;
-    out.stop_reason = row->text("stop_reason");
-    return out;
-  }
-  out = read_ending(directory);
+  if (row != nullptr)
+    return {is_done(*row) ? RunStatus::State::done : RunStatus::State::failed, 0, row->text("stop_reason")};
+  RunStatus out = read_ending(directory);
   // Who ended since the rows were read was running then.
   const bool ended = out.state == RunStatus::State::done || out.state == RunStatus::State::failed;
   if (ended || is_running(directory)) return {RunStatus::State::running, 0, ""};

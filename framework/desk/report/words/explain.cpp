@@ -35,13 +35,7 @@ void explain_place(Page& page, const Row& row, const std::string& footprint) {
 class Explanation {
  public:
   Explanation(const Workshop& workshop, const Recording& recording, int tap)
-      : workshop_(workshop),
-        recording_(recording),
-        options_(recording.config.options),
-        number_(tap),
-        row_(recording.rows[static_cast<std::size_t>(tap - 1)]),
-        tap_(recording.taps[static_cast<std::size_t>(tap - 1)]),
-        playback_(workshop, recording) {}
+      : workshop_(workshop), recording_(recording), number_(tap) {}
 
   std::string text() {
     playback_.advance_to(number_ - 1);
@@ -281,11 +275,11 @@ class Explanation {
 
   const Workshop& workshop_;
   const Recording& recording_;
-  const ExperimentOptions& options_;
   int number_;
-  const Row& row_;
-  const PastTap& tap_;
-  Playback playback_;
+  const ExperimentOptions& options_ = recording_.config.options;
+  const Row& row_ = recording_.rows[static_cast<std::size_t>(number_ - 1)];
+  const PastTap& tap_ = recording_.taps[static_cast<std::size_t>(number_ - 1)];
+  Playback playback_{workshop_, recording_};
   std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
   Page page_;
 };

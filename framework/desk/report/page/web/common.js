@@ -95,6 +95,9 @@ function many(count, what) {
   return `${count} ${what}${count === 1 ? "" : "s"}`;
 }
 
+/// The least and the most of very many numbers.
+const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+
 /// In which unit a quantity is shown, and how many of it are one SI unit; told by the end of its name.
 function unitOf(name) {
   if (name.endsWith("_m")) return { unit: "cm", factor: 100 };

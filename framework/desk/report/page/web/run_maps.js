@@ -29,22 +29,8 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
-/// The least and the most of some frames.
-function extent(frames) {
-  const lines = frames.flat();
-  const ends = (end, none) => lines.reduce((found, line) => end(found, ...line), none);
-  return [ends(Math.min, Infinity), ends(Math.max, -Infinity)];
-}
-
-/// The taps up to `taps`, by what they touched.
-function tapsUntil(rows, taps) {
-  const made = rows.slice(0, taps);
-  return {
-    on: made.filter((tap) => tap.on_surface === true),
-    off: made.filter((tap) => tap.on_surface === false),
-    failed: made.filter((tap) => tap.on_surface === null),
-  };
-}
+/// The taps up to `taps`: those on the object, those off it, and those that touched nothing.
+const tapsUntil = (rows, taps) => [true, false, null].map((touched) => rows.slice(0, taps).filter((tap) => tap.on_surface === touched));
 
 const place = (tap) => `(${shown(tap.x * kCentimetres, 3)}, ${shown(tap.y * kCentimetres, 3)}) cm`;
 
@@ -66,7 +52,7 @@ const edge = (color, width) => ({ color, width });
 
 /// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt; a star is next.
 function marks(data, moment) {
-  const { on, off, failed } = tapsUntil(data.taps, moment.taps);
+  const [on, off, failed] = tapsUntil(data.taps, moment.taps);
   return [
     markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
     markTrace(off, "off the object", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
@@ -84,11 +70,11 @@ function mapPanels(data, maps) {
     panels.push(panel("p", `Probability p of an object, by footprint/${data.footprint}`, maps.p));
   } else {
     const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
-    const largest = extent(exploration)[1];
+    const largest = extent(exploration.flat(2))[1];
     const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
     panels.push(panel("w", "Weight w", maps.w), panel("e", "Exploration e = u w", exploration, [0, most]));
   }
-  if (maps.score) panels.push(panel("score", `Score of the acquisition, ${data.acquisition}`, maps.score, extent(maps.score)));
+  if (maps.score) panels.push(panel("score", `Score of the acquisition, ${data.acquisition}`, maps.score, extent(maps.score.flat(2))));
   return panels;
 }
 
@@ -96,7 +82,7 @@ function mapPanels(data, maps) {
 /// five times the least, or all that was touched would look alike beside what was not.
 function deviationColours(lines) {
   const floor = 1e-4;
-  const [low, high] = extent([lines]).map((end) => Math.max(end, floor));
+  const [low, high] = extent(lines.flat()).map((end) => Math.max(end, floor));
   const bar = colourBar("standard deviation [cm]", { len: 0.8 });
   if (high <= 5 * low) return { surfacecolor: lines, cmin: 0, cmax: high, colorbar: bar };
   const powers = [-4, -3, -2, -1, 0, 1, 2, 3, 4, 5].map((power) => 10 ** power);
@@ -147,7 +133,9 @@ class SurfaceView {
     this.heights = maps.height.map((lines) => scaled(lines, kCentimetres));
     this.deviations = maps.deviation.map((lines) => scaled(lines, kCentimetres));
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
-    this.range = extent(this.truth ? [...this.heights, this.truth] : this.heights);
+    this.range = extent([...this.heights, this.truth ?? []].flat(2));
+    // How far above their places the marks of taps are, or half of every mark would be inside of the surface.
+    this.lift = 0.06 * (this.range[1] - this.range[0]);
     this.withTruth = false;
     this.x = data.x.map((value) => value * kCentimetres);
     this.y = data.y.map((value) => value * kCentimetres);
@@ -175,7 +163,7 @@ class SurfaceView {
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{customdata:.2f} cm<extra></extra>",
     };
-    const { on, off } = tapsUntil(this.data.taps, moment.taps);
+    const [on, off] = tapsUntil(this.data.taps, moment.taps);
     const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres }));
     const raised = (taps, name, marker) => markTrace(taps, name, marker, { type: "scatter3d", z: taps.map((tap) => this.pin(tap)[1]) });
     const out = [
@@ -189,15 +177,10 @@ class SurfaceView {
     return out;
   }
 
-  /// How far above their places the marks of taps are, or half of every mark would be inside of the surface.
-  lift() {
-    return 0.06 * (this.range[1] - this.range[0]);
-  }
-
   /// The ends of a line from the place of a tap up to its mark.
   pin(tap) {
     const foot = tap.height * kCentimetres;
-    return [foot, foot + this.lift()];
+    return [foot, foot + this.lift];
   }
 
   pins(taps) {
@@ -223,7 +206,7 @@ class SurfaceView {
 
   /// What the colours of the surface say, as a map over the plane.
   deviationPanel() {
-    const range = [0, extent(this.deviations)[1]];
+    const range = [0, extent(this.deviations.flat(2))[1]];
     return { id: "deviation", title: "Standard deviation of the height", bar: "cm", frames: this.deviations, range, colours: kUnknown };
   }
 
@@ -245,7 +228,7 @@ class SurfaceView {
   layout() {
     if (!this.spatial) return { ...planeAxes(this.data), showlegend: false };
     const low = Math.min(this.range[0], this.data.desk * kCentimetres);
-    const range = [low, this.range[1] + this.lift() + 0.05 * (this.range[1] - low) + 0.1];
+    const range = [low, this.range[1] + this.lift + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
     const side = Math.max(width, depth) / 1.3;  // fills the room as the camera stands
     return {

@@ -5,10 +5,10 @@
 /// `ends` do, as far as they keep near the values: a few settings seen in a few seeds have intervals far wider than
 /// anything measured.
 function rangeOf(values, ends) {
-  const [least, most] = [leastOf(values), mostOf(values)];
+  const [[least, most], [lowest, highest]] = [values, ends].map(extent);
   const room = Math.max(most - least, 1e-12) / 2;
-  const low = Math.min(Math.max(leastOf(ends), least - room), least);
-  const high = Math.max(Math.min(mostOf(ends), most + room), most);
+  const low = Math.min(Math.max(lowest, least - room), least);
+  const high = Math.max(Math.min(highest, most + room), most);
   if (least > 0 && most / least > 20) {
     const bottom = Math.max(low, least / 4);
     const margin = (high / bottom) ** 0.07;

@@ -89,8 +89,7 @@ class SweepData {
 
   /// Some jobs by what became of them: "19 of 20 done, 1 failed".
   ended(jobs) {
-    const done = jobs.filter((job) => job.state === "done").length;
-    const failed = jobs.filter((job) => job.state === "failed").length;
+    const [done, failed] = ["done", "failed"].map((state) => jobs.filter((job) => job.state === state).length);
     const open = jobs.length - done - failed;
     return `${done} of ${jobs.length} done${failed ? `, ${failed} failed` : ""}${open ? `, ${open} not ended` : ""}`;
   }
@@ -101,17 +100,13 @@ class SweepData {
 function estimate(values, factors, unit = 1) {
   const count = values.length;
   if (count === 0) return { count, mean: null, deviation: null, half: null };
-  const [least, most] = [leastOf(values), mostOf(values)];
+  const [least, most] = extent(values);
   const mean = least === most ? least : values.reduce((sum, one) => sum + one / count, 0);
   if (count < 2) return { count, mean: mean * unit, deviation: null, half: null };
   const variance = values.reduce((sum, one) => sum + (one - mean) * (one - mean), 0) / (count - 1);
   const factor = factors[Math.min(count - 2, factors.length - 1)];
   return { count, mean: mean * unit, deviation: Math.sqrt(variance) * unit, half: factor * Math.sqrt(variance / count) * unit };
 }
-
-/// The least and the most of very many numbers.
-const leastOf = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
-const mostOf = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
 
 /// The settings, all keys but the seed, with their means of cost and error over the jobs that are done and have both:
 /// {words, jobs, cost, error, complete, front}, in the order of cost. As `palpate pareto` has it, only settings all of

@@ -173,7 +173,7 @@ function parallelAxes(sweep, metric, mostJobs) {
   });
   const ofColumns = columns.map((name) => {
     const values = sweep.numbers(name, jobs);
-    const [least, most] = [leastOf(values), mostOf(values)];
+    const [least, most] = extent(values);
     const marked = most > least ? [least, (least + most) / 2, most] : [least];
     return { title: withUnit(name), values, least, most, ticks: marked.map((at) => ({ at, text: shown(at, 3) })) };
   });
