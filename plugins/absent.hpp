@@ -12,19 +12,6 @@ constexpr const char* kReason =
     "this build has no " PALPATE_ABSENT "; 'sudo apt-get install --no-install-recommends " PALPATE_ABSENT_PACKAGES
     "' installs it, then build again, as ./palpate does by itself";
 
-/// Has options, and is never made.
-template <class PluginOptions>
-struct Nothing {
-  using Options = PluginOptions;
-};
-
-/// What is wrong with the options is said first, as by the real one.
-template <class Options>
-void* refuse(Fields& fields, const Context&) {
-  detail::describe<Nothing<Options>>(fields);
-  throw Error("", kReason);
-}
-
 /// As manifest_of() fills it for a plugin that is there.
 template <class Interface, class Options>
 constexpr PluginManifest manifest_of(const char* name, const char* summary) {
@@ -36,8 +23,12 @@ constexpr PluginManifest manifest_of(const char* name, const char* summary) {
           name,
           summary,
           false,
-          &detail::describe<Nothing<Options>>,
-          &refuse<Options>,
+          [](Fields& fields) { Options().list(fields); },
+          // What is wrong with the options is said first, as by the real one.
+          [](Fields& fields, const Context&) -> void* {
+            Options().list(fields);
+            throw Error("", kReason);
+          },
           [](void*) {}};
 }
 

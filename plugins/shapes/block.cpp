@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
-#include <algorithm>
-#include <cmath>
-
 namespace palpate::shapes {
 
-struct BlockOptions : Options {
-  double length = 0.12;
-  double width = 0.08;
-  double height = 0.05;
-
-  void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
-    list_height(height, fields);
-  }
+struct BlockOptions : ExtentOptions {
+  BlockOptions() : ExtentOptions(0.12, 0.08, 0.05) {}
 };
 
 class Block final : public Shape {

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
 namespace palpate::shapes {
 
-struct ConeOptions : Options {
-  double diameter = 0.12;
-  double height = 0.08;
-
-  void list(Fields& fields) override {
-    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
-    list_height(height, fields);
-  }
+struct ConeOptions : RoundOptions {
+  ConeOptions() : RoundOptions(0.12, 0.08) {}
 };
 
 class Cone final : public Round {

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
 namespace palpate::shapes {
 
-struct CylinderOptions : Options {
-  double diameter = 0.08;
-  double height = 0.06;
-
-  void list(Fields& fields) override {
-    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
-    list_height(height, fields);
-  }
+struct CylinderOptions : RoundOptions {
+  CylinderOptions() : RoundOptions(0.08, 0.06) {}
 };
 
 class Cylinder final : public Round {

@@ -2,18 +2,13 @@
 // The cap of a ball, at most half of it.
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
 namespace palpate::shapes {
 
-struct DomeOptions : Options {
-  double diameter = 0.12;
-  double height = 0.04;
+struct DomeOptions : RoundOptions {
+  DomeOptions() : RoundOptions(0.12, 0.04) {}
 
   void list(Fields& fields) override {
-    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
-    list_height(height, fields);
+    RoundOptions::list(fields);
     fields.require(height <= diameter / 2, "height", "is more than half the diameter, which makes half a ball");
   }
 };

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
 namespace palpate::shapes {
 
-struct EllipsoidOptions : Options {
-  double length = 0.14;
-  double width = 0.09;
-  double height = 0.06;
-
-  void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
-    list_height(height, fields);
-  }
+struct EllipsoidOptions : ExtentOptions {
+  EllipsoidOptions() : ExtentOptions(0.14, 0.09, 0.06) {}
 };
 
 class Ellipsoid final : public Round {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "prism.hpp"
 
-#include <palpate/plugin.hpp>
-
 #include <algorithm>
 #include <string>
 

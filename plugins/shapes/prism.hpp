@@ -4,8 +4,6 @@
 
 #include "solid.hpp"
 
-#include <palpate/shape.hpp>
-
 #include <array>
 #include <vector>
 

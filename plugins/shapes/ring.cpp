@@ -2,9 +2,6 @@
 // Not convex, but a cylinder less a cylinder: the same intervals.
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
 namespace palpate::shapes {
 
 struct RingOptions : Options {
@@ -20,19 +17,16 @@ struct RingOptions : Options {
   }
 };
 
-class Ring final : public Shape {
+class Ring final : public Round {
  public:
   using Options = RingOptions;
   Ring(const Options& o, const Context&)
-      : outer_{{1, 1, 0}, {0, 0, 0}, o.outer * o.outer / 4},
+      : Round({{1, 1, 0}, {0, 0, 0}, o.outer * o.outer / 4}, o.height),
         inner_{{1, 1, 0}, {0, 0, 0}, o.inner * o.inner / 4},
-        radius_(o.outer / 2),
-        height_(o.height) {}
+        radius_(o.outer / 2) {}
 
   double first_hit(const Line& line) const override {
-    Interval solid;
-    solid.clip(line.origin.z(), line.direction.z(), 0.0, height_);
-    outer_.clip(line, solid);
+    Interval solid = inside(line);
     Interval hole;
     inner_.clip(line, hole);
     // Through the hole a line goes on to the wall behind it, or to the desk.
@@ -45,8 +39,8 @@ class Ring final : public Shape {
   }
 
  private:
-  Quadric outer_, inner_;
-  double radius_, height_;
+  Quadric inner_;
+  double radius_;
 };
 
 PALPATE_PLUGIN(Shape, Ring, "ring", "cylinder with a round hole")

@@ -2,12 +2,6 @@
 // A block whose top rises along its length: the paper's object II.
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
-#include <algorithm>
-#include <cmath>
-
 namespace palpate::shapes {
 
 struct SlopeOptions : Options {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the shapes share: an option, and the part of a line that lies in a convex set. A solid bounded by half-spaces
+// What the shapes share: options, and the part of a line that lies in a convex set. A solid bounded by half-spaces
 // and a quadric meets a line in the intersection of their intervals, so that the first hit is exact up to rounding.
 #pragma once
 
-#include <palpate/options.hpp>
+#include <palpate/plugin.hpp>
 #include <palpate/shape.hpp>
 
 #include <algorithm>
@@ -46,6 +46,29 @@ struct Interval {
 inline void list_height(double& height, Fields& fields) {
   fields.real(height, Field("height", "of the top above the desk, upright").in(Unit::metre).above(0));
 }
+
+/// The options of what is round, seen from above.
+struct RoundOptions : Options {
+  double diameter, height;
+  RoundOptions(double across, double up) : diameter(across), height(up) {}
+
+  void list(Fields& fields) override {
+    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
+    list_height(height, fields);
+  }
+};
+
+/// The options of what has three extents.
+struct ExtentOptions : Options {
+  double length, width, height;
+  ExtentOptions(double along, double across, double up) : length(along), width(across), height(up) {}
+
+  void list(Fields& fields) override {
+    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
+    list_height(height, fields);
+  }
+};
 
 using Eigen::Vector3d;
 
@@ -103,14 +126,16 @@ class Round : public Shape {
  public:
   Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}
 
-  double first_hit(const Line& line) const final {
-    Interval inside;
-    inside.clip(line.origin.z(), line.direction.z(), 0.0, height_);
-    quadric_.clip(line, inside);
-    return inside.first();
-  }
+  double first_hit(const Line& line) const override { return inside(line).first(); }
 
  protected:
+  Interval inside(const Line& line) const {
+    Interval out;
+    out.clip(line.origin.z(), line.direction.z(), 0.0, height_);
+    quadric_.clip(line, out);
+    return out;
+  }
+
   Quadric quadric_;
   double height_;
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "prism.hpp"
 
-#include <palpate/plugin.hpp>
-
 namespace palpate::shapes {
 
 class T final : public Prism {

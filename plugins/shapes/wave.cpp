@@ -3,12 +3,6 @@
 // bisection when tilted.
 #include "solid.hpp"
 
-#include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
-
-#include <algorithm>
-#include <cmath>
-
 namespace palpate::shapes {
 
 struct WaveOptions : Options {
@@ -35,12 +29,7 @@ constexpr double kPi = 3.14159265358979323846;
 class Wave final : public Shape {
  public:
   using Options = WaveOptions;
-  Wave(const Options& o, const Context&)
-      : height_(o.height),
-        amplitude_(o.amplitude),
-        period_(o.period),
-        half_length_(o.length / 2),
-        half_width_(o.width / 2) {}
+  Wave(const Options& o, const Context&) : o_(o) {}
 
   double top(double s, double t) const override {
     if (std::abs(s) > half_length_ || std::abs(t) > half_width_) return -kInfinity;
@@ -51,7 +40,7 @@ class Wave final : public Shape {
     Interval box;
     box.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
     box.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
-    box.clip(line.origin.z(), line.direction.z(), 0.0, height_ + amplitude_);
+    box.clip(line.origin.z(), line.direction.z(), 0.0, o_.height + o_.amplitude);
     if (box.empty() || clearance(line, box.begin) <= 0.0) return box.first();
     for (double from = box.begin; from < box.end;) {
       const double to = std::min(box.end, next_turn(line, from));
@@ -66,7 +55,7 @@ class Wave final : public Shape {
   }
 
  private:
-  double height_at(double s) const { return height_ + amplitude_ * std::cos(2.0 * kPi * s / period_); }
+  double height_at(double s) const { return o_.height + o_.amplitude * std::cos(2.0 * kPi * s / o_.period); }
 
   /// How high the point at x of the line is above the top.
   double clearance(const Line& line, double x) const {
@@ -76,14 +65,13 @@ class Wave final : public Shape {
   /// The first x after `from` where the clearance may turn from falling to rising or back. Its slope along the line is
   /// u_z + A k u_s sin(k s), so that it turns where sin(k s) = -u_z / (A k u_s): at two places in each period.
   double next_turn(const Line& line, double from) const {
-    const double k = 2.0 * kPi / period_;
     const double along = line.direction.x();
-    const double steepest = amplitude_ * k * along;
+    const double steepest = o_.amplitude * k_ * along;
     if (!(std::abs(line.direction.z()) < std::abs(steepest))) return kInfinity;
     // With the phase counted along the line.
     const double turn = std::copysign(1.0, along) * std::asin(-line.direction.z() / steepest);
-    const double rate = k * std::abs(along);
-    const double phase = std::copysign(1.0, along) * k * line.origin.x() + rate * from;
+    const double rate = k_ * std::abs(along);
+    const double phase = std::copysign(1.0, along) * k_ * line.origin.x() + rate * from;
     const double least = phase + 1e-9;
     const auto after = [least](double angle) { return angle + 2.0 * kPi * std::ceil((least - angle) / (2.0 * kPi)); };
     return from + (std::min(after(turn), after(kPi - turn)) - phase) / rate;
@@ -91,13 +79,12 @@ class Wave final : public Shape {
 
   /// Where the clearance, which falls from positive to negative between two turns, is 0: halving steps beside Newton's.
   double crossing(const Line& line, double above, double below) const {
-    const double k = 2.0 * kPi / period_;
     double x = 0.5 * (above + below);
     for (int i = 0; i < 100 && below - above > 1e-16; ++i) {
       const double clear = clearance(line, x);
       (clear > 0.0 ? above : below) = x;
       const double s = line.origin.x() + x * line.direction.x();
-      const double slope = line.direction.z() + amplitude_ * k * line.direction.x() * std::sin(k * s);
+      const double slope = line.direction.z() + o_.amplitude * k_ * line.direction.x() * std::sin(k_ * s);
       const double next = x - clear / slope;
       if (std::abs(next - x) < 1e-15) return next;
       x = next > above && next < below ? next : 0.5 * (above + below);
@@ -110,17 +97,19 @@ class Wave final : public Shape {
     const double bottom = std::abs(along) * half_length_;
     if (up <= 0.0) return bottom;
     double best = bottom + up * height_at(half_length_);
-    const double k = 2.0 * kPi / period_;
     // On the top it is largest at an end or where along = up A k sin(k s), on the crest that lies furthest that way.
-    if (std::abs(along) > up * amplitude_ * k) return best;
-    const double phase = amplitude_ > 0.0 ? std::asin(along / (up * amplitude_ * k)) : 0.0;
-    double s = std::abs(phase) / k;
+    if (std::abs(along) > up * o_.amplitude * k_) return best;
+    const double phase = o_.amplitude > 0.0 ? std::asin(along / (up * o_.amplitude * k_)) : 0.0;
+    double s = std::abs(phase) / k_;
     if (s > half_length_) return best;
-    if (along != 0.0) s += period_ * std::floor((half_length_ - s) / period_);
+    if (along != 0.0) s += o_.period * std::floor((half_length_ - s) / o_.period);
     return std::max(best, std::abs(along) * s + up * height_at(s));
   }
 
-  double height_, amplitude_, period_, half_length_, half_width_;
+  Options o_;
+  double half_length_ = o_.length / 2;
+  double half_width_ = o_.width / 2;
+  double k_ = 2.0 * kPi / o_.period;  ///< angle per metre along the wave
 };
 
 PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top: the paper's object I")

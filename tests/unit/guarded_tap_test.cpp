@@ -56,10 +56,10 @@ TEST(GuardedTap, OnARigidSurfaceTakesTheTimeOfTheClosedFormAndFindsItsHeight) {
       // A start within three periods of the surface may be reached before the contact on the way is certain.
       if (std::abs(run.descent.start - surface) < 0.005) continue;
       const MotionOptions& options = run.options;
-      ASSERT_EQ(run.tap.outcome(), Outcome::contact) << yaml;
+      ASSERT_EQ(run.tap.result().outcome, Outcome::contact) << yaml;
       // Until three periods are above the threshold the set-point goes on by that much.
-      const double most = 5 * kPeriod * std::max(options.speed, 0.1);
-      EXPECT_NEAR(run.tap.height(), surface, options.type == MotionOptions::Type::continuous ? 1e-3 : most) << yaml;
+      const bool onset = options.type == MotionOptions::Type::continuous;
+      EXPECT_NEAR(run.tap.result().height, surface, onset ? 1e-3 : 5 * kPeriod * std::max(options.speed, 0.1)) << yaml;
       // Each stage is rounded up to whole periods, and takes three more to be sure.
       const double step_more = options.type == MotionOptions::Type::paper ? options.pause : 0.0;
       const double closed = ideal_seconds(options, run.descent, surface);
@@ -85,22 +85,22 @@ TEST(GuardedTap, NeverCommandsFasterThanItsSpeedsNorBelowItsFloor) {
 TEST(GuardedTap, NeverBacksOffAboveItsHover) {
   const Trial run("{type: two_stage, back_off: 10 cm}", 0.1, 1500.0);
   for (const Moment& one : run.moments) EXPECT_LE(one.set_point, run.descent.hover);
-  EXPECT_EQ(run.tap.outcome(), Outcome::contact);
+  EXPECT_EQ(run.tap.result().outcome, Outcome::contact);
 }
 
 TEST(GuardedTap, KeepsItsResultWhateverItIsToldAfterwards) {
   Trial run("{type: continuous}", 0.08, 1500.0);
-  const double height = run.tap.height();
+  const double height = run.tap.result().height;
   const double seconds = run.tap.seconds();
   for (int i = 0; i < 10'000; ++i) run.tap.next(0.13, 100.0);
-  EXPECT_EQ(run.tap.outcome(), Outcome::contact);
-  EXPECT_EQ(run.tap.height(), height);
+  EXPECT_EQ(run.tap.result().outcome, Outcome::contact);
+  EXPECT_EQ(run.tap.result().height, height);
   EXPECT_EQ(run.tap.seconds(), seconds);
 }
 
 TEST(GuardedTap, DoesNotTakeTwoLoudPeriodsForAContact) {
   const Trial run("{type: continuous}", -1.0, 0.0, [](int i, double) { return i % 5 < 2 && i > 30 ? 100.0 : 0.0; });
-  EXPECT_EQ(run.tap.outcome(), Outcome::no_contact);
+  EXPECT_EQ(run.tap.result().outcome, Outcome::no_contact);
 }
 
 TEST(GuardedTap, TakesOneReadingForOneHoweverOftenItIsTold) {
@@ -111,7 +111,7 @@ TEST(GuardedTap, TakesOneReadingForOneHoweverOftenItIsTold) {
     const bool loud = i > 60 && (i / 6) % 2 == 0;  // one reading of two, each told for six periods
     height = tap.next(height, loud ? 50.0 : 0.0, i % 6 == 0);
   }
-  EXPECT_EQ(tap.outcome(), Outcome::no_contact);
+  EXPECT_EQ(tap.result().outcome, Outcome::no_contact);
 }
 
 TEST(GuardedTap, TaresNewReadingsAlone) {
@@ -122,17 +122,17 @@ TEST(GuardedTap, TaresNewReadingsAlone) {
     // 2 N in every new reading, 30 N whenever nothing new came.
     height = tap.next(height, i % 2 == 0 ? 2.0 + (height < 0.05 ? 20.0 : 0.0) : 30.0, i % 2 == 0);
   }
-  EXPECT_EQ(tap.outcome(), Outcome::contact);
-  EXPECT_NEAR(tap.peak_force(), 20.0, 1e-9);
+  EXPECT_EQ(tap.result().outcome, Outcome::contact);
+  EXPECT_NEAR(tap.result().force, 20.0, 1e-9);
 }
 
 TEST(GuardedTap, TaresTheZeroOfTheForceAway) {
   for (const char* yaml : {"{type: paper}", "{type: two_stage}", "{type: continuous}"}) {
     const Trial plain(yaml, 0.05, 1500.0);
     const Trial biased(yaml, 0.05, 1500.0, [](int, double) { return 25.0; });
-    EXPECT_NEAR(biased.tap.height(), plain.tap.height(), 1e-9) << yaml;
+    EXPECT_NEAR(biased.tap.result().height, plain.tap.result().height, 1e-9) << yaml;
     EXPECT_EQ(biased.tap.seconds(), plain.tap.seconds()) << yaml;
-    EXPECT_NEAR(biased.tap.peak_force(), plain.tap.peak_force(), 1e-9) << yaml;
+    EXPECT_NEAR(biased.tap.result().force, plain.tap.result().force, 1e-9) << yaml;
   }
 }
 
@@ -141,11 +141,11 @@ TEST(GuardedTap, OfARealArmTaresInEveryPauseOfThePaper) {
   // 13.5 N from the height of travel to the desk, 3 N a step.
   const auto wanders = [](int, double height) { return 100.0 * (0.135 - height); };
   const Trial simulated(yaml, 0.0, 1500.0, wanders);
-  EXPECT_GT(simulated.tap.height(), 0.02) << "a contact in the air";
+  EXPECT_GT(simulated.tap.result().height, 0.02) << "a contact in the air";
   const Trial real(yaml, 0.0, 1500.0, wanders, GuardedTap::Arm::real);
-  EXPECT_EQ(real.tap.outcome(), Outcome::contact);
-  EXPECT_LT(real.tap.height(), 0.0);
-  EXPECT_GT(real.tap.height(), -0.01);
+  EXPECT_EQ(real.tap.result().outcome, Outcome::contact);
+  EXPECT_LT(real.tap.result().height, 0.0);
+  EXPECT_GT(real.tap.result().height, -0.01);
 }
 
 TEST(GuardedTap, OfARealArmDoesNotTareAContactAwayThatBeginsInAPause) {
@@ -153,8 +153,8 @@ TEST(GuardedTap, OfARealArmDoesNotTareAContactAwayThatBeginsInAPause) {
   const double surface = 0.075 + 8.0 / 1500.0;
   const Trial real("{type: paper, threshold: 10 N, step: 3 cm, hover: 13.5 cm}", surface, 1500.0, kNothing,
                    GuardedTap::Arm::real);
-  EXPECT_EQ(real.tap.outcome(), Outcome::contact);
-  EXPECT_LT(real.tap.peak_force(), 10.0 + 4 * 0.024 * kPeriod * 1500.0) << "as if the pause had not been";
+  EXPECT_EQ(real.tap.result().outcome, Outcome::contact);
+  EXPECT_LT(real.tap.result().force, 10.0 + 4 * 0.024 * kPeriod * 1500.0) << "as if the pause had not been";
 }
 
 TEST(GuardedTap, OfARealArmPutsItsSetPointWhereTheArmIsInThePapersMotionToo) {
@@ -173,14 +173,14 @@ TEST(GuardedTap, OfARealArmPutsItsSetPointWhereTheArmIsInThePapersMotionToo) {
 TEST(GuardedTap, EndsAtItsFloorWithoutAContact) {
   for (const char* yaml : kMotions) {
     const Trial run(yaml, -1.0, 1500.0);
-    EXPECT_EQ(run.tap.outcome(), Outcome::no_contact) << yaml;
+    EXPECT_EQ(run.tap.result().outcome, Outcome::no_contact) << yaml;
     EXPECT_DOUBLE_EQ(run.moments.back().set_point, -run.options.overrun) << yaml;
   }
 }
 
 TEST(GuardedTap, GivesUpAfterItsTimeout) {
   const Trial run("{type: paper, pause: 20 s, timeout: 30 s}", 0.0, 1500.0);
-  EXPECT_EQ(run.tap.outcome(), Outcome::timeout);
+  EXPECT_EQ(run.tap.result().outcome, Outcome::timeout);
   EXPECT_NEAR(run.tap.seconds(), 30.0, 0.02);
 }
 
@@ -189,7 +189,7 @@ TEST(GuardedTap, OfThePaperHoldsItsSetPointAndReadsAfterThePause) {
   std::size_t since = run.moments.size();
   while (since > 0 && run.moments[since - 1].set_point == run.moments.back().set_point) --since;
   EXPECT_NEAR(static_cast<double>(run.moments.size() - since) * kPeriod, 0.5, 0.03);
-  EXPECT_DOUBLE_EQ(run.tap.height(), run.moments.back().height);
+  EXPECT_DOUBLE_EQ(run.tap.result().height, run.moments.back().height);
 }
 
 TEST(GuardedTap, PutsItsSetPointWhereTheArmIsOnceItFeelsAContact) {
@@ -217,8 +217,8 @@ TEST(GuardedTap, OfARealArmGoesOnWhereTheForceDoesNotLast) {
       return loud++ < 3 ? 1.2 * threshold : 0.6 * threshold;
     };
     const Trial run(yaml, 0.03, 1e6, wandered, GuardedTap::Arm::real);
-    EXPECT_EQ(run.tap.outcome(), Outcome::contact) << yaml;
-    EXPECT_NEAR(run.tap.height(), 0.03, 0.002) << yaml;
+    EXPECT_EQ(run.tap.result().outcome, Outcome::contact) << yaml;
+    EXPECT_NEAR(run.tap.result().height, 0.03, 0.002) << yaml;
   }
 }
 
@@ -227,16 +227,16 @@ TEST(GuardedTap, OfTwoStagesGoesOnAfterAContactThatWasNone) {
   const Trial run("{type: two_stage}", 0.03, 1e6, [&](int, double position) {
     return position < 0.101 && position > 0.099 && left-- > 0 ? 30.0 : 0.0;
   });
-  EXPECT_EQ(run.tap.outcome(), Outcome::contact);
-  EXPECT_NEAR(run.tap.height(), 0.03, 0.001);
+  EXPECT_EQ(run.tap.result().outcome, Outcome::contact);
+  EXPECT_NEAR(run.tap.result().height, 0.03, 0.001);
 }
 
 TEST(GuardedTap, BacksOffWhenThePredictionLetItHitTheSurfaceFast) {
   const Trial run("{type: continuous, adaptive_hover: {clearance: 1 cm}}", 0.08, 1500.0, kNothing,
                   GuardedTap::Arm::simulated, Prediction{0.0, 0.001});
   EXPECT_NEAR(run.descent.start, 0.012, 1e-12);
-  EXPECT_EQ(run.tap.outcome(), Outcome::contact);
-  EXPECT_NEAR(run.tap.height(), 0.08, 1e-6);
+  EXPECT_EQ(run.tap.result().outcome, Outcome::contact);
+  EXPECT_NEAR(run.tap.result().height, 0.08, 1e-6);
   EXPECT_GT(run.tap.seconds(), (0.135 - 0.08) / 0.1 + 0.01 / 0.1 + 0.01 / 0.024);
 }
 

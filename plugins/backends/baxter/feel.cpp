@@ -12,11 +12,8 @@
 namespace palpate::baxter {
 namespace {
 
-using tapping::GuardedTap;
 using tapping::newtons;
 using Then = Fault::Then;
-
-constexpr double kPeriod = GuardedTap::kPeriod;
 
 constexpr std::size_t kForceSamples = 25;  ///< new ones, for the force at rest
 constexpr double kForcePatience = 1.0;     ///< s in which they must have come

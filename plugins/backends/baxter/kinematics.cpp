@@ -60,21 +60,15 @@ std::optional<Joints> Arm::solve(const Pose& tip, const Joints& seed, double mar
   return out;
 }
 
-const Joints& lower_limits() {
-  static const Joints limits =
-      (Joints() << -1.70167993878, -2.147, -3.05417993878, -0.05, -3.059, -1.57079632679, -3.059).finished();
-  return limits;
+Joints lower_limits() {
+  return (Joints() << -1.70167993878, -2.147, -3.05417993878, -0.05, -3.059, -1.57079632679, -3.059).finished();
 }
 
-const Joints& upper_limits() {
-  static const Joints limits = (Joints() << 1.70167993878, 1.047, 3.05417993878, 2.618, 3.059, 2.094, 3.059).finished();
-  return limits;
+Joints upper_limits() {
+  return (Joints() << 1.70167993878, 1.047, 3.05417993878, 2.618, 3.059, 2.094, 3.059).finished();
 }
 
-const Joints& untucked() {
-  static const Joints posture = (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.50).finished();
-  return posture;
-}
+Joints untucked() { return (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.50).finished(); }
 
 const Eigen::Quaterniond& straight_down() {
   // What is left of the untucked rotation when its tilt is taken out.

@@ -56,14 +56,14 @@ class Arm {
 };
 
 /// Limits of the joints, radians.
-const Joints& lower_limits();
-const Joints& upper_limits();
+Joints lower_limits();
+Joints upper_limits();
 
 /// The first joint that is beyond its limit less `margin`; -1 if all are within.
 int beyond_limits(const Joints& joints, double margin);
 
 /// The posture from which solutions are sought: Rethink's "untucked", elbow out, the tool nearly straight down.
-const Joints& untucked();
+Joints untucked();
 
 /// The rotation of the hand when the tool points straight down, turned about the vertical as it is when untucked.
 const Eigen::Quaterniond& straight_down();

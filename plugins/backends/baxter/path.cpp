@@ -126,9 +126,8 @@ Path Planner::line(const Joints& from, const Joints& to) const {
   Joints last = from;
   for (int i = 1; i <= count; ++i) {
     const double share = static_cast<double>(i) / count;
-    Pose between;
-    between.position = (1.0 - share) * start.position + share * end.position;
-    between.rotation = start.rotation.slerp(share, end.rotation);
+    const Pose between{(1.0 - share) * start.position + share * end.position,
+                       start.rotation.slerp(share, end.rotation)};
     // Sought near the mean of both ends, so that the way ends in `to` and not in another posture with the same tip.
     const Joints joints = i == count ? to : solve(between, (1.0 - share) * from + share * to, nullptr);
     if ((joints - last).cwiseAbs().maxCoeff() > kJump) {

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -13,12 +13,10 @@ namespace palpate::baxter {
 namespace {
 
 using tapping::centimetres;
-using tapping::GuardedTap;
 using tapping::newtons;
 using ForceSign = BaxterOptions::ForceSign;
 using Then = Fault::Then;
 
-constexpr double kPeriod = GuardedTap::kPeriod;
 constexpr double kStepClamp = 0.05;  ///< rad by which a set-point may leave both the last one and the arm
 constexpr double kAtGoal = 0.015;    ///< rad: settled errors are up to 0.008
 constexpr double kStill = 0.002;     ///< rad in kStillFor
@@ -48,6 +46,8 @@ Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
   return {area.width, area.depth, scene.desk() - options.motion.overrun - kBelowFloor,
           scene.desk() + options.motion.hover + kAboveTravel};
 }
+
+Fault standstill() { return {"the clock of the robot's network stands still: its sender is gone"}; }
 
 }  // namespace
 
@@ -260,8 +260,6 @@ void Tapper::outlast_reflex() {
   watch_.expect_collision(false);
   step(seen_.joints->position);
 }
-
-Fault Tapper::standstill() { return {"the clock of the robot's network stands still: its sender is gone"}; }
 
 /// Sends the joints, which keep the arm where it is, for a while; or less, where a rule comes to ask for silence. That
 /// rule, if one did.

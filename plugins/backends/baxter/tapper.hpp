@@ -48,6 +48,7 @@ class Tapper {
   void check();
 
  private:
+  static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
   static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
   static constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
   /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
@@ -69,7 +70,6 @@ class Tapper {
   Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
   static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
-  static Fault standstill();
   void outlast_reflex();
   Path way_up() const;
   void climb(const Path& up);

@@ -94,21 +94,14 @@ std::string Workspace::breach(const Eigen::Vector3d& tip) const {
 }
 
 void Watch::begin() {
-  sent_.clear();
   joint_stream_.begin();
   endpoint_stream_.begin();
-  looks_.clear();
-  joints_.reset();
-  too_strong_ = 0;
-  last_force_.reset();
-  felt_at_.reset();
-  collision_expected_ = false;
-  tare_.reset();
+  motion_ = {};
 }
 
 void Watch::sent(double time, const Joints& target) {
-  sent_.push_back({time, target});
-  while (sent_.front().time < time - kTrail) sent_.pop_front();
+  motion_.sent.push_back({time, target});
+  while (motion_.sent.front().time < time - kTrail) motion_.sent.pop_front();
 }
 
 std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
@@ -118,7 +111,7 @@ std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
 
 /// For how long this program did not get to the arm: since the look before, or to receive what came.
 double Watch::gap(const Snapshot& seen) const {
-  const double looked = looks_.empty() ? 0.0 : seen.now - looks_.back();
+  const double looked = motion_.looks.empty() ? 0.0 : seen.now - motion_.looks.back();
   return seen.simulated ? looked : std::max(looked, seen.own_gap);
 }
 
@@ -129,9 +122,9 @@ std::optional<Fault> Watch::listen(const Snapshot& seen) {
 
 /// Notes which readings are new.
 void Watch::hear(const Snapshot& seen) {
-  if (looks_.empty()) began_ = seen.now;
-  looks_.push_back(seen.now);
-  while (looks_.front() < seen.now - Stream::kWindow) looks_.pop_front();
+  if (motion_.looks.empty()) motion_.began = seen.now;
+  motion_.looks.push_back(seen.now);
+  while (motion_.looks.front() < seen.now - Stream::kWindow) motion_.looks.pop_front();
   if (seen.joints) joint_stream_.hear(*seen.joints, seen.now);
   fresh_ = seen.endpoint && endpoint_stream_.hear(*seen.endpoint, seen.now);
 }
@@ -139,8 +132,8 @@ void Watch::hear(const Snapshot& seen) {
 /// Whoever feels too seldom presses too hard before he notices. A simulated clock runs on while this program is late,
 /// which then says nothing about the robot: there the readings are held against the looks.
 std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
-  if (seen.now - began_ < Stream::kWindow) return std::nullopt;
-  const int looks = static_cast<int>(looks_.size());
+  if (seen.now - motion_.began < Stream::kWindow) return std::nullopt;
+  const int looks = static_cast<int>(motion_.looks.size());
   const auto in_window = [](int times) {
     return fmt::format("{} times in the last {:.1f} s, {} are needed", times, Stream::kWindow, Stream::kFewest);
   };
@@ -209,7 +202,7 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
   const std::string breach = workspace_.breach(tip);
   if (!breach.empty()) return Fault{breach + ": see whether place and tool are as the config has them", Then::hold};
   if (auto fault = follows(seen)) return fault;
-  if (!collision_expected_ && seen.collision && seen.collision->collision) {
+  if (!motion_.collision_expected && seen.collision && seen.collision->collision) {
     return Fault{
         "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
         "motion.threshold, or see what the arm met",
@@ -220,23 +213,23 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
 
 std::optional<Fault> Watch::joints(const Snapshot& seen) {
   if (auto fault = late("/robot/joint_states", *seen.joints, joint_delay_, Then::silence)) return fault;
-  const double jump = joints_ ? (seen.joints->position - joints_->position).cwiseAbs().maxCoeff() : 0.0;
+  const double jump = motion_.joints ? (seen.joints->position - motion_.joints->position).cwiseAbs().maxCoeff() : 0.0;
   if (jump > kJump) {
     return Fault{fmt::format("/robot/joint_states jumped by {:.1f} deg: no joint turns so fast, restart the robot",
                              degrees(jump))};
   }
-  joints_ = seen.joints;
+  motion_.joints = seen.joints;
   return std::nullopt;
 }
 
 std::optional<Fault> Watch::endpoint(const Snapshot& seen, double gap) {
   if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_, Then::hold)) return fault;
   const Eigen::Vector3d& now = seen.endpoint->force;
-  if (!last_force_ || now != *last_force_) {
-    last_force_ = now;
-    force_changed_ = seen.now;
+  if (!motion_.force || now != *motion_.force) {
+    motion_.force = now;
+    motion_.force_changed = seen.now;
   }
-  const double frozen = seen.now - force_changed_;
+  const double frozen = seen.now - motion_.force_changed;
   if (frozen <= kFrozen) return collision_silent(seen, gap);
   return Fault{
       fmt::format("endpoint_state has had the same force to the last digit for {:.2f} s: its sender is frozen, "
@@ -259,15 +252,15 @@ std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
 
 std::optional<Fault> Watch::force(const Snapshot& seen) {
   if (!fresh_) return std::nullopt;
-  const double since = felt_at_ ? seen.now - *felt_at_ : 0.0;
-  felt_at_ = seen.now;
-  if (!tare_) return std::nullopt;
-  const Eigen::Vector3d felt = seen.endpoint->force - *tare_;
+  const double since = motion_.felt_at ? seen.now - *motion_.felt_at : 0.0;
+  motion_.felt_at = seen.now;
+  if (!motion_.tare) return std::nullopt;
+  const Eigen::Vector3d felt = seen.endpoint->force - *motion_.tare;
   const double change =
       zero_ == Zero::follows ? felt.norm() : std::max(std::abs(felt.z()), felt.head<2>().norm() / kSideways);
-  if (zero_ == Zero::follows) *tare_ += felt * std::min(1.0, since / kZeroFollows);
-  too_strong_ = change > force_stop_ ? too_strong_ + 1 : 0;
-  if (too_strong_ < kForceSamples) return std::nullopt;
+  if (zero_ == Zero::follows) *motion_.tare += felt * std::min(1.0, since / kZeroFollows);
+  motion_.too_strong = change > force_stop_ ? motion_.too_strong + 1 : 0;
+  if (motion_.too_strong < kForceSamples) return std::nullopt;
   return Fault{fmt::format("the force changed by {:.1f} N, more than force_stop allows: take a lower motion.speed or "
                            "motion.threshold, or see what the arm met",
                            change),
@@ -275,12 +268,12 @@ std::optional<Fault> Watch::force(const Snapshot& seen) {
 }
 
 std::optional<Fault> Watch::follows(const Snapshot& seen) const {
-  if (sent_.empty()) return std::nullopt;
+  if (motion_.sent.empty()) return std::nullopt;
   const Joints& now = seen.joints->position;
   const auto from = [&](const Joints& target) { return (now - target).cwiseAbs().maxCoeff(); };
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Sent& one : sent_) nearest = std::min(nearest, from(one.target));
-  const double behind = from(sent_.back().target);
+  for (const Sent& one : motion_.sent) nearest = std::min(nearest, from(one.target));
+  const double behind = from(motion_.sent.back().target);
   if (behind <= kFollowing && nearest <= kOffTheWay) return std::nullopt;
   return Fault{fmt::format("the arm does not follow, a joint is {:.1f} deg from where it was sent: see what blocks it, "
                            "and whether others command it",

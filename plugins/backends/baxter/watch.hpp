@@ -114,13 +114,13 @@ class Watch {
   enum class Zero { stays, follows };
   /// The force (N) from which force_stop counts; until it is set no force stops.
   void set_tare(const Eigen::Vector3d& force, Zero zero = Zero::stays) {
-    tare_ = force;
+    motion_.tare = force;
     zero_ = zero;
   }
   /// No force stops from now on.
-  void forget_tare() { tare_.reset(); }
+  void forget_tare() { motion_.tare.reset(); }
   /// Whether a collision felt by the robot's firmware is a fault; not while one waits for its end.
-  void expect_collision(bool expected) { collision_expected_ = expected; }
+  void expect_collision(bool expected) { motion_.collision_expected = expected; }
 
   /// Looks at what was read; `tip` is where the joints in it have the tip, in the frame of the scene.
   std::optional<Fault> look(const Snapshot& seen, const Eigen::Vector3d& tip);
@@ -133,7 +133,7 @@ class Watch {
   void sent(double time, const Joints& target);
   /// The last of what was sent; none since begin().
   std::optional<Joints> last_sent() const {
-    return sent_.empty() ? std::nullopt : std::optional<Joints>(sent_.back().target);
+    return motion_.sent.empty() ? std::nullopt : std::optional<Joints>(motion_.sent.back().target);
   }
 
   /// The rules of the robot's state, of who sends it, and of the age and soundness of the data: what must hold even
@@ -152,26 +152,31 @@ class Watch {
   std::optional<Fault> follows(const Snapshot& seen) const;
   std::optional<Fault> force(const Snapshot& seen);
 
-  Workspace workspace_;
-  double force_stop_;
-  std::optional<Eigen::Vector3d> tare_;
-  Zero zero_ = Zero::stays;
-  bool collision_expected_ = false;
   struct Sent {
     double time;
     Joints target;
   };
-  std::deque<Sent> sent_;
-  std::optional<JointReading> joints_;  ///< the reading before
+  /// What begin() forgets.
+  struct Motion {
+    std::deque<Sent> sent;
+    std::deque<double> looks;              ///< within Stream::kWindow
+    double began = 0.0;                    ///< the first look
+    std::optional<JointReading> joints;    ///< the reading before
+    std::optional<Eigen::Vector3d> force;  ///< the reading before
+    double force_changed = 0.0;            ///< when it last was another
+    std::optional<double> felt_at;         ///< when the latest reading of the force was looked at
+    std::optional<Eigen::Vector3d> tare;
+    int too_strong = 0;
+    bool collision_expected = false;
+  };
+
+  Workspace workspace_;
+  double force_stop_;
+  Motion motion_;
+  Zero zero_ = Zero::stays;
   Stream joint_stream_;
   Stream endpoint_stream_;
   bool fresh_ = false;
-  std::deque<double> looks_;  ///< within Stream::kWindow
-  double began_ = 0.0;        ///< the first look since begin()
-  std::optional<Eigen::Vector3d> last_force_;
-  double force_changed_ = 0.0;  ///< when it last was another
-  int too_strong_ = 0;
-  std::optional<double> felt_at_;  ///< when the latest reading of the force was looked at
   double collision_received_ = -std::numeric_limits<double>::infinity();  ///< the latest
   bool collision_streams_ = false;                                        ///< it came twice within kStateFresh
   Delay joint_delay_;

@@ -3,8 +3,6 @@
 
 #include "process/protocol.hpp"
 
-#include <palpate/error.hpp>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -16,6 +14,7 @@
 #include <iterator>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -27,10 +26,6 @@ namespace palpate::process {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-[[noreturn]] void fail(const std::string& what, int number) {
-  throw Error("command", what + ": " + std::strerror(number), {}, Error::Kind::run);
-}
 
 /// Keeps SIGPIPE from this thread, and from the program, while it writes to a pipe that may have no reader.
 class NoSigpipe {
@@ -62,15 +57,9 @@ bool glance(const Descriptor& descriptor, short events, Clock::time_point until)
   return ::poll(&one, 1, until <= Clock::now() ? 0 : static_cast<int>(wait.count())) > 0;
 }
 
-struct Process {
-  pid_t pid = 0;
-  pid_t parent = 0;
-  bool ended = false;
-};
-
-/// All of this machine, as they are now.
-std::vector<Process> processes() {
-  std::vector<Process> out;
+/// All of this machine that have not ended, as they are now, and who is the parent of each.
+std::vector<std::pair<pid_t, pid_t>> processes() {
+  std::vector<std::pair<pid_t, pid_t>> out;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
     const std::string name = entry.path().filename().string();
@@ -81,9 +70,8 @@ std::vector<Process> processes() {
     // PID (NAME) STATE PARENT ..., where the name may hold anything.
     const std::size_t behind = line.rfind(')');
     if (behind == std::string::npos || behind + 4 > line.size()) continue;
-    const char state = line[behind + 2];
-    out.push_back({static_cast<pid_t>(std::stol(name)), static_cast<pid_t>(std::atol(line.c_str() + behind + 4)),
-                   state == 'Z' || state == 'X'});
+    if (line[behind + 2] == 'Z' || line[behind + 2] == 'X') continue;
+    out.emplace_back(std::stoi(name), std::atoi(line.c_str() + behind + 4));
   }
   return out;
 }
@@ -105,13 +93,13 @@ Child::Child(const std::string& file, const std::vector<std::string>& words, con
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::optional<Pipe> in = open_pipe();
   std::optional<Pipe> out = open_pipe();
-  if (!in || !out) fail("cannot open a pipe", errno);
+  if (!in || !out) fail("command", "cannot open a pipe");
   std::vector<int> files{in->to_read.number(), out->to_write.number(), diary_.descriptor().number()};
   if (kept) files.push_back(kept.number());
   Program program{words, file};
   program.environment.insert(program.environment.begin(), mark_);
   pid_ = spawn(program, files);
-  if (pid_ < 0) fail("cannot start '" + file + "'", errno);
+  if (pid_ < 0) fail("command", "cannot start '" + file + "'");
   input_ = std::move(in->to_write);
   output_ = std::move(out->to_read);
   for (const Descriptor* end : {&input_, &output_}) ::fcntl(end->number(), F_SETFL, O_NONBLOCK);
@@ -202,14 +190,14 @@ bool Child::wait_for_end() {
 /// What there is of it now. To be called before the program is asked to end: whoever it leaves behind without the mark
 /// is known by then.
 void Child::find_kin() {
-  const std::vector<Process> all = processes();
+  const auto all = processes();
   kin_.insert(pid_);
   for (std::size_t before = 0; before != kin_.size();) {
     before = kin_.size();
-    for (const Process& one : all) {
-      if (one.ended || kin_.count(one.pid) != 0) continue;
-      const bool left_behind = one.parent == ::getpid() && carries(one.pid, mark_);
-      if (kin_.count(one.parent) != 0 || left_behind) kin_.insert(one.pid);
+    for (const auto& [pid, parent] : all) {
+      if (kin_.count(pid) != 0) continue;
+      const bool left_behind = parent == ::getpid() && carries(pid, mark_);
+      if (kin_.count(parent) != 0 || left_behind) kin_.insert(pid);
     }
   }
 }
@@ -224,10 +212,10 @@ void Child::end_kin() {
   for (int i = 0; i < kLooks; ++i) {
     find_kin();
     bool left = false;
-    for (const Process& one : processes()) {
-      const bool near = one.parent == ::getpid() || kin_.count(one.parent) != 0;
-      if (one.ended || !near || kin_.count(one.pid) == 0) continue;
-      ::kill(one.pid, SIGKILL);
+    for (const auto& [pid, parent] : processes()) {
+      const bool near = parent == ::getpid() || kin_.count(parent) != 0;
+      if (!near || kin_.count(pid) == 0) continue;
+      ::kill(pid, SIGKILL);
       left = true;
     }
     if (!left) break;

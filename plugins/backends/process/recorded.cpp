@@ -30,16 +30,18 @@ Descriptor open_recorded(const std::string& file, int flags) {
   if (number < 0 && errno == ELOOP)
     throw Error(file, "is a link, and nothing is written through one", "remove it", Error::Kind::run);
   Descriptor out = above_standard(number);
-  if (!out)
-    throw Error("command", std::string("cannot open a pipe or file: ") + std::strerror(errno), {}, Error::Kind::run);
+  if (!out) fail("command", "cannot open a pipe or file");
   return out;
 }
 
 }  // namespace
 
-Diary::Diary(const std::string& file)
-    : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)), kept_(!file.empty()) {
-  if (!kept_) return;
+void fail(const std::string& where, const std::string& what) {
+  throw Error(where, what + ": " + std::strerror(errno), {}, Error::Kind::run);
+}
+
+// An empty name stands for a file that stays empty: there is nothing to cut out, and there are no words.
+Diary::Diary(const std::string& file) : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)) {
   begin_ = size();
   const std::string note = read(kFirst, kFirst + kNoteLength);
   long long before = 0;
@@ -47,7 +49,7 @@ Diary::Diary(const std::string& file)
 }
 
 void Diary::trim() {
-  const off_t end = kept_ ? size() : 0;
+  const off_t end = size();
   const off_t noted = kFirst + (left_out_ > 0 ? kNoteLength : 0);
   if (end <= noted + 2 * kLast) return;
   const std::string last = read(end - kLast, end);
@@ -60,7 +62,6 @@ void Diary::trim() {
 }
 
 std::string Diary::last_words() const {
-  if (!kept_) return {};
   constexpr off_t kEnough = 1024;
   const off_t end = size();
   std::string text = read(std::max(begin_, end - kEnough), end);
@@ -81,9 +82,7 @@ Descriptor locked(const std::string& file, const Patience& patience) {
   Descriptor lock = open_recorded(file, O_RDWR);
   // Asked again and again: a wait in the kernel could not be broken off.
   while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) {
-      throw Error(file, std::string("cannot be locked: ") + std::strerror(errno), {}, Error::Kind::run);
-    }
+    if (errno != EWOULDBLOCK && errno != EINTR) fail(file, "cannot be locked");
     if (patience.broken_off() || std::chrono::steady_clock::now() >= patience.until) return {};
     std::this_thread::sleep_for(kGlance);
   }

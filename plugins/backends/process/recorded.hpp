@@ -14,6 +14,9 @@
 
 namespace palpate::process {
 
+/// Throws Error (kind `run`): what cannot be done, in words, and why, as errno has it.
+[[noreturn]] void fail(const std::string& where, const std::string& what);
+
 /// How often a wait looks whether the user wants to stop.
 constexpr std::chrono::milliseconds kGlance{20};
 
@@ -49,7 +52,6 @@ class Diary {
   std::string read(off_t begin, off_t end) const;
 
   Descriptor file_;
-  bool kept_ = false;
   off_t begin_ = 0;         ///< what others wrote into it before
   long long left_out_ = 0;  ///< bytes
 };

@@ -115,10 +115,10 @@ Touch::Touch(const Effects& effects, double surface, double hover, double thresh
   }
 }
 
-Touch::Felt Touch::feel(double position) {
+tapping::Sample Touch::feel(double position) {
   const double pressed = std::max(0.0, surface_ - position);
   const double contact = stiffness_ * pressed;
-  Felt out{pressed > 0.0 ? surface_ - contact * give_ : position, blind_ ? 0.0 : contact};
+  tapping::Sample out{pressed > 0.0 ? surface_ - contact * give_ : position, blind_ ? 0.0 : contact};
   out.force += drift_ * (hover_ - position);
   if (noise_ > 0.0) out.force += noise_ * normal_();
   if (position < jerk_at_ && jerk_left_ > 0) {

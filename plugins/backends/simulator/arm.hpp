@@ -2,6 +2,8 @@
 // The simulated arm: how it follows its set-point, the shape of its tool, and what it feels.
 #pragma once
 
+#include "tapping/guarded_tap.hpp"
+
 #include <palpate/effects.hpp>
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
@@ -9,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace palpate::backends {
 
@@ -18,11 +21,7 @@ class Normal {
   explicit Normal(Random random) : random_(random) {}
 
   double operator()() {
-    if (spare_) {
-      const double out = *spare_;
-      spare_.reset();
-      return out;
-    }
+    if (spare_) return *std::exchange(spare_, std::nullopt);
     const double radius = std::sqrt(-2.0 * std::log(1.0 - random_.uniform()));
     const double angle = 2.0 * 3.14159265358979323846 * random_.uniform();
     spare_ = radius * std::sin(angle);
@@ -71,11 +70,7 @@ class Touch {
   Touch(const Effects& effects, double surface, double hover, double threshold, Random random);
 
   /// Takes the place at which the joints would have the tip (m), and tells where it is then and the force (N).
-  struct Felt {
-    double height;
-    double force;
-  };
-  Felt feel(double position);
+  tapping::Sample feel(double position);
 
  private:
   double surface_;

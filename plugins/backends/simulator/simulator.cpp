@@ -2,7 +2,6 @@
 #include "simulator/simulator.hpp"
 
 #include "simulator/arm.hpp"
-#include "tapping/guarded_tap.hpp"
 
 #include <palpate/error.hpp>
 
@@ -78,7 +77,7 @@ Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, do
               context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
   Arm arm(effects.joint_lag, GuardedTap::kPeriod, descent.hover);
   GuardedTap tap(options_.motion, descent);
-  Touch::Felt felt{};
+  tapping::Sample felt{};
   while (!tap.done()) {
     felt = touch.feel(arm.position());
     arm.follow(tap.next(felt.height, felt.force));

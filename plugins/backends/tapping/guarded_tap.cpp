@@ -40,8 +40,7 @@ double explained(const std::vector<Sample>& samples, double kink) {
     square += d * d;
     product += d * (one.force - force);
   }
-  if (square == 0.0) return -1.0;
-  return product < 0.0 ? -1.0 : product * product / square;
+  return square == 0.0 || product < 0.0 ? -1.0 : product * product / square;
 }
 
 }  // namespace
@@ -100,7 +99,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
   ++periods_;
   if (fresh) feel(height, force);
   if (seconds() > motion_.timeout) {
-    finish(Outcome::timeout, height);
+    finish({Outcome::timeout, 0.0, 0.0, 0.0, kTooLong});
     return set_point_;
   }
   switch (stage_) {
@@ -158,7 +157,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
     case Stage::fine:
       if (above_ >= kConsecutive) {
-        finish(Outcome::contact, height);
+        finish({Outcome::contact, height, peak_, 0.0, {}});
       } else if (ramp(goal_, motion_.fine_speed)) {
         enter(Stage::descend);
       }
@@ -170,19 +169,13 @@ double GuardedTap::next(double height, double force, bool fresh) {
       if (above_ >= kConsecutive) {
         touched(height);
       } else if (arrived(height)) {
-        finish(Outcome::no_contact, height);
+        finish({Outcome::no_contact, 0.0, 0.0, 0.0, "the descent ended without a contact"});
       }
       break;
     case Stage::done:
       break;
   }
   return set_point_;
-}
-
-Contact GuardedTap::result() const {
-  if (outcome_ == Outcome::contact) return {outcome_, height_, peak_, 0.0, {}};
-  const bool late = outcome_ == Outcome::timeout;
-  return {outcome_, 0.0, 0.0, 0.0, late ? kTooLong : "the descent ended without a contact"};
 }
 
 /// What a new reading counts for.
@@ -206,7 +199,7 @@ void GuardedTap::feel(double height, double force) {
 /// had, on a zero that has wandered, it is not. To stand there longer would be to press longer.
 void GuardedTap::conclude(double height) {
   const bool lasts = summed_ == 0 || sum_ / summed_ - zero_ > motion_.threshold;
-  if (arm_ == Arm::simulated || lasts) return finish(Outcome::contact, height);
+  if (arm_ == Arm::simulated || lasts) return finish({Outcome::contact, height, peak_, 0.0, {}});
   enter(Stage::descend);
 }
 
@@ -294,9 +287,8 @@ bool GuardedTap::waited(double seconds) const {
   return (static_cast<double>(periods_ - entered_) + 0.5) * kPeriod >= seconds;
 }
 
-void GuardedTap::finish(Outcome outcome, double height) {
-  outcome_ = outcome;
-  height_ = height;
+void GuardedTap::finish(const Contact& result) {
+  result_ = result;
   stage_ = Stage::done;
 }
 

@@ -73,14 +73,9 @@ class GuardedTap {
   bool coming_down() const;
   /// For how long the set-point has been coming down evenly in this stage, seconds.
   double even_for() const;
-  /// When done: `contact`, `no_contact` (the floor was reached) or `timeout`.
-  Outcome outcome() const { return outcome_; }
-  /// When done, what came of it, but for the time.
-  Contact result() const;
-  /// Of the contact, metres.
-  double height() const { return height_; }
-  /// Largest force above the tare so far, newtons.
-  double peak_force() const { return peak_; }
+  /// When done, what came of it, but for the time: `contact`, with the largest force above the tare, `no_contact` (the
+  /// floor was reached) or `timeout`.
+  const Contact& result() const { return result_; }
   /// Since arrival.
   double seconds() const { return static_cast<double>(periods_) * kPeriod; }
 
@@ -94,7 +89,7 @@ class GuardedTap {
   bool ramp(double goal, double speed);
   bool arrived(double height);
   bool waited(double seconds) const;
-  void finish(Outcome outcome, double height);
+  void finish(const Contact& result);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
 
   MotionOptions motion_;
@@ -114,8 +109,7 @@ class GuardedTap {
   long nearer_ = 0;            ///< the period in which it last became less
   int above_ = 0;              ///< readings above the threshold, without a break
   std::vector<Sample> trace_;  ///< of the descent, for the onset
-  Outcome outcome_ = Outcome::unknown;
-  double height_ = 0.0;
+  Contact result_;
 };
 
 }  // namespace palpate::tapping

@@ -73,7 +73,7 @@ void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd weight(n);
   gradient_.resize(n);
   double best = objective(latent, dual);
-  for (steps_ = 0;; ++steps_) {
+  for (int steps = 0;; ++steps) {
     for (Eigen::Index i = 0; i < n; ++i) {
       const Probit at = probit(sign_(i) * latent(i));
       gradient_(i) = sign_(i) * at.slope;
@@ -83,7 +83,7 @@ void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
     factor_ = root_weight_.asDiagonal() * covariance * root_weight_.asDiagonal();
     factor_.diagonal().array() += 1.0;
     factor_ = Eigen::LLT<Eigen::MatrixXd>(factor_).matrixL();
-    if (steps_ == kMostSteps) break;
+    if (steps == kMostSteps) break;
     // Newton: K^-1 (f_new - mean) = b - W^1/2 B^-1 W^1/2 K b, with b = W (f - mean) + gradient.
     const Eigen::VectorXd b = weight.cwiseProduct((latent.array() - settings_.mean).matrix()) + gradient_;
     Eigen::VectorXd inner = root_weight_.cwiseProduct(covariance * b);

@@ -57,8 +57,6 @@ class Laplace {
 
   /// Approximate log p(labels), natural logarithm.
   double log_evidence() const { return log_evidence_; }
-  /// Newton steps that it took.
-  int steps() const { return steps_; }
 
  private:
   void find_mode(const Eigen::MatrixXd& covariance);
@@ -72,7 +70,6 @@ class Laplace {
   Eigen::VectorXd root_weight_;  ///< W^1/2 at the mode
   Eigen::MatrixXd factor_;       ///< lower, of I + W^1/2 K W^1/2
   double log_evidence_ = 0.0;
-  int steps_ = 0;
 };
 
 /// The footprint of all touches so far.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace palpate::footprints {
 
@@ -42,17 +43,13 @@ std::pair<double, double> Piece::cut(double py) const {
 void Piece::turn(double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  const double turned = cosine * c - sine * s;
-  sine = sine * c + cosine * s;
-  cosine = turned;
+  std::tie(cosine, sine) = std::pair(cosine * c - sine * s, sine * c + cosine * s);
 }
 
 void Piece::order_axes() {
   if (b <= a) return;
   std::swap(a, b);
-  const double turned = -sine;
-  sine = cosine;
-  cosine = turned;
+  std::tie(cosine, sine) = std::pair(-sine, cosine);
 }
 
 Piece OutlinePrior::draw_form(double longest, Random& random) const {
@@ -60,10 +57,7 @@ Piece OutlinePrior::draw_form(double longest, Random& random) const {
   const auto half_axis = [&] { return shortest * std::pow(longest / shortest, random.uniform()); };
   Piece out;
   out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
-  const double one = half_axis();
-  const double two = half_axis();
-  out.a = std::max(one, two);
-  out.b = std::min(one, two);
+  std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
   out.turn(kPi * random.uniform());
   return out;
 }

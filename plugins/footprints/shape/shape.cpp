@@ -39,8 +39,7 @@ class Shape final : public Footprint {
  public:
   using Options = ShapeOptions;
   Shape(const Options& options, const Context& context)
-      : mistaken_(options.mistaken),
-        contradictions_(options.contradictions),
+      : options_(options),
         classifier_(options, context),
         particles_(prior(options, context.scene.area()), {static_cast<int>(options.particles), options.mistaken},
                    context.random("footprint/shape")) {}
@@ -50,8 +49,8 @@ class Shape final : public Footprint {
     classifier_.add(touch);
     if (handed_over_at_ > 0) return;
     particles_.add(touch);
-    const double unexpected = particles_.mean_mistakes() - mistaken_ * touches_;
-    if (unexpected > contradictions_) handed_over_at_ = touches_;
+    const double unexpected = particles_.mean_mistakes() - options_.mistaken * touches_;
+    if (unexpected > options_.contradictions) handed_over_at_ = touches_;
   }
 
   void probability(const PointsView& places, VectorOut out) override {
@@ -83,8 +82,7 @@ class Shape final : public Footprint {
     return OutlinePrior(settings);
   }
 
-  double mistaken_;
-  double contradictions_;
+  Options options_;
   Classifier classifier_;
   Particles particles_;
   int touches_ = 0;

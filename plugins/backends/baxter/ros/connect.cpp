@@ -5,7 +5,6 @@
 #include "baxter/ros/link.hpp"
 #include "baxter/words.hpp"
 
-#include <algorithm>
 #include <set>
 #include <thread>
 

@@ -84,8 +84,7 @@ constexpr std::size_t kArm = kJointNames.size();
 /// The arm's joints among named ones.
 struct ArmPart {
   std::size_t count = 0;  ///< how many of them there are
-  bool whole = false;     ///< all of them, each with a position; a message with only some of them is malformed
-  std::string words;      ///< what is there, of a message that is malformed
+  std::string malformed;  ///< what is there, where that is not all of them, each with a position; else empty
   Joints position = Joints::Zero();
 };
 
@@ -98,10 +97,9 @@ ArmPart arm_part(const sensor_msgs::JointState& message) {
     const auto at = static_cast<std::size_t>(found - message.name.begin());
     if (at < message.position.size()) part.position[static_cast<Eigen::Index>(joint)] = message.position[at];
   }
-  part.whole = part.count == kArm && message.position.size() == message.name.size();
-  if (!part.whole) {
-    part.words = fmt::format("{} of the left arm's seven joints, {} names and {} positions", part.count,
-                             message.name.size(), message.position.size());
+  if (part.count != kArm || message.position.size() != message.name.size()) {
+    part.malformed = fmt::format("{} of the left arm's seven joints, {} names and {} positions", part.count,
+                                 message.name.size(), message.position.size());
   }
   return part;
 }
@@ -212,7 +210,7 @@ class RosRobot final : public Link {
     }
     if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
     const ArmPart part = arm_part(response.joints[0]);
-    if (!part.whole) throw trouble(kSolverService, "its answer has " + part.words);
+    if (!part.malformed.empty()) throw trouble(kSolverService, "its answer has " + part.malformed);
     return part.position;
   }
 
@@ -298,7 +296,7 @@ class RosRobot final : public Link {
   static void take_joints(const sensor_msgs::JointState& message, const Heard& heard, Snapshot& latest) {
     const ArmPart part = arm_part(message);
     if (part.count == 0) return;  // the gripper's, or the other arm's
-    if (!part.whole) return malformed(latest, fmt::format("{} has {}", kJointTopic, part.words));
+    if (!part.malformed.empty()) return malformed(latest, fmt::format("{} has {}", kJointTopic, part.malformed));
     latest.joints = JointReading{heard.next(message, latest.joints), part.position};
     add_once(latest.joint_senders, heard.sender);
   }
