@@ -21,7 +21,10 @@ struct Interval {
 
   bool empty() const { return begin > end; }
   /// Its begin; infinity when empty.
-  double first() const { return empty() ? kInfinity : begin; }
+  double first() const {
+    if (empty()) return kInfinity;
+    return begin;
+  }
   void clear() { begin = kInfinity, end = -kInfinity; }
 
   /// Keeps the x with slope * x <= room.

@@ -33,8 +33,8 @@ struct Patience {
 /// middle is cut out, and a line there says how much that was.
 class Diary {
  public:
-  static constexpr off_t kFirst = 256 * 1024;  ///< bytes that are kept of the beginning
-  static constexpr off_t kLast = 256 * 1024;   ///< and of the end, at least
+  static constexpr off_t kFirst = off_t{256} * 1024;  ///< bytes that are kept of the beginning
+  static constexpr off_t kLast = off_t{256} * 1024;   ///< and of the end, at least
 
   /// Opens or makes `file`, which may hold what an earlier program said; an empty name keeps nothing. Throws Error.
   explicit Diary(const std::string& file);
