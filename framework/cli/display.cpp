@@ -35,6 +35,10 @@ std::string numerics_line(const Row& row) {
 
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}
 
+void TapTable::clear_live_line() const {
+  if (terminal_) mention(kClearLine, stdout);
+}
+
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
     mention(
@@ -51,7 +55,7 @@ void TapTable::announce(const TapRecord& tap) {
 }
 
 void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) {
-  if (terminal_) mention(kClearLine, stdout);
+  clear_live_line();
   const bool touched = tap.contact.outcome == Outcome::contact;
   const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_surface ? "object" : "desk";
   const std::string line =
@@ -80,10 +84,10 @@ void print_summary(const RunReport& report) {
   text += fmt::format("taps: {} on the object, {} on the desk, {} failed; {}\n", row.cell("on_surface_taps"),
                       row.cell("off_surface_taps"), row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
-  if (row.number(main_error())) {
-    const auto error = [&](const char* name, double scale) { return scaled(row.number(name), scale, "{:.2f}"); };
-    text += fmt::format("error: {} cm over the scene, {} cm on the object; outline IoU {}\n", error("rmse_m", 100),
-                        error("rmse_on_surface_m", 100), error("footprint_iou", 1));
+  if (const Errors errors = errors_in(row); errors.rmse) {
+    text += fmt::format("error: {} cm over the scene, {} cm on the object; outline IoU {}\n",
+                        scaled(errors.rmse, 100, "{:.2f}"), scaled(errors.rmse_on_surface, 100, "{:.2f}"),
+                        scaled(errors.footprint_iou, 1, "{:.2f}"));
   }
   text += numerics_line(row);
   text +=

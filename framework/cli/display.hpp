@@ -19,6 +19,8 @@ class TapTable final : public Journal {
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 
  private:
+  void clear_live_line() const;
+
   std::int64_t budget_;
   bool terminal_;
   bool header_ = false;

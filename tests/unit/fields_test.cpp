@@ -53,15 +53,16 @@ TEST(Fields, OfInterventionsAreAllThatARunCounts) {
   EXPECT_EQ(row.number("interventions.fallback"), 0.0);
 }
 
-TEST(Fields, OfAnErrorAreInTheirRow) {
+TEST(Fields, OfAnErrorAreFoundAgainInTheirRow) {
   Row row;
   add_errors(row, {1.0, 2.0, {}, 0.5});
   EXPECT_EQ(row.fields.size(), error_fields().size());
   EXPECT_EQ(row.number(main_error()), 1.0);
-  EXPECT_EQ(row.number("rmse_m"), 1.0);
-  EXPECT_EQ(row.number("rmse_on_surface_m"), 2.0);
-  EXPECT_FALSE(row.number("rmse_height_m"));
-  EXPECT_EQ(row.number("footprint_iou"), 0.5);
+  const Errors back = errors_in(row);
+  EXPECT_EQ(back.rmse, 1.0);
+  EXPECT_EQ(back.rmse_on_surface, 2.0);
+  EXPECT_FALSE(back.rmse_height);
+  EXPECT_EQ(back.footprint_iou, 0.5);
 }
 
 TEST(Timings, AreReadUpToTheirEndOrTheirDamage) {

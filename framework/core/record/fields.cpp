@@ -343,6 +343,12 @@ void add_errors(Row& row, const Errors& errors) {
   for (const ErrorField& one : error_list()) row.add(one.field.name, errors.*one.value);
 }
 
+Errors errors_in(const Row& row) {
+  Errors out;
+  for (const ErrorField& one : error_list()) out.*one.value = row.number(one.field.name);
+  return out;
+}
+
 Timings read_timings(const std::filesystem::path& directory) {
   Timings out;
   const auto file = directory / "timings.csv";

@@ -57,8 +57,9 @@ const std::vector<RecordField>& error_fields();
 /// The one that says in one number how good a surface is.
 inline const std::string& main_error() { return error_fields().front().name; }
 
-/// Adds the errors to a row, null where no truth is known.
+/// Adds the errors to a row, null where no truth is known; and finds them in one.
 void add_errors(Row& row, const Errors& errors);
+Errors errors_in(const Row& row);
 
 /// What timings.csv tells: no run depends on it, and a kill may have cut its last line off, which is left out.
 struct Timings {
