@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <cmath>
 
 namespace palpate::baxter {
 namespace {
@@ -20,8 +20,6 @@ using test::with;
 using Bench = test::TapperBench;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ADryRun, CommandsNothing) {
   Bench bench(with([](BaxterOptions& o) { o.dry_run = true; }));
@@ -46,7 +44,7 @@ TEST(TheRobotsInverseKinematics, IsNotBelieved) {
   const Arm gripper({0, 0, 0.025});
   const std::function<Answer(const Pose&, const Joints&)> answers[] = {
       [](const Pose&, const Joints&) { return Answer(); },
-      [](const Pose&, const Joints&) { return Answer(Joints::Constant(kNaN)); },
+      [](const Pose&, const Joints&) { return Answer(Joints::Constant(std::nan(""))); },
       [&](const Pose& pose, const Joints& seed) {  // another place
         return gripper.solve({pose.position + Eigen::Vector3d(0, 0, 0.002), pose.rotation}, seed);
       },
@@ -105,7 +103,7 @@ TEST(BeforeFlight, WhatTheRobotSaysIsRefusedWhereTheArmWouldNotDoWhatItIsTold) {
       {timeout(0.2), ""},
       {timeout(0.02), other_timeout},
       {timeout(5.0), other_timeout},
-      {timeout(kNaN), other_timeout},
+      {timeout(std::nan("")), other_timeout},
       {avoids(false, {}), ""},
       {avoids(true, {"torso"}), "pushes the arm away from the other arm and torso"},
       {seldom, "endpoint_state of the left arm came only "}};

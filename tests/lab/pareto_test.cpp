@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// A job of a made-up sweep over strategy, taps and seed: cost and error, or how it failed.
-struct Outcome {
+struct MadeUpJob {
   std::string strategy;
   std::string seed;
   double seconds;
@@ -35,8 +35,8 @@ struct MadeUp {
   Sweep sweep{"runs/x/0123456789ab", {"acquisition", "taps", "seed"}, {}};
   std::vector<Row> results;
 
-  explicit MadeUp(const std::vector<Outcome>& outcomes) {
-    for (const Outcome& one : outcomes) {
+  explicit MadeUp(const std::vector<MadeUpJob>& outcomes) {
+    for (const MadeUpJob& one : outcomes) {
       const int index = static_cast<int>(sweep.jobs.size());
       sweep.jobs.push_back({index, "id", {one.strategy, "17", one.seed}});
       if (one.status == "absent") continue;
@@ -84,7 +84,7 @@ TEST(Pareto, HasOnItsFrontWhatTheDefinitionSaysInThousandsOfRandomCases) {
     const int count = std::uniform_int_distribution<int>(1, 12)(random);
     // Few different values: most cases have ties in one coordinate or in both.
     std::uniform_int_distribution<int> value(0, i % 2 == 0 ? 4 : 1000);
-    std::vector<Outcome> outcomes;
+    std::vector<MadeUpJob> outcomes;
     for (int k = 0; k < count; ++k)
       outcomes.push_back({std::to_string(k), "1", double(value(random)), double(value(random))});
     const std::vector<Setting> settings = MadeUp(outcomes).pareto().settings;
@@ -133,9 +133,9 @@ TEST(Pareto, TakesMoreForBetterWhereItIs) {
 }
 
 TEST(Pareto, NeverNamesASettingWithAJobThatFailedIsMissingOrHasNoValue) {
-  const Outcome failed{"failed", "2", 1, 0.001, 0.5, "failed"};
-  const Outcome absent{"absent", "2", 1, 0.001, 0.5, "absent"};
-  const Outcome unknown{"unknown", "2", 1, 0.001, 0.5, "done", false};
+  const MadeUpJob failed{"failed", "2", 1, 0.001, 0.5, "failed"};
+  const MadeUpJob absent{"absent", "2", 1, 0.001, 0.5, "absent"};
+  const MadeUpJob unknown{"unknown", "2", 1, 0.001, 0.5, "done", false};
   const Pareto pareto = MadeUp({{"failed", "1", 1, 0.001},
                                 failed,
                                 {"failed", "3", 1, 0.001},

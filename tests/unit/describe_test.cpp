@@ -132,7 +132,7 @@ TEST(Schema, KnowsTheJsonTypeOfEveryFieldAndTakesAQuantityForATextWithAUnit) {
   EXPECT_EQ(at("properties.kernels.items.allOf.1.required.0"), "type");
 }
 
-struct Points : Options {
+struct PointCount : Options {
   std::vector<std::array<double, 2>> places{{0.1, 0.2}, {0.3, 0.4}};
   PluginChoice shape{"shape", {}, nullptr};
   void list(Fields& fields) override {
@@ -142,7 +142,7 @@ struct Points : Options {
 };
 
 TEST(Describe, TellsATableByItsRow) {
-  Points points;
+  PointCount points;
   const auto fields = describe_fields([&](Fields& list) { points.list(list); });
   EXPECT_EQ(fields[0].type_name(), "rows of 2 lengths");
   EXPECT_EQ(fields[0].default_value, "[[0.1 m, 0.2 m], [0.3 m, 0.4 m]]");
@@ -153,7 +153,7 @@ TEST(Describe, TellsATableByItsRow) {
 }
 
 TEST(Describe, ListsAdoptedPluginsAsCasesWithTheirOptions) {
-  const auto list = [](Fields& fields) { Points().list(fields); };
+  const auto list = [](Fields& fields) { PointCount().list(fields); };
   const auto fields = describe_fields(list, [](const std::string& kind) {
     const auto length = describe_fields([](Fields& inner) { Part().list(inner); });
     return std::vector<FieldDescription::CaseDescription>{{"dot", "a small " + kind, {}},
