@@ -4,7 +4,6 @@
 #include "shape/outline.hpp"
 
 #include "shape/particles.hpp"
-#include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
 
@@ -271,10 +270,10 @@ TEST(Particles, ComeToThePosteriorThatAMillionDrawsWeighedByTheirLabelsComeTo) {
   constexpr double kMistaken = 0.05;
   const std::vector<std::pair<Target, bool>> labels{
       {{0.10, 0.12}, true}, {{0.14, 0.12}, true}, {{0.12, 0.17}, false}, {{0.06, 0.10}, false}, {{0.13, 0.07}, false}};
-  const Points places = test::lattice(6, 6);
+  const Points places = test::lattice(8, 8);
   Eigen::VectorXd exact = Eigen::VectorXd::Zero(places.rows());
   double evidence = 0.0;
-  for (int batch = 0; batch < (test::brief() ? 3 : 10); ++batch) {
+  for (int batch = 0; batch < 10; ++batch) {
     for (const Outline& outline : prior_draws(100000, 100 + static_cast<std::uint64_t>(batch))) {
       double weight = 1e-6;
       for (const auto& [place, on] : labels)
