@@ -36,12 +36,12 @@ Figure surface_figure(const ExperimentOptions& options, const Ground& ground, co
 }
 
 Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
-  constexpr double kLeft = 70;
+  constexpr double kMargin = 70;
   constexpr double kTop = 118;
-  constexpr double kStep = 440;
+  constexpr double kPitch = 440;
   constexpr double kSide = 290;
-  const Box first = map_box(ground.area, kLeft, kTop, kSide);
-  Sheet sheet(static_cast<int>(kLeft + 2 * kStep + kSide + 90), static_cast<int>(kTop + first.height + 96));
+  const Box first = map_box(ground.area, kMargin, kTop, kSide);
+  Sheet sheet(static_cast<int>(kMargin + 2 * kPitch + kSide + 90), static_cast<int>(kTop + first.height + 96));
   struct Panel {
     const char* name;
     const Eigen::VectorXd& values;
@@ -67,8 +67,8 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
     panels.push_back({"p", last.probability, Palette::viridis, 1.0, "p: the probability of an object,\n" + by});
     panels.push_back({"score", e, Palette::viridis, most, of + outside(e, most)});
   }
-  sheet.text(options.name, kLeft, 14, 15);
-  sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kLeft, 42, 11);
+  sheet.text(options.name, kMargin, 14, 15);
+  sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kMargin, 42, 11);
   for (const Panel& panel : panels) sheet.data(panel.name, matrix_of(ground, panel.values));
   sheet.taps("last", last);
   double left = first.left;
@@ -77,9 +77,9 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
     sheet.text(panel.words, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
     sheet.map({left, kTop, first.width, first.height}, ground, panel.name, "last", colours);
     sheet.bar({left + first.width + 14, kTop, 14, first.height}, colours);
-    left += kStep;
+    left += kPitch;
   }
-  sheet.legend(kLeft + 6, kTop + first.height + 68, last.result.failed_taps > 0);
+  sheet.legend(kMargin + 6, kTop + first.height + 68, last.result.failed_taps > 0);
   return {"maps", std::move(sheet)};
 }
 
