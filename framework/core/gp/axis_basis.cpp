@@ -13,9 +13,10 @@ namespace palpate {
 namespace {
 
 /// Covariances along one axis between some places.
-class Line {
+class AxisPlaces {
  public:
-  Line(const Kernel& kernel, int axis, const Eigen::VectorXd& places) : kernel_(kernel), axis_(axis), places_(places) {}
+  AxisPlaces(const Kernel& kernel, int axis, const Eigen::VectorXd& places)
+      : kernel_(kernel), axis_(axis), places_(places) {}
 
   Eigen::Index size() const { return places_.size(); }
   Eigen::VectorXd column(Eigen::Index place) const {
@@ -52,7 +53,7 @@ class Line {
 /// A part of the covariances K of a line: k(h, h') + sign k(h, image of h'), h and h' the first `places`. Of sign 1 it
 /// is the even part and of sign -1 the odd one; of sign 0, with all places, K itself.
 struct Part {
-  const Line& line;
+  const AxisPlaces& line;
   Eigen::Index places;
   double sign;
 
@@ -103,13 +104,13 @@ struct Part {
 };
 
 /// Even and odd part where there is a mirror, else the whole.
-std::vector<Part> parts_of(const Line& line) {
+std::vector<Part> parts_of(const AxisPlaces& line) {
   if (!line.is_mirrored()) return {{line, line.size(), 0.0}};
   const Eigen::Index half = (line.size() + 1) / 2;
   return {{line, half, 1.0}, {line, half, -1.0}};
 }
 
-double largest_variance(const Line& line) {
+double largest_variance(const AxisPlaces& line) {
   double out = 0.0;
   for (Eigen::Index i = 0; i < line.size(); ++i) out = std::max(out, line.at(i, i));
   return out;
@@ -118,7 +119,7 @@ double largest_variance(const Line& line) {
 }  // namespace
 
 AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance) {
-  const Line line(kernel, axis, places);
+  const AxisPlaces line(kernel, axis, places);
   const double enough = tolerance * largest_variance(line);
   const std::vector<Part> parts = parts_of(line);
   AxisBasis out;
@@ -133,7 +134,7 @@ AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& plac
 }
 
 int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance, int most) {
-  const Line line(kernel, axis, places);
+  const AxisPlaces line(kernel, axis, places);
   const double enough = tolerance * largest_variance(line);
   int rank = 0;
   for (const Part& part : parts_of(line)) rank += static_cast<int>(part.pivoted(enough, most - rank).cols());
