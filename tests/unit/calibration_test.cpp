@@ -2,6 +2,7 @@
 // Honest uncertainty: on surfaces drawn from the very model, 95 % intervals hold 95 % of what was not tapped.
 #include "experiment/metrics.hpp"
 #include "support/runs.hpp"
+#include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 
 #include <Eigen/Cholesky>
@@ -49,10 +50,10 @@ class DrawnSurface final : public Backend {
 
 /// Mean share of untapped cells within the 95 % interval, over surfaces drawn with `kernel`.
 double coverage(const std::string& kernel, const std::vector<std::string>& overrides, double level) {
-  constexpr int kSurfaces = 150;
+  const int surfaces = brief() ? 50 : 150;
   const Candidates candidates = grid_by_count({0.23, 0.23}, 12);
   double sum = 0.0;
-  for (int seed = 0; seed < kSurfaces; ++seed) {
+  for (int seed = 0; seed < surfaces; ++seed) {
     const auto drawn = test::make<Kernel>(test::shared_host(), kernel, "{length_scale: 4 cm}");
     const auto surface = std::make_shared<DrawnSurface>(*drawn, candidates, level, static_cast<std::uint64_t>(seed));
     std::vector<std::string> all{"seed=" + std::to_string(seed),
@@ -73,7 +74,7 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
     run.experiment.ask(Quantity::height);
     sum += *calibration(run.experiment.belief(), truth, tapped).coverage_95;
   }
-  return sum / kSurfaces;
+  return sum / surfaces;
 }
 
 TEST(Calibration, HoldsOnSurfacesDrawnFromTheModel) {
