@@ -38,11 +38,15 @@ class Recovery : public Shell {
   Ended dying(const std::string& ways) const { return sweep("backend=dies --quiet backend.way=" + ways); }
 
   static std::string seeds(int jobs) { return "seed=range(0," + std::to_string(jobs) + ")"; }
-  /// Jobs that take about a second each.
-  static Words slow(int jobs) { return {"sweep", paper(), seeds(jobs), "backend.pace=0.006", "-j", "2", "--quiet"}; }
+  /// Jobs that take about a second each, by a pace of 0.006.
+  static Words slow(int jobs, const std::string& pace = "0.006") {
+    return {"sweep", paper(), seeds(jobs), "backend.pace=" + pace, "-j", "2", "--quiet"};
+  }
+  /// Some seconds each: where a signal has to find the first two under way, on a busy machine, too.
+  static constexpr const char* kLong = "0.03";
   /// Begins such a sweep and waits until its first job has a tap.
-  std::unique_ptr<test::Child> begun(int jobs) const {
-    auto child = begin(slow(jobs));
+  std::unique_ptr<test::Child> begun(int jobs, const std::string& pace = "0.006") const {
+    auto child = begin(slow(jobs, pace));
     EXPECT_TRUE(eventually([&] { return pids().size() == 2 && fs::exists(job(0) / "taps.jsonl"); })) << child->err();
     return child;
   }
@@ -133,7 +137,7 @@ TEST_F(Recovery, WhatFailedKeepsItsReasonAndIsTriedAgainOnRequestOnly) {
 }
 
 TEST_F(Recovery, AKilledLauncherTakesItsJobsAlongAndResumeDoesTheRest) {
-  const auto child = begun(5);
+  const auto child = begun(5, kLong);
   child->signal(SIGKILL);
   child->wait();
   for (const long pid : pids()) EXPECT_TRUE(eventually([&] { return !test::running(pid); })) << pid;
@@ -146,7 +150,7 @@ TEST_F(Recovery, AKilledLauncherTakesItsJobsAlongAndResumeDoesTheRest) {
 }
 
 TEST_F(Recovery, AKilledJobIsCarriedOnAtOnce) {
-  const auto child = begun(3);
+  const auto child = begun(3, kLong);
   for (const long pid : pids()) ::kill(static_cast<pid_t>(pid), SIGKILL);
   EXPECT_EQ(child->wait().status, 0);
   expect_whole(3);
@@ -154,7 +158,7 @@ TEST_F(Recovery, AKilledJobIsCarriedOnAtOnce) {
 }
 
 TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
-  const auto child = begun(5);
+  const auto child = begun(5, kLong);
   child->signal(SIGINT);
   const Ended ended = child->wait();
   EXPECT_EQ(ended.status, 130);
