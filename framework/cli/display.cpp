@@ -89,6 +89,8 @@ void print_summary(const RunReport& report) {
                         scaled(errors.rmse, 100, "{:.2f}"), scaled(errors.rmse_on_surface, 100, "{:.2f}"),
                         scaled(errors.footprint_iou, 1, "{:.2f}"));
   }
+  if (const std::string doubted = row.text("doubted"); !doubted.empty())
+    text += fmt::format("doubted: taps that may lie, each with the probability: {}\n", doubted);
   text += numerics_line(row);
   text +=
       fmt::format("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());

@@ -58,6 +58,9 @@ TEST_P(FootprintContract, GivesProbabilitiesWhateverTheTouches) {
   for (const auto& [what, touches] : trying_touches()) {
     const auto footprint = fresh();
     take(*footprint, touches);
+    Eigen::VectorXd doubt(static_cast<Eigen::Index>(touches.size()));
+    footprint->doubt(doubt);
+    EXPECT_TRUE(all_probabilities(doubt)) << "of labels, touches: " << what;
     for (const auto& [where, places] : trying_places())
       EXPECT_TRUE(all_probabilities(probability_of(*footprint, places))) << "touches: " << what << "; " << where;
   }

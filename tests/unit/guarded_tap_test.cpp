@@ -251,5 +251,18 @@ TEST(Descent, BeginsAboveThePredictionButNeverAboveTheHover) {
   EXPECT_DOUBLE_EQ(plan_descent(plain, 0.5, Prediction{0.55, 0.01}).start, 0.635);
 }
 
+TEST(Descent, ReliesOnAnObjectOnlyWhereThatOrNoneIsCertain) {
+  const MotionOptions options =
+      motion("{type: continuous, overrun: 1 cm, adaptive_hover: {deviations: 2, clearance: 1 cm, certainty: 0.95}}");
+  EXPECT_EQ(expects(options), Quantity::height | Quantity::probability);
+  const auto plan = [&](double probability) { return plan_descent(options, 0.5, Prediction{0.58, 0.01, probability}); };
+  EXPECT_DOUBLE_EQ(plan(0.5).start, 0.61);
+  EXPECT_DOUBLE_EQ(plan(0.5).floor, 0.49) << "the desk may be all there is";
+  EXPECT_DOUBLE_EQ(plan(0.97).start, 0.61);
+  EXPECT_DOUBLE_EQ(plan(0.97).floor, 0.54) << "three deviations and the overrun below the object";
+  EXPECT_DOUBLE_EQ(plan(0.02).start, 0.51) << "just above the desk";
+  EXPECT_DOUBLE_EQ(plan(0.02).floor, 0.49);
+}
+
 }  // namespace
 }  // namespace palpate::tapping

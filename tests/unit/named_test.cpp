@@ -54,7 +54,7 @@ struct BrokenBackend final : Backend {
   bool repeatable() const override { fail(); }
   std::vector<std::string> describe(const TapRequest&) override { fail(); }
   std::vector<Learnt> learnt() const override { fail(); }
-  bool wants_prediction() const override { fail(); }
+  Quantities expects() const override { fail(); }
   Quantities reads() const override { fail(); }
   void show(const Belief&) override { fail(); }
   bool scene_is_truth() const override { fail(); }
@@ -110,7 +110,7 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(error_of([&] { backend->repeatable(); }), "backend/mine: it broke");
   EXPECT_EQ(error_of([&] { backend->describe({}); }), "backend/mine: it broke");
   EXPECT_EQ(error_of([&] { backend->learnt(); }), "backend/mine: it broke");
-  EXPECT_EQ(error_of([&] { backend->wants_prediction(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->expects(); }), "backend/mine: it broke");
   EXPECT_EQ(error_of([&] { backend->scene_is_truth(); }), "backend/mine: it broke");
 
   const auto shape = broken<BrokenShape, Shape>();

@@ -4,6 +4,7 @@
 #include "shape/outline.hpp"
 
 #include "shape/particles.hpp"
+#include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
 
@@ -25,7 +26,7 @@ Particles particles(int count, double moves, double mistaken, std::uint64_t seed
   ParticleSettings how;
   how.count = count;
   how.moves = moves;
-  how.mistaken = mistaken;
+  how.mistaken = how.lies = mistaken;
   return {OutlinePrior(settings), how, Random(seed, "outline test")};
 }
 
@@ -301,6 +302,54 @@ TEST(Particles, ComeToThePosteriorThatAMillionDrawsWeighedByTheirLabelsComeTo) {
   EXPECT_LT((mean - exact).cwiseAbs().maxCoeff(), 0.025);
   EXPECT_GT(exact.maxCoeff(), 0.8) << "the labels say something";
   EXPECT_NEAR(found_evidence / evidence, 1.0, 0.08);
+}
+
+TEST(Particles, DoubtALabelAsOftenAsTheDrawsDoThatAreWeighedByAllLabels) {
+  ParticleSettings how;
+  how.count = 4000;
+  how.mistaken = 0.02;
+  how.lies = 0.06;
+  how.blur = 0.004;
+  // The last but one is a lie, or there are two things.
+  const std::vector<std::pair<Target, bool>> labels{{{0.10, 0.12}, true},  {{0.14, 0.12}, true},  {{0.12, 0.17}, false},
+                                                    {{0.06, 0.10}, false}, {{0.13, 0.07}, false}, {{0.20, 0.20}, true},
+                                                    {{0.19, 0.21}, false}};
+  const LabelModel models[] = {{how, 0.0}, {how, how.blur}};
+  Eigen::VectorXd exact = Eigen::VectorXd::Zero(7);
+  double evidence = 0.0;
+  for (const Outline& outline : prior_draws(test::brief() ? 200000 : 1000000, 77)) {
+    for (const LabelModel& model : models) {
+      double weight = 1.0;
+      Eigen::VectorXd wrong(7);
+      for (Eigen::Index i = 0; i < 7; ++i) {
+        const auto& [place, on] = labels[static_cast<std::size_t>(i)];
+        // By the definition, without the model's table.
+        const double depth = outline.depth(place.x, place.y);
+        const double inside =
+            &model == &models[0] ? (depth >= 0.0 ? 1.0 : 0.0) : 0.5 * std::erfc(-depth / how.blur / std::sqrt(2.0));
+        const double right = on ? inside * (1.0 - how.mistaken) : (1.0 - inside) * (1.0 - how.lies);
+        const double lying = on ? (1.0 - inside) * how.lies : inside * how.mistaken;
+        weight *= right + lying;
+        wrong(i) = lying / (right + lying);
+      }
+      evidence += weight;
+      exact += weight * wrong;
+    }
+  }
+  exact /= evidence;
+  constexpr int kRuns = 8;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(7);
+  for (int run = 0; run < kRuns; ++run) {
+    OutlinePrior::Settings settings;
+    settings.area = kArea;
+    Particles belief(OutlinePrior(settings), how, Random(300 + static_cast<std::uint64_t>(run), "outline test"));
+    for (const auto& [place, on] : labels) belief.add({place, 0.0, on});
+    Eigen::VectorXd doubt(7);
+    belief.doubt(doubt);
+    mean += doubt / kRuns;
+  }
+  EXPECT_LT((mean - exact).cwiseAbs().maxCoeff(), 0.05) << mean.transpose() << " for " << exact.transpose();
+  EXPECT_GT(exact(5), 0.2) << "it is doubted";
 }
 
 TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {

@@ -16,7 +16,7 @@ using testing::StartsWith;
 TEST_F(ProcessBackend, AsksInOneLineThatHoldsAllThatAProgramNeeds) {
   const auto backend = open("for line in sys.stdin:\n    sys.stderr.write(line)\n    contact(json.loads(line))",
                             ", motion: {pause: 250 ms, adaptive_hover: {clearance: 2 cm}}");
-  EXPECT_TRUE(backend->wants_prediction());
+  EXPECT_EQ(backend->expects(), Quantities(Quantity::height));
   const Contact contact = tap(*backend, 1);
   expect_contact(contact);
   TapRequest second = request(2);
@@ -25,8 +25,9 @@ TEST_F(ProcessBackend, AsksInOneLineThatHoldsAllThatAProgramNeeds) {
   expect_contact(backend->tap(second));
   const std::string same =
       R"("area":{"width":0.23,"depth":0.23},"desk":0.0,"seed":1,"motion":{"type":"paper","step":0.03,"pause":0.25,)"
-      R"("speed":0.024,"threshold":10.0,"hover":0.135,"adaptive_hover":{"deviations":2.0,"clearance":0.02,"speed":0.1},)"
-      R"("travel_speed":0.3,"retreat_speed":0.3,"tare":0.2,"overrun":0.03,"timeout":60.0}})"
+      R"("speed":0.024,"threshold":10.0,"hover":0.135,"adaptive_hover":{"deviations":2.0,"clearance":0.02,"speed":0.1,)"
+      R"("certainty":null},)"
+      R"("travel_speed":0.3,"retreat_speed":0.3,"tare":0.2,"overrun":0.03,"timeout":60.0,"force_limit":null}})"
       "\n";
   EXPECT_EQ(diary(), R"({"palpate":1,"tap":1,"x":0.1,"y":0.2,"previous":null,"predicted":null,)" + same +
                          R"({"palpate":1,"tap":2,"x":0.1,"y":0.2,"previous":{"x":0.05,"y":0.125},)" +
@@ -37,7 +38,7 @@ TEST_F(ProcessBackend, SaysWhatItIsTold) {
   const auto careful = start("true");
   EXPECT_FALSE(careful->repeatable());
   EXPECT_FALSE(careful->scene_is_truth());
-  EXPECT_FALSE(careful->wants_prediction());
+  EXPECT_EQ(careful->expects(), Quantities());
   const auto bold = start("true", ", repeatable: true, scene_is_truth: true");
   EXPECT_TRUE(bold->repeatable());
   EXPECT_TRUE(bold->scene_is_truth());

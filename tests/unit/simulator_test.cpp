@@ -141,6 +141,101 @@ TEST(Simulator, FeelsFalseContactsAboveTheSurfaceUnlessTheMotionMakesSure) {
   EXPECT_EQ(high(TappingBench(kObjectI, jerks, "{type: two_stage}").taps(500)), 0);
 }
 
+TEST(Simulator, HearsTheForceLateAndFindsTheOnsetLowerByTheTimeTimesTheSpeed) {
+  const double deviation = 0.02;
+  for (const double speed : {0.03, 0.06}) {
+    const std::string motion = "{type: continuous, speed: " + std::to_string(speed) + " m/s}";
+    const TapStatistics taps =
+        statistics_of(TappingBench(kBare, "{stiffness: {}, latency: {deviation: 20 ms}}", motion).taps(400));
+    // The mean of the absolute value of a normal number, and the root of its mean square.
+    const double mean = std::sqrt(2.0 / 3.14159265358979323846) * deviation * speed;
+    // What is still heard once the arm stands moves the kink by up to a third more.
+    EXPECT_LT(taps.bias, -0.9 * mean) << speed;
+    EXPECT_GT(taps.bias, -1.4 * mean) << speed;
+    EXPECT_GT(taps.rms, 0.9 * deviation * speed) << speed;
+    EXPECT_LT(taps.rms, 1.5 * deviation * speed) << speed;
+  }
+}
+
+TEST(Simulator, AddsAnOffsetAndADriftOverTheArmsTimeToEveryHeight) {
+  const TappingBench bench(kBare, "{height_offset: {constant: 8 mm, drift: 1 mm/min}}", "{type: paper}");
+  TapRequest request{1, {0.1, 0.1}, {}, {}};
+  EXPECT_NEAR(bench.backend().tap(request).height, 0.008, 1e-12);
+  request.elapsed = 90.0;
+  EXPECT_NEAR(bench.backend().tap(request).height, 0.008 + 0.0015, 1e-12);
+}
+
+TEST(Simulator, HasTheDeskAsSoftAsTheConfigSaysWhateverObjectsAre) {
+  const char* soft_desk = "{stiffness: {object: 5000 N/m, desk: 1000 N/m}}";
+  const char* motion = "{type: two_stage, fine_speed: 1 mm/s, fine_threshold: 5 N}";
+  EXPECT_NEAR(TappingBench(kBare, soft_desk, motion).tap(0.1, 0.1).height, -0.005, 0.0001);
+  const TappingBench block("[{type: block, length: 20 cm, width: 20 cm, height: 5 cm}]", soft_desk, motion);
+  EXPECT_NEAR(block.tap(0.115, 0.115).height, 0.05 - 0.001, 0.0001);
+}
+
+TEST(Simulator, MeetsThingsThatAreNotOfTheSceneOnAShareOfTheSquaresAndAlikeAtEveryTouch) {
+  const TappingBench bench(kBare, "{outliers: {probability: 0.1, height: 2 cm, size: 1 cm}}", "{type: paper}");
+  int met = 0;
+  constexpr int kSide = 22;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const double x = 0.01 * column;
+      const double y = 0.01 * row;
+      const double height = bench.tap(x + 0.002, y + 0.002, 1).height;
+      EXPECT_EQ(height, bench.tap(x + 0.007, y + 0.004, 2).height) << "the same square, another tap";
+      EXPECT_LE(height, 0.02);
+      EXPECT_GE(height, 0.0);
+      met += height > 0.0 ? 1 : 0;
+    }
+  }
+  const double squares = kSide * kSide;
+  EXPECT_NEAR(met, 0.1 * squares, 5.0 * std::sqrt(squares * 0.1 * 0.9));
+}
+
+TEST(Simulator, KnowsTheTruePeakOfTheForceOfATapThatFailedToo) {
+  const TappingBench blind(kBare, "{stiffness: {object: 1000 N/m}, missed_contacts: {probability: 1}}",
+                           "{type: continuous, overrun: 3 cm}");
+  const Contact missed = blind.tap(0.1, 0.1);
+  EXPECT_EQ(missed.outcome, Outcome::no_contact);
+  EXPECT_NEAR(missed.peak.value(), 30.0, 0.1) << "3 cm at 1000 N/m";
+  EXPECT_FALSE(TappingBench(kBare, "{}", "{type: paper}").tap(0.1, 0.1).peak) << "no force is simulated";
+}
+
+TEST(Simulator, StopsByItselfShortOfTheLimitWhateverIsFelt) {
+  const TappingBench blind(kBare, "{stiffness: {object: 1000 N/m}, missed_contacts: {probability: 1}}",
+                           "{type: continuous, overrun: 3 cm, force_limit: 16 N}");
+  const Contact stopped = blind.tap(0.1, 0.1);
+  EXPECT_EQ(stopped.outcome, Outcome::aborted);
+  EXPECT_NE(stopped.reason.find("stopped by itself"), std::string::npos);
+  EXPECT_GT(stopped.peak.value(), 12.0);
+  EXPECT_LT(stopped.peak.value(), 16.0);
+}
+
+TEST(Simulator, BrakesATrailingArmSoThatItPressesLessAndFindsTheSameOnset) {
+  const auto peak = [](const char* motion) {
+    double most = 0.0;
+    for (const auto& one : TappingBench(kObjectI, kLikeBaxter, motion).taps(100)) {
+      EXPECT_EQ(one.contact.outcome, Outcome::contact);
+      EXPECT_NEAR(one.contact.height, one.truth, 0.003);
+      most = std::max(most, one.contact.peak.value());
+    }
+    return most;
+  };
+  EXPECT_LT(peak("{type: continuous, speed: 6 cm/s, brake: 3 cm}"), 0.85 * peak("{type: continuous, speed: 6 cm/s}"));
+}
+
+TEST(Simulator, GoesOnWhereTheForceOfAJerkDoesNotLast) {
+  const auto high = [](const char* motion) {
+    int count = 0;
+    const TappingBench bench(kObjectI, "{stiffness: {}, joint_lag: {}, false_contacts: {probability: 0.5}}", motion);
+    for (const auto& one : bench.taps(200))
+      count += one.contact.outcome == Outcome::contact && one.contact.height > one.truth + 0.005 ? 1 : 0;
+    return count;
+  };
+  EXPECT_GT(high("{type: continuous, brake: 3 cm}"), 60);
+  EXPECT_LT(high("{type: continuous, brake: 3 cm, confirm: true}"), 10);
+}
+
 TEST(Simulator, RefusesWhatIsOutOfReachWithoutMoving) {
   const TappingBench bench(kObjectI, "{reach: {base: [-50 cm, 11.5 cm], radius: 70 cm}}", "{type: paper}");
   const Contact far = bench.tap(0.21, 0.115);

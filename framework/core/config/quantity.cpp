@@ -45,6 +45,7 @@ constexpr std::array kUnits{
     UnitName{"m/s", Unit::metre_per_second, 0},
     UnitName{"cm/s", Unit::metre_per_second, -2},
     UnitName{"mm/s", Unit::metre_per_second, -3},
+    UnitName{"mm/min", Unit::metre_per_second, -3, 1.0 / 60.0},
     UnitName{"N/m", Unit::newton_per_metre, 0},
     UnitName{"N/cm", Unit::newton_per_metre, 2},
     UnitName{"kN/m", Unit::newton_per_metre, 3},

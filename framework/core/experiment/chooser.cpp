@@ -10,21 +10,39 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       candidates_(candidates),
       acquisition_(context.create<Acquisition>(options.acquisition)),
       initial_(initial_design(options.initial, candidates, context.scene.area(), context.seed)),
-      allowed_(static_cast<std::size_t>(candidates.size()), true) {
+      failed_(static_cast<std::size_t>(candidates.size()), false) {
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
 }
 
-bool Chooser::starting() const { return search_ ? !hit_ && taps_ < allowed_.size() : taps_ < initial_.size(); }
+bool Chooser::starting(const TapBelief& belief) const {
+  if (!search_) return taps_ < initial_.size();
+  if (taps_ >= failed_.size()) return false;
+  constexpr double kBelieved = 0.5;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (contacts_[i].hit && belief.doubt_of(i) < kBelieved) return false;
+  }
+  return true;
+}
+
+const std::vector<bool>& Chooser::allowed(const TapBelief& belief) {
+  allowed_.assign(failed_.size(), true);
+  for (std::size_t i = 0; i < failed_.size(); ++i) allowed_[i] = !failed_[i];
+  if (options_.repeat == ExperimentOptions::Repeat::allow) return allowed_;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (belief.doubt_of(i) < TapBelief::kWorthALook) allowed_[contacts_[i].candidate] = false;
+  }
+  return allowed_;
+}
 
 bool Chooser::choose(TapBelief& belief, TapRecord& tap) {
-  if (starting()) {
+  if (starting(belief)) {
     tap.source = Source::initial;
-    tap.candidate = search_ ? search_->next(allowed_) : initial_[taps_];
+    tap.candidate = search_ ? search_->next(allowed(belief)) : initial_[taps_];
     return true;
   }
   tap.source = Source::acquisition;
-  Pick picked = pick_best(scores(belief), allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
+  Pick picked = pick_best(scores(belief), allowed(belief), acquisition_->prior_scale(), options_.tie_tolerance);
   if (picked.flat && may_fall_back()) {
     tap.source = Source::fallback;
     tap.why = *picked.flat;
@@ -52,10 +70,13 @@ const Eigen::VectorXd& Chooser::scores(const TapBelief& belief) {
 
 void Chooser::observe(const PastTap& tap, int candidate, bool hit) {
   ++taps_;
-  hit_ = hit_ || hit;
   if (search_) search_->look(tap.target);
-  const bool is_done = options_.repeat == ExperimentOptions::Repeat::forbid;
-  if (is_done || tap.contact.outcome != Outcome::contact) allowed_[static_cast<std::size_t>(candidate)] = false;
+  const auto place = static_cast<std::size_t>(candidate);
+  if (tap.contact.outcome == Outcome::contact) {
+    contacts_.push_back({place, hit});
+  } else {
+    failed_[place] = true;
+  }
 }
 
 }  // namespace palpate

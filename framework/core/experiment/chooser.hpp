@@ -24,9 +24,9 @@ class Chooser {
   /// All must outlive it. Throws Error for an acquisition that cannot be made.
   Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context);
 
-  /// Whether the next tap is the initial design's. A search is over with the first hit, or when it has looked
+  /// Whether the next tap is the initial design's. A search is over once a hit is believed, or when it has looked
   /// everywhere.
-  bool starting() const;
+  bool starting(const TapBelief& belief) const;
 
   /// What is read for a tap of the acquisition.
   Quantities reads() const { return acquisition_->reads(); }
@@ -45,15 +45,24 @@ class Chooser {
   void observe(const PastTap& tap, int candidate, bool hit);
 
  private:
+  struct Touched {
+    std::size_t candidate;
+    bool hit;
+  };
+
+  /// Candidates that may be tapped: those that were not, and those whose contacts are all doubted.
+  const std::vector<bool>& allowed(const TapBelief& belief);
+
   const ExperimentOptions& options_;
   const Candidates& candidates_;
   std::shared_ptr<Acquisition> acquisition_;
   std::vector<int> initial_;      ///< of a design that counts its taps
   std::optional<Search> search_;  ///< the other one
   Eigen::VectorXd scores_;
-  std::vector<bool> allowed_;  ///< candidates that may be tapped
+  std::vector<bool> failed_;        ///< candidates at which a tap came to nothing
+  std::vector<Touched> contacts_;   ///< all others, in their order
+  std::vector<bool> allowed_;
   std::size_t taps_ = 0;
-  bool hit_ = false;  ///< by any of them
 };
 
 }  // namespace palpate

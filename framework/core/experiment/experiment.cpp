@@ -24,7 +24,11 @@ void Experiment::run(Journal& journal, int most_taps) {
     journal.announce(*tap);
     tap->contact = touch(*tap);
     if (is_broken_off(tap->contact)) return watch_.stop(kStoppedByUser);
-    if (tap->contact.outcome == Outcome::contact) tap->on_surface = scene_->on_surface(tap->contact.height);
+    if (tap->contact.outcome == Outcome::contact) {
+      const TapBelief::Reading reading = belief_.read(tap->contact);
+      tap->on_surface = reading.on;
+      if (belief_.systematic()) tap->corrected = reading.height;
+    }
     observe(*tap);
     journal.record(*tap, clock_.take());
     check_backend(tap->contact);
@@ -36,11 +40,12 @@ std::optional<TapRecord> Experiment::choose_next() {
   tap.number = watch_.counts().taps + 1;
   {
     const PhaseClock::Scope acquire(clock_, Phase::acquire);
-    belief_.ask(reads_for(chooser_.starting() ? Source::initial : Source::acquisition));
+    belief_.ask(reads_for(chooser_.starting(belief_) ? Source::initial : Source::acquisition));
     if (!chooser_.choose(belief_, tap)) return std::nullopt;
   }
   tap.target = candidates_.target(tap.candidate);
-  if (backend_->wants_prediction()) tap.predicted = belief_.predict(tap.candidate);
+  if (const Quantities expected = backend_->expects(); expected != Quantities())
+    tap.predicted = belief_.predict(tap.candidate, expected);
   const PhaseClock::Scope log(clock_, Phase::log);
   watch_.describe(tap, belief_);
   return tap;
@@ -48,7 +53,7 @@ std::optional<TapRecord> Experiment::choose_next() {
 
 void Experiment::observe(const PastTap& tap) {
   const int candidate = candidates_.nearest(tap.target.x, tap.target.y, scene_->area());
-  const bool hit = tap.contact.outcome == Outcome::contact && scene_->on_surface(tap.contact.height);
+  const bool hit = tap.contact.outcome == Outcome::contact && belief_.read(tap.contact).on;
   belief_.observe(tap.target, tap.contact, tap.source == Source::initial);
   chooser_.observe(tap, candidate, hit);
   watch_.observe(tap, candidate, hit);
@@ -60,7 +65,7 @@ std::optional<std::string> Experiment::stop_reason(std::int64_t budget) {
   if (watch_.counts().taps >= budget) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && watch_.counts().robot_seconds >= *stop.robot_time) return "robot_time";
-  if (chooser_.starting()) return std::nullopt;
+  if (chooser_.starting(belief_)) return std::nullopt;
   belief_.ask(reads_for(Source::acquisition));
   if (stop.max_standard_deviation &&
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {

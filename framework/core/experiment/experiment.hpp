@@ -87,7 +87,9 @@ class Experiment {
   /// What a tap of this source reads of the belief: strategy, stop rules and backend. What a forecast reads is asked
   /// for by itself, from the first hit on.
   Quantities reads_for(Source source) const;
-  TapRequest request_of(const TapRecord& tap) const { return {tap.number, tap.target, previous_, tap.predicted}; }
+  TapRequest request_of(const TapRecord& tap) const {
+    return {tap.number, tap.target, previous_, tap.predicted, watch_.counts().robot_seconds};
+  }
   Contact touch(const TapRecord& tap);
   bool is_broken_off(const Contact& contact) const;
   void check_backend(const Contact& last);

@@ -45,6 +45,21 @@ void ProcessOptions::list_plugins(Fields& fields) {
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
 }
 
+void SystematicOptions::list(Fields& fields) {
+  fields.real(offset, Field("offset", "prior standard deviation of what is added to every height")
+                          .in(Unit::metre)
+                          .above(0)
+                          .from("6 mm: absolute errors of Baxter's tip are 2 to 10 mm"));
+  fields.real(drift, Field("drift", "the same of what comes to it over time")
+                         .in(Unit::metre_per_second)
+                         .above(0)
+                         .from("1 mm/min: an arm that warms up, an estimate"));
+  fields.real(noise, Field("noise", "standard deviation of the height of one contact with the desk")
+                         .in(Unit::metre)
+                         .above(0)
+                         .from("2 mm: pose and moment of detection of an arm like Baxter"));
+}
+
 void HeightOptions::list(Fields& fields) {
   fields.real(signal, Field("signal", "prior standard deviation of the height")
                           .in(Unit::metre)
@@ -54,6 +69,14 @@ void HeightOptions::list(Fields& fields) {
   fields.real(
       noise,
       Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0).at_most(kMostSignal));
+  fields.real(lies, Field("lies",
+                          "probability assumed, per contact, that its height has nothing to do with the surface of an "
+                          "object; not given, every contact is believed; for surface: two_part")
+                        .above(0)
+                        .at_most(0.5));
+  fields.section(systematic, Field("systematic",
+                                   "learn from taps on the desk, whose height is known, what motion and arm add to all "
+                                   "heights, and take it off; not given, heights are taken as they come"));
   list_plugins(fields);
 }
 

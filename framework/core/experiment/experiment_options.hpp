@@ -40,7 +40,17 @@ struct ProcessOptions : Options {
   void list_plugins(Fields& fields);
 };
 
+/// Prior deviations of what is learnt from the desk: see systematic.hpp.
+struct SystematicOptions : Options {
+  double offset = 0.006;        ///< metres
+  double drift = 0.001 / 60.0;  ///< metres a second
+  double noise = 0.002;         ///< metres
+  void list(Fields& fields) override;
+};
+
 struct HeightOptions : ProcessOptions {
+  std::optional<SystematicOptions> systematic;  ///< absent: heights are taken as they come
+  std::optional<double> lies;  ///< absent: every tap is believed
   void list(Fields& fields) override;
 };
 

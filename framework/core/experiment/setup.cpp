@@ -23,13 +23,15 @@ void Experiment::resume(const std::vector<PastTap>& past) {
   for (const PastTap& tap : past) {
     observe(tap);
     read = read | reads_for(tap.source);
+    // Who is doubted depends on who was, once there are many.
+    if (options_.height.lies) belief_.ask(read);
   }
   belief_.ask(read);
 }
 
 Quantities Experiment::reads_for(Source source) const {
-  Quantities out;
-  if (backend_->wants_prediction()) out = out | Quantity::height;
+  Quantities out = backend_->expects();
+  if (options_.height.lies) out = out | Quantity::doubt;
   if (source == Source::initial) return out;
   out = out | chooser_.reads();
   if (source == Source::fallback) out = out | Chooser::kFallbackReads;
@@ -44,11 +46,10 @@ std::vector<ModelReader> Experiment::readers() const {
   };
   add(chooser_.reads(), "acquisition " + options_.acquisition.type);
   if (chooser_.may_fall_back()) add(Chooser::kFallbackReads, "fallback uncertainty, from its first use on");
+  if (options_.height.lies) add(Quantity::doubt, "height.lies");
   if (options_.stop.max_standard_deviation) add(Quantity::uncertainty, "stop.max_standard_deviation");
   if (options_.stop.expected_rmse) add(belief_.surface_reads(), "stop.expected_rmse");
-  Quantities backend = backend_->reads();
-  if (backend_->wants_prediction()) backend = backend | Quantity::height;
-  add(backend, "backend " + options_.backend.type);
+  add(backend_->reads() | backend_->expects(), "backend " + options_.backend.type);
   return out;
 }
 
@@ -59,7 +60,7 @@ Eigen::VectorXd Experiment::scores() {
 
 Preview Experiment::preview(const TapRecord& tap) const {
   Preview out{tap.predicted, backend_->describe(request_of(tap))};
-  if (!out.expected && belief_.recorded().has(Quantity::height)) out.expected = belief_.predict(tap.candidate);
+  if (!out.expected && belief_.recorded().has(Quantity::height)) out.expected = belief_.predict(tap.candidate, Quantity::height);
   return out;
 }
 

@@ -18,6 +18,8 @@ namespace palpate {
 // The level of an object is not known before it is touched: a thousand signals make it as good as free, unless the
 // surface varies by less than a thousandth of its height.
 constexpr double kFreeLevel = 1000.0;
+// Where taps may lie the level has to be of some size: what may be anything at all makes a lie of the first tap.
+constexpr double kLevelAmongLies = 1.0;
 
 namespace {
 
@@ -70,7 +72,9 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       posterior_(posterior_settings(options)),
       desk_(context.scene.desk()),
       clip_(options.weight.clip),
-      two_part_(options.surface == ExperimentOptions::Surface::two_part) {
+      two_part_(options.surface == ExperimentOptions::Surface::two_part),
+      lies_(two_part_ ? options.height.lies : std::nullopt),
+      doubted_(candidates) {
   const HeightOptions& height = options.height;
   const WeightOptions& weight = options.weight;
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
@@ -87,12 +91,13 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     label.noise = height.noise / height.signal * label.signal;
     heights_.outputs.push_back(label);
   }
+  if (height.systematic) systematic_.emplace(height.systematic->offset, height.systematic->drift, height.systematic->noise);
   footprint_ = context.create<Footprint>(options.footprint);
   footprint_type_ = options.footprint.type;
   if (footprint_->is_weight()) footprint_.reset();
   if (two_part_) {
-    object_ =
-        make_model("fitting/surface", height_kernel, height_fitting, {height.signal, height.noise, 0.0, kFreeLevel});
+    object_ = make_model("fitting/surface", height_kernel, height_fitting,
+                         {height.signal, height.noise, 0.0, lies_ ? kLevelAmongLies : kFreeLevel});
   }
 }
 
@@ -109,11 +114,42 @@ bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
 void TapBelief::observe(const Target& place, const Contact& contact, bool initial) {
   ++taps_;
   initial_taps_ += initial ? 1 : 0;
+  const double began = seconds_;
+  const Reading reading = read(contact);
+  seconds_ += contact.seconds;
   if (contact.outcome != Outcome::contact) return;
-  const bool on = context_.scene.on_surface(contact.height);
-  touches_.push_back({place, contact.height - desk_, on});
-  if (on) hits_.push_back(touches_.back());
+  touches_.push_back({place, reading.height - desk_, reading.on});
+  numbers_.push_back(taps_);
+  if (reading.on) hits_.push_back(touches_.back());
   current_ = false;
+  if (!systematic_) return;
+  excess_.push_back(contact.height - desk_);
+  times_.push_back(began);
+  systematic_->add(place, began, excess_.back(), reading.on);
+}
+
+TapBelief::Reading TapBelief::read(const Contact& contact) const {
+  if (!systematic_) return {contact.height, context_.scene.on_surface(contact.height)};
+  // Until the desk is known, what is hardly higher than it may be is more probably the desk than so low an object.
+  constexpr double kDeviations = 2.4;
+  const Systematic::Estimate estimate = systematic_->at(seconds_);
+  const double height = contact.height - estimate.value;
+  const double unsure = kDeviations * std::sqrt(estimate.variance + systematic_->noise() * systematic_->noise());
+  return {height, context_.scene.on_surface(height) && height - desk_ > unsure};
+}
+
+std::vector<TapBelief::Doubted> TapBelief::doubted() const {
+  std::vector<Doubted> out;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(doubt_.size()); ++i) {
+    const double doubt = doubt_of(i);
+    if (doubt >= kWorthALook)
+      out.push_back({numbers_[i], doubt, std::min(doubt, by_label_(static_cast<Eigen::Index>(i)))});
+  }
+  return out;
+}
+
+std::optional<Systematic::Estimate> TapBelief::systematic() const {
+  return systematic_ ? std::optional(systematic_->at(seconds_)) : std::nullopt;
 }
 
 Quantities TapBelief::known(Quantities asked) const {
@@ -132,7 +168,7 @@ std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
   const Quantities all = known(quantities);
   std::vector<std::string> out;
   if (all.has(Quantity::uncertainty)) out.emplace_back("height process");
-  if (all.has(Quantity::height) && two_part_) out.emplace_back("surface process");
+  if ((all.has(Quantity::height) || all.has(Quantity::doubt)) && two_part_) out.emplace_back("surface process");
   if (all.has(Quantity::weight)) out.emplace_back("weight process");
   if (quantities.has(Quantity::probability) && footprint_) out.push_back("footprint " + footprint_type_);
   return out;
@@ -152,7 +188,11 @@ void TapBelief::build(Quantities wanted) {
   const PhaseClock::Scope infer(clock_, Phase::infer);
   if (all.has(Quantity::uncertainty)) show(heights_, 0);
   if (all.has(Quantity::weight)) show(joined_ ? heights_ : labels_, label_output());
-  if (two_part_ && all.has(Quantity::height)) show(object_, 0);
+  if (two_part_ && (all.has(Quantity::height) || all.has(Quantity::doubt))) show(object_, 0);
+  if (all.has(Quantity::height) && !height_asked_) {
+    height_asked_ = object_.stale = true;
+    current_ = false;
+  }
   if (footprint_ && all.has(Quantity::probability) && !footprint_asked_) {
     footprint_asked_ = true;
     current_ = false;
@@ -177,10 +217,12 @@ void TapBelief::update() {
   for (Model* model : {&heights_, &labels_, &object_}) {
     if (model->process) take_in(*model);
   }
+  if (systematic_) correct();
+  if (footprint_asked_) map_footprint();
+  if (lies_ && object_.process) judge();
   if (heights_.stale) map_heights();
   if (labels_.stale) map_labels();
-  if (object_.stale) map_object();
-  if (footprint_asked_) map_footprint();
+  if (object_.stale && height_asked_) map_object();
   current_ = true;
 }
 
@@ -234,9 +276,84 @@ void TapBelief::map_labels() {
 }
 
 void TapBelief::map_object() {
-  map_surface(*object_.process);
-  object_.process->read_variance(0, object_variance_);
+  if (lies_ && doubted_.taps() == object_.process->size()) {
+    doubted_.read_mean(*object_.process, height_mean_);
+    height_mean_.array() += desk_;
+    doubted_.read_variance(*object_.process, object_variance_);
+  } else {
+    map_surface(*object_.process);
+    object_.process->read_variance(0, object_variance_);
+  }
+  // All heights share what is not known of the correction.
+  if (systematic_) object_variance_.array() += systematic_->at(seconds_).variance;
   object_.stale = false;
+}
+
+/// Takes off all heights what is thought now to be added to them. Whether one was with an object stays as it was read.
+void TapBelief::correct() {
+  // In steps far below the noise, so that the processes are not made anew after every tap.
+  constexpr double kStep = 1e-4;
+  std::size_t hit = 0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    touches_[i].height = excess_[i] - kStep * std::round(systematic_->at(times_[i]).value / kStep);
+    if (touches_[i].on) hits_[hit++].height = touches_[i].height;
+  }
+  for (Model* model : {&heights_, &object_}) {
+    if (!model->process) continue;
+    const std::vector<Touch>& data = data_of(*model);
+    Eigen::VectorXd values(static_cast<Eigen::Index>(data.size()));
+    for (std::size_t i = 0; i < data.size(); ++i) values(static_cast<Eigen::Index>(i)) = data[i].height;
+    if (model->process->correct(values)) model->stale = true;
+  }
+}
+
+/// What is thought of each contact: by its label, which the footprint may take for wrong, and by its height, if it is
+/// one of an object.
+void TapBelief::judge() {
+  // To judge costs the cube of the hits. By so many a surface is known that a lie can do little to: later contacts are
+  // believed, and what was doubted stays so.
+  constexpr std::size_t kMostHits = 100;
+  const auto contacts = static_cast<Eigen::Index>(touches_.size());
+  if (hits_.size() > kMostHits) {
+    const Eigen::Index known = doubt_.size();
+    for (Eigen::VectorXd* values : {&doubt_, &by_label_}) {
+      values->conservativeResize(contacts);
+      values->tail(contacts - known).setZero();
+    }
+    believe();
+    return;
+  }
+  doubt_ = Eigen::VectorXd::Zero(contacts);
+  if (footprint_asked_) footprint_->doubt(doubt_);
+  by_label_ = doubt_;
+  Eigen::VectorXd suspicion(static_cast<Eigen::Index>(hits_.size()));
+  Eigen::Index hit = 0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const double by_label = doubt_(static_cast<Eigen::Index>(i));
+    if (touches_[i].on) suspicion(hit++) = by_label + (1.0 - by_label) * *lies_;
+  }
+  doubted_.judge(*object_.process, suspicion);
+  hit = 0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    if (touches_[i].on) doubt_(static_cast<Eigen::Index>(i)) = doubted_.doubt()(hit++);
+  }
+  object_.stale = true;
+  believe();
+}
+
+/// Has the processes trust each contact as far as it is believed.
+void TapBelief::believe() {
+  // In steps, so that a process is not made anew after every tap; never quite to nothing.
+  constexpr double kSteps = 10.0;
+  constexpr double kLeast = 1e-3;
+  const Eigen::VectorXd trust = (1.0 - (doubt_.array() * kSteps).round() / kSteps).max(kLeast);
+  if (heights_.process && heights_.process->trust(trust)) heights_.stale = true;
+  std::vector<double> of_hits;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    if (touches_[i].on) of_hits.push_back(trust(static_cast<Eigen::Index>(i)));
+  }
+  const Eigen::Map<const Eigen::VectorXd> hits(of_hits.data(), static_cast<Eigen::Index>(of_hits.size()));
+  if (object_.process->trust(hits)) object_.stale = true;
 }
 
 void TapBelief::map_surface(const Process& process) {
@@ -257,8 +374,10 @@ const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {
   return map;
 }
 
-Prediction TapBelief::predict(int candidate) const {
-  return {height_mean()(candidate), std::sqrt(height_variance()(candidate))};
+Prediction TapBelief::predict(int candidate, Quantities wanted) const {
+  Prediction out{height_mean()(candidate), std::sqrt(height_variance()(candidate))};
+  if (wanted.has(Quantity::probability)) out.probability = probability()(candidate);
+  return out;
 }
 
 double TapBelief::height_noise() const {

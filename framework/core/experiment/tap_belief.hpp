@@ -7,7 +7,9 @@
 
 #include "experiment/experiment_options.hpp"
 #include "experiment/phases.hpp"
+#include "experiment/systematic.hpp"
 #include "gp/candidates.hpp"
+#include "gp/doubt.hpp"
 #include "gp/process.hpp"
 
 #include <palpate/backend.hpp>
@@ -30,8 +32,18 @@ class TapBelief final : public Belief {
   /// `candidates`, `context` and `clock` must outlive the belief.
   TapBelief(const ExperimentOptions& options, const Candidates& candidates, const Context& context, PhaseClock& clock);
 
+  /// What a contact of the tap that comes next says: its height less what motion and arm are thought to add, where the
+  /// config has that learnt, and by it, by the scene's rule, whether it is one with an object.
+  struct Reading {
+    double height = 0.0;  ///< metres
+    bool on = false;
+  };
+  Reading read(const Contact& contact) const;
+  /// What is taken off heights as of now, where that is learnt.
+  std::optional<Systematic::Estimate> systematic() const;
+
   /// Notes a tap, `initial` if the initial design chose it. Only contacts reach the models: heights above the desk, and
-  /// labels 1 or 0 by the scene's rule.
+  /// labels 1 or 0, as they read.
   void observe(const Target& place, const Contact& contact, bool initial = false);
 
   /// From now on these quantities are kept and belong to the record: builds the models that they lack, with all taps so
@@ -90,6 +102,23 @@ class TapBelief final : public Belief {
   /// The footprint, if it is not the weight and was asked for; else null.
   const Footprint* footprint() const { return footprint_asked_ ? footprint_.get() : nullptr; }
 
+  /// The probability that each contact so far lies, by the config's `height.lies`; empty where all are believed, or no
+  /// height was asked for.
+  const Eigen::VectorXd& doubt() const { return doubt_; }
+  /// Those of at least kWorthALook, by the numbers of their taps.
+  struct Doubted {
+    int tap = 0;
+    double doubt = 0.0;
+    double by_label = 0.0;  ///< the part of it that the outlines account for, without a look at its height
+  };
+  std::vector<Doubted> doubted() const;
+  /// From which on a second look at the same place is worth a thought.
+  static constexpr double kWorthALook = 0.1;
+  /// The same of one contact; 0 where all are believed.
+  double doubt_of(std::size_t contact) const {
+    return contact < static_cast<std::size_t>(doubt_.size()) ? doubt_(static_cast<Eigen::Index>(contact)) : 0.0;
+  }
+
   /// Fits that found nothing better and kept the old values.
   int failed_fits() const { return failed_fits_; }
 
@@ -99,8 +128,8 @@ class TapBelief final : public Belief {
   /// Standard deviation of the noise of one tap's height, metres.
   double height_noise() const;
 
-  /// Of the height at a candidate, which was asked for.
-  Prediction predict(int candidate) const;
+  /// Of a candidate: the height, and the probability if that is among the `wanted`; both were asked for.
+  Prediction predict(int candidate, Quantities wanted) const;
 
  private:
   /// A process and all that it is made from; built when it is asked for.
@@ -134,6 +163,9 @@ class TapBelief final : public Belief {
   void map_object();
   void map_surface(const Process& process);
   void map_footprint();
+  void judge();
+  void believe();
+  void correct();
   const Eigen::VectorXd& kept(const Eigen::VectorXd& map) const;
 
   const Candidates& candidates_;
@@ -148,14 +180,22 @@ class TapBelief final : public Belief {
   int initial_taps_ = 0;
   Quantities asked_;
   bool current_ = true;  ///< update() has seen all taps
+  double seconds_ = 0.0;  ///< robot time of all taps
+  std::optional<Systematic> systematic_;
   Model heights_;
   Model labels_;                          ///< unless joined
   Model object_;                          ///< heights of the taps on an object
   std::vector<Touch> touches_;            ///< all contacts, heights above the desk
+  std::vector<int> numbers_;              ///< of their taps
+  std::vector<double> excess_, times_;    ///< of these: heights as they came, and when
   std::vector<Touch> hits_;               ///< those on an object
+  std::optional<double> lies_;            ///< of contacts, where some are not believed
+  DoubtedSurface doubted_;                ///< the surface process, then
+  Eigen::VectorXd doubt_, by_label_;      ///< a value a contact
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
   std::string footprint_type_;
   bool footprint_asked_ = false;
+  bool height_asked_ = false;  ///< and not only whether it is believed
   std::size_t touches_taken_ = 0;  ///< by the footprint
   int failed_fits_ = 0;
   /// Empty until somebody asks for them.

@@ -5,6 +5,7 @@
 #include "experiment/forecast.hpp"
 #include "experiment/metrics.hpp"
 #include "experiment/phases.hpp"
+#include "experiment/tap_belief.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/footprint.hpp>
@@ -46,6 +47,7 @@ struct ModelState {
   std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
   std::optional<Forecast> forecast;  ///< where a stop rule asks for it
+  std::optional<std::vector<TapBelief::Doubted>> doubted;  ///< where contacts may lie
   Errors errors;
 };
 
@@ -74,6 +76,7 @@ struct TapRecord : PastTap, ModelState {
   std::optional<Prediction> predicted;  ///< of the height at the target; only for a backend that wants it
 
   // After the tap.
+  std::optional<double> corrected;      ///< height less what is thought to be added to all; absent where none is learnt
   std::optional<bool> on_surface;       ///< absent unless the outcome is a contact
   std::optional<bool> true_on_surface;  ///< absent where no truth is known
 };

@@ -88,6 +88,7 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
     tap.probability = belief.probability()(tap.candidate);
     tap.footprint = state_of(*belief.footprint());
   }
+  if (options_.height.lies) tap.doubted = belief.doubted();
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* real = truth()) {
     tap.true_on_surface = real->on(tap.candidate);
@@ -113,7 +114,8 @@ Errors Watch::errors(const TapBelief& belief) {
     beside_ = std::make_unique<TapBelief>(options_, candidates_, context_, unrecorded_);
     for (const PastTap& tap : taps_) beside_->observe(tap.target, tap.contact, tap.source == Source::initial);
   }
-  beside_->ask(lacking);
+  // The outlines have a word in who is believed.
+  beside_->ask(options_.height.lies ? lacking | Quantity::probability : lacking);
   const SurfaceMaps others = maps_of(*beside_, lacking);
   if (maps.height == nullptr) maps.height = others.height;
   if (maps.probability == nullptr) maps.probability = others.probability;
@@ -143,6 +145,7 @@ RunResult Watch::result(TapBelief& belief) {
   take(belief.height_process(), out.height_process);
   take(belief.weight_process(), out.weight_process);
   if (belief.two_part()) take(belief.surface_process(), out.surface_process);
+  if (options_.height.lies) out.doubted = belief.doubted();
   if (const Footprint* footprint = belief.footprint()) out.footprint = state_of(*footprint);
   out.interventions["fit_failed"] = belief.failed_fits();
   return out;

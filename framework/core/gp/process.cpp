@@ -47,6 +47,7 @@ void Process::reserve(int taps) {
   const auto columns = static_cast<Eigen::Index>(outputs_.size()) + (with_constant() ? 1 : 0);
   points_.conservativeResize(capacity, 2);
   targets_.conservativeResize(capacity, static_cast<Eigen::Index>(outputs_.size()));
+  trust_.conservativeResize(capacity);
   factored_.conservativeResize(capacity, 2);
   reduced_.conservativeResize(capacity, columns);
   weights_.conservativeResize(capacity, columns);
@@ -65,9 +66,26 @@ void Process::add(const Target& place, const VectorView& values) {
   points_(size_, 0) = place.x;
   points_(size_, 1) = place.y;
   targets_.row(size_) = values.transpose();
+  trust_(size_) = 1.0;
   ++size_;
   if (!append(size_ - 1)) rebuild();
   keep_accuracy();
+}
+
+bool Process::trust(const VectorView& shares) {
+  if (shares == trust_.head(size_)) return false;
+  trust_.head(size_) = shares;
+  rebuild();
+  keep_accuracy();
+  return true;
+}
+
+bool Process::correct(const VectorView& values) {
+  if (values == targets_.col(0).head(size_)) return false;
+  targets_.col(0).head(size_) = values;
+  rebuild();
+  keep_accuracy();
+  return true;
 }
 
 bool Process::append(int tap) {
@@ -78,7 +96,7 @@ bool Process::append(int tap) {
   kernel_->covariance(factored_.topRows(row), place, scratch_.head(row));
   double own = 0.0;
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));
-  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() + jitter_)) return false;
+  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() / trust_(tap) + jitter_)) return false;
 
   const VectorView before = factor_.row(row);
   const auto reduce = [&](Eigen::Index column, double value) {
@@ -167,7 +185,7 @@ void Process::rebuild() {
       // What is left of a matrix that no jitter makes positive definite: the taps that are independent of each other.
       Eigen::MatrixXd covariance(size_, size_);
       kernel_->covariance(points_.topRows(size_), points_.topRows(size_), covariance);
-      covariance.diagonal().array() += noise_ratio() * noise_ratio() + jitter_;
+      covariance.diagonal().array() += noise_ratio() * noise_ratio() / trust_.head(size_).array() + jitter_;
       ++pivoted_;
       taps = independent_rows(covariance);
       // The guards of both factorisations differ by rounding: what the second refuses ends the list.
@@ -204,6 +222,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
     summary.reason = "a number that is not finite and positive was refused; " + summary.reason;
     return summary;
   }
+  ++generation_;
   outputs_ = fitted;
   for (ProcessSettings& one : outputs_) one.noise = ratio * one.signal;
   take_prior();

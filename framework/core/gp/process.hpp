@@ -54,6 +54,13 @@ class Process {
 
   int size() const { return size_; }
 
+  /// How far each tap so far is to be trusted, in (0, 1]: the variance of its noise is divided by it. Rebuilds if that
+  /// is another than before, and says whether. Taps are trusted fully at first; a fit takes them all so.
+  bool trust(const VectorView& shares);
+
+  /// Gives output 0 of all taps so far other values, and rebuilds if they are; says whether.
+  bool correct(const VectorView& values);
+
   /// Lets the outputs below `outputs` have a map of their mean, at the cost of rebuilding the maps if that is more than
   /// before; at first only output 0 has one.
   void show(int outputs);
@@ -94,6 +101,12 @@ class Process {
   const char* engine() const { return choice_.engine->name(); }
   const std::string& engine_reason() const { return choice_.reason; }
   double error_bound() const;
+
+  /// Where all taps were made, n x 2, and their targets of an output, as given.
+  PointsView places() const { return points_.topRows(size_); }
+  VectorView targets(int output = 0) const { return targets_.col(output).head(size_); }
+  /// Rises with every change of the hyperparameters.
+  int generation() const { return generation_; }
 
   const ProcessSettings& settings(int output = 0) const { return outputs_[static_cast<std::size_t>(output)]; }
   const Kernel& kernel() const { return *kernel_; }
@@ -139,6 +152,7 @@ class Process {
   int size_ = 0;
   Points points_;            ///< first size_ rows, in the order of the taps
   Eigen::MatrixXd targets_;  ///< as given, an output a column
+  Eigen::VectorXd trust_;    ///< in each tap
 
   Factor factor_;
   Points factored_;  ///< the points of the rows of factor_: those of the taps unless some are set aside
@@ -150,6 +164,7 @@ class Process {
   double jitter_ = 0.0;  ///< relative to signal^2
   int jitter_raised_ = 0;
   int pivoted_ = 0;
+  int generation_ = 0;
 };
 
 }  // namespace palpate

@@ -128,6 +128,7 @@ class NamedFootprint final : public Named<Footprint> {
   bool is_weight() const override { return call(&Footprint::is_weight); }
   void add(const Touch& touch) override { call(&Footprint::add, touch); }
   void probability(const PointsView& places, VectorOut out) override { call(&Footprint::probability, places, out); }
+  void doubt(VectorOut out) const override { call(&Footprint::doubt, out); }
   std::vector<FootprintNumber> numbers() const override { return call(&Footprint::numbers); }
   std::string remark() const override { return call(&Footprint::remark); }
 };
@@ -139,7 +140,7 @@ class NamedBackend final : public Named<Backend> {
   bool repeatable() const override { return call(&Backend::repeatable); }
   std::vector<std::string> describe(const TapRequest& request) override { return call(&Backend::describe, request); }
   std::vector<Learnt> learnt() const override { return call(&Backend::learnt); }
-  bool wants_prediction() const override { return call(&Backend::wants_prediction); }
+  Quantities expects() const override { return call(&Backend::expects); }
   Quantities reads() const override { return call(&Backend::reads); }
   void show(const Belief& belief) override { call(&Backend::show, declared(belief)); }
   bool scene_is_truth() const override { return call(&Backend::scene_is_truth); }

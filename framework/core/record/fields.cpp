@@ -5,6 +5,7 @@
 #include "record/tap_row.hpp"
 
 #include <boost/algorithm/string/predicate.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -87,6 +88,14 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
   row.add("footprint.remark", if_any(state->remark));
 }
 
+/// "8 0.93, 12 0.61"
+std::string words(const std::vector<TapBelief::Doubted>& doubted) {
+  std::string out;
+  for (const TapBelief::Doubted& one : doubted)
+    out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", one.tap, one.doubt);
+  return out;
+}
+
 /// Where the loop lays the state of its models down, in a tap and in a result alike.
 template <class Record>
 void list_models(FieldList<Record>& list, bool reasons) {
@@ -117,6 +126,12 @@ void list_models(FieldList<Record>& list, bool reasons) {
                   "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
                   "how it came to them; only where `footprint` is not `regression`",
                   [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
+  list.add_family("doubted",
+                  "the contacts that are thought to lie with a probability of 0.1 or more, each by the number of its "
+                  "tap and that probability: `8 0.93, 12 0.61`; null if there is none; only with `height.lies`",
+                  [](Row& row, const Record& record) {
+                    if (record.doubted) row.add("doubted", if_any(words(*record.doubted)));
+                  });
   list.add_family(
           "expected_rmse_m",
           "the error over the scene that is to be expected of what is believed; only with `stop.expected_rmse`, "
@@ -150,8 +165,18 @@ FieldList<TapRecord> make_tap_list() {
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
   list.add("on_surface", "whether a contact was one with an object", &Tap::on_surface);
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
+  list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
+                 "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
+                 "`height.systematic`",
+                 [](const Tap& t) { return t.corrected; })
+      .in(Unit::metre);
   list.add("force", "of a contact, the largest that was felt (in a scene without effects, the threshold)",
            [](const Tap& t) { return if_touched(t, t.contact.force); })
+      .in(Unit::newton);
+  list.add_where([](const Tap& t) { return t.contact.peak.has_value(); }, "peak_force",
+                 "the largest force against the tool in all of the tap, of failed taps, too: the true one where a "
+                 "simulator knows it, else what was felt; only where a force is simulated or felt",
+                 [](const Tap& t) { return t.contact.peak; })
       .in(Unit::newton);
   list.add("robot_seconds", "robot time of this tap: travel, rest, descent, contact, retreat",
            [](const Tap& t) { return t.contact.seconds; })
@@ -185,6 +210,9 @@ FieldList<TapRecord> make_tap_list() {
   list.add_where(is_predicted, "predicted.standard_deviation", "its standard deviation",
                  [](const Tap& t) { return t.predicted->standard_deviation; })
       .in(Unit::metre);
+  list.add_where([](const Tap& t) { return t.predicted && t.predicted->probability; }, "predicted.probability",
+                 "the probability of an object there; only where the backend asks for it (`adaptive_hover.certainty`)",
+                 [](const Tap& t) { return t.predicted->probability; });
   list_models(list, false);
   list.add("true_on_surface", "whether an object truly is there", &Tap::true_on_surface).absent(kNoTruth);
   list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });

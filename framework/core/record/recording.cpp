@@ -39,7 +39,12 @@ class Recorded final : public Absent {
   Contact tap(const TapRequest& request) override {
     return recording_.taps.at(static_cast<std::size_t>(request.number - 1)).contact;
   }
-  bool wants_prediction() const override { return recording_.rows.front().number("predicted.height").has_value(); }
+  Quantities expects() const override {
+    Quantities out;
+    if (recording_.rows.front().number("predicted.height")) out = out | Quantity::height;
+    if (recording_.rows.front().number("predicted.probability")) out = out | Quantity::probability;
+    return out;
+  }
   /// What the run's own backend read when it was shown the first tap is in the second row, with what others read there.
   Quantities reads() const override {
     return recording_.rows.size() > 1 ? recorded_quantities(recording_.rows[1]) : Quantities();

@@ -40,6 +40,7 @@ PastTap past_tap(const Row& row, const std::string& where) {
   out.contact.force = number_at(row, "force", 0.0, where);
   out.contact.seconds = number_at(row, "robot_seconds", 0.0, where);
   out.contact.reason = row.text("reason");
+  out.contact.peak = row.number("peak_force");
   return out;
 }
 

@@ -27,6 +27,9 @@ void list(Stiffness& effect, Fields& fields) {
                                  .in(Unit::newton_per_metre)
                                  .above(0)
                                  .from("1500 N/m: a contact of the order that reproduces Baxter's tapping errors"));
+  fields.real(effect.desk, Field("desk", "the same of the desk; without it the desk is as soft as an object")
+                               .in(Unit::newton_per_metre)
+                               .above(0));
   fields.real(effect.arm, Field("arm", "force over the way that the joints give; the measured pose does not suffer")
                               .in(Unit::newton_per_metre)
                               .above(0));
@@ -42,6 +45,35 @@ void list(JointLag& effect, Fields& fields) {
                                     .at_least(0)
                                     .at_most(0.9)
                                     .from("0: Baxter's arm creeps up to its set-point"));
+}
+
+void list(Latency& effect, Fields& fields) {
+  fields.real(effect.deviation,
+              Field("deviation", "the force of a tap is heard late by the absolute value of a normal number of this")
+                  .in(Unit::second)
+                  .at_least(0)
+                  .at_most(0.1)
+                  .from("15 ms: one or two messages at 100 Hz, an estimate"));
+}
+
+void list(HeightOffset& effect, Fields& fields) {
+  fields.real(effect.constant, Field("constant", "added to every height").in(Unit::metre).from("0: set what is to be tried"));
+  fields.real(effect.drift, Field("drift", "added for each second of the arm's time")
+                                .in(Unit::metre_per_second)
+                                .from("0: an arm that warms up drifts by the order of 1 mm/min, an estimate"));
+}
+
+void list(Outliers& effect, Fields& fields) {
+  fields.real(effect.probability,
+              Field("probability", "share of the squares").at_least(0).at_most(1).from("2 %: as false contacts"));
+  fields.real(effect.height, Field("height", "the most that it adds; a uniform share of it, drawn for each square")
+                                 .in(Unit::metre)
+                                 .above(0)
+                                 .from("3 cm: a cable, a chip or a tool left behind, an estimate"));
+  fields.real(effect.size, Field("size", "side of a square")
+                               .in(Unit::metre)
+                               .above(0)
+                               .from("1 cm: two cells of the candidates, so that a touch beside may meet the same"));
 }
 
 void list(TipRadius& effect, Fields& fields) {
@@ -126,6 +158,9 @@ void EffectOptions::list(Fields& fields) {
   section(fields, values.stiffness, Field("stiffness", "the object, and the arm, give way"));
   section(fields, values.joint_lag,
           Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
+  section(fields, values.latency, Field("latency", "the force is heard late, by another time at each tap"));
+  section(fields, values.height_offset, Field("height_offset", "all heights are off, and drift"));
+  section(fields, values.outliers, Field("outliers", "things that are not of the scene: each touch of one repeats it"));
   section(fields, values.tip_radius, Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
   section(fields, values.pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
   section(fields, values.missed_contacts, Field("missed_contacts", "contacts that are not felt"));

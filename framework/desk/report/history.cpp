@@ -12,11 +12,13 @@
 namespace palpate {
 namespace {
 
-TapMark mark_of(const PastTap& tap, int number, const Scene& scene) {
-  TapMark mark{number, TapMark::Kind::failed, tap.target.x, tap.target.y, scene.desk()};
+TapMark mark_of(const Recording& recording, std::size_t index, double desk) {
+  const PastTap& tap = recording.taps[index];
+  TapMark mark{static_cast<int>(index) + 1, TapMark::Kind::failed, tap.target.x, tap.target.y, desk};
   if (tap.contact.outcome != Outcome::contact) return mark;
-  mark.kind = scene.on_surface(tap.contact.height) ? TapMark::Kind::on : TapMark::Kind::off;
-  mark.height = tap.contact.height;
+  const Row& row = recording.rows[index];
+  mark.kind = row.flag("on_surface").value_or(false) ? TapMark::Kind::on : TapMark::Kind::off;
+  mark.height = row.number("corrected_height").value_or(tap.contact.height);
   return mark;
 }
 
@@ -33,7 +35,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   Snapshot out;
   out.taps = playback.taps();
   for (int i = 0; i < out.taps; ++i)
-    out.marks.push_back(mark_of(recording.taps[static_cast<std::size_t>(i)], i + 1, experiment.scene()));
+    out.marks.push_back(mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk()));
   out.next = experiment.choose_next();
   out.scores = experiment.scores();
   experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);

@@ -16,6 +16,7 @@ namespace palpate {
 struct Prediction {
   double height = 0.0;
   double standard_deviation = 0.0;
+  std::optional<double> probability = std::nullopt;  ///< of an object there, for a backend that asks for it
 };
 
 /// One tap as it is asked for. It says all that a simulated answer may depend on beside options and seed, so that a
@@ -25,6 +26,7 @@ struct TapRequest {
   Target target;                        ///< within the scene's area
   std::optional<Target> previous;       ///< the target of the tap before, none for the first
   std::optional<Prediction> predicted;  ///< only for a backend that wants it
+  double elapsed = 0.0;                 ///< robot time of all taps before, seconds
 };
 
 /// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up
@@ -61,8 +63,9 @@ class Backend {
   /// What the taps of this process have shown of what the config left open, noted in the manifest when the run ends.
   virtual std::vector<Learnt> learnt() const { return {}; }
 
-  /// Whether taps depend on what the models expect. If so, the loop builds the process of the heights for it.
-  virtual bool wants_prediction() const { return false; }
+  /// What taps depend on of all that the models expect, the same from birth to death: nothing, the height, or the
+  /// height and the probability of an object. The loop builds the models for it.
+  virtual Quantities expects() const { return {}; }
 
   /// What show() reads, the same from birth to death.
   virtual Quantities reads() const { return {}; }

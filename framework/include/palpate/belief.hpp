@@ -13,6 +13,7 @@ enum class Quantity : unsigned {
   weight = 2,       ///< w
   probability = 4,  ///< p
   height = 8,       ///< mean and variance
+  doubt = 16,       ///< which contacts are believed; nothing that a plugin reads
 };
 
 /// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.
@@ -26,6 +27,7 @@ class Quantities {
     return a;
   }
   friend constexpr bool operator==(Quantities a, Quantities b) { return a.bits_ == b.bits_; }
+  friend constexpr bool operator!=(Quantities a, Quantities b) { return a.bits_ != b.bits_; }
 
  private:
   unsigned bits_ = 0;

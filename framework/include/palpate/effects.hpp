@@ -18,10 +18,12 @@ struct ForceDrift {
   double per_metre = 10.0;
 };
 
-/// The object gives way under the tool, and the arm's joints under the force: newtons per metre. The measured pose sees
-/// the first, as a contact that lies too low, and not the second. An arm without a value is rigid.
+/// What is touched gives way under the tool, and the arm's joints under the force: newtons per metre. The measured pose
+/// sees the first, as a contact that lies too low, and not the second. A desk without a value is as soft as an object,
+/// an arm without one is rigid.
 struct Stiffness {
   double object = 1500.0;
+  std::optional<double> desk;
   std::optional<double> arm;
 };
 
@@ -30,6 +32,26 @@ struct Stiffness {
 struct JointLag {
   double delay = 0.35;
   double overshoot = 0.0;
+};
+
+/// The force is heard late, by a time that each tap draws anew: seconds, the absolute value of a normal number of this
+/// deviation. By then the tip is lower, by the time times the speed of the descent.
+struct Latency {
+  double deviation = 0.015;
+};
+
+/// Heights are off by `constant`, metres, and by `drift` metres more with each second of the arm's time.
+struct HeightOffset {
+  double constant = 0.0;
+  double drift = 0.0;
+};
+
+/// Something lies there that is not of the scene, a chip or a cable: on a share of the squares of side `size` that the
+/// area is divided into, as high as a uniform share of `height` (metres), and just the same at every touch.
+struct Outliers {
+  double probability = 0.02;
+  double height = 0.03;
+  double size = 0.01;
 };
 
 /// The tip is a sphere of this radius, metres; without this effect it is a point. The reported height is that of the
@@ -74,6 +96,9 @@ struct Effects {
   std::optional<ForceDrift> force_drift;
   std::optional<Stiffness> stiffness;
   std::optional<JointLag> joint_lag;
+  std::optional<Latency> latency;
+  std::optional<HeightOffset> height_offset;
+  std::optional<Outliers> outliers;
   std::optional<TipRadius> tip_radius;
   std::optional<PoseNoise> pose_noise;
   std::optional<MissedContacts> missed_contacts;

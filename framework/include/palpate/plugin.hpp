@@ -24,7 +24,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 10;
+constexpr std::uint32_t kPluginAbi = 11;
 
 struct Context;
 

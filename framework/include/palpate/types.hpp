@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace palpate {
@@ -46,6 +47,9 @@ struct Contact {
   /// No other tap can be made until somebody has seen to the robot. The tap is recorded like any other, then the run
   /// fails with `reason`; `palpate resume --retry-failed` goes on after it.
   bool ends_run = false;
+  /// The largest force against the tool in all of the tap, newtons, of failed taps, too: the true one where a simulator
+  /// knows it, else the largest that was felt. None where no force is simulated or felt.
+  std::optional<double> peak = std::nullopt;
 };
 
 }  // namespace palpate

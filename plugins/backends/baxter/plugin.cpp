@@ -101,7 +101,7 @@ class Baxter final : public Backend {
   /// A dry run moves nothing: its taps are no failures of a robot, and put nothing at risk.
   bool repeatable() const override { return options_.dry_run; }
   bool scene_is_truth() const override { return false; }
-  bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
+  Quantities expects() const override { return tapping::expects(options_.motion); }
 
  private:
   Options options_;

@@ -155,7 +155,7 @@ class Process final : public Backend {
 
   bool repeatable() const override { return options_.repeatable; }
   bool scene_is_truth() const override { return options_.scene_is_truth; }
-  bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
+  Quantities expects() const override { return tapping::expects(options_.motion); }
 
  private:
   using Clock = std::chrono::steady_clock;

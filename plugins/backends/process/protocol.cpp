@@ -184,6 +184,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   if (request.predicted) {
     ask["predicted"] = {{"height", request.predicted->height},
                         {"standard_deviation", request.predicted->standard_deviation}};
+    if (request.predicted->probability) ask["predicted"]["probability"] = *request.predicted->probability;
   }
   const Area area = context.scene.area();
   ask["area"] = {{"width", area.width}, {"depth", area.depth}};

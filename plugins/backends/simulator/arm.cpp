@@ -100,12 +100,20 @@ double contact_height(const Scene& scene, const Effects& effects, double x, doub
   return height;
 }
 
-Touch::Touch(const Effects& effects, double surface, double hover, double threshold, Random random)
+double outlier(const Outliers& effect, std::uint64_t seed, double x, double y) {
+  const auto column = static_cast<std::int64_t>(std::floor(x / effect.size));
+  const auto row = static_cast<std::int64_t>(std::floor(y / effect.size));
+  constexpr std::int64_t kColumns = 1 << 20;  // more than any area has
+  Random random(seed, "simulator/outlier", static_cast<std::uint64_t>(row * kColumns + column));
+  return random.uniform() < effect.probability ? effect.height * random.uniform() : 0.0;
+}
+
+Touch::Touch(const Effects& effects, double surface, bool desk, double hover, double threshold, Random random)
     : surface_(surface), hover_(hover), stiffness_(kRigidArm), jerk_(kJerk * threshold), normal_(random) {
   if (effects.force_noise) noise_ = effects.force_noise->deviation;
   if (effects.stiffness) {
     const Stiffness& stiffness = *effects.stiffness;
-    give_ = 1.0 / stiffness.object;
+    give_ = 1.0 / (desk && stiffness.desk ? *stiffness.desk : stiffness.object);
     stiffness_ = 1.0 / (give_ + (stiffness.arm ? 1.0 / *stiffness.arm : 0.0));
   }
   if (effects.force_drift) drift_ = effects.force_drift->per_metre * normal_();
@@ -113,12 +121,26 @@ Touch::Touch(const Effects& effects, double surface, double hover, double thresh
   if (effects.false_contacts && normal_.uniform().uniform() < effects.false_contacts->probability) {
     jerk_at_ = surface + (hover - surface) * normal_.uniform().uniform();
   }
+  if (effects.latency) late_ = effects.latency->deviation * std::abs(normal_()) / tapping::GuardedTap::kPeriod;
+}
+
+/// The force as it is heard now: that of `late_` periods ago, on a straight line between two of them.
+double Touch::heard(double force) {
+  if (late_ <= 0.0) return force;
+  forces_.push_back(force);
+  const double at = static_cast<double>(forces_.size() - 1) - late_;
+  if (at <= 0.0) return forces_.front();
+  const auto before = static_cast<std::size_t>(at);
+  const double share = at - static_cast<double>(before);
+  return share > 0.0 ? (1.0 - share) * forces_[before] + share * forces_[before + 1] : forces_[before];
 }
 
 tapping::Sample Touch::feel(double position) {
   const double pressed = std::max(0.0, surface_ - position);
   const double contact = stiffness_ * pressed;
-  tapping::Sample out{pressed > 0.0 ? surface_ - contact * give_ : position, blind_ ? 0.0 : contact};
+  force_ = contact;
+  peak_ = std::max(peak_, contact);
+  tapping::Sample out{pressed > 0.0 ? surface_ - contact * give_ : position, heard(blind_ ? 0.0 : contact)};
   out.force += drift_ * (hover_ - position);
   if (noise_ > 0.0) out.force += noise_ * normal_();
   if (position < jerk_at_ && jerk_left_ > 0) {

@@ -9,9 +9,11 @@
 #include <palpate/scene.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace palpate::backends {
 
@@ -62,27 +64,40 @@ class Arm {
 /// scene is smooth or has one edge there; details smaller than an eighth of the radius may be missed.
 double contact_height(const Scene& scene, const Effects& effects, double x, double y);
 
+/// What lies at (x, y) beside the scene, metres of height: 0 nearly everywhere. A function of seed and place alone.
+double outlier(const Outliers& effect, std::uint64_t seed, double x, double y);
+
 /// What the arm meets and feels during one tap: a spring at `surface`, a sensor with noise, drift, blindness and jerks.
 class Touch {
  public:
-  /// `surface`: height at which the tool meets something, metres; `hover`: where the arm comes from. All that is drawn
-  /// comes from `random`.
-  Touch(const Effects& effects, double surface, double hover, double threshold, Random random);
+  /// `surface`: height at which the tool meets something, metres, and whether that is the bare desk; `hover`: where the
+  /// arm comes from. All that is drawn comes from `random`.
+  Touch(const Effects& effects, double surface, bool desk, double hover, double threshold, Random random);
 
   /// Takes the place at which the joints would have the tip (m), and tells where it is then and the force (N).
   tapping::Sample feel(double position);
 
+  /// The force of the contact now and the largest so far, N, whether it was felt or not.
+  double force() const { return force_; }
+  double peak() const { return peak_; }
+
  private:
+  double heard(double force);
+
   double surface_;
   double hover_;
   double stiffness_;    ///< of object and arm in series, N/m
-  double give_ = 0.0;   ///< of the object, m/N
+  double give_ = 0.0;   ///< of what is touched, m/N
   double noise_ = 0.0;  ///< N
   double drift_ = 0.0;  ///< N/m, of this tap
   bool blind_ = false;
   double jerk_at_ = -std::numeric_limits<double>::infinity();  ///< height, below any floor if there is none
   double jerk_;                                                ///< N
   int jerk_left_ = 5;                                          ///< periods: 50 ms
+  double force_ = 0.0;
+  double peak_ = 0.0;
+  double late_ = 0.0;            ///< periods by which the force is heard late
+  std::vector<double> forces_;  ///< of all periods so far, where it is
   Normal normal_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -17,8 +18,9 @@ Simulator::Simulator(const Options& options, const Context& context)
     : options_(options), context_(context), scene_(context.scene) {
   const Effects& effects = scene_.effects();
   moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
-           effects.missed_contacts || effects.false_contacts;
-  perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft);
+           effects.latency || effects.missed_contacts || effects.false_contacts;
+  perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
+               effects.height_offset || effects.outliers);
   if (scene_.highest() >= scene_.desk() + options.motion.hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
@@ -63,27 +65,35 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const tapping::Desce
     dy = effects.pose_noise->lateral * normal();
     dz = effects.pose_noise->vertical * normal();
   }
-  const double surface = contact_height(scene_, effects, target.x + dx, target.y + dy);
-  Contact contact = moves_ ? simulated_tap(request.number, descent, surface) : ideal_tap(descent, surface);
+  double surface = contact_height(scene_, effects, target.x + dx, target.y + dy);
+  const bool desk = surface <= scene_.desk();
+  if (effects.outliers) {
+    surface = std::min(surface + outlier(*effects.outliers, context_.seed, target.x + dx, target.y + dy), descent.hover);
+  }
+  Contact contact = moves_ ? simulated_tap(request.number, descent, surface, desk) : ideal_tap(descent, surface);
   contact.seconds += tapping::travel_seconds(options_.motion, request);
+  if (effects.height_offset) dz += effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   if (contact.outcome == Outcome::contact) contact.height += dz;
   return paced(std::move(contact));
 }
 
-Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, double surface) const {
+Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, double surface, bool desk) const {
   using tapping::GuardedTap;
   const Effects& effects = scene_.effects();
-  Touch touch(effects, surface, descent.hover, options_.motion.threshold,
+  Touch touch(effects, surface, desk, descent.hover, options_.motion.threshold,
               context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
   Arm arm(effects.joint_lag, GuardedTap::kPeriod, descent.hover);
   GuardedTap tap(options_.motion, descent);
+  const std::optional<double>& limit = options_.motion.force_limit;
   tapping::Sample felt{};
   while (!tap.done()) {
     felt = touch.feel(arm.position());
+    if (limit && touch.force() > tapping::kOwnStop * *limit && !tap.stopping()) tap.give_up(felt.height);
     arm.follow(tap.next(felt.height, felt.force));
   }
   Contact contact = tap.result();
   contact.seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
+  contact.peak = touch.peak();
   return contact;
 }
 #endif

@@ -32,12 +32,12 @@ class Simulator final : public Backend {
   Contact tap(const TapRequest& request) override;
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return true; }
-  bool wants_prediction() const override { return options_.motion.adaptive_hover.has_value(); }
+  Quantities expects() const override { return tapping::expects(options_.motion); }
 
  private:
   Contact ideal_tap(const tapping::Descent& descent, double surface) const;
   Contact imperfect_tap(const TapRequest& request, const tapping::Descent& descent) const;
-  Contact simulated_tap(int number, const tapping::Descent& descent, double surface) const;
+  Contact simulated_tap(int number, const tapping::Descent& descent, double surface, bool desk) const;
   Contact paced(Contact contact) const;
 
   SimulatorOptions options_;

@@ -163,7 +163,9 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::stop:
-      if (waited(kWatched)) conclude(onset_of_descent(trace_).value_or(first_));
+      if (given_up_ && waited(kWatched)) {
+        finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
+      } else if (waited(kWatched)) conclude(onset_of_descent(trace_).value_or(first_));
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {
@@ -176,6 +178,13 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
   }
   return set_point_;
+}
+
+void GuardedTap::give_up(double height) {
+  if (done() || given_up_) return;
+  given_up_ = true;
+  set_point_ = std::min(descent_.hover, height + std::max(motion_.brake, kFromAbove));
+  enter(Stage::stop);
 }
 
 /// What a new reading counts for.
@@ -198,8 +207,11 @@ void GuardedTap::feel(double height, double force) {
 /// on average if something is touched, the more so as the arm trails and still comes down; if noise was all that they
 /// had, on a zero that has wandered, it is not. To stand there longer would be to press longer.
 void GuardedTap::conclude(double height) {
-  const bool lasts = summed_ == 0 || sum_ / summed_ - zero_ > motion_.threshold;
-  if (arm_ == Arm::simulated || lasts) return finish({Outcome::contact, height, peak_, 0.0, {}});
+  // An arm that brakes presses less meanwhile.
+  const double least = motion_.brake > 0.0 ? 0.5 * motion_.threshold : motion_.threshold;
+  const bool lasts = summed_ == 0 || sum_ / summed_ - zero_ > least;
+  const bool asks = arm_ == Arm::real || motion_.confirm;
+  if (!asks || lasts) return finish({Outcome::contact, height, peak_, 0.0, {}});
   enter(Stage::descend);
 }
 
@@ -249,6 +261,7 @@ void GuardedTap::touched(double height) {
   first_ = height;
   // Wherever the arm trails its set-point, holding that would press on.
   if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
+  if (motion_.type == MotionOptions::Type::continuous) set_point_ = std::min(descent_.hover, height + motion_.brake);
   switch (motion_.type) {
     case MotionOptions::Type::paper:
       return enter(Stage::rest);

@@ -66,9 +66,15 @@ class GuardedTap {
   /// force that is not `fresh` was told before: time goes on, but it counts for nothing.
   double next(double height, double force, bool fresh = true);
 
+  /// The arm has stopped by itself, at a force that it, not this, has felt: what it presses on with is let go, and the
+  /// tap comes to nothing.
+  void give_up(double height);
+
   bool done() const { return stage_ == Stage::done; }
   /// Whether the force of the next period belongs to a tare, the first or that of two_stage.
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
+  /// Whether a contact was noticed and the arm is being stopped.
+  bool stopping() const { return stage_ == Stage::stop; }
   /// Whether the arm comes down, or is being stopped at a contact: its force then is that of an arm that moves.
   bool coming_down() const;
   /// For how long the set-point has been coming down evenly in this stage, seconds.
@@ -107,6 +113,7 @@ class GuardedTap {
   double first_ = 0.0;         ///< height of the first contact of two_stage
   double gap_ = 0.0;           ///< least distance of arm and set-point in this stage
   long nearer_ = 0;            ///< the period in which it last became less
+  bool given_up_ = false;
   int above_ = 0;              ///< readings above the threshold, without a break
   std::vector<Sample> trace_;  ///< of the descent, for the onset
   Contact result_;

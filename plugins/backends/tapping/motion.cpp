@@ -47,6 +47,12 @@ void AdaptiveHover::list(Fields& fields) {
                                   Unit::metre, "an estimate: several times the error of a good tap"));
   fields.real(speed, positive("speed", "from the height of travel down to there", Unit::metre_per_second,
                               "a third of travel_speed, since a wrong prediction is hit at this speed"));
+  fields.real(certainty,
+              Field("certainty",
+                    "where an object is at least so probable the descent ends below it as it else does below the desk, "
+                    "and where none is, only the desk is expected; not given, an object is expected everywhere")
+                  .above(0.5)
+                  .at_most(1));
 }
 
 void MotionOptions::list(Fields& fields) {
@@ -70,7 +76,16 @@ void MotionOptions::list(Fields& fields) {
           inner.real(fine_threshold, positive("fine_threshold", "force at which the second stage ends", Unit::newton,
                                               "6 N: four deviations of 1.5 N of noise"));
         }},
-       {"continuous", "at constant speed until the force rises; the height is that where it began to rise", {}}});
+       {"continuous", "at constant speed until the force rises; the height is that where it began to rise",
+        [this](Fields& inner) {
+          inner.real(brake, Field("brake", "at a contact the set-point goes so far above the arm: one that trails it "
+                                           "stops sooner, and presses less")
+                                .in(Unit::metre)
+                                .at_least(0)
+                                .from("0: the set-point is put where the arm is"));
+          inner.flag(confirm, Field("confirm", "believe a contact only if the force lasts for 0.1 s, and else go on: a "
+                                               "jerk is gone by then; a real arm always does"));
+        }}});
   fields.real(
       speed,
       positive("speed", "of the descent: of its steps, or of its first stage", Unit::metre_per_second,
@@ -96,15 +111,35 @@ void MotionOptions::list(Fields& fields) {
   fields.real(timeout, positive("timeout", "a tap that takes longer fails", Unit::second,
                                 "ten times what the paper's motion takes")
                            .at_most(3600));
+  fields.real(force_limit, Field("force_limit", "force that no tap is to exceed: at three quarters of it the arm stops "
+                                                "by itself, whatever of the contact is felt; not given, it does not")
+                               .in(Unit::newton)
+                               .above(0)
+                               .from("16 N: where Baxter's firmware stops the arm"));
+}
+
+Quantities expects(const MotionOptions& motion) {
+  if (!motion.adaptive_hover) return {};
+  return motion.adaptive_hover->certainty ? Quantity::height | Quantity::probability : Quantities(Quantity::height);
 }
 
 Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted) {
   Descent out{desk + motion.hover, desk + motion.hover, desk - motion.overrun};
   if (motion.adaptive_hover && predicted) {
     const AdaptiveHover& adaptive = *motion.adaptive_hover;
+    const double probability = adaptive.certainty ? predicted->probability.value_or(0.5) : 0.5;
+    const double certainty = adaptive.certainty.value_or(1.0);
     // The desk is there whatever the models say.
-    const double surface = std::max(desk, predicted->height + adaptive.deviations * predicted->standard_deviation);
+    double surface = desk;
+    if (probability > 1.0 - certainty)
+      surface = std::max(desk, predicted->height + adaptive.deviations * predicted->standard_deviation);
     out.start = std::min(out.hover, surface + adaptive.clearance);
+    // Where a contact is not felt the arm presses on to the floor: as deep into an object as into the desk, no deeper.
+    if (probability >= certainty) {
+      constexpr double kSure = 3.0;  // deviations
+      const double lowest = predicted->height - kSure * predicted->standard_deviation;
+      out.floor = std::min(out.start, std::max(desk, lowest) - motion.overrun);
+    }
   }
   return out;
 }

@@ -17,6 +17,8 @@ struct AdaptiveHover : Options {
   double deviations = 2.0;  ///< standard deviations of the expected height that are kept clear
   double clearance = 0.01;  ///< metres, beside them
   double speed = 0.1;       ///< m/s, from the height of travel down to there
+  /// How probable an object must be, or none, to be relied on; without it an object is expected everywhere.
+  std::optional<double> certainty;
   void list(Fields& fields) override;
 };
 
@@ -28,6 +30,8 @@ struct MotionOptions : Options {
   double step = 0.03;           ///< m, paper
   double pause = 0.5;           ///< s, paper and two_stage
   double back_off = 0.02;       ///< m, two_stage
+  double brake = 0.0;           ///< m, continuous
+  bool confirm = false;         ///< continuous; a real arm always does
   double fine_speed = 0.02;     ///< m/s, two_stage
   double fine_threshold = 6.0;  ///< N, two_stage
   double threshold = 10.0;      ///< N
@@ -38,14 +42,18 @@ struct MotionOptions : Options {
   double tare = 0.2;           ///< s
   double overrun = 0.03;       ///< m below the desk
   double timeout = 60.0;       ///< s
+  std::optional<double> force_limit;  ///< N
   void list(Fields& fields) override;
 };
+
+/// What a motion depends on of all that the models expect.
+Quantities expects(const MotionOptions& motion);
 
 /// The heights of one descent, metres, in the frame of the scene: floor <= start <= hover.
 struct Descent {
   double hover;  ///< where the arm arrives, and to where it retreats
   double start;  ///< where the slow descent begins: `hover`, unless that is adaptive and something is predicted
-  double floor;  ///< where it ends without a contact
+  double floor;  ///< where it ends without a contact: below the desk, or below an object that is certain to be there
 };
 Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted);
 
@@ -53,6 +61,12 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
 /// speed.
 double travel_seconds(const MotionOptions& motion, const TapRequest& request);
 double retreat_seconds(const MotionOptions& motion, const Descent& descent, double height);
+
+/// The force at which an arm with a `force_limit` stops by itself, newtons: what it presses on while it brakes is
+/// within the limit.
+constexpr double kOwnStop = 0.75;
+/// Why a tap has the outcome `aborted`, then.
+constexpr const char* kStoppedByItself = "the arm stopped by itself, short of motion.force_limit";
 
 /// How long `continuous` watches the arm once it has stopped it, seconds: what the arm presses on meanwhile tells of
 /// the onset, too.

@@ -5,6 +5,7 @@
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -28,6 +29,17 @@ struct Piece {
     const double v = cosine * (py - y) - sine * (px - x);
     if (family == Family::box) return std::abs(u) <= a && std::abs(v) <= b;
     return u * u * (b * b) + v * v * (a * a) <= a * a * (b * b);
+  }
+
+  /// How far inside a place lies, metres; negative: outside. Exact within a box; of an ellipse and outside of corners to
+  /// first order in the distance from the rim.
+  double depth(double px, double py) const {
+    const double u = cosine * (px - x) + sine * (py - y);
+    const double v = cosine * (py - y) - sine * (px - x);
+    if (family == Family::box) return std::min(a - std::abs(u), b - std::abs(v));
+    const double q = std::sqrt(u * u * (b * b) + v * v * (a * a)) / (a * b);
+    const double slope = std::sqrt(u * u * (b * b * b * b) + v * v * (a * a * a * a)) / (a * a * b * b);
+    return slope > 0.0 ? q * (1.0 - q) / slope : b;
   }
 
   /// How far it reaches from its centre along x and along y.
@@ -64,6 +76,14 @@ struct Outline {
     const bool in_first = first.contains(x, y);
     if (kind == Kind::one) return in_first;
     return kind == Kind::two ? in_first || second.contains(x, y) : in_first && !second.contains(x, y);
+  }
+
+  /// How far inside of it, as of a piece.
+  double depth(double x, double y) const {
+    const double in_first = first.depth(x, y);
+    if (kind == Kind::one) return in_first;
+    const double in_second = second.depth(x, y);
+    return kind == Kind::two ? std::max(in_first, in_second) : std::min(in_first, -in_second);
   }
 };
 

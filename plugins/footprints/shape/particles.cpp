@@ -26,6 +26,9 @@ double some_scale(Random& random) {
   return scales[static_cast<std::size_t>(random.bits() % kScales)];
 }
 
+/// The loss from which on a label counts as wrong: half of that of one which no blur explains.
+constexpr double kMistake = 0.5;
+
 constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of a new piece from a wrong label
 
 /// Standard normal (Box and Muller 1958).
@@ -253,15 +256,35 @@ class LatticeCounts {
 
 }  // namespace
 
+LabelModel::LabelModel(const ParticleSettings& settings, double blur)
+    : blurs_(blur > 0.0), units_(std::log((1.0 - settings.mistaken) / settings.mistaken)) {
+  constexpr double kDeviations = 3.5;  // beyond, the place decides in one of some thousand touches
+  // Without a blur a step is so short that no touch is within one of a rim.
+  const double reach = kDeviations * std::max(blur, 1e-12);
+  steps_per_metre_ = 0.5 * kSteps / reach;
+  for (int place = 0; place < kSteps + 2; ++place) {
+    const double depth = ((place - 0.5) / (0.5 * kSteps) - 1.0) * kDeviations;
+    double inside = 0.5 * std::erfc(-depth / std::sqrt(2.0));
+    if (place == 0) inside = 0.0;
+    if (place == kSteps + 1) inside = 1.0;
+    const double on = inside * (1.0 - settings.mistaken) + (1.0 - inside) * settings.lies;
+    const double off = inside * settings.mistaken + (1.0 - inside) * (1.0 - settings.lies);
+    table_.push_back({off, std::log((1.0 - settings.lies) / off) / units_, inside * settings.mistaken / off});
+    table_.push_back({on, std::log((1.0 - settings.mistaken) / on) / units_, (1.0 - inside) * settings.lies / on});
+  }
+}
+
 Particles::Particles(const OutlinePrior& prior, const ParticleSettings& settings, Random random)
     : prior_(prior),
       settings_(settings),
       random_(random),
-      log_odds_(std::log((1.0 - settings.mistaken) / settings.mistaken)) {
+      exact_(settings, 0.0),
+      blurred_(settings, settings.blur) {
   particles_.reserve(static_cast<std::size_t>(settings.count));
   for (int i = 0; i < settings.count; ++i) {
     const Outline outline = prior_.draw(random_);
     particles_.push_back({outline, prior_.density(outline)});
+    particles_.back().blurred = settings.blur > 0.0 && i % 2 == 1;
   }
 }
 
@@ -269,6 +292,20 @@ double Particles::mean_mistakes() const {
   double sum = 0.0;
   for (const Particle& particle : particles_) sum += particle.mistakes;
   return sum / static_cast<double>(particles_.size());
+}
+
+void Particles::doubt(VectorOut out) const {
+  out.setZero();
+  for (const Particle& particle : particles_) {
+    if (!(particle.loss > 0.0)) continue;  // nothing speaks against it
+    const LabelModel& labels = this->labels(particle.blurred);
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+      const Touch& touch = touches_[i];
+      out(static_cast<Eigen::Index>(i)) +=
+          labels.wrong(labels.depth(particle.outline, touch.place), touch.on);
+    }
+  }
+  out /= static_cast<double>(particles_.size());
 }
 
 double Particles::share_of_one() const {
@@ -284,9 +321,12 @@ double Particles::add(const Touch& touch) {
   double sum = 0.0;
   double sum_of_squares = 0.0;
   for (Particle& particle : particles_) {
-    const bool right = particle.outline.contains(touch.place.x, touch.place.y) == touch.on;
-    if (!right) ++particle.mistakes;
-    const double weight = right ? 1.0 - settings_.mistaken : settings_.mistaken;
+    const LabelModel& labels = this->labels(particle.blurred);
+    const double depth = labels.depth(particle.outline, touch.place);
+    const double loss = labels.loss(depth, touch.on);
+    if (loss > kMistake) ++particle.mistakes;
+    particle.loss += loss;
+    const double weight = labels.probability(depth, touch.on);
     weights.push_back(weight);
     sum += weight;
     sum_of_squares += weight * weight;
@@ -319,19 +359,29 @@ void Particles::resample(const std::vector<double>& weights, double sum) {
 
 void Particles::move(Particle& particle) {
   ++tried_;
-  const Proposal proposal = propose(particle.outline, particle.density, prior_, touches_, random_);
+  constexpr double kChangesBlur = 0.05;
+  const bool changes_blur = settings_.blur > 0.0 && random_.uniform() < kChangesBlur;
+  const bool blurred = particle.blurred != changes_blur;
+  const LabelModel& labels = this->labels(blurred);
+  const Proposal proposal = changes_blur ? Proposal{particle.outline, particle.density, 1.0}
+                                         : propose(particle.outline, particle.density, prior_, touches_, random_);
   if (!(proposal.correction > 0.0)) return;
   // Metropolis and Hastings: taken if a uniform number is below the ratio of the likelihoods times the correction. So
-  // many mistakes are allowed, and most outlines are given up before all labels are looked at: the latest are the
-  // nearest to the edge.
-  const double allowed = particle.mistakes + std::log(proposal.correction / (1.0 - random_.uniform())) / log_odds_;
+  // much loss is allowed, and most outlines are given up before all labels are looked at: the latest are the nearest to
+  // the edge.
+  const double allowed =
+      particle.loss + std::log(proposal.correction / (1.0 - random_.uniform())) / labels.units();
   if (allowed < 0.0) return;
   int mistakes = 0;
+  double loss = 0.0;
   for (auto touch = touches_.rbegin(); touch != touches_.rend(); ++touch) {
-    mistakes += proposal.outline.contains(touch->place.x, touch->place.y) != touch->on ? 1 : 0;
-    if (mistakes > allowed) return;
+    const double depth = labels.depth(proposal.outline, touch->place);
+    const double one = labels.loss(depth, touch->on);
+    mistakes += one > kMistake ? 1 : 0;
+    loss += one;
+    if (loss > allowed) return;
   }
-  particle = {proposal.outline, proposal.density, mistakes};
+  particle = {proposal.outline, proposal.density, mistakes, loss, blurred};
   ++moved_;
 }
 

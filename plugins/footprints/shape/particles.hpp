@@ -14,11 +14,53 @@ namespace palpate::footprints {
 
 struct ParticleSettings {
   int count = 2000;
-  double mistaken = 0.01;  ///< probability that a label is wrong
+  double mistaken = 0.01;  ///< probability that a touch of an object has the label of the desk
+  double lies = 0.01;      ///< probability that a touch of the desk has the label of an object
+  /// Standard deviation of the place of a touch, along x and y, metres, if there is any: half of the outlines believe
+  /// so at first, and half that places are exact.
+  double blur = 0.0;
   /// Moves of each outline after a touch, over the share of outlines that its label leaves (the effective sample size:
   /// Kong, Liu and Wong 1994): a label that nobody expected leaves many copies of few outlines, which have to part.
   double moves = 4.0;
   int most_moves = 40;
+};
+
+/// What a label says of how far inside of an outline its touch was.
+class LabelModel {
+ public:
+  LabelModel(const ParticleSettings& settings, double blur);
+
+  /// How deep a place is within an outline, as far as it matters here: without a blur only whether it is within.
+  double depth(const Outline& outline, const Target& place) const {
+    if (blurs_) return outline.depth(place.x, place.y);
+    return outline.contains(place.x, place.y) ? 1.0 : -1.0;
+  }
+
+  /// The probability of a label at this depth (metres; negative: outside).
+  double probability(double depth, bool on) const { return table_[index(depth, on)].probability; }
+  /// How much it speaks against the outline, 0 for a label that is right far from the rim; in units() of a logarithm.
+  double loss(double depth, bool on) const { return table_[index(depth, on)].loss; }
+  double units() const { return units_; }
+  /// The probability that such a label is wrong, and not just on the other side of a rim by the blur of its place.
+  double wrong(double depth, bool on) const { return table_[index(depth, on)].wrong; }
+
+ private:
+  struct Entry {
+    double probability;
+    double loss;
+    double wrong;
+  };
+  static constexpr int kSteps = 128;  ///< over the depths at which the place decides
+  std::size_t index(double depth, bool on) const {
+    const double step = depth * steps_per_metre_ + 0.5 * kSteps;
+    const int place = step < 0.0 ? 0 : step >= kSteps ? kSteps + 1 : 1 + static_cast<int>(step);
+    return static_cast<std::size_t>(2 * place + (on ? 1 : 0));
+  }
+
+  bool blurs_;
+  double units_;
+  double steps_per_metre_;
+  std::vector<Entry> table_;
 };
 
 /// An outline, and what its moves ask for again and again.
@@ -26,6 +68,8 @@ struct Particle {
   Outline outline;
   double density;    ///< by the prior, up to a constant factor
   int mistakes = 0;  ///< touches so far that it has wrong
+  double loss = 0.0;  ///< what all of them say against it
+  bool blurred = false;
 };
 
 class Particles {
@@ -39,6 +83,9 @@ class Particles {
 
   /// Sets `inside` (M) to how many outlines hold each of the places: quickly if those are a lattice, row by row.
   void count_inside(const PointsView& places, VectorOut inside) const;
+
+  /// The probability that the label of each touch so far is wrong, and no blur accounts for it.
+  void doubt(VectorOut out) const;
 
   /// Touches so far that an outline has wrong, on average.
   double mean_mistakes() const;
@@ -59,7 +106,9 @@ class Particles {
   Random random_;
   std::vector<Particle> particles_;
   std::vector<Touch> touches_;
-  double log_odds_;  ///< of a right label against a wrong one
+  const LabelModel& labels(bool blurred) const { return blurred ? blurred_ : exact_; }
+
+  LabelModel exact_, blurred_;
   long tried_ = 0;
   long moved_ = 0;
 };

@@ -4,6 +4,7 @@
 #include "../classifier/laplace.hpp"
 #include "particles.hpp"
 
+#include <optional>
 #include <string>
 
 namespace palpate::footprints {
@@ -13,6 +14,8 @@ struct ShapeOptions : LaplaceOptions {
   double largest = 0.22;
   double one_piece = 0.3;
   double mistaken = 0.01;
+  std::optional<double> lies;
+  double blur = 0.0;
   double contradictions = 4.0;
   std::int64_t particles = 2000;
   void list(Fields& fields) override {
@@ -25,6 +28,12 @@ struct ShapeOptions : LaplaceOptions {
                                .at_most(1));
     fields.real(mistaken,
                 Field("mistaken", "probability that the label of a touch is wrong").at_least(1e-6).at_most(0.4));
+    fields.real(lies, Field("lies", "the same of a touch of the desk, if that is more often taken for an object")
+                          .at_least(1e-6)
+                          .at_most(0.4));
+    fields.real(blur, Field("blur", "standard deviation of the place of a touch, along x and y")
+                          .in(Unit::metre)
+                          .at_least(0));
     fields.real(contradictions, Field("contradictions",
                                       "hand over to the classifier when an outline has so many more touches wrong, on "
                                       "average, than mistaken lets expect")
@@ -41,7 +50,9 @@ class Shape final : public Footprint {
   Shape(const Options& options, const Context& context)
       : options_(options),
         classifier_(options, context),
-        particles_(prior(options, context.scene.area()), {static_cast<int>(options.particles), options.mistaken},
+        particles_(prior(options, context.scene.area()),
+                   {static_cast<int>(options.particles), options.mistaken, options.lies.value_or(options.mistaken),
+                    options.blur},
                    context.random("footprint/shape")) {}
 
   void add(const Touch& touch) override {
@@ -57,6 +68,11 @@ class Shape final : public Footprint {
     if (handed_over_at_ > 0) return classifier_.probability(places, out);
     particles_.count_inside(places, out);
     out /= particles_.size();
+  }
+
+  void doubt(VectorOut out) const override {
+    if (handed_over_at_ > 0) return Footprint::doubt(out);
+    particles_.doubt(out);
   }
 
   std::vector<FootprintNumber> numbers() const override {

@@ -12,6 +12,7 @@
 #include "report/page/json.hpp"
 #include "report/page/page.hpp"
 #include "report/page/warnings.hpp"
+#include "report/words/words.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -75,6 +76,10 @@ Json json_of_build(const Tree& manifest) {
 
 }  // namespace
 
+static void to_json(Json& out, const TapBelief::Doubted& one) {
+  out = {{"tap", one.tap}, {"words", doubt_words(one)}};
+}
+
 static void to_json(Json& out, const Moment& moment) {
   const RunResult& result = moment.result;
   Row errors;
@@ -88,6 +93,7 @@ static void to_json(Json& out, const Moment& moment) {
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
               {"remark", result.footprint ? result.footprint->remark : ""}});
+  if (result.doubted) out["doubted"] = *result.doubted;
   if (moment.next) {
     out["next"] = {{"x", moment.next->target.x},
                    {"y", moment.next->target.y},

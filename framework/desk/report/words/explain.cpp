@@ -57,6 +57,7 @@ class Explanation {
     explain_outcome();
     page_.heading("What it changed");
     explain_errors();
+    explain_doubt();
     return page_.text();
   }
 
@@ -221,7 +222,7 @@ class Explanation {
     page_.say(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
                           length_words(height), length_words(std::sqrt(belief.height_variance()(candidate))),
                           two_part ? ", if an object is there (the surface process)" : ""));
-    if (!two_part || playback_.experiment().scene().on_surface(tap_.contact.height)) expected_ = height;
+    if (!two_part || on_surface()) expected_ = height;
   }
 
   void explain_outcome() {
@@ -232,17 +233,22 @@ class Explanation {
           "it, and its place is left out from then on.",
           outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, contact.seconds));
     } else {
-      explain_contact(contact, playback_.experiment().scene().on_surface(contact.height));
+      explain_contact(contact, on_surface());
     }
     if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
     const std::string reason = recording_.summary->text("stop_reason");
     page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
   }
 
+  bool on_surface() const { return row_.flag("on_surface").value_or(false); }
+
   void explain_contact(const Contact& contact, bool on) {
     std::string text =
         fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
-    if (const double more = contact.height - expected_.value_or(contact.height); more != 0.0)
+    const double height = row_.number("corrected_height").value_or(contact.height);
+    if (height != contact.height)
+      text += fmt::format(", {} without what motion and arm were thought to add", length_words(height));
+    if (const double more = height - expected_.value_or(height); more != 0.0)
       text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
     text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
     if (row_.flag("true_on_surface").value_or(on) != on)
@@ -271,6 +277,23 @@ class Explanation {
     for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
     if (lengths.empty() && others.empty())
       page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
+  }
+
+  /// Whether the tap is believed, right after it and by all that came later.
+  void explain_doubt() {
+    if (!options_.height.lies || tap_.contact.outcome != Outcome::contact) return;
+    page_.heading("Whether it is believed");
+    const auto said = [&](int taps) {
+      playback_.advance_to(taps);
+      playback_.experiment().choose_next();  // which has the models take in all taps
+      for (const TapBelief::Doubted& one : playback_.experiment().belief().doubted()) {
+        if (one.tap == number_) return "may lie: " + doubt_words(one);
+      }
+      return std::string("is believed");
+    };
+    const auto all = static_cast<int>(recording_.rows.size());
+    page_.say(fmt::format("Right after it, it {}.", said(number_)));
+    if (all > number_) page_.say(fmt::format("By all {} taps it {}.", all, said(all)));
   }
 
   const Workshop& workshop_;

@@ -2,6 +2,7 @@
 // Numbers in sentences: lengths in the unit that suits them, and lines that fit a terminal.
 #pragma once
 
+#include "experiment/tap_belief.hpp"
 #include "record/row.hpp"
 
 #include <string>
@@ -20,6 +21,10 @@ std::string place_words(double x, double y);
 
 /// The number at `field` of a record as `words` has it; "" where there is none.
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
+
+/// What is thought of a contact that may lie, and why: "97 %, by its height", "80 %, by where it is: outlines that agree
+/// with the other taps have no object there".
+std::string doubt_words(const TapBelief::Doubted& one);
 
 /// "1 tap", "3 taps"
 std::string counted(long count, const std::string& noun);

@@ -50,10 +50,18 @@ function markTrace(taps, name, marker, more = {}) {
 
 const edge = (color, width) => ({ color, width });
 
-/// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt; a star is next.
+/// The taps that are doubted at this moment; their hover says how much, and why.
+const doubtedOf = (data, moment) =>
+  (moment.doubted ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may lie: ${one.words}` }));
+
+/// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt, a ring around what is
+/// doubted; a star is next.
 function marks(data, moment) {
   const [on, off, failed] = tapsUntil(data.taps, moment.taps);
+  const doubted = doubtedOf(data, moment);
+  const ring = markTrace(doubted, "doubted", { symbol: "circle-open", size: 18, line: edge("#e8112d", 2.4) });
   return [
+    ...(doubted.length > 0 ? [ring] : []),
     markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
     markTrace(off, "off the object", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
     markTrace(off, "off the object", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "gp/doubt.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+/// Of the signal of the config: a surface may go up and down as far as that, or be nearly flat.
+constexpr double kSignals[] = {1.0, 0.3, 0.1};
+/// Of the noise of the config, which is that of a rough arm: a perfect one is more exact.
+constexpr double kNoises[] = {1.0, 1.0 / 6.0};
+/// Of the signal, and how many times as far as the kernel's its covariance reaches.
+constexpr double kBroadSignal = 0.5;
+constexpr double kBroader = 2.5;
+
+}  // namespace
+
+void DoubtedSurface::judge(const Process& process, const VectorView& suspicion) {
+  const ProcessSettings& settings = process.settings();
+  judged_ = process.size() > 0 && settings.noise > 0.0;
+  judgement_.doubt = suspicion;
+  if (!judged_) return;
+  cover(process);
+  Testimony testimony;
+  const auto taps = static_cast<Eigen::Index>(process.size());
+  testimony.covariance.resize(taps, taps);
+  process.kernel().covariance(process.places(), process.places(), testimony.covariance);
+  const Points closer = process.places() / kBroader;
+  testimony.broad.resize(taps, taps);
+  process.kernel().covariance(closer, closer, testimony.broad);
+  testimony.heights = process.targets().array() - settings.mean;
+  testimony.suspicion = suspicion;
+  for (const double share : kSignals) testimony.signals.push_back(share * settings.signal);
+  for (const double share : kNoises) testimony.noises.push_back(share * settings.noise);
+  testimony.broad_signal = kBroadSignal * settings.signal;
+  testimony.level = settings.mean_ratio * settings.signal;
+  testimony.lie = std::hypot(settings.signal, testimony.level);
+  judgement_ = palpate::judge(testimony);
+}
+
+void DoubtedSurface::cover(const Process& process) {
+  const Eigen::Index taps = process.size();
+  if (generation_ != process.generation()) covered_ = 0;
+  generation_ = process.generation();
+  if (covariances_.cols() < taps) {
+    const Eigen::Index room = std::max(2 * covariances_.cols(), taps);
+    covariances_.conservativeResize(candidates_.size(), room);
+    broad_.conservativeResize(candidates_.size(), room);
+  }
+  const PointsView places = process.places();
+  const Points closer = candidates_.points / kBroader;
+  for (; covered_ < taps; ++covered_) {
+    const auto place = places.middleRows(covered_, 1);
+    process.kernel().covariance(candidates_.points, place, covariances_.middleCols(covered_, 1));
+    process.kernel().covariance(closer, Points(place / kBroader), broad_.middleCols(covered_, 1));
+  }
+}
+
+void DoubtedSurface::read_mean(const Process& process, Eigen::VectorXd& out) const {
+  if (!judged_) return process.read_mean(0, out);
+  out = covariances_.leftCols(covered_) * judgement_.a.segment(1, covered_) +
+        broad_.leftCols(covered_) * judgement_.a.tail(covered_);
+  out.array() += judgement_.a(0) + process.settings().mean;
+}
+
+void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out) const {
+  if (!judged_) return process.read_variance(0, out);
+  Eigen::MatrixXd z(candidates_.size(), 1 + 2 * covered_);
+  z << Eigen::VectorXd::Ones(candidates_.size()), covariances_.leftCols(covered_), broad_.leftCols(covered_);
+  out.resize(candidates_.size());
+  process.kernel().variance(candidates_.points, out);
+  out *= judgement_.s2;
+  out += (z * judgement_.b).cwiseProduct(z).rowwise().sum();
+  // Rounding may leave less than nothing where taps are close.
+  out = out.cwiseMax(0.0);
+}
+
+}  // namespace palpate

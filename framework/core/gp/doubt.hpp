@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// A surface some of whose taps may lie: lies.hpp over the taps of a process, and its maps over the candidates.
+#pragma once
+
+#include "gp/candidates.hpp"
+#include "gp/lies.hpp"
+#include "gp/process.hpp"
+
+namespace palpate {
+
+class DoubtedSurface {
+ public:
+  /// `candidates` must outlive it.
+  explicit DoubtedSurface(const Candidates& candidates) : candidates_(candidates) {}
+
+  /// Judges all taps of `process`, of which `suspicion` (a value each) is thought before their heights are compared.
+  /// Without noise nobody is judged: the surface is that of the process.
+  void judge(const Process& process, const VectorView& suspicion);
+
+  /// The probability that each tap lies; as suspected where nobody was judged.
+  const Eigen::VectorXd& doubt() const { return judgement_.doubt; }
+
+  /// Those that were judged last.
+  int taps() const { return static_cast<int>(judgement_.doubt.size()); }
+
+  // These size `out`, in the unit of the targets and its square; noise excluded.
+  void read_mean(const Process& process, Eigen::VectorXd& out) const;
+  void read_variance(const Process& process, Eigen::VectorXd& out) const;
+
+ private:
+  void cover(const Process& process);
+
+  const Candidates& candidates_;
+  Judgement judgement_;
+  bool judged_ = false;
+  Eigen::MatrixXd covariances_, broad_;  ///< candidates x taps: k and l of lies.hpp
+  Eigen::Index covered_ = 0;             ///< taps
+  int generation_ = -1;                  ///< of the hyperparameters that these were made with
+};
+
+}  // namespace palpate

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// Which taps lie, against the sum over all sets of liars, signals and noises: every set factorised for itself with 50
+// digits, its posterior by the book.
+#include "gp/lies.hpp"
+
+#include "support/sanitizers.hpp"
+#include "support/testing.hpp"
+#include "support/textbook.hpp"
+
+#include <palpate/random.hpp>
+
+#include <Eigen/LU>
+#include <boost/multiprecision/mpfr.hpp>
+
+namespace palpate::test {
+namespace {
+
+using Real =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<50>, boost::multiprecision::et_off>;
+
+constexpr double kLengthScale = 0.03;
+constexpr double kBroader = 0.075;
+constexpr double kPi = 3.14159265358979323846;
+
+template <class Number>
+Number covariance(const Target& a, const Target& b, double length_scale) {
+  using std::exp;
+  const Number dx = (Number(a.x) - b.x) / length_scale;
+  const Number dy = (Number(a.y) - b.y) / length_scale;
+  return exp(-(dx * dx + dy * dy) / 2);
+}
+
+/// Taps at random, of which some lie, and where the surface is asked for.
+struct Trial {
+  std::vector<Target> places, probes;
+  Testimony testimony;
+
+  Trial(int taps, double level, bool broad, std::uint64_t seed, double share_of_lies = 0.25) {
+    Random random(seed, "lies test");
+    const auto some = [&](int count) {
+      std::vector<Target> out;
+      for (int i = 0; i < count; ++i) out.push_back({0.12 * random.uniform(), 0.12 * random.uniform()});
+      return out;
+    };
+    places = some(taps);
+    probes = some(5);
+    testimony.level = level;
+    testimony.lie = 1.3;
+    testimony.signals = {1.0, 0.2};
+    testimony.noises = {0.05, 0.02};
+    testimony.heights.resize(taps);
+    testimony.suspicion.resize(taps);
+    for (int i = 0; i < taps; ++i) {
+      const bool lies = random.uniform() < share_of_lies;
+      const double honest = 0.6 + 0.1 * std::sin(places[static_cast<std::size_t>(i)].x / 0.03);
+      testimony.heights(i) = lies ? 3.0 * random.uniform() - 1.0 : honest + 0.05 * random.uniform();
+      testimony.suspicion(i) = random.uniform() < 0.3 ? 0.3 : 0.03;
+    }
+    testimony.covariance = between(places, kLengthScale);
+    if (!broad) return;
+    testimony.broad = between(places, kBroader);
+    testimony.broad_signal = 0.5;
+  }
+
+  /// Of all taps with some points.
+  Eigen::MatrixXd between(const std::vector<Target>& points, double length_scale) const {
+    const auto at = [](const std::vector<Target>& all, Eigen::Index i) { return all[static_cast<std::size_t>(i)]; };
+    return Eigen::MatrixXd::NullaryExpr(
+        static_cast<Eigen::Index>(places.size()), static_cast<Eigen::Index>(points.size()),
+        [&](Eigen::Index i, Eigen::Index j) { return covariance<double>(at(places, i), at(points, j), length_scale); });
+  }
+};
+
+struct Belief {
+  Eigen::VectorXd doubt, mean, variance;
+};
+
+/// What a judgement says at the probes.
+Belief read(const Trial& trial, const Judgement& judgement) {
+  const auto taps = static_cast<Eigen::Index>(trial.places.size());
+  const auto probes = static_cast<Eigen::Index>(trial.probes.size());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Ones(probes, 1 + 2 * taps);
+  z.middleCols(1, taps) = trial.between(trial.probes, kLengthScale).transpose();
+  z.rightCols(taps) = trial.between(trial.probes, kBroader).transpose();
+  const Eigen::VectorXd form = (z * judgement.b).cwiseProduct(z).rowwise().sum();
+  return {judgement.doubt, z * judgement.a, Eigen::VectorXd::Constant(probes, judgement.s2) + form};
+}
+
+Belief sum_over_all_sets(const Trial& trial) {
+  const std::size_t taps = trial.places.size();
+  const Testimony& t = trial.testimony;
+  Points probes(5, 2);
+  for (Eigen::Index i = 0; i < 5; ++i)
+    probes.row(i) << trial.probes[static_cast<std::size_t>(i)].x, trial.probes[static_cast<std::size_t>(i)].y;
+  Belief out{Eigen::VectorXd::Zero(t.heights.size()), Eigen::VectorXd::Zero(5), Eigen::VectorXd::Zero(5)};
+  double sum = 0.0;
+  for (const double signal : t.signals) {
+    for (const double noise : t.noises) {
+      for (unsigned set = 0; set < 1u << taps; ++set) {
+        Textbook<Real> others(
+            [&](const Target& a, const Target& b) {
+              return Real(Real(signal) * signal * covariance<Real>(a, b, kLengthScale) +
+                          Real(t.broad_signal) * t.broad_signal * covariance<Real>(a, b, kBroader) +
+                          Real(t.level) * t.level);
+            },
+            Real(noise) * noise, probes);
+        double log_weight = 0.0;
+        for (std::size_t i = 0; i < taps; ++i) {
+          const auto row = static_cast<Eigen::Index>(i);
+          const double pi = t.suspicion(row);
+          if ((set >> i & 1u) == 0) {
+            others.add(trial.places[i], {Real(t.heights(row))});
+            log_weight += std::log(1.0 - pi);
+          } else {
+            const double lie = t.heights(row) / t.lie;
+            log_weight += std::log(pi / t.lie) - 0.5 * (lie * lie + std::log(2.0 * kPi));
+          }
+        }
+        const double weight = std::exp(log_weight + others.log_marginal_likelihood());
+        sum += weight;
+        for (std::size_t i = 0; i < taps; ++i)
+          out.doubt(static_cast<Eigen::Index>(i)) += (set >> i & 1u) != 0 ? weight : 0.0;
+        // The level is part of the surface, and of the variance that it has before any tap.
+        out.mean += weight * others.mean();
+        out.variance += weight * (others.variance() + others.mean().cwiseAbs2());
+      }
+    }
+  }
+  out.doubt /= sum;
+  out.mean /= sum;
+  out.variance = out.variance / sum - out.mean.cwiseAbs2();
+  return out;
+}
+
+class Lies : public testing::TestWithParam<int> {};
+
+TEST_P(Lies, AreThoseOfTheSumOverAllSetsWhereNoneIsLeftOut) {
+  const int taps = GetParam();
+  for (const bool rich : {false, true}) {
+    const Trial trial(taps, rich ? 1.0 : 0.0, rich, static_cast<std::uint64_t>(taps));
+    const Belief expected = sum_over_all_sets(trial);
+    const Judgement judgement = judge(trial.testimony, {1 << taps, 0.0, 0.0});
+    EXPECT_EQ(judgement.sets, 4 << taps) << "two signals, two noises";
+    EXPECT_EQ(judgement.next, 0.0);
+    const Belief got = read(trial, judgement);
+    // The covariance has a condition of some ten thousand, which takes four or five digits off sixteen.
+    EXPECT_LT((got.doubt - expected.doubt).lpNorm<Eigen::Infinity>(), 1e-10);
+    EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-10);
+    EXPECT_LT((got.variance - expected.variance).lpNorm<Eigen::Infinity>(), 1e-10);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfSoMany, Lies, testing::Values(1, 2, 5, 8));
+/// 4096 sets, four times over.
+INSTANTIATE_TEST_SUITE_P(OfTwelve, Lies, testing::ValuesIn(brief() ? std::vector<int>() : std::vector<int>{12}));
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Lies);
+
+TEST(LikeliestLies, AreEnoughForTheDoubtsAndTheSurface) {
+  double doubt = 0.0;
+  double mean = 0.0;
+  double deviation = 0.0;
+  for (int i = 0; i < (brief() ? 2 : 10); ++i) {
+    const Trial trial(10, 1.0, true, static_cast<std::uint64_t>(100 + i), 0.1);
+    const Belief all = read(trial, judge(trial.testimony, {1 << 10, 0.0, 0.0}));
+    const Belief some = read(trial, judge(trial.testimony));
+    doubt = std::max(doubt, (some.doubt - all.doubt).lpNorm<Eigen::Infinity>());
+    mean = std::max(mean, (some.mean - all.mean).lpNorm<Eigen::Infinity>());
+    deviation = std::max(deviation, (some.variance.cwiseSqrt() - all.variance.cwiseSqrt()).lpNorm<Eigen::Infinity>());
+  }
+  // Sets of a ten-thousandth of the likeliest one's weight are left out, of which there may be a hundred.
+  EXPECT_LT(doubt, 0.02);
+  EXPECT_LT(mean, 0.02);
+  EXPECT_LT(deviation, 0.02);
+}
+
+TEST(LikeliestLies, AreNoneAmongTapsThatAgreeAndTheOneThatDoesNot) {
+  Trial trial(12, 1.0, true, 7);
+  trial.testimony.heights.setConstant(0.6);
+  trial.testimony.suspicion.setConstant(0.03);
+  EXPECT_LT(judge(trial.testimony).doubt.maxCoeff(), 0.05);
+  // Among others within a length scale.
+  Eigen::Index closest = 0;
+  trial.testimony.covariance.colwise().sum().maxCoeff(&closest);
+  trial.testimony.heights(closest) = 1.6;
+  const Eigen::VectorXd doubt = judge(trial.testimony).doubt;
+  EXPECT_GT(doubt(closest), 0.9);
+  for (Eigen::Index i = 0; i < 12; ++i) EXPECT_TRUE(i == closest || doubt(i) < 0.2) << i << ": " << doubt(i);
+}
+
+TEST(LikeliestLies, AreSuspectedBeforeWhereNothingElseIsKnown) {
+  // A tap alone: as a lie its height is as probable as in truth, so that only the suspicion counts.
+  Trial trial(1, 1.0, false, 3);
+  trial.testimony.signals = {1.0};
+  trial.testimony.noises = {1e-6};
+  trial.testimony.lie = std::sqrt(2.0);
+  trial.testimony.suspicion.setConstant(0.2);
+  EXPECT_NEAR(judge(trial.testimony).doubt(0), 0.2, 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate::test
