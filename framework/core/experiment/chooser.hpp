@@ -59,8 +59,8 @@ class Chooser {
   std::vector<int> initial_;      ///< of a design that counts its taps
   std::optional<Search> search_;  ///< the other one
   Eigen::VectorXd scores_;
-  std::vector<bool> failed_;        ///< candidates at which a tap came to nothing
-  std::vector<Touched> contacts_;   ///< all others, in their order
+  std::vector<bool> failed_;       ///< candidates at which a tap came to nothing
+  std::vector<Touched> contacts_;  ///< all others, in their order
   std::vector<bool> allowed_;
   std::size_t taps_ = 0;
 };

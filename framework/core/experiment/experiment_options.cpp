@@ -174,8 +174,10 @@ void ExperimentOptions::list(Fields& fields) {
   fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive").of_strategy(),
                 {{"uncertainty", "tap where the height is least known", {}},
                  {"none", "tap the first candidate, as the paper's rule does: it stalls", {}}});
-  fields.choice(repeat, Field("repeat", "may a candidate be tapped twice; failed ones never are").of_strategy(),
-                {{"forbid", "no", {}}, {"allow", "yes, with independent noise", {}}});
+  fields.choice(
+      repeat,
+      Field("repeat", "may a candidate be tapped twice; failed ones never are, doubted ones always").of_strategy(),
+      {{"forbid", "no", {}}, {"allow", "yes, with independent noise", {}}});
   fields.real(tie_tolerance,
               Field("tie_tolerance", "scores within this times (|best| + the score's prior scale) of the best are tied")
                   .of_strategy()

@@ -50,7 +50,7 @@ struct SystematicOptions : Options {
 
 struct HeightOptions : ProcessOptions {
   std::optional<SystematicOptions> systematic;  ///< absent: heights are taken as they come
-  std::optional<double> lies;  ///< absent: every tap is believed
+  std::optional<double> lies;                   ///< absent: every tap is believed
   void list(Fields& fields) override;
 };
 

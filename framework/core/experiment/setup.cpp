@@ -60,7 +60,8 @@ Eigen::VectorXd Experiment::scores() {
 
 Preview Experiment::preview(const TapRecord& tap) const {
   Preview out{tap.predicted, backend_->describe(request_of(tap))};
-  if (!out.expected && belief_.recorded().has(Quantity::height)) out.expected = belief_.predict(tap.candidate, Quantity::height);
+  if (!out.expected && belief_.recorded().has(Quantity::height))
+    out.expected = belief_.predict(tap.candidate, Quantity::height);
   return out;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What motion and arm add to all heights alike, learnt from the desk: its height is known, so what taps on it show beyond
-// is an offset, and a drift over the arm's time.
+// What motion and arm add to all heights alike, learnt from the desk: its height is known, so what taps on it show
+// beyond is an offset, and a drift over the arm's time.
 //
 // Linear regression with a normal prior over both is a Gaussian process over time, of covariance o^2 + d^2 t t'
-// (Rasmussen and Williams 2006, section 2.1.2). Not every contact that is so low is one with the bare desk: the rim of a
-// dome or a jerk of the force is as low: those at a rim are left out, the others judged as the taps of a surface are
+// (Rasmussen and Williams 2006, section 2.1.2). Not every contact that is so low is one with the bare desk: the rim of
+// a dome or a jerk of the force is as low: those at a rim are left out, the others judged as the taps of a surface are
 // (gp/lies.hpp).
 //
 // What an object's own softness adds beyond the desk's is not in it: nothing that is touched tells.
@@ -48,8 +48,8 @@ class Systematic {
   double offset_;
   double drift_;
   double noise_;
-  std::vector<Touched> highs_;  ///< contacts with an object
-  std::vector<Touched> lows_;   ///< the others
+  std::vector<Touched> highs_;   ///< contacts with an object
+  std::vector<Touched> lows_;    ///< the others
   std::vector<double> seconds_;  ///< of those of them that are judged
   Judgement judgement_;
 };

@@ -91,7 +91,8 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     label.noise = height.noise / height.signal * label.signal;
     heights_.outputs.push_back(label);
   }
-  if (height.systematic) systematic_.emplace(height.systematic->offset, height.systematic->drift, height.systematic->noise);
+  if (height.systematic)
+    systematic_.emplace(height.systematic->offset, height.systematic->drift, height.systematic->noise);
   footprint_ = context.create<Footprint>(options.footprint);
   footprint_type_ = options.footprint.type;
   if (footprint_->is_weight()) footprint_.reset();

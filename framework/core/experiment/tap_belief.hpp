@@ -179,7 +179,7 @@ class TapBelief final : public Belief {
   int taps_ = 0;
   int initial_taps_ = 0;
   Quantities asked_;
-  bool current_ = true;  ///< update() has seen all taps
+  bool current_ = true;   ///< update() has seen all taps
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<Systematic> systematic_;
   Model heights_;
@@ -195,7 +195,7 @@ class TapBelief final : public Belief {
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
   std::string footprint_type_;
   bool footprint_asked_ = false;
-  bool height_asked_ = false;  ///< and not only whether it is believed
+  bool height_asked_ = false;      ///< and not only whether it is believed
   std::size_t touches_taken_ = 0;  ///< by the footprint
   int failed_fits_ = 0;
   /// Empty until somebody asks for them.

@@ -46,7 +46,7 @@ struct ModelState {
   std::optional<ProcessState> height_process, weight_process;
   std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
-  std::optional<Forecast> forecast;  ///< where a stop rule asks for it
+  std::optional<Forecast> forecast;                        ///< where a stop rule asks for it
   std::optional<std::vector<TapBelief::Doubted>> doubted;  ///< where contacts may lie
   Errors errors;
 };

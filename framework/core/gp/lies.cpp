@@ -40,8 +40,7 @@ class Court {
   Court(const Testimony& testimony, double signal, double noise) : signal_(signal), level_(testimony.level) {
     const Eigen::Index n = testimony.heights.size();
     Eigen::MatrixXd covariance = signal * signal * testimony.covariance;
-    if (testimony.broad.size() > 0)
-      covariance += testimony.broad_signal * testimony.broad_signal * testimony.broad;
+    if (testimony.broad.size() > 0) covariance += testimony.broad_signal * testimony.broad_signal * testimony.broad;
     covariance.diagonal().array() += noise * noise;
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
     inverse_ = factor.solve(Eigen::MatrixXd::Identity(n, n));
@@ -77,8 +76,8 @@ class Court {
     out.heights -= out.removed.transpose() * of_both.col(0);
     out.ones -= out.removed.transpose() * of_both.col(1);
     for (const int liar : liars) out.heights(liar) = out.ones(liar) = 0.0;
-    out.log_weight += 0.5 * of_both.col(0).dot(factor.solve(of_both.col(0))) -
-                      factor.matrixLLT().diagonal().array().log().sum();
+    out.log_weight +=
+        0.5 * of_both.col(0).dot(factor.solve(of_both.col(0))) - factor.matrixLLT().diagonal().array().log().sum();
     return out;
   }
 
@@ -113,11 +112,11 @@ class Court {
  private:
   double signal_;
   double level_;
-  Eigen::MatrixXd inverse_;     ///< A
-  Eigen::VectorXd heights_;     ///< A y
-  Eigen::VectorXd ones_;        ///< A 1
+  Eigen::MatrixXd inverse_;    ///< A
+  Eigen::VectorXd heights_;    ///< A y
+  Eigen::VectorXd ones_;       ///< A 1
   double log_evidence_ = 0.0;  ///< of all heights, the constant and a factor common to all courts aside
-  Eigen::ArrayXd log_odds_;      ///< of a lie against the truth, but for what the others say of its height
+  Eigen::ArrayXd log_odds_;    ///< of a lie against the truth, but for what the others say of its height
 };
 
 struct Sets {

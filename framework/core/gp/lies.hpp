@@ -2,18 +2,18 @@
 // Which taps lie, and what is believed of a surface if some do.
 //
 // A tap tells the surface, y_i = f(x_i) + noise, or it lies: then y_i is anything that a height may be before any tap.
-// With pi_i the probability that tap i lies before any heights are compared, and b_i the density of a lie, the sets S of
-// taps that do have
+// With pi_i the probability that tap i lies before any heights are compared, and b_i the density of a lie, the sets S
+// of taps that do have
 //     p(S | y) ~ prod_{i in S} pi_i b_i  prod_{i not in S} (1 - pi_i)  p(y without S).
 // With A = K^-1, K the covariance of all taps with their noise, a set that is left out needs no factor of its own:
 //     A' = A - A_:S (A_SS)^-1 A_S:,   log det K' = log det K + log det A_SS,
-// |S|^3 + n |S|^2 a set, and O(n) for all sets that have one tap more. There are 2^n; the likeliest are found by looking
-// at the neighbours of the likeliest whose neighbours are not known yet, and it is told how likely the first is of which
-// they were not looked at.
+// |S|^3 + n |S|^2 a set, and O(n) for all sets that have one tap more. There are 2^n; the likeliest are found by
+// looking at the neighbours of the likeliest whose neighbours are not known yet, and it is told how likely the first is
+// of which they were not looked at.
 //
-// Whether a height is odd depends on how far the surface goes up and down and on how exact a tap is, which a config does
-// not know: the same sum is made for several signals and noises, and each counts by its evidence. What is flat by itself
-// need not be as high as another thing beside it: with each signal goes a broad one, the same for all.
+// Whether a height is odd depends on how far the surface goes up and down and on how exact a tap is, which a config
+// does not know: the same sum is made for several signals and noises, and each counts by its evidence. What is flat by
+// itself need not be as high as another thing beside it: with each signal goes a broad one, the same for all.
 //
 // The posterior of the surface is the mixture of those of all sets, signals and noises. With z(x) = (1, k(x), l(x)), k
 // and l the unit covariances of x with the taps, l the broad ones, its mean and variance are a linear and a quadratic

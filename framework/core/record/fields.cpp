@@ -4,8 +4,8 @@
 #include "record/files.hpp"
 #include "record/tap_row.hpp"
 
-#include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <charconv>

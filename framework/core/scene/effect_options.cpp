@@ -57,7 +57,8 @@ void list(Latency& effect, Fields& fields) {
 }
 
 void list(HeightOffset& effect, Fields& fields) {
-  fields.real(effect.constant, Field("constant", "added to every height").in(Unit::metre).from("0: set what is to be tried"));
+  fields.real(effect.constant,
+              Field("constant", "added to every height").in(Unit::metre).from("0: set what is to be tried"));
   fields.real(effect.drift, Field("drift", "added for each second of the arm's time")
                                 .in(Unit::metre_per_second)
                                 .from("0: an arm that warms up drifts by the order of 1 mm/min, an estimate"));

@@ -96,7 +96,7 @@ class Touch {
   int jerk_left_ = 5;                                          ///< periods: 50 ms
   double force_ = 0.0;
   double peak_ = 0.0;
-  double late_ = 0.0;            ///< periods by which the force is heard late
+  double late_ = 0.0;           ///< periods by which the force is heard late
   std::vector<double> forces_;  ///< of all periods so far, where it is
   Normal normal_;
 };

@@ -17,8 +17,8 @@ namespace palpate::backends {
 Simulator::Simulator(const Options& options, const Context& context)
     : options_(options), context_(context), scene_(context.scene) {
   const Effects& effects = scene_.effects();
-  moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag ||
-           effects.latency || effects.missed_contacts || effects.false_contacts;
+  moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.latency ||
+           effects.missed_contacts || effects.false_contacts;
   perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
                effects.height_offset || effects.outliers);
   if (scene_.highest() >= scene_.desk() + options.motion.hover) {
@@ -68,7 +68,8 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const tapping::Desce
   double surface = contact_height(scene_, effects, target.x + dx, target.y + dy);
   const bool desk = surface <= scene_.desk();
   if (effects.outliers) {
-    surface = std::min(surface + outlier(*effects.outliers, context_.seed, target.x + dx, target.y + dy), descent.hover);
+    surface =
+        std::min(surface + outlier(*effects.outliers, context_.seed, target.x + dx, target.y + dy), descent.hover);
   }
   Contact contact = moves_ ? simulated_tap(request.number, descent, surface, desk) : ideal_tap(descent, surface);
   contact.seconds += tapping::travel_seconds(options_.motion, request);

@@ -165,7 +165,8 @@ double GuardedTap::next(double height, double force, bool fresh) {
     case Stage::stop:
       if (given_up_ && waited(kWatched)) {
         finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
-      } else if (waited(kWatched)) conclude(onset_of_descent(trace_).value_or(first_));
+      } else if (waited(kWatched))
+        conclude(onset_of_descent(trace_).value_or(first_));
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {

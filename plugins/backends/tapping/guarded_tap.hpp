@@ -110,9 +110,9 @@ class GuardedTap {
   double sum_ = 0.0;   ///< of forces while taring
   int summed_ = 0;     ///< how many
   double peak_ = 0.0;
-  double first_ = 0.0;         ///< height of the first contact of two_stage
-  double gap_ = 0.0;           ///< least distance of arm and set-point in this stage
-  long nearer_ = 0;            ///< the period in which it last became less
+  double first_ = 0.0;  ///< height of the first contact of two_stage
+  double gap_ = 0.0;    ///< least distance of arm and set-point in this stage
+  long nearer_ = 0;     ///< the period in which it last became less
   bool given_up_ = false;
   int above_ = 0;              ///< readings above the threshold, without a break
   std::vector<Sample> trace_;  ///< of the descent, for the onset

@@ -78,13 +78,15 @@ void MotionOptions::list(Fields& fields) {
         }},
        {"continuous", "at constant speed until the force rises; the height is that where it began to rise",
         [this](Fields& inner) {
-          inner.real(brake, Field("brake", "at a contact the set-point goes so far above the arm: one that trails it "
-                                           "stops sooner, and presses less")
+          inner.real(brake, Field("brake",
+                                  "at a contact the set-point goes so far above the arm: one that trails it "
+                                  "stops sooner, and presses less")
                                 .in(Unit::metre)
                                 .at_least(0)
                                 .from("0: the set-point is put where the arm is"));
-          inner.flag(confirm, Field("confirm", "believe a contact only if the force lasts for 0.1 s, and else go on: a "
-                                               "jerk is gone by then; a real arm always does"));
+          inner.flag(confirm, Field("confirm",
+                                    "believe a contact only if the force lasts for 0.1 s, and else go on: a "
+                                    "jerk is gone by then; a real arm always does"));
         }}});
   fields.real(
       speed,
@@ -111,8 +113,9 @@ void MotionOptions::list(Fields& fields) {
   fields.real(timeout, positive("timeout", "a tap that takes longer fails", Unit::second,
                                 "ten times what the paper's motion takes")
                            .at_most(3600));
-  fields.real(force_limit, Field("force_limit", "force that no tap is to exceed: at three quarters of it the arm stops "
-                                                "by itself, whatever of the contact is felt; not given, it does not")
+  fields.real(force_limit, Field("force_limit",
+                                 "force that no tap is to exceed: at three quarters of it the arm stops "
+                                 "by itself, whatever of the contact is felt; not given, it does not")
                                .in(Unit::newton)
                                .above(0)
                                .from("16 N: where Baxter's firmware stops the arm"));

@@ -37,11 +37,11 @@ struct MotionOptions : Options {
   double threshold = 10.0;      ///< N
   double hover = 0.135;         ///< m above the desk
   std::optional<AdaptiveHover> adaptive_hover;
-  double travel_speed = 0.3;   ///< m/s
-  double retreat_speed = 0.3;  ///< m/s
-  double tare = 0.2;           ///< s
-  double overrun = 0.03;       ///< m below the desk
-  double timeout = 60.0;       ///< s
+  double travel_speed = 0.3;          ///< m/s
+  double retreat_speed = 0.3;         ///< m/s
+  double tare = 0.2;                  ///< s
+  double overrun = 0.03;              ///< m below the desk
+  double timeout = 60.0;              ///< s
   std::optional<double> force_limit;  ///< N
   void list(Fields& fields) override;
 };

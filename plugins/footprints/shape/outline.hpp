@@ -31,8 +31,8 @@ struct Piece {
     return u * u * (b * b) + v * v * (a * a) <= a * a * (b * b);
   }
 
-  /// How far inside a place lies, metres; negative: outside. Exact within a box; of an ellipse and outside of corners to
-  /// first order in the distance from the rim.
+  /// How far inside a place lies, metres; negative: outside. Exact within a box; of an ellipse and outside of corners
+  /// to first order in the distance from the rim.
   double depth(double px, double py) const {
     const double u = cosine * (px - x) + sine * (py - y);
     const double v = cosine * (py - y) - sine * (px - x);

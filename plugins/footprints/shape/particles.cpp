@@ -275,11 +275,7 @@ LabelModel::LabelModel(const ParticleSettings& settings, double blur)
 }
 
 Particles::Particles(const OutlinePrior& prior, const ParticleSettings& settings, Random random)
-    : prior_(prior),
-      settings_(settings),
-      random_(random),
-      exact_(settings, 0.0),
-      blurred_(settings, settings.blur) {
+    : prior_(prior), settings_(settings), random_(random), exact_(settings, 0.0), blurred_(settings, settings.blur) {
   particles_.reserve(static_cast<std::size_t>(settings.count));
   for (int i = 0; i < settings.count; ++i) {
     const Outline outline = prior_.draw(random_);
@@ -301,8 +297,7 @@ void Particles::doubt(VectorOut out) const {
     const LabelModel& labels = this->labels(particle.blurred);
     for (std::size_t i = 0; i < touches_.size(); ++i) {
       const Touch& touch = touches_[i];
-      out(static_cast<Eigen::Index>(i)) +=
-          labels.wrong(labels.depth(particle.outline, touch.place), touch.on);
+      out(static_cast<Eigen::Index>(i)) += labels.wrong(labels.depth(particle.outline, touch.place), touch.on);
     }
   }
   out /= static_cast<double>(particles_.size());
@@ -369,8 +364,7 @@ void Particles::move(Particle& particle) {
   // Metropolis and Hastings: taken if a uniform number is below the ratio of the likelihoods times the correction. So
   // much loss is allowed, and most outlines are given up before all labels are looked at: the latest are the nearest to
   // the edge.
-  const double allowed =
-      particle.loss + std::log(proposal.correction / (1.0 - random_.uniform())) / labels.units();
+  const double allowed = particle.loss + std::log(proposal.correction / (1.0 - random_.uniform())) / labels.units();
   if (allowed < 0.0) return;
   int mistakes = 0;
   double loss = 0.0;

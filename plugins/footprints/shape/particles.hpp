@@ -66,8 +66,8 @@ class LabelModel {
 /// An outline, and what its moves ask for again and again.
 struct Particle {
   Outline outline;
-  double density;    ///< by the prior, up to a constant factor
-  int mistakes = 0;  ///< touches so far that it has wrong
+  double density;     ///< by the prior, up to a constant factor
+  int mistakes = 0;   ///< touches so far that it has wrong
   double loss = 0.0;  ///< what all of them say against it
   bool blurred = false;
 };

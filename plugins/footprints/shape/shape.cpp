@@ -31,9 +31,8 @@ struct ShapeOptions : LaplaceOptions {
     fields.real(lies, Field("lies", "the same of a touch of the desk, if that is more often taken for an object")
                           .at_least(1e-6)
                           .at_most(0.4));
-    fields.real(blur, Field("blur", "standard deviation of the place of a touch, along x and y")
-                          .in(Unit::metre)
-                          .at_least(0));
+    fields.real(blur,
+                Field("blur", "standard deviation of the place of a touch, along x and y").in(Unit::metre).at_least(0));
     fields.real(contradictions, Field("contradictions",
                                       "hand over to the classifier when an outline has so many more touches wrong, on "
                                       "average, than mistaken lets expect")

@@ -76,9 +76,7 @@ Json json_of_build(const Tree& manifest) {
 
 }  // namespace
 
-static void to_json(Json& out, const TapBelief::Doubted& one) {
-  out = {{"tap", one.tap}, {"words", doubt_words(one)}};
-}
+static void to_json(Json& out, const TapBelief::Doubted& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const Moment& moment) {
   const RunResult& result = moment.result;

@@ -22,8 +22,8 @@ std::string place_words(double x, double y);
 /// The number at `field` of a record as `words` has it; "" where there is none.
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
 
-/// What is thought of a contact that may lie, and why: "97 %, by its height", "80 %, by where it is: outlines that agree
-/// with the other taps have no object there".
+/// What is thought of a contact that may lie, and why: "97 %, by its height", "80 %, by where it is: outlines that
+/// agree with the other taps have no object there".
 std::string doubt_words(const TapBelief::Doubted& one);
 
 /// "1 tap", "3 taps"
