@@ -190,7 +190,7 @@ void TapBelief::build(Quantities wanted) {
   if (all.has(Quantity::uncertainty)) show(heights_, 0);
   if (all.has(Quantity::weight)) show(joined_ ? heights_ : labels_, label_output());
   if (two_part_ && (all.has(Quantity::height) || all.has(Quantity::doubt))) show(object_, 0);
-  if (all.has(Quantity::height) && !height_asked_) {
+  if (two_part_ && all.has(Quantity::height) && !height_asked_) {
     height_asked_ = object_.stale = true;
     current_ = false;
   }
