@@ -168,6 +168,20 @@ TEST_F(Explain, TellsWhatTheFootprintRemarks) {
   EXPECT_THAT(explain(directory, 1), Not(HasSubstr("Its remark")));
 }
 
+TEST_F(Explain, SaysWhichTapsAreDoubtedSinceWhenAndWhy) {
+  // The fourth of these taps is one of the air.
+  const fs::path directory = ran(
+      "scene=l scene.placement=random seed=103 scene.effects=standard backend.motion.confirm=false taps=30",
+      config("default.yaml"));
+  const json summary = json::parse(text_of(directory / "summary.json"));
+  ASSERT_TRUE(summary["doubted"].is_string());
+  EXPECT_THAT(summary["doubted"].get<std::string>(), StartsWith("4 0.9"));
+  const std::string lie = explain(directory, 4);
+  EXPECT_THAT(lie, HasSubstr("Right after it, it is believed."));
+  EXPECT_THAT(lie, ContainsRegex("By all 30 taps it may lie: 9. %, by its height"));
+  EXPECT_THAT(explain(directory, 5), Not(HasSubstr("may lie")));
+}
+
 TEST_F(Explain, ExpectsOfTheSurfaceOfAnObjectNothingBeforeOneIsTouchedNorOfTheDesk) {
   const fs::path directory = ran("scene=l taps=12", config("default.yaml"));
   bool hit = false;
