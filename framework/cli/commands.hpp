@@ -115,7 +115,8 @@ struct CompareArguments {
   std::vector<std::string> metrics;
   std::optional<std::string> where;
   std::optional<std::string> baseline;
-  std::vector<int> at;  ///< numbers of taps; none: as the jobs ended
+  std::vector<int> at;               ///< numbers of taps; none: as the jobs ended
+  std::optional<std::string> until;  ///< or once they were that good
   bool ratio = false;
   bool table = false;
   std::optional<int> workers;

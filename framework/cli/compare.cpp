@@ -26,17 +26,18 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
   constexpr std::size_t kDigits = 6;
   std::string name = fmt::format("compare_{}_{}", slug(fmt::format("{}", fmt::join(comparison.by, "_"))),
                                  slug(comparison.metric.name));
-  if (comparison.after_taps) name += fmt::format("_at_{}", *comparison.after_taps);
+  if (comparison.occasion) name += "_" + comparison.occasion->key();
   if (!where.empty()) name += "_where_" + hash_of(where).substr(0, kDigits);
   return sweep.directory / (name + ".csv");
 }
 
-/// For each of `taps` the rows of results.csv as they would be, had all jobs stopped there. What is missing is computed
-/// by `workers` processes, or as many as there are cores, with a line of progress on stderr. None if that was
+/// At each of the occasions the rows of results.csv as they would be, had all jobs stopped there. What is missing is
+/// computed by `workers` processes, or as many as there are cores, with a line of progress on stderr. None if that was
 /// interrupted: what is done then is kept. Throws Error.
 std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, const Sweep& sweep,
-                                                        const std::vector<int>& taps, std::optional<int> workers) {
-  const EarlierResults earlier(sweep, taps);
+                                                        const std::vector<Occasion>& occasions,
+                                                        std::optional<int> workers) {
+  const EarlierResults earlier(sweep, occasions);
   const std::vector<std::size_t>& missing = earlier.missing();
   const int together = workers.value_or(cores());
   SweepLine line(false);
@@ -54,11 +55,22 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
       show);
   if (!all) return std::nullopt;
   std::vector<std::vector<Row>> out;
-  for (const int count : taps) out.push_back(earlier.write(count));
+  for (const Occasion& one : occasions) out.push_back(earlier.write(one));
   return out;
 }
 
-/// All that is asked, of the jobs as they ended or as they were after so many taps; none if it was interrupted. Made as
+/// Those that are asked for, each once, in the order given.
+std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
+  std::vector<Occasion> out;
+  if (arguments.until) out.push_back(Occasion::once(*arguments.until));
+  for (const int count : arguments.at) {
+    const Occasion one = Occasion::after(count);
+    if (std::find(out.begin(), out.end(), one) == out.end()) out.push_back(one);
+  }
+  return out;
+}
+
+/// All that is asked, of the jobs as they ended or as they were at some occasions; none if it was interrupted. Made as
 /// a whole before anything is shown: an unknown metric is no reason for half of an answer.
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
@@ -69,29 +81,27 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
     where.emplace(text);
   }
   std::vector<Comparison> comparisons;
-  const auto add = [&](const std::vector<Row>& results, std::optional<int> after_taps) {
+  const auto add = [&](const std::vector<Row>& results, const std::optional<Occasion>& occasion) {
     for (const std::string& metric : arguments.metrics) {
       const CompareQuery query{arguments.by,       metric,          where ? &*where : nullptr,
                                arguments.baseline, arguments.ratio, arguments.table};
       comparisons.push_back(palpate::compare(sweep, results, query));
-      comparisons.back().after_taps = after_taps;
+      comparisons.back().occasion = occasion;
     }
   };
-  if (arguments.at.empty()) {
+  const std::vector<Occasion> occasions = occasions_of(arguments);
+  if (occasions.empty()) {
+    if (arguments.workers) throw Error("command line", "-j: there is nothing to compute without --at or --until");
     add(sweep_results(sweep), std::nullopt);
     return comparisons;
-  }
-  std::vector<int> taps;  // each once, in the order given
-  for (const int count : arguments.at) {
-    if (std::find(taps.begin(), taps.end(), count) == taps.end()) taps.push_back(count);
   }
   // What cannot be compared is found out before anything is computed; of which jobs a condition holds is not known yet.
   for (const std::string& metric : arguments.metrics) {
     palpate::compare(sweep, sweep_results(sweep), {arguments.by, metric, nullptr, arguments.baseline, false, true});
   }
-  const auto results = results_at(program, sweep, taps, arguments.workers);
+  const auto results = results_at(program, sweep, occasions, arguments.workers);
   if (!results) return std::nullopt;
-  for (std::size_t i = 0; i < results->size(); ++i) add((*results)[i], taps[i]);
+  for (std::size_t i = 0; i < results->size(); ++i) add((*results)[i], occasions[i]);
   return comparisons;
 }
 

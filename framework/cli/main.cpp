@@ -186,7 +186,7 @@ void add_rest(CommandLine& line) {
 void add_compare(CommandLine& line) {
   CLI::App* sub = line.add(
       "compare", "Groups of a sweep's jobs, with intervals and paired tests",
-      [&line](Needs& needs) { line.compare.at.empty() ? needs.whole() : needs.everything(); }, compare, line.compare);
+      [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); }, compare, line.compare);
   sub->add_option("DIR", line.compare.directory, "the sweep's directory")->required();
   const auto list = [&](const char* name, auto& values, const char* help) {
     return sub->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
@@ -201,13 +201,16 @@ void add_compare(CommandLine& line) {
                          "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, "
                          "and kept")
                         ->check(CLI::Range(1, kMany));
+  sub->add_option("--until", line.compare.until,
+                  "the jobs as they were once a field of the summary was as good as that: rmse_m=8mm; one that never "
+                  "was counts as it ended")
+      ->excludes(at);
   CLI::Option* ratio = sub->add_flag("--ratio", line.compare.ratio, "of every pair also the ratio of the means");
   sub->add_flag("--table", line.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
       ->excludes(baseline)
       ->excludes(ratio);
-  sub->add_option("-j", line.compare.workers, "with --at, jobs at a time; if not given, the number of cores")
-      ->check(CLI::Range(1, 1024))
-      ->needs(at);
+  sub->add_option("-j", line.compare.workers, "with --at or --until, jobs at a time; if not given, the number of cores")
+      ->check(CLI::Range(1, 1024));
 }
 
 void add_about_one(CommandLine& line) {

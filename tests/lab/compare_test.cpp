@@ -278,8 +278,8 @@ TEST(CompareWhere, RefusesUnknownNamesOtherUnitsAndWhatLeavesNothing) {
   EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m <= 1 s"), HasSubstr("compares a length"));
   EXPECT_EQ(
       made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m > 1 m"),
-      "command line: --where: leaves none of the 8 jobs, results.csv, or results_at_N.csv with --at, has the values it "
-      "is compared with");
+      "command line: --where: leaves none of the 8 jobs, results.csv, or what --at or --until leaves beside it, has the "
+      "values it is compared with");
   EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "found == true"), "accepted");
 }
 

@@ -22,7 +22,7 @@ Comparison comparison(const char* metric, Unit unit, std::optional<int> taps, st
   out.metric = {metric, unit, RecordField::Better::less};
   out.by = {"strategy"};
   out.groups = std::move(groups);
-  out.after_taps = taps;
+  if (taps) out.occasion = Occasion::after(*taps);
   return out;
 }
 

@@ -141,6 +141,29 @@ TEST_F(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
   EXPECT_EQ(compare(directory, words + "3,3 -j 1").out, once.out);
 }
 
+TEST_F(Benchmark, CountsAJobThatNeverGetsThereAsItEnded) {
+  const fs::path directory = narrowed("strategy=random,default scene=object_i scene.effects=none", 30);
+  const Words words = "--by strategy --metric robot_seconds,rmse_m,reached --ratio --until rmse_m=8mm";
+  const Ended ended = compare(directory, words);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("robot_seconds [s] by strategy once rmse_m was 8mm or less; less is better\n"));
+  EXPECT_THAT(ended.out, HasSubstr("\nrandom: 2 of 2 jobs never got there and count as they ended\n"));
+  EXPECT_THAT(ended.out, Not(HasSubstr("\ndefault: ")));
+  const std::vector<Cells> whole = csv_rows(text_of(directory / "results.csv"));
+  const std::vector<Cells> then = csv_rows(text_of(directory / "results_until_rmse_m_0.008.csv"));
+  ASSERT_EQ(then.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const bool reached = whole[i].at("strategy") == "default";
+    EXPECT_EQ(then[i].at("reached"), reached ? "true" : "false");
+    EXPECT_EQ(std::stod(then[i].at("rmse_m")) <= 0.008, reached);
+    EXPECT_EQ(then[i].at("robot_seconds") == whole[i].at("robot_seconds"), !reached);
+  }
+  EXPECT_EQ(csv_rows(text_of(directory / "compare_strategy_robot_seconds_until_rmse_m_0.008.csv"))[0].at("never"), "2");
+  EXPECT_EQ(compare(directory, words).err.find("jobs done"), std::string::npos) << "nothing is computed twice";
+  EXPECT_THAT(compare(directory, "--by strategy --metric robot_seconds --table --until rmse_m=8mm").out,
+              HasSubstr("\n2 jobs never got there and count as they ended.\n"));
+}
+
 TEST_F(Benchmark, NamesAJobWhoseRecordIsCutShort) {
   const fs::path directory = cubes(8);
   const fs::path job = job_of(directory, 0);
@@ -170,7 +193,12 @@ TEST_F(Benchmark, RefusesWhatCannotBeShown) {
   const auto refusal = [&](const Words& more) {
     return refused(Words{"compare", directory} + "--by strategy --metric rmse_m" + more);
   };
-  EXPECT_THAT(refusal("-j 2"), HasSubstr("-j requires --at"));
+  EXPECT_EQ(refusal("-j 2"), "command line: -j: there is nothing to compute without --at or --until\n");
+  EXPECT_THAT(refusal("--at 4 --until rmse_m=8mm"), HasSubstr("--until excludes --at"));
+  EXPECT_EQ(refusal("--until rmse=8mm"),
+            "command line: --until: 'rmse' is no field of the summary of which more or less is better, did you mean "
+            "'rmse_m'?\n");
+  EXPECT_THAT(refusal("--until rmse_m=8s"), HasSubstr("--until rmse_m"));
   EXPECT_EQ(refusal("--at 4,9"), "command line: --at: no job made 9 taps, the most are 8\n");
   EXPECT_THAT(refusal("--at 0"), HasSubstr("--at"));
   EXPECT_THAT(refusal("--table --ratio"), HasSubstr("--ratio excludes --table"));

@@ -7,6 +7,10 @@
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
+#include <fmt/format.h>
+
+#include <numeric>
+
 namespace palpate::test {
 namespace {
 
@@ -18,6 +22,14 @@ class Earlier : public InFolder, public testing::WithParamInterface<std::vector<
     words.push_back("taps=" + std::to_string(taps));
     const fs::path directory = folder_.path() / std::to_string(taps);
     return start_run(workshop_, shipped_config("default.yaml", words), directory, false, nullptr);
+  }
+
+  std::vector<Row> summaries_after(const Recording& recording, const std::vector<int>& taps) {
+    std::vector<Occasion> occasions;
+    for (const int count : taps) occasions.push_back(Occasion::after(count));
+    std::vector<Row> out;
+    for (const auto& row : summaries_at(workshop_, recording, occasions)) out.push_back(row.value());
+    return out;
   }
 
   Installation installation_;
@@ -37,7 +49,7 @@ double number(const Row& row, const std::string& name) { return row.number(name)
 TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
   const RunReport whole = run(14);
   const Recording recording = read_recording(workshop_, whole.directory);
-  const std::vector<Row> earlier = summaries_after(workshop_, recording, {5, 9});
+  const std::vector<Row> earlier = summaries_after(recording, {5, 9});
   ASSERT_EQ(earlier.size(), 2U);
   for (const int taps : {5, 9}) {
     const Row& row = earlier[taps == 5 ? 0 : 1];
@@ -50,14 +62,33 @@ TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
     }
     EXPECT_EQ(cell(row, "id"), cell(whole.summary, "id")) << "of the run that it was";
   }
-  EXPECT_EQ(summaries_after(workshop_, recording, {9}).front().find("nlpd") != nullptr, true);
-  EXPECT_EQ(cell(summaries_after(workshop_, recording, {9}).front(), "rmse_m"), cell(earlier[1], "rmse_m"))
+  EXPECT_EQ(summaries_after(recording, {9}).front().find("nlpd") != nullptr, true);
+  EXPECT_EQ(cell(summaries_after(recording, {9}).front(), "rmse_m"), cell(earlier[1], "rmse_m"))
       << "reading the models at 5 taps changes nothing";
+}
+
+TEST_P(Earlier, IsGoodEnoughFromTheFirstTapOnAfterWhichAShorterRunWouldHaveBeen) {
+  const RunReport whole = run(14);
+  const Recording recording = read_recording(workshop_, whole.directory);
+  std::vector<int> all(14);
+  std::iota(all.begin(), all.end(), 1);
+  const std::vector<Row> after = summaries_after(recording, all);
+  const double goal = number(after[8], "rmse_m");
+  int first = 1;
+  while (number(after[static_cast<std::size_t>(first - 1)], "rmse_m") > goal) ++first;
+  const auto reached =
+      summaries_at(workshop_, recording, {Occasion::once(fmt::format("rmse_m={} m", goal)), Occasion::once("rmse_m=1e-9 m"),
+                                          Occasion::once("on_surface_taps=0")});
+  ASSERT_TRUE(reached[0]);
+  EXPECT_EQ(cell(*reached[0], "rmse_m"), cell(after[static_cast<std::size_t>(first - 1)], "rmse_m"));
+  EXPECT_EQ(cell(*reached[0], "robot_seconds"), cell(after[static_cast<std::size_t>(first - 1)], "robot_seconds"));
+  EXPECT_FALSE(reached[1]) << "nobody is that good";
+  EXPECT_EQ(cell(reached[2].value(), "robot_seconds"), cell(after[0], "robot_seconds")) << "more is better";
 }
 
 TEST_P(Earlier, HasItsShareOfTheTimes) {
   const RunReport whole = run(14);
-  const std::vector<Row> earlier = summaries_after(workshop_, read_recording(workshop_, whole.directory), {5, 9});
+  const std::vector<Row> earlier = summaries_after(read_recording(workshop_, whole.directory), {5, 9});
   for (const char* name : {"wall_seconds", "compute_seconds", "robot_seconds"}) {
     EXPECT_GT(number(earlier[0], name), 0.0) << name;
     EXPECT_LT(number(earlier[0], name), number(earlier[1], name)) << name;
@@ -73,7 +104,7 @@ TEST_P(Earlier, HasItsShareOfTheTimes) {
   EXPECT_EQ(cell(earlier[1], "peak_rss_bytes"), "") << "nobody measured it then";
   // Without its times a run is as good as before, but for those.
   fs::resize_file(whole.directory / "timings.csv", 30);
-  const Row untimed = summaries_after(workshop_, read_recording(workshop_, whole.directory), {9}).front();
+  const Row untimed = summaries_after(read_recording(workshop_, whole.directory), {9}).front();
   EXPECT_EQ(cell(untimed, "rmse_m"), cell(earlier[1], "rmse_m"));
   EXPECT_EQ(cell(untimed, "compute_seconds"), "");
   EXPECT_EQ(cell(untimed, "compute.infer"), "");

@@ -13,6 +13,8 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       failed_(static_cast<std::size_t>(candidates.size()), false) {
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
+  if (auto motions = context.factory.motions(options.backend, context.scene))
+    pace_.emplace(std::move(motions), candidates, context.scene.desk());
 }
 
 bool Chooser::starting(const TapBelief& belief) const {
@@ -25,29 +27,43 @@ bool Chooser::starting(const TapBelief& belief) const {
   return true;
 }
 
-const std::vector<bool>& Chooser::allowed(const TapBelief& belief) {
+void Chooser::allow(const TapBelief& belief) {
   allowed_.assign(failed_.size(), true);
   for (std::size_t i = 0; i < failed_.size(); ++i) allowed_[i] = !failed_[i];
-  if (options_.repeat == ExperimentOptions::Repeat::allow) return allowed_;
+  if (options_.repeat == ExperimentOptions::Repeat::allow) return;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (belief.doubt_of(i) < TapBelief::kWorthALook) allowed_[contacts_[i].candidate] = false;
   }
-  return allowed_;
 }
 
-bool Chooser::choose(TapBelief& belief, TapRecord& tap) {
+/// The best of the allowed; where there are several motions, a second of the arm.
+Pick Chooser::pick(const Eigen::VectorXd& scores, double scale) {
+  return pick_best(pace_ ? pace_->per_second(scores) : scores, allowed_, scale, options_.tie_tolerance);
+}
+
+bool Chooser::choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous) {
+  if (pace_) pace_->look(belief, previous);
+  if (!choose_place(belief, tap)) return false;
+  if (!pace_) return true;
+  tap.motion = pace_->motion(tap.candidate);
+  tap.expected_seconds = pace_->seconds(tap.candidate);
+  return true;
+}
+
+bool Chooser::choose_place(TapBelief& belief, TapRecord& tap) {
+  allow(belief);
   if (starting(belief)) {
     tap.source = Source::initial;
-    tap.candidate = search_ ? search_->next(allowed(belief)) : initial_[taps_];
+    tap.candidate = search_ ? search_->next(allowed_) : initial_[taps_];
     return true;
   }
   tap.source = Source::acquisition;
-  Pick picked = pick_best(scores(belief), allowed(belief), acquisition_->prior_scale(), options_.tie_tolerance);
+  Pick picked = pick(scores(belief), acquisition_->prior_scale());
   if (picked.flat && may_fall_back()) {
     tap.source = Source::fallback;
     tap.why = *picked.flat;
     belief.ask(kFallbackReads);
-    picked = pick_best(belief.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
+    picked = pick(belief.uncertainty(), 1.0);
   }
   if (picked.candidate < 0) return false;
   tap.candidate = picked.candidate;
@@ -68,8 +84,10 @@ const Eigen::VectorXd& Chooser::scores(const TapBelief& belief) {
               Error::Kind::run);
 }
 
-void Chooser::observe(const PastTap& tap, int candidate, bool hit) {
+void Chooser::observe(const PastTap& tap, int candidate, bool hit, const std::optional<Target>& previous,
+                      std::optional<double> excess) {
   ++taps_;
+  if (pace_) pace_->observe(tap, previous, excess);
   if (search_) search_->look(tap.target);
   const auto place = static_cast<std::size_t>(candidate);
   if (tap.contact.outcome == Outcome::contact) {

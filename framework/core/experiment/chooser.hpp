@@ -3,6 +3,7 @@
 // scores say nothing.
 #pragma once
 
+#include "experiment/pace.hpp"
 #include "experiment/policy.hpp"
 #include "experiment/search.hpp"
 #include "experiment/tap_belief.hpp"
@@ -28,21 +29,26 @@ class Chooser {
   /// everywhere.
   bool starting(const TapBelief& belief) const;
 
-  /// What is read for a tap of the acquisition.
-  Quantities reads() const { return acquisition_->reads(); }
+  /// What is read for a tap of the acquisition, or of the initial design.
+  Quantities reads() const { return acquisition_->reads() | reads_of_initial(); }
+  Quantities reads_of_initial() const { return pace_ ? Pace::kReads : Quantities(); }
   /// What the fallback reads beside that.
   static constexpr Quantities kFallbackReads = Quantity::uncertainty;
   bool may_fall_back() const { return options_.fallback == ExperimentOptions::Fallback::uncertainty; }
 
   /// Chooses a candidate and notes in `tap` which, by whom, and all about its score. `belief` has been asked for what
   /// is read; a fallback asks it for more. False if no candidate is left.
-  bool choose(TapBelief& belief, TapRecord& tap);
+  bool choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous);
 
   /// What the acquisition gives each candidate, until it is asked again. Throws Error for what is no finite number.
   const Eigen::VectorXd& scores(const TapBelief& belief);
 
-  /// Notes a tap at `candidate`; `hit`: a contact on an object.
-  void observe(const PastTap& tap, int candidate, bool hit);
+  /// Notes a tap at `candidate`; `hit`: a contact on an object; `excess`: see Pace.
+  void observe(const PastTap& tap, int candidate, bool hit, const std::optional<Target>& previous,
+               std::optional<double> excess);
+
+  /// What the motion of a tap adds to the noise of its height, metres: 0 where there is but one.
+  double deviation(int motion) const { return pace_ ? pace_->deviation(motion) : 0.0; }
 
  private:
   struct Touched {
@@ -50,14 +56,17 @@ class Chooser {
     bool hit;
   };
 
-  /// Candidates that may be tapped: those that were not, and those whose contacts are all doubted.
-  const std::vector<bool>& allowed(const TapBelief& belief);
+  bool choose_place(TapBelief& belief, TapRecord& tap);
+  /// Finds the candidates that may be tapped: those that were not, and those whose contacts are all doubted.
+  void allow(const TapBelief& belief);
+  Pick pick(const Eigen::VectorXd& scores, double scale);
 
   const ExperimentOptions& options_;
   const Candidates& candidates_;
   std::shared_ptr<Acquisition> acquisition_;
   std::vector<int> initial_;      ///< of a design that counts its taps
   std::optional<Search> search_;  ///< the other one
+  std::optional<Pace> pace_;      ///< where the backend has several motions
   Eigen::VectorXd scores_;
   std::vector<bool> failed_;       ///< candidates at which a tap came to nothing
   std::vector<Touched> contacts_;  ///< all others, in their order

@@ -25,7 +25,7 @@ void Experiment::run(Journal& journal, int most_taps) {
     tap->contact = touch(*tap);
     if (is_broken_off(tap->contact)) return watch_.stop(kStoppedByUser);
     if (tap->contact.outcome == Outcome::contact) {
-      const TapBelief::Reading reading = belief_.read(tap->contact);
+      const TapBelief::Reading reading = belief_.read(tap->contact, tap->motion);
       tap->on_surface = reading.on;
       if (belief_.systematic()) tap->corrected = reading.height;
     }
@@ -41,7 +41,7 @@ std::optional<TapRecord> Experiment::choose_next() {
   {
     const PhaseClock::Scope acquire(clock_, Phase::acquire);
     belief_.ask(reads_for(chooser_.starting(belief_) ? Source::initial : Source::acquisition));
-    if (!chooser_.choose(belief_, tap)) return std::nullopt;
+    if (!chooser_.choose(belief_, tap, previous_)) return std::nullopt;
   }
   tap.target = candidates_.target(tap.candidate);
   if (const Quantities expected = backend_->expects(); expected != Quantities())
@@ -53,10 +53,15 @@ std::optional<TapRecord> Experiment::choose_next() {
 
 void Experiment::observe(const PastTap& tap) {
   const int candidate = candidates_.nearest(tap.target.x, tap.target.y, scene_->area());
-  const bool hit = tap.contact.outcome == Outcome::contact && belief_.read(tap.contact).on;
-  belief_.observe(tap.target, tap.contact, tap.source == Source::initial);
-  chooser_.observe(tap, candidate, hit);
-  watch_.observe(tap, candidate, hit);
+  TapBelief::Reading reading;
+  if (tap.contact.outcome == Outcome::contact) reading = belief_.read(tap.contact, tap.motion);
+  const bool hit = reading.on;
+  const bool desk = tap.contact.outcome == Outcome::contact && !hit;
+  const Manner manner = manner_of(tap);
+  belief_.observe(tap.target, tap.contact, manner);
+  chooser_.observe(tap, candidate, hit, previous_,
+                   desk ? std::optional(reading.height - scene_->desk()) : std::nullopt);
+  watch_.observe(tap, manner, candidate, hit);
   previous_ = tap.target;
 }
 

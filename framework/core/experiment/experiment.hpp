@@ -88,7 +88,10 @@ class Experiment {
   /// for by itself, from the first hit on.
   Quantities reads_for(Source source) const;
   TapRequest request_of(const TapRecord& tap) const {
-    return {tap.number, tap.target, previous_, tap.predicted, watch_.counts().robot_seconds};
+    return {tap.number, tap.target, previous_, tap.predicted, watch_.counts().robot_seconds, tap.motion};
+  }
+  Manner manner_of(const PastTap& tap) const {
+    return {tap.source == Source::initial, tap.motion, chooser_.deviation(tap.motion)};
   }
   Contact touch(const TapRecord& tap);
   bool is_broken_off(const Contact& contact) const;

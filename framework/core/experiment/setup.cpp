@@ -32,7 +32,7 @@ void Experiment::resume(const std::vector<PastTap>& past) {
 Quantities Experiment::reads_for(Source source) const {
   Quantities out = backend_->expects();
   if (options_.height.lies) out = out | Quantity::doubt;
-  if (source == Source::initial) return out;
+  if (source == Source::initial) return out | chooser_.reads_of_initial();
   out = out | chooser_.reads();
   if (source == Source::fallback) out = out | Chooser::kFallbackReads;
   if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;

@@ -17,8 +17,8 @@ constexpr double kBeside = 0.03;  // metres
 
 Systematic::Systematic(double offset, double drift, double noise) : offset_(offset), drift_(drift), noise_(noise) {}
 
-void Systematic::add(const Target& place, double seconds, double excess, bool on) {
-  (on ? highs_ : lows_).push_back({place, seconds, excess});
+void Systematic::add(const Target& place, double seconds, double excess, bool on, int motion) {
+  (on ? highs_ : lows_).push_back({place, {seconds, motion}, excess});
   judge_all();
 }
 
@@ -29,23 +29,23 @@ bool Systematic::at_a_rim(const Target& place) const {
 }
 
 void Systematic::judge_all() {
-  seconds_.clear();
+  judged_.clear();
   std::vector<double> excess;
   for (const Touched& low : lows_) {
     if (at_a_rim(low.place)) continue;
-    seconds_.push_back(low.seconds);
+    judged_.push_back(low.when);
     excess.push_back(low.excess);
   }
   // The latest tell of the drift, and of the offset as well as all.
   constexpr std::ptrdiff_t kMost = 60;
-  if (static_cast<std::ptrdiff_t>(seconds_.size()) > kMost) {
-    seconds_.erase(seconds_.begin(), seconds_.end() - kMost);
+  if (static_cast<std::ptrdiff_t>(judged_.size()) > kMost) {
+    judged_.erase(judged_.begin(), judged_.end() - kMost);
     excess.erase(excess.begin(), excess.end() - kMost);
   }
-  const auto n = static_cast<Eigen::Index>(seconds_.size());
+  const auto n = static_cast<Eigen::Index>(judged_.size());
   Testimony testimony;
   testimony.covariance = Eigen::MatrixXd::NullaryExpr(n, n, [this](Eigen::Index i, Eigen::Index j) {
-    return covariance(seconds_[static_cast<std::size_t>(i)], seconds_[static_cast<std::size_t>(j)]);
+    return covariance(judged_[static_cast<std::size_t>(i)], judged_[static_cast<std::size_t>(j)]);
   });
   testimony.heights = Eigen::Map<const Eigen::VectorXd>(excess.data(), n);
   testimony.suspicion = Eigen::VectorXd::Constant(n, kOther);
@@ -55,13 +55,14 @@ void Systematic::judge_all() {
   if (n > 0) judgement_ = judge(testimony);
 }
 
-Systematic::Estimate Systematic::at(double seconds) const {
-  Estimate out{0.0, covariance(seconds, seconds)};
-  if (seconds_.empty()) return out;
+Systematic::Estimate Systematic::at(double seconds, int motion) const {
+  const When now{seconds, motion};
+  Estimate out{0.0, covariance(now, now)};
+  if (judged_.empty()) return out;
   Eigen::VectorXd z = Eigen::VectorXd::Zero(judgement_.a.size());  // there is no broad signal
   z(0) = 1.0;
-  for (std::size_t i = 0; i < seconds_.size(); ++i)
-    z(static_cast<Eigen::Index>(i) + 1) = covariance(seconds, seconds_[i]);
+  for (std::size_t i = 0; i < judged_.size(); ++i)
+    z(static_cast<Eigen::Index>(i) + 1) = covariance(now, judged_[i]);
   out.value = z.dot(judgement_.a);
   out.variance += z.dot(judgement_.b * z);
   return out;

@@ -7,6 +7,8 @@
 // a dome or a jerk of the force is as low: those at a rim are left out, the others judged as the taps of a surface are
 // (gp/lies.hpp).
 //
+// Each motion adds something of its own to what all add: half of the prior variance of the offset is each's alone.
+//
 // What an object's own softness adds beyond the desk's is not in it: nothing that is touched tells.
 #pragma once
 
@@ -24,33 +26,40 @@ class Systematic {
   Systematic(double offset, double drift, double noise);
 
   /// The next contact, `seconds` into the run, `excess` metres above where the desk is; `on`: taken for one with an
-  /// object.
-  void add(const Target& place, double seconds, double excess, bool on);
+  /// object; `motion`: by which it was made.
+  void add(const Target& place, double seconds, double excess, bool on, int motion = 0);
 
   struct Estimate {
     double value = 0.0;     ///< to be taken off a height, metres
     double variance = 0.0;  ///< of it, square metres
   };
-  Estimate at(double seconds) const;
+  Estimate at(double seconds, int motion = 0) const;
   double noise() const { return noise_; }
 
  private:
+  struct When {
+    double seconds;
+    int motion;
+  };
   struct Touched {
     Target place;
-    double seconds;
+    When when;
     double excess;
   };
 
   bool at_a_rim(const Target& place) const;
   void judge_all();
-  double covariance(double s, double t) const { return offset_ * offset_ + drift_ * drift_ * s * t; }
+  double covariance(const When& a, const When& b) const {
+    const double share = a.motion == b.motion ? 1.0 : 0.5;
+    return share * offset_ * offset_ + drift_ * drift_ * a.seconds * b.seconds;
+  }
 
   double offset_;
   double drift_;
   double noise_;
-  std::vector<Touched> highs_;   ///< contacts with an object
-  std::vector<Touched> lows_;    ///< the others
-  std::vector<double> seconds_;  ///< of those of them that are judged
+  std::vector<Touched> highs_;  ///< contacts with an object
+  std::vector<Touched> lows_;   ///< the others
+  std::vector<When> judged_;    ///< when those of them were made that are judged
   Judgement judgement_;
 };
 

@@ -20,6 +20,8 @@ namespace palpate {
 constexpr double kFreeLevel = 1000.0;
 // Where taps may lie the level has to be of some size: what may be anything at all makes a lie of the first tap.
 constexpr double kLevelAmongLies = 1.0;
+// How far a tap is trusted comes in steps, so that a process is not made anew after every tap.
+constexpr double kSteps = 10.0;
 
 namespace {
 
@@ -112,28 +114,34 @@ bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
   return true;
 }
 
-void TapBelief::observe(const Target& place, const Contact& contact, bool initial) {
+void TapBelief::observe(const Target& place, const Contact& contact, const Manner& manner) {
   ++taps_;
-  initial_taps_ += initial ? 1 : 0;
+  initial_taps_ += manner.initial ? 1 : 0;
   const double began = seconds_;
-  const Reading reading = read(contact);
+  const Reading reading = read(contact, manner.motion);
   seconds_ += contact.seconds;
   if (contact.outcome != Outcome::contact) return;
   touches_.push_back({place, reading.height - desk_, reading.on});
   numbers_.push_back(taps_);
+  const double noise = height_noise();
+  const double share =
+      manner.deviation > 0.0 ? noise * noise / (noise * noise + manner.deviation * manner.deviation) : 1.0;
+  share_.push_back(std::round(share * kSteps) / kSteps);
+  uneven_ = uneven_ || share_.back() < 1.0;
   if (reading.on) hits_.push_back(touches_.back());
   current_ = false;
   if (!systematic_) return;
   excess_.push_back(contact.height - desk_);
   times_.push_back(began);
-  systematic_->add(place, began, excess_.back(), reading.on);
+  motions_.push_back(manner.motion);
+  systematic_->add(place, began, excess_.back(), reading.on, manner.motion);
 }
 
-TapBelief::Reading TapBelief::read(const Contact& contact) const {
+TapBelief::Reading TapBelief::read(const Contact& contact, int motion) const {
   if (!systematic_) return {contact.height, context_.scene.on_surface(contact.height)};
   // Until the desk is known, what is hardly higher than it may be is more probably the desk than so low an object.
   constexpr double kDeviations = 2.4;
-  const Systematic::Estimate estimate = systematic_->at(seconds_);
+  const Systematic::Estimate estimate = systematic_->at(seconds_, motion);
   const double height = contact.height - estimate.value;
   const double unsure = kDeviations * std::sqrt(estimate.variance + systematic_->noise() * systematic_->noise());
   return {height, context_.scene.on_surface(height) && height - desk_ > unsure};
@@ -149,8 +157,8 @@ std::vector<TapBelief::Doubted> TapBelief::doubted() const {
   return out;
 }
 
-std::optional<Systematic::Estimate> TapBelief::systematic() const {
-  return systematic_ ? std::optional(systematic_->at(seconds_)) : std::nullopt;
+std::optional<Systematic::Estimate> TapBelief::systematic(int motion) const {
+  return systematic_ ? std::optional(systematic_->at(seconds_, motion)) : std::nullopt;
 }
 
 Quantities TapBelief::known(Quantities asked) const {
@@ -220,7 +228,13 @@ void TapBelief::update() {
   }
   if (systematic_) correct();
   if (footprint_asked_) map_footprint();
-  if (lies_ && object_.process) judge();
+  if (lies_ && object_.process) {
+    judge();
+  } else if (uneven_) {
+    doubt_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(touches_.size()));
+    believe();
+    doubt_.resize(0);
+  }
   if (heights_.stale) map_heights();
   if (labels_.stale) map_labels();
   if (object_.stale && height_asked_) map_object();
@@ -296,7 +310,7 @@ void TapBelief::correct() {
   constexpr double kStep = 1e-4;
   std::size_t hit = 0;
   for (std::size_t i = 0; i < touches_.size(); ++i) {
-    touches_[i].height = excess_[i] - kStep * std::round(systematic_->at(times_[i]).value / kStep);
+    touches_[i].height = excess_[i] - kStep * std::round(systematic_->at(times_[i], motions_[i]).value / kStep);
     if (touches_[i].on) hits_[hit++].height = touches_[i].height;
   }
   for (Model* model : {&heights_, &object_}) {
@@ -344,17 +358,16 @@ void TapBelief::judge() {
 
 /// Has the processes trust each contact as far as it is believed.
 void TapBelief::believe() {
-  // In steps, so that a process is not made anew after every tap; never quite to nothing.
-  constexpr double kSteps = 10.0;
-  constexpr double kLeast = 1e-3;
-  const Eigen::VectorXd trust = (1.0 - (doubt_.array() * kSteps).round() / kSteps).max(kLeast);
+  constexpr double kLeast = 1e-3;  // never quite nothing
+  const Eigen::Map<const Eigen::ArrayXd> share(share_.data(), static_cast<Eigen::Index>(share_.size()));
+  const Eigen::VectorXd trust = (share * (1.0 - (doubt_.array() * kSteps).round() / kSteps)).max(kLeast);
   if (heights_.process && heights_.process->trust(trust)) heights_.stale = true;
   std::vector<double> of_hits;
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     if (touches_[i].on) of_hits.push_back(trust(static_cast<Eigen::Index>(i)));
   }
   const Eigen::Map<const Eigen::VectorXd> hits(of_hits.data(), static_cast<Eigen::Index>(of_hits.size()));
-  if (object_.process->trust(hits)) object_.stale = true;
+  if (object_.process && object_.process->trust(hits)) object_.stale = true;
 }
 
 void TapBelief::map_surface(const Process& process) {

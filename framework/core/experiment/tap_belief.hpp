@@ -24,6 +24,14 @@ namespace palpate {
 /// The loops that a config's instruction_set means on this processor.
 const simd::Table& loops_of(const ExperimentOptions& options);
 
+/// How a tap was made: whether the initial design chose it, by which motion, and what that adds to the noise of its
+/// height, metres.
+struct Manner {
+  bool initial = false;
+  int motion = 0;
+  double deviation = 0.0;
+};
+
 /// The belief behind the acquisitions, and what the metrics and the record want beyond it. A plain value: taps are
 /// noted by observe(), quantities asked for by ask(), the maps brought up to date by update(); what reads, computes
 /// nothing. A map that nobody asked for, or that update() has not seen the last tap of, throws std::logic_error.
@@ -38,13 +46,12 @@ class TapBelief final : public Belief {
     double height = 0.0;  ///< metres
     bool on = false;
   };
-  Reading read(const Contact& contact) const;
-  /// What is taken off heights as of now, where that is learnt.
-  std::optional<Systematic::Estimate> systematic() const;
+  Reading read(const Contact& contact, int motion = 0) const;
+  /// What is taken off the heights of a motion as of now, where that is learnt.
+  std::optional<Systematic::Estimate> systematic(int motion = 0) const;
 
-  /// Notes a tap, `initial` if the initial design chose it. Only contacts reach the models: heights above the desk, and
-  /// labels 1 or 0, as they read.
-  void observe(const Target& place, const Contact& contact, bool initial = false);
+  /// Notes a tap. Only contacts reach the models: heights above the desk, and labels 1 or 0, as they read.
+  void observe(const Target& place, const Contact& contact, const Manner& manner = {});
 
   /// From now on these quantities are kept and belong to the record: builds the models that they lack, with all taps so
   /// far, and updates. Models go through the very states that they would have had, had they been there from the first
@@ -187,7 +194,10 @@ class TapBelief final : public Belief {
   Model object_;                          ///< heights of the taps on an object
   std::vector<Touch> touches_;            ///< all contacts, heights above the desk
   std::vector<int> numbers_;              ///< of their taps
-  std::vector<double> excess_, times_;    ///< of these: heights as they came, and when
+  std::vector<double> excess_, times_;    ///< of these: heights as they came, when,
+  std::vector<int> motions_;              ///< by which motion,
+  std::vector<double> share_;             ///< and how far its height is to be trusted for that, in [0, 1]
+  bool uneven_ = false;                   ///< some less than others
   std::vector<Touch> hits_;               ///< those on an object
   std::optional<double> lies_;            ///< of contacts, where some are not believed
   DoubtedSurface doubted_;                ///< the surface process, then

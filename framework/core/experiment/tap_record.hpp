@@ -56,6 +56,8 @@ struct PastTap {
   Target target;
   Contact contact;
   Source source = Source::initial;
+  int motion = 0;                                      ///< of the backend's, where it has several
+  std::optional<Prediction> predicted = std::nullopt;  ///< of the height at the target, for a backend that wants it
 };
 
 /// One tap: the choice, the state it was made from, and what came of it. Everything about the models is absent where
@@ -71,9 +73,8 @@ struct TapRecord : PastTap, ModelState {
   std::optional<int> ties;
   std::optional<Target> runner_up;
   std::optional<double> runner_up_score;
+  std::optional<double> expected_seconds;  ///< where there are several motions
   std::optional<double> max_standard_deviation, mean_standard_deviation, min_weight, max_weight;
-
-  std::optional<Prediction> predicted;  ///< of the height at the target; only for a backend that wants it
 
   // After the tap.
   std::optional<double> corrected;      ///< height less what is thought to be added to all; absent where none is learnt

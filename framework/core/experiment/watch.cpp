@@ -42,10 +42,10 @@ Watch::Watch(const ExperimentOptions& options, const Candidates& candidates, con
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
 
-void Watch::observe(const PastTap& tap, int candidate, bool hit) {
+void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, bool hit) {
   const Contact& contact = tap.contact;
-  taps_.push_back(tap);
-  if (beside_) beside_->observe(tap.target, tap.contact, tap.source == Source::initial);
+  taps_.emplace_back(tap, manner);
+  if (beside_) beside_->observe(tap.target, tap.contact, manner);
   ++result_.taps;
   result_.robot_seconds += contact.seconds;
   if (tap.source == Source::fallback) ++result_.interventions["fallback"];
@@ -112,7 +112,7 @@ Errors Watch::errors(const TapBelief& belief) {
   if (lacking == Quantities()) return errors_of(maps, *real);
   if (!beside_) {
     beside_ = std::make_unique<TapBelief>(options_, candidates_, context_, unrecorded_);
-    for (const PastTap& tap : taps_) beside_->observe(tap.target, tap.contact, tap.source == Source::initial);
+    for (const auto& [tap, manner] : taps_) beside_->observe(tap.target, tap.contact, manner);
   }
   // The outlines have a word in who is believed.
   beside_->ask(options_.height.lies ? lacking | Quantity::probability : lacking);

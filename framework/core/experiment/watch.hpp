@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -22,7 +23,7 @@ class Watch {
   Watch(const ExperimentOptions& options, const Candidates& candidates, const Context& context, bool truth_known);
 
   /// Counts a tap at `candidate`; `hit`: a contact on an object.
-  void observe(const PastTap& tap, int candidate, bool hit);
+  void observe(const PastTap& tap, const Manner& manner, int candidate, bool hit);
   void stop(const std::string& reason) { result_.stop_reason = reason; }
 
   /// What was counted so far, without errors: builds and computes nothing.
@@ -52,7 +53,7 @@ class Watch {
   std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
   std::vector<bool> touched_;             ///< candidates where there was a contact
   std::optional<Truth> truth_;
-  std::vector<PastTap> taps_;
+  std::vector<std::pair<PastTap, Manner>> taps_;
   PhaseClock unrecorded_;              ///< of the models that only people who watch have asked for
   std::unique_ptr<TapBelief> beside_;  ///< these
 };

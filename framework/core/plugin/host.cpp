@@ -304,6 +304,19 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
   return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
 }
 
+std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, const Scene& scene) const {
+  const std::shared_ptr<const Library> holder = library(choice.kind, choice.type);
+  if (holder->manifest->motions == nullptr) return nullptr;
+  const Motions* made = nullptr;
+  guarded(choice.options.get(), choice.kind + "/" + choice.type, "has no motions", [&] {
+    fill(*choice.options, *this, choice.kind,
+         [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
+  });
+  if (made == nullptr) return nullptr;
+  // As above: what comes of a library goes before it.
+  return {made, [holder](const Motions* gone) { delete gone; }};
+}
+
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {
   std::string summary = library(kind, name)->manifest->summary;
   describe_fields([&](Fields& fields) { describe(kind, name, fields); });

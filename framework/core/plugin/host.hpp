@@ -58,6 +58,9 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// unless the plugin names a place of its own.
   std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override;
 
+  /// Throws as create() does.
+  std::shared_ptr<const Motions> motions(const PluginChoice& choice, const Scene& scene) const override;
+
   /// Every library found, sorted, each name once; broken ones too. `kind` and `name` may be empty for all.
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 

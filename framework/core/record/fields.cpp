@@ -182,7 +182,7 @@ FieldList<TapRecord> make_tap_list() {
            [](const Tap& t) { return t.contact.seconds; })
       .in(Unit::second);
 
-  list.add("score", "of the acquisition at the chosen place", &Tap::score);
+  list.add("score", "of the acquisition at the chosen place; where the motion is chosen, what that is worth a second", &Tap::score);
   list.add("u", "uncertainty at the chosen place, before the tap", &Tap::uncertainty);
   list.add("w", "the weight there, never clipped", &Tap::weight);
   list.add("e", "their product", &Tap::exploration);
@@ -201,6 +201,13 @@ FieldList<TapRecord> make_tap_list() {
   list.add("mean_standard_deviation", "the same", &Tap::mean_standard_deviation).in(Unit::metre);
   list.add("min_weight", "over the candidates, before the tap, never clipped", &Tap::min_weight);
   list.add("max_weight", "the same", &Tap::max_weight);
+  const auto is_chosen = [](const Tap& t) { return t.expected_seconds.has_value(); };
+  list.add_where(is_chosen, "motion", "by which the tap was made: its place, from 0, in `backend.motion.of`; only with "
+                 "`type: chosen`",
+                 &Tap::motion);
+  list.add_where(is_chosen, "expected_seconds", "the robot time that it was expected to take",
+                 [](const Tap& t) { return t.expected_seconds; })
+      .in(Unit::second);
   const auto is_predicted = [](const Tap& t) { return t.predicted.has_value(); };
   list.add_where(is_predicted, "predicted.height",
                  "what the models expected of the height there, in the frame of the scene; only where the backend asks "

@@ -180,37 +180,48 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   return report;
 }
 
-std::vector<Row> summaries_after(const Workshop& workshop, const Recording& recording, const std::vector<int>& taps) {
-  if (!taps.empty() && static_cast<std::size_t>(*std::max_element(taps.begin(), taps.end())) > recording.rows.size()) {
+std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Recording& recording,
+                                             const std::vector<Occasion>& occasions) {
+  const auto made = static_cast<int>(recording.rows.size());
+  for (const Occasion& one : occasions) {
+    if (one.taps().value_or(0) <= made) continue;
     throw Error(recording.directory.string(), "its taps.jsonl holds fewer taps than its summary says",
                 "the file is damaged, run the job again");
   }
   const std::vector<Seconds> seconds = seconds_until(recording.directory);
+  // A kill may have lost lines of the times, which no run depends on.
+  const bool timed = seconds.size() == recording.taps.size() + 1;
+  const double all = total(seconds.back());
   Playback playback(workshop, recording);
-  std::vector<Row> rows;
-  for (const int count : taps) {
+  const auto summary_after = [&](int count) {
     playback.advance_to(count);
-    if (count > 0) playback.experiment().ask(asked_after(recording, static_cast<std::size_t>(count)));
+    playback.experiment().ask(asked_after(recording, static_cast<std::size_t>(count)));
     RunResult result = playback.experiment().result();
     result.stop_reason = "tap budget";
-    // A kill may have lost lines of the times, which no run depends on.
-    const bool timed = seconds.size() == recording.taps.size() + 1;
     const Seconds until = timed ? seconds[static_cast<std::size_t>(count)] : Seconds{};
-    const double all = total(seconds.back());
     const std::optional<double> share = timed && all > 0.0 ? std::optional(total(until) / all) : std::nullopt;
     const auto part = [&](const char* whole) {
       const auto of_run = recording.summary ? recording.summary->number(whole) : std::nullopt;
       return of_run && share ? std::optional(*of_run * *share) : std::nullopt;
     };
-    rows.push_back(summary_list().row({result,
-                                       recording.config,
-                                       "",
-                                       part("wall_seconds"),
-                                       part("compute_seconds"),
-                                       timed ? std::optional(until) : std::nullopt,
-                                       {}}));
+    return summary_list().row({result,
+                               recording.config,
+                               "",
+                               part("wall_seconds"),
+                               part("compute_seconds"),
+                               timed ? std::optional(until) : std::nullopt,
+                               {}});
+  };
+  std::vector<std::optional<Row>> out(occasions.size());
+  for (int count = 1; count <= made; ++count) {
+    std::optional<Row> now;
+    for (std::size_t i = 0; i < occasions.size(); ++i) {
+      if (out[i] || count < occasions[i].taps().value_or(count)) continue;
+      if (!now) now = summary_after(count);
+      if (occasions[i].has_come(count, *now)) out[i] = now;
+    }
   }
-  return rows;
+  return out;
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "config/quantity.hpp"
+#include "sweep/earlier_results.hpp"
 
 #include <palpate/error.hpp>
 
@@ -25,6 +26,7 @@ using Outcomes = std::map<Values, JobValue>;
 struct Collected {
   Values values;
   Outcomes outcomes;
+  int never = 0;  ///< of those that count, the ones that never got where they were to be looked at
 };
 
 bool contains(const Values& names, const std::string& name) {
@@ -84,13 +86,14 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
   const Values paired = others(sweep.keys, query.by);
   std::vector<Collected> groups;
   for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
-    groups.push_back({group.values, {}});
+    groups.push_back({group.values, {}, 0});
     for (const auto& [job, row] : group.jobs) {
       JobValue outcome = value_of_job(row, query.metric, "--metric");
       if (!keeps(*job, row)) {
         out.left_out.add(outcome.fate);
         outcome = {Fate::left_out};
       }
+      if (outcome.fate == Fate::counted && row->flag(kReached) == false) ++groups.back().never;
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
       // A list may hold the same job more than once: each is the counterpart of its like.
@@ -108,6 +111,7 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   // An option that the plugin of a group does not have is named as such: nothing would look like a slip.
   for (const std::string& one : collected.values) out.values.push_back(one.empty() ? "(none)" : one_line(one));
   out.name = fmt::format("{}", fmt::join(out.values, ", "));
+  out.never = collected.never;
   std::vector<double> values;
   for (const auto& [pairing, outcome] : collected.outcomes) {
     out.counts.add(outcome.fate);
@@ -207,7 +211,7 @@ void check_values(const Comparison& made, const Sweep& sweep) {
   }
   if (made.left_out.all() == made.jobs) {
     throw Error("command line", fmt::format("--where: leaves none of the {} jobs", made.jobs),
-                "results.csv, or results_at_N.csv with --at, has the values it is compared with");
+                "results.csv, or what --at or --until leaves beside it, has the values it is compared with");
   }
   if (without_value == 0) {
     throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");

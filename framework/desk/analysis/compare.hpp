@@ -7,6 +7,7 @@
 #include "analysis/column.hpp"
 #include "analysis/signed_rank.hpp"
 #include "analysis/statistics.hpp"
+#include "record/occasion.hpp"
 #include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
 
@@ -31,6 +32,7 @@ struct ComparedGroup {
   std::string name;  ///< its values, in the order of the keys: "weighted, rbf"; "(none)" of a key that its jobs lack
   std::vector<std::string> values;  ///< the same one by one
   FateCounts counts;
+  int never = 0;      ///< jobs that count as they ended, because they never got where they were to be looked at
   MeanEstimate mean;  ///< over the jobs that have a value; interval by the bootstrap
   double median = 0.0;
   double low_10 = 0.0;  ///< the values that 10 % and 90 % of the jobs stay below
@@ -63,7 +65,7 @@ struct Comparison {
   std::size_t compared = 0;  ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
   bool ratios = false;            ///< asked for
-  std::optional<int> after_taps;  ///< the jobs as they were after so many taps; none: as they ended
+  std::optional<Occasion> occasion;   ///< at which the jobs are looked at; none: as they ended
   int jobs = 0;                   ///< of the sweep
   FateCounts left_out;            ///< of them, by the condition: what else became of those
 };

@@ -147,6 +147,11 @@ std::string remarks(const Comparison& comparison) {
     out += fmt::format("{} groups: each is compared with {} alone\n", groups,
                        comparison.groups[comparison.pairs.front().second].name);
   }
+  for (const ComparedGroup& one : comparison.groups) {
+    if (one.never > 0)
+      out += fmt::format("{}: {} of {} jobs never got there and count as they ended\n", one.name, one.never,
+                         one.mean.count);
+  }
   for (const ComparedPair& pair : comparison.pairs)
     out += lost_note(comparison, pair) + contrary_note(comparison, pair);
   if (!comparison.apart.empty()) {
@@ -163,7 +168,7 @@ std::string compare_tables(const Comparison& comparison) {
   const Scale scale = readable_scale(comparison.metric.unit, comparison.means());
   const std::string better = comparison.metric.better_words();
   std::string out = fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
-                                comparison.after_taps ? fmt::format(" after {} taps", *comparison.after_taps) : "",
+                                comparison.occasion ? " " + comparison.occasion->words() : "",
                                 better.empty() ? "" : "; " + better);
   out += group_table(comparison, scale);
   if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale));
@@ -211,7 +216,8 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     row.add("by", fmt::format("{}", fmt::join(comparison.by, ",")));
     row.add("metric", comparison.metric.name);
     row.add("where", where.empty() ? std::nullopt : std::optional(where));
-    if (comparison.after_taps) row.add("at", *comparison.after_taps);
+    if (const auto& occasion = comparison.occasion)
+      occasion->taps() ? row.add("at", *occasion->taps()) : row.add("until", occasion->words());
     rows.push_back(std::move(row));
     return rows.back();
   };
@@ -225,6 +231,7 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     row.add("group", one.name);
     add_counts(row, one.counts, true);
     add_estimate(row, one.mean);
+    if (comparison.occasion && !comparison.occasion->taps()) row.add("never", one.never);
     row.add("median", known(one.median));
     row.add("p10", known(one.low_10));
     row.add("p90", known(one.high_90));

@@ -33,12 +33,14 @@ std::string cell(std::string text) {
 
 std::string line_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
 
+bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps(); }
+
 std::string head(const std::vector<Comparison>& comparisons, const std::vector<Scale>& scales) {
   const Comparison& first = comparisons.front();
   std::vector<std::string> names;
   for (const std::string& key : first.by) names.push_back(cell(key));
   std::vector<std::string> sides(names.size(), "---");
-  if (first.after_taps) names.emplace_back("taps");
+  if (has_taps(first)) names.emplace_back("taps");
   for (std::size_t i = 0; i < scales.size(); ++i) names.push_back(cell(scales[i].title(comparisons[i].metric.name)));
   sides.resize(names.size(), "---:");
   return line_of(names) + fmt::format("|{}|\n", fmt::join(sides, "|"));
@@ -62,12 +64,15 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
   }
   int failed = 0;
   int unfinished = 0;
+  int never = 0;
   for (const ComparedGroup& group : comparisons.front().groups) {
+    never += group.never;
     failed += group.counts.of(Fate::failed);
     unfinished += group.counts.of(Fate::unfinished);
   }
   if (failed + unfinished > 0)
     out += fmt::format("{} jobs failed and {} have not ended: they are in no mean.\n", failed, unfinished);
+  if (never > 0) out += fmt::format("{} jobs never got there and count as they ended.\n", never);
   return out;
 }
 
@@ -76,7 +81,7 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
 std::string means_table(const std::vector<Comparison>& comparisons) {
   const auto metrics =
       static_cast<std::size_t>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& one) {
-        return one.after_taps == comparisons.front().after_taps;
+        return one.occasion == comparisons.front().occasion;
       }));
   std::vector<Scale> scales;
   for (std::size_t metric = 0; metric < metrics; ++metric) scales.push_back(scale_of(comparisons, metric, metrics));
@@ -87,7 +92,7 @@ std::string means_table(const std::vector<Comparison>& comparisons) {
       if (first.groups[i].counts.all_are(Fate::left_out)) continue;
       std::vector<std::string> cells;
       for (const std::string& value : first.groups[i].values) cells.push_back(cell(value));
-      if (first.after_taps) cells.push_back(std::to_string(*first.after_taps));
+      if (has_taps(first)) cells.push_back(std::to_string(*first.occasion->taps()));
       for (std::size_t metric = 0; metric < metrics; ++metric) {
         const MeanEstimate& mean = comparisons[block + metric].groups[i].mean;
         cells.push_back(mean.count > 0 ? scales[metric].number(mean.mean) : "-");

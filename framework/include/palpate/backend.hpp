@@ -27,6 +27,7 @@ struct TapRequest {
   std::optional<Target> previous;       ///< the target of the tap before, none for the first
   std::optional<Prediction> predicted;  ///< only for a backend that wants it
   double elapsed = 0.0;                 ///< robot time of all taps before, seconds
+  int motion = 0;                       ///< in which way, where the backend has several: see motions.hpp
 };
 
 /// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <palpate/error.hpp>
+#include <palpate/motions.hpp>
 #include <palpate/options.hpp>
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
@@ -24,7 +25,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 11;
+constexpr std::uint32_t kPluginAbi = 12;
 
 struct Context;
 
@@ -34,6 +35,10 @@ class PluginFactory {
   virtual ~PluginFactory() = default;
   /// An object of the interface of `choice.kind`, as a pointer to that interface.
   virtual std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const = 0;
+  /// The motions of a backend, null of one that has but one.
+  virtual std::shared_ptr<const Motions> motions(const PluginChoice& /*choice*/, const Scene& /*scene*/) const {
+    return nullptr;
+  }
 };
 
 /// What a plugin is born with. Outlives the plugin.
@@ -74,6 +79,9 @@ struct PluginManifest {
   /// Fills an options struct from `fields` and makes the object: a pointer to the kind's interface.
   void* (*create)(Fields& fields, const Context& context);
   void (*destroy)(void* object);
+  /// Makes the motions that these options leave open, null for one alone; itself null of a plugin that has no such
+  /// thing.
+  Motions* (*motions)(Fields& fields, const Scene& scene);
 };
 
 #define PALPATE_TEXT_(x) #x
@@ -114,6 +122,23 @@ struct OneAtATime : std::false_type {};
 template <class Plugin>
 struct OneAtATime<Plugin, std::enable_if_t<Plugin::kOneAtATime>> : std::true_type {};
 
+/// The motions of a plugin that has a function of that name, which only backends have.
+template <class Plugin>
+Motions* motions(Fields& fields, const Scene& scene) {
+  typename Plugin::Options options;
+  options.list(fields);
+  return Plugin::motions(options, scene).release();
+}
+using MakeMotions = Motions* (*)(Fields& fields, const Scene& scene);
+template <class Plugin, class = void>
+struct MotionsOf {
+  static constexpr MakeMotions value = nullptr;
+};
+template <class Plugin>
+struct MotionsOf<Plugin, std::void_t<decltype(&Plugin::motions)>> {
+  static constexpr MakeMotions value = &motions<Plugin>;
+};
+
 template <class Interface>
 void destroy(void* object) {
   delete static_cast<Interface*>(object);
@@ -134,7 +159,8 @@ constexpr PluginManifest manifest_of(const char* name, const char* summary) {
           detail::OneAtATime<Plugin>::value,
           &detail::describe<Plugin>,
           &detail::create<Plugin, Interface>,
-          &detail::destroy<Interface>};
+          &detail::destroy<Interface>,
+          detail::MotionsOf<Plugin>::value};
 }
 
 }  // namespace palpate

@@ -23,34 +23,33 @@ constexpr const char* kOf = "of_summary";
 
 std::int64_t taps_of(const Row& summary) { return static_cast<std::int64_t>(summary.number("taps").value_or(0.0)); }
 
-fs::path file_of(const fs::path& job, int taps) { return job / fmt::format("summary_at_{}.json", taps); }
+fs::path file_of(const fs::path& job, const Occasion& occasion) { return job / fmt::format("summary_{}.json", occasion.key()); }
 
 }  // namespace
 
-EarlierResults::EarlierResults(const Sweep& sweep, std::vector<int> taps)
-    : sweep_(sweep), taps_(std::move(taps)), summaries_(sweep_summaries(sweep)) {
-  std::sort(taps_.begin(), taps_.end());
-  taps_.erase(std::unique(taps_.begin(), taps_.end()), taps_.end());
+EarlierResults::EarlierResults(const Sweep& sweep, std::vector<Occasion> occasions)
+    : sweep_(sweep), occasions_(std::move(occasions)), summaries_(sweep_summaries(sweep)) {
   std::int64_t most = 0;
   for (const std::optional<Row>& summary : summaries_) most = std::max(most, summary ? taps_of(*summary) : 0);
-  if (most > 0 && taps_.back() > most) {
-    throw Error("command line", fmt::format("--at: no job made {} taps", taps_.back()),
+  for (const Occasion& one : occasions_) {
+    if (most == 0 || one.taps().value_or(0) <= most) continue;
+    throw Error("command line", fmt::format("--at: no job made {} taps", *one.taps()),
                 fmt::format("the most are {}", most));
   }
   for (std::size_t job = 0; job < sweep_.jobs.size(); ++job) {
-    const bool lacks =
-        std::any_of(taps_.begin(), taps_.end(), [&](int count) { return is_longer(job, count) && !kept(job, count); });
+    const bool lacks = std::any_of(occasions_.begin(), occasions_.end(),
+                                   [&](const Occasion& one) { return is_longer(job, one) && !kept(job, one); });
     if (lacks) missing_.push_back(job);
   }
 }
 
-bool EarlierResults::is_longer(std::size_t job, int taps) const {
+bool EarlierResults::is_longer(std::size_t job, const Occasion& occasion) const {
   const std::optional<Row>& summary = summaries_[job];
-  return summary && summary->text("status") == "done" && taps_of(*summary) > taps;
+  return summary && summary->text("status") == "done" && taps_of(*summary) > occasion.taps().value_or(0);
 }
 
-std::optional<Row> EarlierResults::kept(std::size_t job, int taps) const {
-  const fs::path file = file_of(job_directory(sweep_, sweep_.jobs[job]), taps);
+std::optional<Row> EarlierResults::kept(std::size_t job, const Occasion& occasion) const {
+  const fs::path file = file_of(job_directory(sweep_, sweep_.jobs[job]), occasion);
   if (!is_there(file)) return std::nullopt;
   std::optional<Row> row = parse_json_row(read_file(file));
   if (!row) return std::nullopt;
@@ -64,28 +63,30 @@ void EarlierResults::compute(const Workshop& workshop, std::size_t job) const {
   const fs::path directory = job_directory(sweep_, sweep_.jobs[job]);
   refuse_link(directory.parent_path());
   refuse_link(directory);
-  std::vector<int> shorter;
-  std::copy_if(taps_.begin(), taps_.end(), std::back_inserter(shorter),
-               [&](int count) { return is_longer(job, count); });
-  const std::vector<Row> rows = summaries_after(workshop, read_recording(workshop, directory), shorter);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    Row row = rows[i];
-    row.add(kOf, hash_of(to_json_line(*summaries_[job])));
-    write_file(file_of(directory, shorter[i]), to_json_text(row));
+  const Row& whole = *summaries_[job];
+  std::vector<Occasion> wanted;
+  std::copy_if(occasions_.begin(), occasions_.end(), std::back_inserter(wanted),
+               [&](const Occasion& one) { return is_longer(job, one); });
+  const std::vector<std::optional<Row>> rows = summaries_at(workshop, read_recording(workshop, directory), wanted);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    Row row = rows[i].value_or(whole);
+    if (!wanted[i].taps()) row.add(kReached, rows[i].has_value());
+    row.add(kOf, hash_of(to_json_line(whole)));
+    write_file(file_of(directory, wanted[i]), to_json_text(row));
   }
 }
 
-std::vector<Row> EarlierResults::write(int taps) const {
+std::vector<Row> EarlierResults::write(const Occasion& occasion) const {
   std::vector<std::optional<Row>> summaries = summaries_;
   for (std::size_t job = 0; job < summaries.size(); ++job) {
-    if (!is_longer(job, taps)) continue;
-    summaries[job] = kept(job, taps);
+    if (!is_longer(job, occasion)) continue;
+    summaries[job] = kept(job, occasion);
     if (summaries[job]) continue;
-    throw Error(job_directory(sweep_, sweep_.jobs[job]).string(), fmt::format("has no summary at {} taps", taps),
+    throw Error(job_directory(sweep_, sweep_.jobs[job]).string(), fmt::format("has no summary {}", occasion.words()),
                 "it was removed while it was needed: ask again", Error::Kind::run);
   }
   std::vector<Row> rows = sweep_results(sweep_, summaries);
-  write_file(sweep_.directory / fmt::format("results_at_{}.csv", taps), to_csv(rows));
+  write_file(sweep_.directory / fmt::format("results_{}.csv", occasion.key()), to_csv(rows));
   return rows;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// results.csv as it would be, had the jobs of a sweep stopped after fewer taps. Each job's part is kept in its
-// directory, beside the hash of the summary that it belongs to: a job that ran again since then is computed again.
+// results.csv as it would be, had the jobs of a sweep stopped earlier. Each job's part is kept in its directory, beside
+// the hash of the summary that it belongs to: a job that ran again since then is computed again.
 #pragma once
 
+#include "record/occasion.hpp"
 #include "record/session.hpp"
 #include "sweep/sweep.hpp"
 
@@ -12,30 +13,34 @@
 
 namespace palpate {
 
-/// A sweep whose jobs are looked at after each of some numbers of taps.
+/// What says of a row at a goal whether the job has got there.
+inline constexpr const char* kReached = "reached";
+
+/// A sweep whose jobs are looked at at some occasions.
 class EarlierResults {
  public:
-  /// `taps` are at least 1. Reads the summaries of all jobs. Throws Error for a number that no job reached, and for a
-  /// damaged sweep. `sweep` must outlive it.
-  EarlierResults(const Sweep& sweep, std::vector<int> taps);
+  /// Reads the summaries of all jobs. Throws Error for a number of taps that no job reached, and for a damaged sweep.
+  /// `sweep` must outlive it.
+  EarlierResults(const Sweep& sweep, std::vector<Occasion> occasions);
 
-  /// The jobs that ended well after more taps than asked for and have nothing kept, or nothing that still holds.
+  /// The jobs that ended well, perhaps after one of the occasions, and have nothing kept, or nothing that still holds.
   const std::vector<std::size_t>& missing() const { return missing_; }
 
-  /// Computes one of them, for all numbers of taps, and keeps it. Throws Error.
+  /// Computes one of them, at all occasions, and keeps it. Throws Error.
   void compute(const Workshop& workshop, std::size_t job) const;
 
-  /// The rows after so many taps, one of the numbers asked for; also left as results_at_<taps>.csv in the sweep's
-  /// directory. A job that ended before has its own row, and so has one that failed. Throws Error while one is missing.
-  std::vector<Row> write(int taps) const;
+  /// The rows at one of the occasions; also left as results_<key>.csv in the sweep's directory. A job for which it has
+  /// not come has its own row, and so has one that failed; where that cannot be seen, `reached` says so. Throws Error
+  /// while one is missing.
+  std::vector<Row> write(const Occasion& occasion) const;
 
  private:
-  std::optional<Row> kept(std::size_t job, int taps) const;
-  /// Whether the job has taps behind the `taps`-th that are to be left away.
-  bool is_longer(std::size_t job, int taps) const;
+  std::optional<Row> kept(std::size_t job, const Occasion& occasion) const;
+  /// Whether the job may have taps behind that occasion, which are to be left away.
+  bool is_longer(std::size_t job, const Occasion& occasion) const;
 
   const Sweep& sweep_;
-  std::vector<int> taps_;  ///< ascending
+  std::vector<Occasion> occasions_;
   std::vector<std::optional<Row>> summaries_;
   std::vector<std::size_t> missing_;
 };

@@ -102,7 +102,7 @@ class SignedTap {
 /// felt at rest before a tap and after it can be compared.
 void Tapper::rest_from_above(const Path& column) {
   settle(column.front());
-  follow(column, options_.motion.speed, kFromAbove);
+  follow(column, motion_.speed, kFromAbove);
   settle(column.at(kFromAbove));
 }
 
@@ -143,6 +143,8 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
         watch_.set_tare(zero_);
       }
     } else if (fresh) {
+      const double against = sign_ == 0.0 ? std::abs(felt - zero_.z()) : sign_ * (felt - zero_.z());
+      peak_ = std::max(peak_.value_or(0.0), against);
       // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
       // expected a soft contact.
       if (!moving && plan.start >= plan.hover) {
@@ -183,7 +185,7 @@ void Tapper::retreat(const Path& up) {
   const double free = seen_.now + kUnloading;
   bool tared = false;
   for (double along = 0.0; along < up.length();) {
-    along = up.advance(along, options_.motion.retreat_speed, kPeriod);
+    along = up.advance(along, motion_.retreat_speed, kPeriod);
     step(up.at(along));
     if (!tared && seen_.now >= free) {
       tared = true;
@@ -209,7 +211,7 @@ void Tapper::learn_sign() {
 
 /// What the force reads beside while the arm comes down in the air is no contact: from now on it counts as zero then.
 void Tapper::learn_moving(double difference) {
-  const bool much = std::abs(difference) >= kMostMoving * options_.motion.threshold;
+  const bool much = std::abs(difference) >= kMostMoving * motion_.threshold;
   moving_ = much ? 0.0 : difference;
   if (told_ >= kTold) return;
   ++told_;

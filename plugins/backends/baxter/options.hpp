@@ -90,7 +90,7 @@ struct BaxterOptions : Options {
   /// The sign of the force along z when something presses the tool upwards; `learn`: the first contact shows it.
   enum class ForceSign { negative, positive, learn };
 
-  tapping::MotionOptions motion;
+  tapping::BackendMotion motion;
   ToolOptions tool;
   PlaceOptions place;
   std::optional<CalibrationOptions> calibration;
@@ -101,27 +101,18 @@ struct BaxterOptions : Options {
   bool view = true;
   bool bag = false;
 
+  /// Metres below the desk at which the deepest of descents ends.
+  double deepest() const {
+    double out = 0.0;
+    for (int i = 0; i < motion.count(); ++i) out = std::max(out, motion.at(i).overrun);
+    return out;
+  }
   ForceSign sign() const { return force_sign.value_or(calibration ? ForceSign::learn : ForceSign::negative); }
   void list(Fields& fields) override {
     fields.section(motion, Field("motion", "the tapping motion"));
-    const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
-    const bool adaptive = motion.adaptive_hover.has_value();
-    const char* noise = "is within the noise of the force, take at least 3 N";
-    const char* too_fast = "is too fast for an arm that feels late, take at most 10 cm/s";
-    fields.require(motion.threshold <= kGreatestThreshold, "motion.threshold",
-                   "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
-    fields.require(motion.threshold >= kLeastThreshold, "motion.threshold", noise);
-    fields.require(motion.tare >= kShortestTare, "motion.tare", "is too short for a zero, take at least 100 ms");
-    fields.require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "motion.travel_speed",
-                   "and motion.retreat_speed must let the arm get away, take at least 1 cm/s");
-    fields.require(!two_stage || motion.fine_threshold <= motion.threshold, "motion.fine_threshold",
-                   "must not lie above motion.threshold");
-    fields.require(!two_stage || motion.fine_threshold >= kLeastThreshold, "motion.fine_threshold", noise);
-    fields.require(motion.speed <= kFastest, "motion.speed", too_fast);
-    fields.require(!two_stage || motion.fine_speed <= kFastest, "motion.fine_speed", too_fast);
-    fields.require(!adaptive || motion.adaptive_hover->speed <= kFastest, "motion.adaptive_hover.speed", too_fast);
-    fields.require(motion.overrun <= kDeepest, "motion.overrun",
-                   "lets the arm go on below the desk, take at most 10 cm");
+    for (std::size_t i = 0; i < motion.of.size(); ++i)
+      require_gentle(fields, motion.of[i], "motion.of." + std::to_string(i) + ".");
+    if (motion.of.empty()) require_gentle(fields, motion, "motion.");
     fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
     fields.section(place, Field("place", "where the scene lies before the robot"));
     fields.section(calibration,
@@ -146,12 +137,37 @@ struct BaxterOptions : Options {
             .above(0)
             .at_most(kGreatestStop)
             .from("the arm's firmware stops it at 16 N"));
-    fields.require(force_stop > motion.threshold, "force_stop", "must lie above motion.threshold");
+    for (int i = 0; i < motion.count(); ++i)
+      fields.require(force_stop > motion.at(i).threshold, "force_stop", "must lie above motion.threshold");
     fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),
                   {{"own", "this program", {}}, {"robot", "the robot's IKService, whose answers are checked", {}}});
     fields.flag(dry_run, Field("dry_run", "connect, check and compute every pose of the whole area, but move nothing"));
     fields.flag(view, Field("view", "publish the surface, its standard deviation and the taps, to be seen in RViz"));
     fields.flag(bag, Field("bag", "record what the robot says and is told in a rosbag in the run's folder"));
+  }
+
+ private:
+  static void require_gentle(Fields& fields, const tapping::MotionOptions& motion, const std::string& at) {
+    const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
+    const bool adaptive = motion.adaptive_hover.has_value();
+    const char* noise = "is within the noise of the force, take at least 3 N";
+    const char* too_fast = "is too fast for an arm that feels late, take at most 10 cm/s";
+    const auto require = [&](bool holds, const char* name, const char* why) {
+      fields.require(holds, (at + name).c_str(), why);
+    };
+    require(motion.threshold <= kGreatestThreshold, "threshold",
+            "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
+    require(motion.threshold >= kLeastThreshold, "threshold", noise);
+    require(motion.tare >= kShortestTare, "tare", "is too short for a zero, take at least 100 ms");
+    require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "travel_speed",
+            "and motion.retreat_speed must let the arm get away, take at least 1 cm/s");
+    require(!two_stage || motion.fine_threshold <= motion.threshold, "fine_threshold",
+            "must not lie above motion.threshold");
+    require(!two_stage || motion.fine_threshold >= kLeastThreshold, "fine_threshold", noise);
+    require(motion.speed <= kFastest, "speed", too_fast);
+    require(!two_stage || motion.fine_speed <= kFastest, "fine_speed", too_fast);
+    require(!adaptive || motion.adaptive_hover->speed <= kFastest, "adaptive_hover.speed", too_fast);
+    require(motion.overrun <= kDeepest, "overrun", "lets the arm go on below the desk, take at most 10 cm");
   }
 };
 

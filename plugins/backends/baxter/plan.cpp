@@ -103,6 +103,11 @@ double fastest(const tapping::MotionOptions& motion) {
   if (motion.adaptive_hover) out = std::max(out, motion.adaptive_hover->speed);
   return out;
 }
+double fastest(const BaxterOptions& options) {
+  double out = 0.0;
+  for (int i = 0; i < options.motion.count(); ++i) out = std::max(out, fastest(options.motion.at(i)));
+  return out;
+}
 
 }  // namespace
 
@@ -178,7 +183,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   if (options_.calibration && !calibrated_) {
     out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare()));
   }
-  const std::vector<std::string> motion = tapping::describe(options_.motion, scene_.desk(), request, from);
+  const std::vector<std::string> motion = tapping::describe(options_.motion.of_request(request), scene_.desk(), request, from);
   out.insert(out.end(), motion.begin(), motion.end());
   out.push_back("stop whatever it does when the force changes by " + tapping::newtons(options_.force_stop) +
                 " upwards or downwards, and by half as much again sideways");
@@ -195,9 +200,8 @@ void Tapper::await_fit(bool moving) {
 
 Path Tapper::column(const Target& place) const {
   const Area area = scene_.area();
-  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), std::nullopt);
-  return planner_.column(place, {0.5 * area.width, 0.5 * area.depth}, descent.hover + kFromAbove, descent.floor,
-                         fastest(options_.motion));
+  return planner_.column(place, {0.5 * area.width, 0.5 * area.depth}, travel_height() + kFromAbove,
+                         scene_.desk() - options_.deepest(), fastest(options_));
 }
 
 /// From where the arm is to the height of travel; no way if it is there.

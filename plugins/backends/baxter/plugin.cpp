@@ -102,6 +102,9 @@ class Baxter final : public Backend {
   bool repeatable() const override { return options_.dry_run; }
   bool scene_is_truth() const override { return false; }
   Quantities expects() const override { return tapping::expects(options_.motion); }
+  static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene) {
+    return tapping::motions(options.motion, scene.desk());
+  }
 
  private:
   Options options_;

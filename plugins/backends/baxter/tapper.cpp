@@ -43,8 +43,8 @@ tapping::MotionOptions gentle(tapping::MotionOptions motion) {
 /// height of travel.
 Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
   const Area area = scene.area();
-  return {area.width, area.depth, scene.desk() - options.motion.overrun - kBelowFloor,
-          scene.desk() + options.motion.hover + kAboveTravel};
+  return {area.width, area.depth, scene.desk() - options.deepest() - kBelowFloor,
+          scene.desk() + options.motion.at(0).hover + kAboveTravel};
 }
 
 Fault standstill() { return {"the clock of the robot's network stands still: its sender is gone"}; }
@@ -54,6 +54,7 @@ Fault standstill() { return {"the clock of the robot's network stands still: its
 Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, const std::atomic<bool>* interrupted,
                std::function<void(const std::string&)> note)
     : options_(options),
+      motion_(options.motion.at(0)),
       scene_(scene),
       robot_(robot),
       interrupted_(interrupted),
@@ -73,6 +74,7 @@ Contact Tapper::failed(Outcome outcome, const std::string& reason, bool ends_run
 Contact Tapper::tap(const TapRequest& request) {
   const double begin = robot_.read().now;
   Contact contact;
+  peak_.reset();
   try {
     contact = attempt(request);
   } catch (const NoPath& none) {
@@ -83,6 +85,7 @@ Contact Tapper::tap(const TapRequest& request) {
     contact = failed(Outcome::aborted, fmt::format("{}; {}", trouble.what(), kSilent), true);
   }
   contact.seconds = std::max(0.0, robot_.read().now - begin);
+  contact.peak = peak_;
   const std::string touched =
       fmt::format("contact at {}, at most {}", centimetres(contact.height), newtons(contact.force));
   note_(fmt::format("tap {}: {}", request.number, contact.reason.empty() ? touched : contact.reason));
@@ -91,6 +94,7 @@ Contact Tapper::tap(const TapRequest& request) {
 
 Contact Tapper::attempt(const TapRequest& request) {
   recovering_ = false;
+  motion_ = options_.motion.of_request(request);
   Path down = column(request.target);
   if (options_.dry_run) return failed(Outcome::aborted, "dry run: the place can be reached, nothing moved");
   if (options_.calibration && !calibrated_) {
@@ -98,12 +102,12 @@ Contact Tapper::attempt(const TapRequest& request) {
     desk.target = bare();
     const Path way = column(desk.target);
     go_to(way.front());
-    calibrate(descend(desk, gentle(options_.motion), way));
+    calibrate(descend(desk, gentle(motion_), way));
     learn_sign();
     down = column(request.target);
   }
   go_to(down.front());
-  Contact contact = descend(request, options_.motion, down);
+  Contact contact = descend(request, motion_, down);
   if (contact.outcome == Outcome::contact) learn_sign();
   return contact;
 }
@@ -138,13 +142,13 @@ void Tapper::go_to(const Joints& hover) {
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
   climb(up);
-  follow(across, options_.motion.travel_speed, across.length());
+  follow(across, motion_.travel_speed, across.length());
   settle(hover);
 }
 
 void Tapper::climb(const Path& up) {
   if (!(up.length() > 0.0)) return;
-  follow(up, options_.motion.retreat_speed, up.length());
+  follow(up, motion_.retreat_speed, up.length());
   await_height(up.end());
 }
 

@@ -84,10 +84,11 @@ class Tapper {
   void take(Snapshot seen);
   bool interrupted() const { return interrupted_ != nullptr && interrupted_->load(); }
   double height() const { return tip_.z(); }
-  double travel_height() const { return scene_.desk() + options_.motion.hover; }
+  double travel_height() const { return scene_.desk() + motion_.hover; }
   void learn_sign();
 
   BaxterOptions options_;
+  tapping::MotionOptions motion_;  ///< of this tap
   const Scene& scene_;
   Robot& robot_;
   const std::atomic<bool>* interrupted_;
@@ -106,6 +107,7 @@ class Tapper {
   double moving_ = 0.0;      ///< N along z that it reads beside while the arm comes down in the air
   double shown_sign_ = 0.0;  ///< by the latest contact that was believed; 0 if nothing showed it
   int told_ = 0;             ///< of how many taps moving_ was noted
+  std::optional<double> peak_;  ///< N, the most that was felt of this tap against the tool; none before its descent
 };
 
 }  // namespace palpate::baxter

@@ -85,7 +85,7 @@ struct ProcessOptions : Options {
   bool repeatable = false;
   bool restart = false;
   bool scene_is_truth = false;
-  tapping::MotionOptions motion;
+  tapping::BackendMotion motion;
 
   void list(Fields& fields) override {
     fields.text(command, Field("command",
@@ -146,7 +146,7 @@ class Process final : public Backend {
   }
 
   std::vector<std::string> describe(const TapRequest& request) override {
-    std::vector<std::string> out = tapping::describe(options_.motion, context_.scene.desk(), request, request.previous);
+    std::vector<std::string> out = tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, request.previous);
     out.insert(out.begin(),
                fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
                            process::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
@@ -156,6 +156,9 @@ class Process final : public Backend {
   bool repeatable() const override { return options_.repeatable; }
   bool scene_is_truth() const override { return options_.scene_is_truth; }
   Quantities expects() const override { return tapping::expects(options_.motion); }
+  static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene) {
+    return tapping::motions(options.motion, scene.desk());
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -201,12 +204,13 @@ class Process final : public Backend {
     Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
     if (heard == Child::Heard::line) return failed("said more than its answer: " + process::shown(line));
     if (heard == Child::Heard::late) {
-      heard = child_->send(process::ask_line(request, context_, options_.motion), patience);
+      tapping::MotionOptions motion = options_.motion.of_request(request);
+      heard = child_->send(process::ask_line(request, context_, motion), patience);
       if (heard == Child::Heard::line) heard = child_->hear(line, patience);
     }
     switch (heard) {
       case Child::Heard::line:
-        answer = process::read_answer(line, request.number, context_.scene.desk() + options_.motion.hover);
+        answer = process::read_answer(line, request.number, context_.scene.desk() + options_.motion.at(0).hover);
         answered_ = true;
         if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
         return answer;

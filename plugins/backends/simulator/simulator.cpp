@@ -21,35 +21,35 @@ Simulator::Simulator(const Options& options, const Context& context)
            effects.missed_contacts || effects.false_contacts;
   perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
                effects.height_offset || effects.outliers);
-  if (scene_.highest() >= scene_.desk() + options.motion.hover) {
+  if (scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
-                            100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.hover),
+                            100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.at(0).hover),
                 "raise it or lower the object");
   }
 }
 
 Contact Simulator::tap(const TapRequest& request) {
-  const tapping::Descent descent = tapping::plan_descent(options_.motion, scene_.desk(), request.predicted);
+  const tapping::MotionOptions& motion = options_.motion.of_request(request);
+  const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
 #ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
-  if (!perfect_) return imperfect_tap(request, descent);
+  if (!perfect_) return imperfect_tap(request, down);
 #endif
   const double surface = scene_.height(request.target.x, request.target.y);
-  Contact contact = ideal_tap(descent, surface);
-  contact.seconds += tapping::travel_seconds(options_.motion, request);
+  Contact contact = ideal_tap(down, surface);
+  contact.seconds += tapping::travel_seconds(motion, request);
   return paced(std::move(contact));
 }
 
-Contact Simulator::ideal_tap(const tapping::Descent& descent, double surface) const {
-  const double down = tapping::ideal_seconds(options_.motion, descent, surface);
-  const double up = tapping::retreat_seconds(options_.motion, descent, surface);
-  if (down > options_.motion.timeout)
-    return {Outcome::timeout, 0.0, 0.0, options_.motion.timeout + up, tapping::kTooLong};
-  return {Outcome::contact, surface, options_.motion.threshold, down + up, {}};
+Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
+  const double down = tapping::ideal_seconds(tap.motion, tap.descent, surface);
+  const double up = tapping::retreat_seconds(tap.motion, tap.descent, surface);
+  if (down > tap.motion.timeout) return {Outcome::timeout, 0.0, 0.0, tap.motion.timeout + up, tapping::kTooLong};
+  return {Outcome::contact, surface, tap.motion.threshold, down + up, {}};
 }
 
 #ifndef PALPATE_WITHOUT_EFFECTS
-Contact Simulator::imperfect_tap(const TapRequest& request, const tapping::Descent& descent) const {
+Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& tap) const {
   const Effects& effects = scene_.effects();
   const Target& target = request.target;
   if (effects.reach &&
@@ -69,31 +69,31 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const tapping::Desce
   const bool desk = surface <= scene_.desk();
   if (effects.outliers) {
     surface =
-        std::min(surface + outlier(*effects.outliers, context_.seed, target.x + dx, target.y + dy), descent.hover);
+        std::min(surface + outlier(*effects.outliers, context_.seed, target.x + dx, target.y + dy), tap.descent.hover);
   }
-  Contact contact = moves_ ? simulated_tap(request.number, descent, surface, desk) : ideal_tap(descent, surface);
-  contact.seconds += tapping::travel_seconds(options_.motion, request);
+  Contact contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
+  contact.seconds += tapping::travel_seconds(tap.motion, request);
   if (effects.height_offset) dz += effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   if (contact.outcome == Outcome::contact) contact.height += dz;
   return paced(std::move(contact));
 }
 
-Contact Simulator::simulated_tap(int number, const tapping::Descent& descent, double surface, bool desk) const {
+Contact Simulator::simulated_tap(int number, const Descending& tap, double surface, bool desk) const {
   using tapping::GuardedTap;
   const Effects& effects = scene_.effects();
-  Touch touch(effects, surface, desk, descent.hover, options_.motion.threshold,
+  Touch touch(effects, surface, desk, tap.descent.hover, tap.motion.threshold,
               context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
-  Arm arm(effects.joint_lag, GuardedTap::kPeriod, descent.hover);
-  GuardedTap tap(options_.motion, descent);
-  const std::optional<double>& limit = options_.motion.force_limit;
+  Arm arm(effects.joint_lag, GuardedTap::kPeriod, tap.descent.hover);
+  GuardedTap guarded(tap.motion, tap.descent);
+  const std::optional<double>& limit = tap.motion.force_limit;
   tapping::Sample felt{};
-  while (!tap.done()) {
+  while (!guarded.done()) {
     felt = touch.feel(arm.position());
-    if (limit && touch.force() > tapping::kOwnStop * *limit && !tap.stopping()) tap.give_up(felt.height);
-    arm.follow(tap.next(felt.height, felt.force));
+    if (limit && touch.force() > tapping::kOwnStop * *limit && !guarded.stopping()) guarded.give_up(felt.height);
+    arm.follow(guarded.next(felt.height, felt.force));
   }
-  Contact contact = tap.result();
-  contact.seconds = tap.seconds() + tapping::retreat_seconds(options_.motion, descent, felt.height);
+  Contact contact = guarded.result();
+  contact.seconds = guarded.seconds() + tapping::retreat_seconds(tap.motion, tap.descent, felt.height);
   contact.peak = touch.peak();
   return contact;
 }

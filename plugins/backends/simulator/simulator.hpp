@@ -12,7 +12,7 @@
 namespace palpate::backends {
 
 struct SimulatorOptions : Options {
-  tapping::MotionOptions motion;
+  tapping::BackendMotion motion;
   double pace = 0.0;
   void list(Fields& fields) override {
     fields.section(motion, Field("motion", "the tapping motion"));
@@ -33,11 +33,19 @@ class Simulator final : public Backend {
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return true; }
   Quantities expects() const override { return tapping::expects(options_.motion); }
+  static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene) {
+    return tapping::motions(options.motion, scene.desk());
+  }
 
  private:
-  Contact ideal_tap(const tapping::Descent& descent, double surface) const;
-  Contact imperfect_tap(const TapRequest& request, const tapping::Descent& descent) const;
-  Contact simulated_tap(int number, const tapping::Descent& descent, double surface, bool desk) const;
+  /// A tap on its way down.
+  struct Descending {
+    const tapping::MotionOptions& motion;
+    tapping::Descent descent;
+  };
+  Contact ideal_tap(const Descending& tap, double surface) const;
+  Contact imperfect_tap(const TapRequest& request, const Descending& tap) const;
+  Contact simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
   Contact paced(Contact contact) const;
 
   SimulatorOptions options_;

@@ -56,12 +56,26 @@ void AdaptiveHover::list(Fields& fields) {
 }
 
 void MotionOptions::list(Fields& fields) {
+  list_types(fields, {});
+  list_rest(fields);
+}
+
+void BackendMotion::list(Fields& fields) {
+  list_types(fields, {{"chosen", "for each tap the one that tells most in its time", [this](Fields& inner) {
+                         inner.sections(of, Field("of", "the motions to choose from, each with options of its own"));
+                       }}});
+  if (type != Type::chosen) return list_rest(fields);
+  fields.require(of.size() >= 2, "of", "names the motions to choose from, at least two");
+  const auto same = [this](const MotionOptions& one) { return one.hover == of.front().hover; };
+  fields.require(std::all_of(of.begin(), of.end(), same), "of", "all travel at one height, give them the same hover");
+}
+
+void MotionOptions::list_types(Fields& fields, const std::vector<Case>& more) {
   const auto pause_after = [this](Fields& inner, const char* meaning) {
     inner.real(pause, Field("pause", meaning).in(Unit::second).at_least(0).from("Sun and Min 2021: 0.5 s"));
   };
-  fields.choice(
-      type, Field("type", "how the arm comes down"),
-      {{"paper", "in steps with a pause after each, until the force rises; the height is read after that pause",
+  std::vector<Case> types{
+      {"paper", "in steps with a pause after each, until the force rises; the height is read after that pause",
         [&, this](Fields& inner) {
           inner.real(step, positive("step", "height of one step", Unit::metre, "Sun and Min 2021: 3 cm"));
           pause_after(inner, "rest after each step");
@@ -87,7 +101,12 @@ void MotionOptions::list(Fields& fields) {
           inner.flag(confirm, Field("confirm",
                                     "believe a contact only if the force lasts for 0.1 s, and else go on: a "
                                     "jerk is gone by then; a real arm always does"));
-        }}});
+        }}};
+  types.insert(types.end(), more.begin(), more.end());
+  fields.choice(type, Field("type", "how the arm comes down"), types);
+}
+
+void MotionOptions::list_rest(Fields& fields) {
   fields.real(
       speed,
       positive("speed", "of the descent: of its steps, or of its first stage", Unit::metre_per_second,
@@ -119,6 +138,11 @@ void MotionOptions::list(Fields& fields) {
                                .in(Unit::newton)
                                .above(0)
                                .from("16 N: where Baxter's firmware stops the arm"));
+}
+
+Quantities expects(const BackendMotion& motion) {
+  const MotionOptions& alone = motion;
+  return motion.of.empty() ? expects(alone) : Quantity::height | Quantity::probability;
 }
 
 Quantities expects(const MotionOptions& motion) {
@@ -181,9 +205,48 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
       return seconds + back / motion.speed + motion.pause + back / motion.fine_speed;
     }
     case MotionOptions::Type::continuous:
+    case MotionOptions::Type::chosen:
       return seconds + kWatched;
   }
   return seconds;
+}
+
+namespace {
+
+/// The moment at which a force is noticed errs by about so much, seconds; an arm that moves errs by as much as it goes
+/// then. An estimate, of an arm of Baxter's class: `latency` in configs/effects/standard.yaml.
+constexpr double kMoment = 0.015;
+
+class Several final : public Motions {
+ public:
+  Several(std::vector<MotionOptions> motions, double desk) : motions_(std::move(motions)), desk_(desk) {}
+
+  int count() const override { return static_cast<int>(motions_.size()); }
+
+  double seconds(const TapRequest& request, double surface) const override {
+    const MotionOptions& motion = at(request.motion);
+    const Descent descent = plan_descent(motion, desk_, request.predicted);
+    const double met = std::min(surface, descent.hover);
+    return travel_seconds(motion, request) + ideal_seconds(motion, descent, met) +
+           retreat_seconds(motion, descent, met);
+  }
+
+  double deviation(int number) const override {
+    const MotionOptions& motion = at(number);
+    return kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed);
+  }
+
+ private:
+  const MotionOptions& at(int number) const { return motions_[static_cast<std::size_t>(number)]; }
+
+  std::vector<MotionOptions> motions_;
+  double desk_;
+};
+
+}  // namespace
+
+std::unique_ptr<Motions> motions(const BackendMotion& motion, double desk) {
+  return motion.of.empty() ? nullptr : std::make_unique<Several>(motion.of, desk);
 }
 
 std::string centimetres(double length) { return fmt::format("{:.1f} cm", 100.0 * length); }

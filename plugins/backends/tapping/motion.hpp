@@ -4,8 +4,11 @@
 #pragma once
 
 #include <palpate/backend.hpp>
+#include <palpate/motions.hpp>
 #include <palpate/options.hpp>
+#include <palpate/scene.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +27,7 @@ struct AdaptiveHover : Options {
 
 /// One tap: travel at `hover` above the desk, tare, come down in a way of its own until the force rises, retreat.
 struct MotionOptions : Options {
-  enum class Type { paper, two_stage, continuous };
+  enum class Type { paper, two_stage, continuous, chosen };  ///< `chosen` is a BackendMotion's alone
   Type type = Type::paper;
   double speed = 0.024;         ///< m/s, of the descent
   double step = 0.03;           ///< m, paper
@@ -44,10 +47,26 @@ struct MotionOptions : Options {
   double timeout = 60.0;              ///< s
   std::optional<double> force_limit;  ///< N
   void list(Fields& fields) override;
+
+ protected:
+  void list_types(Fields& fields, const std::vector<Case>& more);
+  void list_rest(Fields& fields);
 };
 
-/// What a motion depends on of all that the models expect.
+/// The same, or several of them, of which the strategy takes one for each tap.
+struct BackendMotion : MotionOptions {
+  std::vector<MotionOptions> of;  ///< none, or two and more
+  void list(Fields& fields) override;
+
+  int count() const { return of.empty() ? 1 : static_cast<int>(of.size()); }
+  /// One of them; the one that a request asks for.
+  const MotionOptions& at(int number) const { return of.empty() ? *this : of.at(static_cast<std::size_t>(number)); }
+  const MotionOptions& of_request(const TapRequest& request) const { return at(request.motion); }
+};
+
+/// What a motion, or the choice between several, depends on of all that the models expect.
 Quantities expects(const MotionOptions& motion);
+Quantities expects(const BackendMotion& motion);
 
 /// The heights of one descent, metres, in the frame of the scene: floor <= start <= hover.
 struct Descent {
@@ -75,6 +94,9 @@ constexpr double kWatched = 0.1;
 /// Seconds from arrival to contact with a rigid surface at `surface`, for an arm that follows its set-point at once and
 /// feels without noise: what GuardedTap needs then, but for whole periods and those that it takes to be sure.
 double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface);
+
+/// What the strategy chooses from; null where there is but one motion.
+std::unique_ptr<Motions> motions(const BackendMotion& motion, double desk);
 
 /// Rounded to a millimetre and to a tenth of a newton: "13.5 cm", "6.0 N".
 std::string centimetres(double length);
