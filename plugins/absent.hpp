@@ -29,7 +29,8 @@ constexpr PluginManifest manifest_of(const char* name, const char* summary) {
             Options().list(fields);
             throw Error("", kReason);
           },
-          [](void*) {}};
+          [](void*) {},
+          nullptr};
 }
 
 }  // namespace palpate::absent
