@@ -97,6 +97,7 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
   }
   // What cannot be compared is found out before anything is computed; of which jobs a condition holds is not known yet.
   for (const std::string& metric : arguments.metrics) {
+    if (arguments.until && metric == kReached) continue;
     palpate::compare(sweep, sweep_results(sweep), {arguments.by, metric, nullptr, arguments.baseline, false, true});
   }
   const auto results = results_at(program, sweep, occasions, arguments.workers);

@@ -96,7 +96,7 @@ TEST_F(Sweeps, CountDeadStartsByTheInitialTapsOfEachGroup) {
 
 TEST_F(Sweeps, CountAsDeadStartsOfASearchWhatItNeverFound) {
   const std::string table =
-      sweep("strategy=random,default scene=cube scene.effects=none taps=12 seed=range(0,10) --quiet",
+      sweep("backend=chosen strategy=random,default scene=cube scene.effects=none taps=12 seed=range(0,10) --quiet",
             config("benchmark/strategies.yaml"))
           .out;
   int never = 0;

@@ -69,6 +69,33 @@ TEST_F(ComposeStrategy, MayBeAWholeConfig) {
   EXPECT_EQ(refusal("strategy: wohle\n"), "c.yaml:1:11: no file strategy/wohle.yaml, did you mean 'whole'?");
 }
 
+TEST_F(ComposeStrategy, BringsAMotionWhereNobodyElseSaysOneAndNeverAPartOfOne) {
+  folder_.write("strategy/quick.yaml",
+                "backend: {type: process, motion: {type: continuous, speed: 20 cm/s, brake: 3 cm}}\n");
+  folder_.write("strategy/quicker.yaml",
+                "defaults:\n  - strategy: quick\nbackend: {motion: {type: continuous, speed: 30 cm/s}}\n");
+  folder_.write("backend/arm.yaml", "backend: {type: baxter, motion: {type: continuous, speed: 1 cm/s}}\n");
+  folder_.write("backend/bare.yaml", "backend: {type: simulator}\n");
+  const auto motion = [&](const std::string& text, const std::vector<std::string>& words = {}) {
+    return value(text, "backend.motion", words);
+  };
+  EXPECT_EQ(value("strategy: quick\nbackend: bare\n", "backend.type"), "simulator") << "the backend is the run's";
+  const std::string quick = of("{type: continuous, speed: 20 cm/s, brake: 3 cm}");
+  EXPECT_EQ(motion("strategy: quick\nbackend: bare\n"), quick);
+  EXPECT_EQ(motion("backend: bare\n", {"strategy=quick"}), quick);
+  EXPECT_EQ(motion("strategy: quicker\nbackend: bare\n"), of("{type: continuous, speed: 30 cm/s}"));
+  const std::string slow = of("{type: continuous, speed: 1 cm/s}");
+  EXPECT_EQ(motion("strategy: quick\nbackend: arm\n"), slow);
+  EXPECT_EQ(motion("backend: arm\n", {"strategy=quick"}), slow);
+  EXPECT_EQ(motion("defaults:\n  - strategy: quick\nbackend: {type: baxter, motion: {speed: 1 cm/s}}\n"),
+            of("{speed: 1 cm/s}"));
+  EXPECT_EQ(motion("strategy: quick\nbackend: bare\n", {"backend.motion.speed=2cm/s"}),
+            of("{type: continuous, speed: 2cm/s, brake: 3 cm}"))
+      << "a person may";
+  EXPECT_TRUE(config_keys().is_of_strategy("backend.motion.speed"));
+  EXPECT_FALSE(config_keys().is_of_strategy("backend.motions"));
+}
+
 TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {
   folder_.write("bold.yaml", "strategy: bold\nsurface: single\n");
   EXPECT_EQ(value("strategy: bold\n", "kernel.nu"), "1.5");

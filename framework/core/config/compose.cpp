@@ -322,12 +322,17 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   note_group(choice, beside);
   Tree own = load(file);
   own.set_layer(kGroupLayer);
+  std::map<std::string, Tree> brought;
+  for (const std::string& path : keys_.strategy_parts()) {
+    if (const Tree* part = own.find_path(path)) brought.emplace(path, *part);
+  }
   std::vector<Choice> inner = take_defaults(own);
   drop(own.entries, [&](const Tree::Entry& one) { return !keys_.is_of_strategy(one.key); });
   take_names(own, "", inner);
   drop(inner, [&](const Choice& one) { return !keys_.is_of_strategy(one.path); });
   const fs::path root = root_of(file, kStrategy);
   lay_strategy(tree, inner, root, layer, chain);
+  for (auto& [path, part] : brought) brought_[path] = std::move(part);
   lay_groups(tree, inner, root, layer);
   own.set_layer(layer);
   layer += kLayersOfGroup;
@@ -342,6 +347,7 @@ void Composer::note_group(const Choice& choice, const fs::path& beside) {
 
 Tree Composer::compose(const fs::path& file, const std::vector<Override>& overrides) {
   groups_.clear();
+  brought_.clear();
   Tree own = load(file);
   const fs::path beside = fs::absolute(file).parent_path();
   std::vector<Choice> choices = take_defaults(own);
@@ -363,6 +369,9 @@ Tree Composer::compose(const fs::path& file, const std::vector<Override>& overri
   }
   lay_groups(tree, choices, beside, layer);
   tree.merge(own);
+  for (const auto& [path, part] : brought_) {
+    if (tree.find_path(path) == nullptr) tree.at_path(path, part.place) = part;
+  }
   for (const Override& one : overrides) {
     if (keys_.is_group(one.path) && one.value.is_scalar()) {
       if (is_inner(one.path)) choose_inner(tree, one, beside);

@@ -41,7 +41,9 @@ void check_path(const std::string& path, const std::string& place);
 /// The group `strategy` is no option: it bundles settings of any keys that decide where to tap and what is believed:
 /// its file is a config like any other, in strategy/ or in the folder itself, so that a whole config is a strategy as
 /// well. Named by the config it is laid below the groups that the config names; as an override it takes the place of
-/// each top-level key that it has. What it says of keys that are the run's own (Field::of_run()) is left out.
+/// each top-level key that it has. What it says of keys that are the run's own (Field::of_run()) is left out, but for
+/// the motion of the backend: that counts, as a whole, where neither a group nor the config says any of it. So no
+/// strategy makes an arm faster than its own config has it.
 class Composer {
  public:
   /// `shipped` is the program's own folder of configs; it need not exist. `keys` must outlive it.
@@ -103,6 +105,7 @@ class Composer {
   std::filesystem::path shipped_;
   const ConfigKeys& keys_;
   std::map<std::filesystem::path, Tree> files_;
+  std::map<std::string, Tree> brought_;  ///< by the strategy of this composition, for keys of the run
   std::vector<Group> groups_;
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.
   mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;

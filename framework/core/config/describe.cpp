@@ -260,6 +260,7 @@ FieldDescription describe_key(const Field& field) {
   out.group = field.is_group;
   out.heir_of = field.heir_of;
   out.owner = field.owner;
+  out.strategy_part = field.strategy_part;
   return out;
 }
 

@@ -29,6 +29,7 @@ struct FieldDescription {
   bool group = false;     ///< see Field::group()
   std::string heir_of;    ///< see Field::inherits(); "" for none
   Owner owner = Owner::unsaid;
+  std::string strategy_part;
   std::size_t count = 0;                 ///< of `reals`, and of a row of `table`
   std::string kind;                      ///< of `plugin`
   std::vector<CaseDescription> cases;    ///< of `choice`

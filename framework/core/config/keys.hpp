@@ -33,6 +33,8 @@ class ConfigKeys {
 
   /// Whether the value at a dotted path may come from a strategy. What no list knows may: it is refused later.
   bool is_of_strategy(const std::string& path) const;
+  /// Paths within keys of the run that a strategy may bring along.
+  const std::vector<std::string>& strategy_parts() const { return strategy_parts_; }
 
   /// Pairs of paths: what the first does not say, the second says.
   const std::vector<std::pair<std::string, std::string>>& heirs() const { return heirs_; }
@@ -45,6 +47,7 @@ class ConfigKeys {
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names
   std::set<std::string> of_run_;
+  std::vector<std::string> strategy_parts_;
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
 

@@ -14,7 +14,7 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
   if (auto motions = context.factory.motions(options.backend, context.scene))
-    pace_.emplace(std::move(motions), candidates, context.scene.desk());
+    pace_.emplace(std::move(motions), context.scene.desk());
 }
 
 bool Chooser::starting(const TapBelief& belief) const {
@@ -36,17 +36,12 @@ void Chooser::allow(const TapBelief& belief) {
   }
 }
 
-/// The best of the allowed; where there are several motions, a second of the arm.
-Pick Chooser::pick(const Eigen::VectorXd& scores, double scale) {
-  return pick_best(pace_ ? pace_->per_second(scores) : scores, allowed_, scale, options_.tie_tolerance);
-}
-
 bool Chooser::choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous) {
-  if (pace_) pace_->look(belief, previous);
   if (!choose_place(belief, tap)) return false;
   if (!pace_) return true;
-  tap.motion = pace_->motion(tap.candidate);
-  tap.expected_seconds = pace_->seconds(tap.candidate);
+  const Pace::Choice choice = pace_->choose(belief, tap.candidate, candidates_.target(tap.candidate), previous);
+  tap.motion = choice.motion;
+  tap.expected_seconds = choice.seconds;
   return true;
 }
 
@@ -58,12 +53,12 @@ bool Chooser::choose_place(TapBelief& belief, TapRecord& tap) {
     return true;
   }
   tap.source = Source::acquisition;
-  Pick picked = pick(scores(belief), acquisition_->prior_scale());
+  Pick picked = pick_best(scores(belief), allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
   if (picked.flat && may_fall_back()) {
     tap.source = Source::fallback;
     tap.why = *picked.flat;
     belief.ask(kFallbackReads);
-    picked = pick(belief.uncertainty(), 1.0);
+    picked = pick_best(belief.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
   }
   if (picked.candidate < 0) return false;
   tap.candidate = picked.candidate;
@@ -88,9 +83,13 @@ void Chooser::observe(const PastTap& tap, int candidate, bool hit, const std::op
                       std::optional<double> excess) {
   ++taps_;
   if (pace_) pace_->observe(tap, previous, excess);
-  if (search_) search_->look(tap.target);
+  // A tap that was broken off says nothing of what is there.
+  const Outcome outcome = tap.contact.outcome;
+  const bool looked =
+      outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;
+  if (search_ && looked) search_->look(tap.target);
   const auto place = static_cast<std::size_t>(candidate);
-  if (tap.contact.outcome == Outcome::contact) {
+  if (outcome == Outcome::contact) {
     contacts_.push_back({place, hit});
   } else {
     failed_[place] = true;

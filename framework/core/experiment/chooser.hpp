@@ -36,7 +36,8 @@ class Chooser {
   static constexpr Quantities kFallbackReads = Quantity::uncertainty;
   bool may_fall_back() const { return options_.fallback == ExperimentOptions::Fallback::uncertainty; }
 
-  /// Chooses a candidate and notes in `tap` which, by whom, and all about its score. `belief` has been asked for what
+  /// Chooses a candidate, after a tap at `previous` a motion for it, and notes in `tap` which, by whom, and all about
+  /// its score. `belief` has been asked for what
   /// is read; a fallback asks it for more. False if no candidate is left.
   bool choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous);
 
@@ -48,7 +49,7 @@ class Chooser {
                std::optional<double> excess);
 
   /// What the motion of a tap adds to the noise of its height, metres: 0 where there is but one.
-  double deviation(int motion) const { return pace_ ? pace_->deviation(motion) : 0.0; }
+  double roughness(int motion) const { return pace_ ? pace_->roughness(motion) : 0.0; }
 
  private:
   struct Touched {
@@ -59,7 +60,6 @@ class Chooser {
   bool choose_place(TapBelief& belief, TapRecord& tap);
   /// Finds the candidates that may be tapped: those that were not, and those whose contacts are all doubted.
   void allow(const TapBelief& belief);
-  Pick pick(const Eigen::VectorXd& scores, double scale);
 
   const ExperimentOptions& options_;
   const Candidates& candidates_;

@@ -91,7 +91,7 @@ class Experiment {
     return {tap.number, tap.target, previous_, tap.predicted, watch_.counts().robot_seconds, tap.motion};
   }
   Manner manner_of(const PastTap& tap) const {
-    return {tap.source == Source::initial, tap.motion, chooser_.deviation(tap.motion)};
+    return {tap.source == Source::initial, tap.motion, chooser_.roughness(tap.motion)};
   }
   Contact touch(const TapRecord& tap);
   bool is_broken_off(const Contact& contact) const;

@@ -200,7 +200,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(stop, Field("stop", "reasons to stop before the budget is spent").of_strategy());
   fields.section(scene,
                  Field("scene", "what the world holds; a robot backend reads only area and desk").of_run().group());
-  fields.plugin(backend, Field("backend", "what is tapped").of_run().group());
+  fields.plugin(backend, Field("backend", "what is tapped").of_run().but_of_strategy("motion").group());
   fields.section(log, Field("log", "what is written").of_run());
   fields.integer(format,
                  Field("format", "of this file and of the record beside it: see runs/README.md").of_run().at_least(1));

@@ -12,27 +12,16 @@
 namespace palpate {
 namespace {
 
-/// As many taps the first ideas are worth.
+/// As many taps a motion's own idea of itself is worth, and how often it thinks to come to a contact.
 constexpr double kIdea = 5.0;
-/// How often a tap comes to nothing, before any shows it.
-constexpr double kFailures = 0.05;
-/// What is farther off was no contact with the bare desk, metres.
+constexpr double kContacts = 0.95;
+/// Metres: what is farther off was no contact with the bare desk.
 constexpr double kFarOff = 0.02;
 
 }  // namespace
 
-Pace::Pace(std::shared_ptr<const Motions> motions, const Candidates& candidates, double desk)
-    : motions_(std::move(motions)),
-      candidates_(candidates),
-      desk_(desk),
-      shown_(static_cast<std::size_t>(motions_->count())),
-      best_(static_cast<std::size_t>(candidates.size()), 0) {}
-
-double Pace::success(const Shown& shown) const {
-  return 1.0 - (kIdea * kFailures + shown.failed) / (kIdea + shown.taps);
-}
-
-double Pace::late(const Shown& shown) const { return shown.late / (kIdea + shown.timed); }
+Pace::Pace(std::shared_ptr<const Motions> motions, double desk)
+    : motions_(std::move(motions)), desk_(desk), shown_(static_cast<std::size_t>(motions_->count())) {}
 
 double Pace::deviation(int motion) const {
   const Shown& shown = shown_[static_cast<std::size_t>(motion)];
@@ -40,60 +29,58 @@ double Pace::deviation(int motion) const {
   return std::sqrt((kIdea * idea * idea + shown.squares) / (kIdea + shown.on_desk));
 }
 
-void Pace::look(const TapBelief& belief, const std::optional<Target>& previous) {
-  const int count = candidates_.size();
-  const Eigen::VectorXd& heights = belief.height_mean();
-  const Eigen::VectorXd& variances = belief.height_variance();
-  const Eigen::VectorXd& probability = belief.probability();
-  const double noise = belief.height_noise();
-  share_.setConstant(count, -1.0);
-  seconds_.resize(count);
-  TapRequest request;
-  request.previous = previous;
-  for (request.motion = 0; request.motion < motions_->count(); ++request.motion) {
-    const Shown& shown = shown_[static_cast<std::size_t>(request.motion)];
-    const double often = success(shown);
-    const double more = late(shown);
-    const double own = deviation(request.motion);
-    for (int i = 0; i < count; ++i) {
-      request.target = candidates_.target(i);
-      const double p = probability(i);
-      request.predicted = Prediction{heights(i), std::sqrt(variances(i)), p};
-      const double seconds = more + p * motions_->seconds(request, std::max(desk_, heights(i))) +
-                             (1.0 - p) * motions_->seconds(request, desk_);
-      const double unknown = variances(i) + noise * noise;
-      const double share = often * unknown / (unknown + own * own) / seconds;
-      if (share <= share_(i)) continue;
-      share_(i) = share;
-      seconds_(i) = seconds;
-      best_[static_cast<std::size_t>(i)] = request.motion;
-    }
-  }
+double Pace::roughness(int motion) const {
+  double least = deviation(0);
+  for (int other = 1; other < motions_->count(); ++other) least = std::min(least, deviation(other));
+  const double own = deviation(motion);
+  return std::sqrt(std::max(0.0, own * own - least * least));
 }
 
-const Eigen::VectorXd& Pace::per_second(const Eigen::VectorXd& scores) {
-  worth_ = scores.cwiseProduct(share_);
-  return worth_;
+Pace::Choice Pace::choose(const TapBelief& belief, int candidate, const Target& place,
+                          const std::optional<Target>& previous) const {
+  TapRequest request;
+  request.target = place;
+  request.previous = previous;
+  request.predicted = belief.predict(candidate, kReads);
+  const Prediction& expected = *request.predicted;
+  const double p = *expected.probability;
+  const double variance = expected.standard_deviation * expected.standard_deviation;
+  const auto bits = [](double q) { return q > 0.0 ? -q * std::log2(q) : 0.0; };
+  const double whether = bits(p) + bits(1.0 - p);
+  Choice best;
+  double most = -1.0;
+  for (request.motion = 0; request.motion < motions_->count(); ++request.motion) {
+    const Shown& shown = shown_[static_cast<std::size_t>(request.motion)];
+    const double seconds = p * motions_->seconds(request, std::max(desk_, expected.height)) +
+                           (1.0 - p) * motions_->seconds(request, desk_) + shown.late / (kIdea + shown.contacts);
+    const double contacts = (kIdea * kContacts + shown.contacts) / (kIdea + shown.taps);
+    const double own = deviation(request.motion);
+    const double how_high = p * 0.5 * std::log2(1.0 + variance / (own * own));
+    const double worth = contacts * (whether + how_high) / seconds;
+    if (worth <= most) continue;
+    most = worth;
+    best = {request.motion, seconds};
+  }
+  return best;
 }
 
 void Pace::observe(const PastTap& tap, const std::optional<Target>& previous, std::optional<double> excess) {
   if (tap.motion < 0 || tap.motion >= motions_->count()) {
-    throw Error("", fmt::format("a recorded tap was made by motion {}, of which the config has {}", tap.motion, motions_->count()),
+    throw Error("",
+                fmt::format("a recorded tap was made by motion {}, but the config has {}", tap.motion,
+                            motions_->count()),
                 "the record is damaged", Error::Kind::run);
   }
   Shown& shown = shown_[static_cast<std::size_t>(tap.motion)];
   ++shown.taps;
-  if (tap.contact.outcome != Outcome::contact) {
-    ++shown.failed;
-    return;
-  }
+  if (tap.contact.outcome != Outcome::contact) return;
+  ++shown.contacts;
   TapRequest request;
   request.target = tap.target;
   request.previous = previous;
   request.predicted = tap.predicted;
   request.motion = tap.motion;
   shown.late += tap.contact.seconds - motions_->seconds(request, tap.contact.height);
-  ++shown.timed;
   if (!excess || std::abs(*excess) > kFarOff) return;
   shown.squares += *excess * *excess;
   ++shown.on_desk;

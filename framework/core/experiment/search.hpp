@@ -27,8 +27,8 @@ class Search {
   /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
   Search(double smallest, const Candidates& candidates, const Area& area, Random random);
 
-  /// There was a tap that hit nothing. One that failed counts, too: where the arm cannot go it need not try the
-  /// neighbours at once, and the discs beside it stay.
+  /// There was a tap that hit nothing. A place that cannot be reached counts, too: the arm need not try the neighbours
+  /// at once, and the discs beside it stay.
   void look(const Target& place);
 
   /// The candidate to tap next, one of the `allowed`; of equals the first. At least one must be allowed.

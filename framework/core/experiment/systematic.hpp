@@ -7,7 +7,7 @@
 // a dome or a jerk of the force is as low: those at a rim are left out, the others judged as the taps of a surface are
 // (gp/lies.hpp).
 //
-// Each motion adds something of its own to what all add: half of the prior variance of the offset is each's alone.
+// Each motion adds a little of its own to what all add: a fifth of the prior variance of the offset is each's alone.
 //
 // What an object's own softness adds beyond the desk's is not in it: nothing that is touched tells.
 #pragma once
@@ -47,10 +47,12 @@ class Systematic {
     double excess;
   };
 
+  static constexpr double kShared = 0.8;
+
   bool at_a_rim(const Target& place) const;
   void judge_all();
   double covariance(const When& a, const When& b) const {
-    const double share = a.motion == b.motion ? 1.0 : 0.5;
+    const double share = a.motion == b.motion ? 1.0 : kShared;
     return share * offset_ * offset_ + drift_ * drift_ * a.seconds * b.seconds;
   }
 

@@ -125,7 +125,7 @@ void TapBelief::observe(const Target& place, const Contact& contact, const Manne
   numbers_.push_back(taps_);
   const double noise = height_noise();
   const double share =
-      manner.deviation > 0.0 ? noise * noise / (noise * noise + manner.deviation * manner.deviation) : 1.0;
+      manner.roughness > 0.0 ? noise * noise / (noise * noise + manner.roughness * manner.roughness) : 1.0;
   share_.push_back(std::round(share * kSteps) / kSteps);
   uneven_ = uneven_ || share_.back() < 1.0;
   if (reading.on) hits_.push_back(touches_.back());

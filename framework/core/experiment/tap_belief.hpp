@@ -29,7 +29,7 @@ const simd::Table& loops_of(const ExperimentOptions& options);
 struct Manner {
   bool initial = false;
   int motion = 0;
-  double deviation = 0.0;
+  double roughness = 0.0;
 };
 
 /// The belief behind the acquisitions, and what the metrics and the record want beyond it. A plain value: taps are

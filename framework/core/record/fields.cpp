@@ -182,7 +182,7 @@ FieldList<TapRecord> make_tap_list() {
            [](const Tap& t) { return t.contact.seconds; })
       .in(Unit::second);
 
-  list.add("score", "of the acquisition at the chosen place; where the motion is chosen, what that is worth a second", &Tap::score);
+  list.add("score", "of the acquisition at the chosen place", &Tap::score);
   list.add("u", "uncertainty at the chosen place, before the tap", &Tap::uncertainty);
   list.add("w", "the weight there, never clipped", &Tap::weight);
   list.add("e", "their product", &Tap::exploration);

@@ -24,7 +24,7 @@ class Motions {
   /// frame of the scene. Asked for every candidate before every tap: it should take no more than microseconds.
   virtual double seconds(const TapRequest& request, double surface) const = 0;
 
-  /// Standard deviation, metres, that a motion adds to the heights of a perfect one. A first idea: taps correct it.
+  /// Standard deviation, metres, of the height of one tap by a motion. A first idea: taps on the desk correct it.
   virtual double deviation(int motion) const = 0;
 };
 

@@ -83,6 +83,8 @@ class Field {
   /// Whose it is; every top-level key of a config says one of the two.
   Field& of_strategy() { return owner = Owner::strategy, *this; }
   Field& of_run() { return owner = Owner::run, *this; }
+  /// Of what is the run's own, an option that a strategy may bring along for runs that do not say it.
+  Field& but_of_strategy(const char* option) { return strategy_part = option, *this; }
 
   const char* name;
   const char* meaning;
@@ -95,6 +97,7 @@ class Field {
   bool is_group = false;
   const char* heir_of = "";
   Owner owner = Owner::unsaid;
+  const char* strategy_part = "";
 };
 
 /// One of the named values of a choice. A choice that is a `type` may bring fields of its own.

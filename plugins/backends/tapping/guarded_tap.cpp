@@ -163,10 +163,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::stop:
-      if (given_up_ && waited(kWatched)) {
-        finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
-      } else if (waited(kWatched))
-        conclude(onset_of_descent(trace_).value_or(first_));
+      if (waited(kWatched)) conclude(onset_of_descent(trace_).value_or(first_));
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {
@@ -184,6 +181,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
 void GuardedTap::give_up(double height) {
   if (done() || given_up_) return;
   given_up_ = true;
+  first_ = height;
   set_point_ = std::min(descent_.hover, height + std::max(motion_.brake, kFromAbove));
   enter(Stage::stop);
 }
@@ -212,6 +210,7 @@ void GuardedTap::conclude(double height) {
   const double least = motion_.brake > 0.0 ? 0.5 * motion_.threshold : motion_.threshold;
   const bool lasts = summed_ == 0 || sum_ / summed_ - zero_ > least;
   const bool asks = arm_ == Arm::real || motion_.confirm;
+  if (given_up_ && !lasts) return finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
   if (!asks || lasts) return finish({Outcome::contact, height, peak_, 0.0, {}});
   enter(Stage::descend);
 }

@@ -66,8 +66,8 @@ class GuardedTap {
   /// force that is not `fresh` was told before: time goes on, but it counts for nothing.
   double next(double height, double force, bool fresh = true);
 
-  /// The arm has stopped by itself, at a force that it, not this, has felt: what it presses on with is let go, and the
-  /// tap comes to nothing.
+  /// The arm has stopped by itself, at a force that it has felt: what it presses on with is let go. Where that force is
+  /// seen here, too, if late, it was a contact like any other; else the tap comes to nothing.
   void give_up(double height);
 
   bool done() const { return stage_ == Stage::done; }

@@ -216,6 +216,8 @@ namespace {
 /// The moment at which a force is noticed errs by about so much, seconds; an arm that moves errs by as much as it goes
 /// then. An estimate, of an arm of Baxter's class: `latency` in configs/effects/standard.yaml.
 constexpr double kMoment = 0.015;
+/// Metres by which the height of an arm at rest errs: `pose_noise` there.
+constexpr double kPlace = 0.001;
 
 class Several final : public Motions {
  public:
@@ -233,7 +235,8 @@ class Several final : public Motions {
 
   double deviation(int number) const override {
     const MotionOptions& motion = at(number);
-    return kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed);
+    return std::hypot(kPlace,
+                      kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
   }
 
  private:
