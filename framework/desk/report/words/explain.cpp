@@ -20,16 +20,15 @@ namespace {
 /// What the maps say of the place of the tap: u, and w and e or the probability of `footprint`, whichever the record of
 /// the tap has.
 void explain_place(Page& page, const Row& row, const std::string& footprint) {
-  if (!row.number("u")) return;
-  std::string text =
-      fmt::format("There u = {} (how little is known of the height: 0 all, 1 nothing)", number_words(row, "u"));
-  if (row.number("p"))
-    text += fmt::format(", p = {} (the probability that an object is there, by footprint/{})", number_words(row, "p"),
-                        footprint);
-  if (row.number("w") && row.number("e"))
-    text += fmt::format(", w = {} (what speaks for an object: 0 desk, 1 object), e = u w = {}", number_words(row, "w"),
-                        number_words(row, "e"));
-  page.say(text + ".");
+  std::vector<std::string> said;
+  const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
+    if (row.number(name)) said.push_back(fmt::format("{}{} ({})", before, number_words(row, name), meaning));
+  };
+  say("u", "u = ", "how little is known of the height: 0 all, 1 nothing");
+  say("p", "p = ", "the probability that an object is there, by footprint/" + footprint);
+  say("w", "w = ", "what speaks for an object: 0 desk, 1 object");
+  if (row.number("w") && row.number("e")) said.push_back("e = u w = " + number_words(row, "e"));
+  if (!said.empty()) page.say(fmt::format("There {}.", fmt::join(said, ", ")));
 }
 
 class Explanation {
