@@ -56,8 +56,8 @@ class TapperBench {
         tapper_(options, wave_scene(), robot, &interrupted,
                 [this](const std::string& line) { notes.push_back(line); }) {}
 
-  Contact tap(const Target& place) {
-    const TapRequest request{++taps_, place, previous_, std::nullopt};
+  Contact tap(const Target& place, int motion = 0) {
+    const TapRequest request{++taps_, place, previous_, std::nullopt, 0.0, motion};
     previous_ = place;
     return tapper_.tap(request);
   }

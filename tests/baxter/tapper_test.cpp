@@ -38,10 +38,32 @@ TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
     EXPECT_NEAR(bench.tip(), kHover, 0.01);
     EXPECT_GT(contact.force, 5.0);
     EXPECT_LT(contact.force, Body::kReflex);
+    EXPECT_GE(contact.peak.value(), 5.0);
+    EXPECT_LT(contact.peak.value(), Body::kReflex);
     EXPECT_GT(contact.seconds, 2.0);
     EXPECT_LT(contact.seconds, 20.0);
     EXPECT_EQ(contact.reason, "");
   }
+}
+
+TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
+  Bench bench(with([&](BaxterOptions& o) {
+    const tapping::MotionOptions alone = o.motion;
+    o.motion.type = Type::chosen;
+    o.motion.of = {alone, alone};
+    for (tapping::MotionOptions& one : o.motion.of) one.type = Type::continuous;
+    o.motion.of[0].speed = 0.01;
+    o.motion.of[1].speed = 0.03;
+  }));
+  bench.check();
+  const auto seconds = [&](int motion) {
+    bench.tap(kOnDesk, motion);  // from anywhere; the next one is over its place already
+    const Contact contact = bench.tap(kOnDesk, motion);
+    EXPECT_EQ(contact.outcome, Outcome::contact);
+    return contact.seconds;
+  };
+  // The way down alone differs: 14.5 cm at 1 cm/s and at 3 cm/s.
+  EXPECT_NEAR(seconds(0) - seconds(1), 14.5 - 14.5 / 3.0, 1.0);
 }
 
 TEST(ATap, CanBeMadeInEveryMotion) {

@@ -171,7 +171,8 @@ TEST_F(Explain, TellsWhatTheFootprintRemarks) {
 TEST_F(Explain, SaysWhichTapsAreDoubtedSinceWhenAndWhy) {
   // The fourth of these taps is one of the air.
   const fs::path directory =
-      ran("scene=l scene.placement=random seed=103 scene.effects=standard backend=gentle backend.motion.confirm=false taps=30",
+      ran("scene=l scene.placement=random seed=103 scene.effects=standard backend=gentle backend.motion.confirm=false "
+          "taps=30",
           config("default.yaml"));
   const json summary = json::parse(text_of(directory / "summary.json"));
   ASSERT_TRUE(summary["doubted"].is_string());

@@ -89,9 +89,10 @@ class Explanation {
     explain_place(page_, row_, options_.footprint.type);
     explain_repeats();
     if (const std::optional<double> seconds = row_.number("expected_seconds")) {
-      page_.say(fmt::format("It was made by motion {} of backend.motion.of, which tells most here in its time: {:.1f} s "
-                            "were expected.",
-                            tap_.motion, *seconds));
+      page_.say(
+          fmt::format("It was made by motion {} of backend.motion.of, which tells most here in its time: {:.1f} s "
+                      "were expected.",
+                      tap_.motion, *seconds));
     }
   }
 
