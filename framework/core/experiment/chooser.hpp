@@ -36,9 +36,8 @@ class Chooser {
   static constexpr Quantities kFallbackReads = Quantity::uncertainty;
   bool may_fall_back() const { return options_.fallback == ExperimentOptions::Fallback::uncertainty; }
 
-  /// Chooses a candidate, after a tap at `previous` a motion for it, and notes in `tap` which, by whom, and all about
-  /// its score. `belief` has been asked for what
-  /// is read; a fallback asks it for more. False if no candidate is left.
+  /// Chooses a candidate and, after a tap at `previous`, a motion for it; notes in `tap` which, by whom, and all about
+  /// its score. `belief` has been asked for what is read; a fallback asks it for more. False if no candidate is left.
   bool choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous);
 
   /// What the acquisition gives each candidate, until it is asked again. Throws Error for what is no finite number.
