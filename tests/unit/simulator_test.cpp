@@ -358,8 +358,8 @@ TEST(Arm, FollowsTheSamePathAtAnyPeriod) {
   backends::Arm coarse(JointLag{0.35, 0.2}, 0.1, 0.0);
   backends::Arm fine(JointLag{0.35, 0.2}, 0.01, 0.0);
   const double log_share = std::log(0.2);
-  constexpr double kPi = 3.14159265358979323846;
-  const double zeta = -log_share / std::hypot(kPi, log_share);
+  constexpr double kHalfTurn = 3.14159265358979323846;
+  const double zeta = -log_share / std::hypot(kHalfTurn, log_share);
   const double omega = 2.0 * zeta / 0.35;
   double position = 0.0;
   double velocity = 0.0;
