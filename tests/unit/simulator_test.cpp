@@ -215,8 +215,8 @@ TEST(Simulator, TakesForAContactWhatItWasStoppedAtIfTheForceIsHeardAfterAll) {
   // Every tap is heard late, the most of them later than the arm stops by itself at 12 N.
   const char* late = "{stiffness: {object: 1500 N/m}, joint_lag: {}, latency: {deviation: 80 ms}}";
   int stopped = 0;
-  for (const auto& one : TappingBench(kObjectI, late, "{type: continuous, speed: 6 cm/s, brake: 3 cm, force_limit: 16 N}")
-                             .taps(100)) {
+  for (const auto& one :
+       TappingBench(kObjectI, late, "{type: continuous, speed: 6 cm/s, brake: 3 cm, force_limit: 16 N}").taps(100)) {
     if (one.contact.outcome == Outcome::aborted) continue;
     ASSERT_EQ(one.contact.outcome, Outcome::contact);
     EXPECT_LE(one.contact.peak.value(), 16.0);
@@ -262,8 +262,9 @@ TEST(Simulator, KnowsOfEachMotionWhatATapTakesOnAPerfectArm) {
     }
   }
   EXPECT_GT(motions->deviation(2), 0.0);
-  EXPECT_EQ(shared_host().motions(choose(shared_host(), "backend", "simulator", "{motion: {type: paper}}"), bench.scene()),
-            nullptr);
+  EXPECT_EQ(
+      shared_host().motions(choose(shared_host(), "backend", "simulator", "{motion: {type: paper}}"), bench.scene()),
+      nullptr);
   EXPECT_EQ(shared_host().motions(choose(shared_host(), "backend", "replay", "{record: x}"), bench.scene()), nullptr);
 }
 
