@@ -276,10 +276,10 @@ TEST(CompareWhere, RefusesUnknownNamesOtherUnitsAndWhatLeavesNothing) {
   const MadeSweep made(two_by_two(2));
   EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse <= 1 m"), HasSubstr("did you mean 'rmse_m'?"));
   EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m <= 1 s"), HasSubstr("compares a length"));
-  EXPECT_EQ(
-      made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m > 1 m"),
-      "command line: --where: leaves none of the 8 jobs, results.csv, or what --at or --until leaves beside it, has the "
-      "values it is compared with");
+  EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m > 1 m"),
+            "command line: --where: leaves none of the 8 jobs, results.csv, or what --at or --until leaves beside it, "
+            "has the "
+            "values it is compared with");
   EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "found == true"), "accepted");
 }
 

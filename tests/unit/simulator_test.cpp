@@ -226,63 +226,6 @@ TEST(Simulator, TakesForAContactWhatItWasStoppedAtIfTheForceIsHeardAfterAll) {
   EXPECT_GT(stopped, 30);
 }
 
-TEST(Simulator, TapsByTheMotionThatIsAskedFor) {
-  const char* several =
-      "{type: chosen, of: [{type: paper}, {type: continuous, speed: 6 cm/s}, {type: continuous, speed: 3 cm/s}]}";
-  const char* alone[] = {"{type: paper}", "{type: continuous, speed: 6 cm/s}", "{type: continuous, speed: 3 cm/s}"};
-  for (const char* effects : {"{}", kLikeBaxter}) {
-    const TappingBench all(kObjectI, effects, several);
-    for (int motion = 0; motion < 3; ++motion) {
-      TapRequest request{1, {0.1, 0.1}, {}, Prediction{0.05, 0.01, 0.5}};
-      const TappingBench one(kObjectI, effects, alone[motion]);
-      const Contact expected = one.backend().tap(request);
-      request.motion = motion;
-      expect_same(all.backend().tap(request), expected);
-    }
-  }
-}
-
-TEST(Simulator, KnowsOfEachMotionWhatATapTakesOnAPerfectArm) {
-  const auto choice = choose(shared_host(), "backend", "simulator",
-                             "{motion: {type: chosen, of: [{type: paper}, {type: two_stage}, {type: continuous}, "
-                             "{type: continuous, adaptive_hover: {certainty: 0.9}}]}}");
-  const TappingBench bench(kObjectI, "{}", "{type: paper}");
-  const auto motions = shared_host().motions(choice, bench.scene());
-  ASSERT_NE(motions, nullptr);
-  ASSERT_EQ(motions->count(), 4);
-  const Context context{shared_host(), bench.scene(), 1, nullptr};
-  const auto backend = context.create<Backend>(choice);
-  Random random(5, "places");
-  for (int i = 1; i <= 50; ++i) {
-    TapRequest request{i, {0.23 * random.uniform(), 0.23 * random.uniform()}, Target{0.1, 0.2}, Prediction{0.06, 0.01}};
-    request.predicted->probability = random.uniform();
-    for (request.motion = 0; request.motion < 4; ++request.motion) {
-      const Contact contact = backend->tap(request);
-      EXPECT_NEAR(motions->seconds(request, contact.height), contact.seconds, 1e-12);
-    }
-  }
-  EXPECT_GT(motions->deviation(2), 0.0);
-  EXPECT_EQ(
-      shared_host().motions(choose(shared_host(), "backend", "simulator", "{motion: {type: paper}}"), bench.scene()),
-      nullptr);
-  EXPECT_EQ(shared_host().motions(choose(shared_host(), "backend", "replay", "{record: x}"), bench.scene()), nullptr);
-}
-
-TEST(Simulator, RefusesAChoiceBetweenMotionsThatIsNone) {
-  const auto refusal = [](const std::string& motion) -> std::string {
-    try {
-      choose(shared_host(), "backend", "simulator", "{motion: " + motion + "}");
-      return "accepted";
-    } catch (const Error& error) {
-      return error.what();
-    }
-  };
-  EXPECT_NE(refusal("{type: chosen, of: [{type: paper}]}").find("at least two"), std::string::npos);
-  EXPECT_NE(refusal("{type: chosen, of: [{type: paper}, {type: paper, hover: 20 cm}]}").find("same hover"),
-            std::string::npos);
-  EXPECT_NE(refusal("{type: chosen, of: [{type: paper}, {type: chosen}]}").find("chosen"), std::string::npos);
-}
-
 TEST(Simulator, BrakesATrailingArmSoThatItPressesLessAndFindsTheSameOnset) {
   const auto peak = [](const char* motion) {
     double most = 0.0;

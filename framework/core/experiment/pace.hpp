@@ -3,9 +3,9 @@
 //
 // A tap tells whether there is an object, which is worth the entropy of the footprint there, in bits, whatever the
 // motion; and if there is, how high: log2(1 + v / d^2) / 2 bits (Cover and Thomas 2006, section 9.1) of a height of
-// variance v by a motion of deviation d. It does so as often as its taps come to a contact at all, and takes the mean of
-// the times with an object there and without. Times, deviations and contacts are first the motion's own idea, then what
-// its taps show. So the quick motion goes along an outline, and the precise one where only the height is open.
+// variance v by a motion of deviation d. It does so as often as its taps come to a contact at all, and takes the mean
+// of the times with an object there and without. Times, deviations and contacts are first the motion's own idea, then
+// what its taps show. So the quick motion goes along an outline, and the precise one where only the height is open.
 //
 // The place is chosen before, by what a tap there tells and not by what it tells a second: near places and tall ones
 // are cheap, but those at the edge of an outline, which cost more, bring the scene nearer to the truth for each second.

@@ -64,10 +64,10 @@ struct Comparison {
 
   std::size_t compared = 0;  ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
-  bool ratios = false;            ///< asked for
-  std::optional<Occasion> occasion;   ///< at which the jobs are looked at; none: as they ended
-  int jobs = 0;                   ///< of the sweep
-  FateCounts left_out;            ///< of them, by the condition: what else became of those
+  bool ratios = false;               ///< asked for
+  std::optional<Occasion> occasion;  ///< at which the jobs are looked at; none: as they ended
+  int jobs = 0;                      ///< of the sweep
+  FateCounts left_out;               ///< of them, by the condition: what else became of those
 };
 
 /// Of more groups only those pairs are compared that have the first one in them, unless a baseline is named.

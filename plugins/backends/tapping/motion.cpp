@@ -76,32 +76,32 @@ void MotionOptions::list_types(Fields& fields, const std::vector<Case>& more) {
   };
   std::vector<Case> types{
       {"paper", "in steps with a pause after each, until the force rises; the height is read after that pause",
-        [&, this](Fields& inner) {
-          inner.real(step, positive("step", "height of one step", Unit::metre, "Sun and Min 2021: 3 cm"));
-          pause_after(inner, "rest after each step");
-        }},
-       {"two_stage", "at once until the force rises, a little back, and again more slowly and gently",
-        [&, this](Fields& inner) {
-          inner.real(back_off, positive("back_off", "way up between the stages", Unit::metre,
-                                        "2 cm: the springs unwind, and a false contact shows"));
-          pause_after(inner, "rest before the second stage, with a new tare");
-          inner.real(fine_speed, positive("fine_speed", "of the second stage", Unit::metre_per_second,
-                                          "2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
-          inner.real(fine_threshold, positive("fine_threshold", "force at which the second stage ends", Unit::newton,
-                                              "6 N: four deviations of 1.5 N of noise"));
-        }},
-       {"continuous", "at constant speed until the force rises; the height is that where it began to rise",
-        [this](Fields& inner) {
-          inner.real(brake, Field("brake",
-                                  "at a contact the set-point goes so far above the arm: one that trails it "
-                                  "stops sooner, and presses less")
-                                .in(Unit::metre)
-                                .at_least(0)
-                                .from("0: the set-point is put where the arm is"));
-          inner.flag(confirm, Field("confirm",
-                                    "believe a contact only if the force lasts for 0.1 s, and else go on: a "
-                                    "jerk is gone by then; a real arm always does"));
-        }}};
+       [&, this](Fields& inner) {
+         inner.real(step, positive("step", "height of one step", Unit::metre, "Sun and Min 2021: 3 cm"));
+         pause_after(inner, "rest after each step");
+       }},
+      {"two_stage", "at once until the force rises, a little back, and again more slowly and gently",
+       [&, this](Fields& inner) {
+         inner.real(back_off, positive("back_off", "way up between the stages", Unit::metre,
+                                       "2 cm: the springs unwind, and a false contact shows"));
+         pause_after(inner, "rest before the second stage, with a new tare");
+         inner.real(fine_speed, positive("fine_speed", "of the second stage", Unit::metre_per_second,
+                                         "2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
+         inner.real(fine_threshold, positive("fine_threshold", "force at which the second stage ends", Unit::newton,
+                                             "6 N: four deviations of 1.5 N of noise"));
+       }},
+      {"continuous", "at constant speed until the force rises; the height is that where it began to rise",
+       [this](Fields& inner) {
+         inner.real(brake, Field("brake",
+                                 "at a contact the set-point goes so far above the arm: one that trails it "
+                                 "stops sooner, and presses less")
+                               .in(Unit::metre)
+                               .at_least(0)
+                               .from("0: the set-point is put where the arm is"));
+         inner.flag(confirm, Field("confirm",
+                                   "believe a contact only if the force lasts for 0.1 s, and else go on: a "
+                                   "jerk is gone by then; a real arm always does"));
+       }}};
   types.insert(types.end(), more.begin(), more.end());
   fields.choice(type, Field("type", "how the arm comes down"), types);
 }
