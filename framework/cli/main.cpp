@@ -186,7 +186,8 @@ void add_rest(CommandLine& line) {
 void add_compare(CommandLine& line) {
   CLI::App* sub = line.add(
       "compare", "Groups of a sweep's jobs, with intervals and paired tests",
-      [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); }, compare, line.compare);
+      [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
+      compare, line.compare);
   sub->add_option("DIR", line.compare.directory, "the sweep's directory")->required();
   const auto list = [&](const char* name, auto& values, const char* help) {
     return sub->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);

@@ -85,8 +85,7 @@ void Chooser::observe(const PastTap& tap, int candidate, bool hit, const std::op
   if (pace_) pace_->observe(tap, previous, excess);
   // A tap that was broken off says nothing of what is there.
   const Outcome outcome = tap.contact.outcome;
-  const bool looked =
-      outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;
+  const bool looked = outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;
   if (search_ && looked) search_->look(tap.target);
   const auto place = static_cast<std::size_t>(candidate);
   if (outcome == Outcome::contact) {

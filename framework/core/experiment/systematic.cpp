@@ -61,8 +61,7 @@ Systematic::Estimate Systematic::at(double seconds, int motion) const {
   if (judged_.empty()) return out;
   Eigen::VectorXd z = Eigen::VectorXd::Zero(judgement_.a.size());  // there is no broad signal
   z(0) = 1.0;
-  for (std::size_t i = 0; i < judged_.size(); ++i)
-    z(static_cast<Eigen::Index>(i) + 1) = covariance(now, judged_[i]);
+  for (std::size_t i = 0; i < judged_.size(); ++i) z(static_cast<Eigen::Index>(i) + 1) = covariance(now, judged_[i]);
   out.value = z.dot(judgement_.a);
   out.variance += z.dot(judgement_.b * z);
   return out;

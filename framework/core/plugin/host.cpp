@@ -309,8 +309,7 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
   if (holder->manifest->motions == nullptr) return nullptr;
   const Motions* made = nullptr;
   guarded(choice.options.get(), choice.kind + "/" + choice.type, "has no motions", [&] {
-    fill(*choice.options, *this, choice.kind,
-         [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
+    fill(*choice.options, *this, choice.kind, [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
   });
   if (made == nullptr) return nullptr;
   // As above: what comes of a library goes before it.

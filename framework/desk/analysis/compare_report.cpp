@@ -167,9 +167,9 @@ std::string remarks(const Comparison& comparison) {
 std::string compare_tables(const Comparison& comparison) {
   const Scale scale = readable_scale(comparison.metric.unit, comparison.means());
   const std::string better = comparison.metric.better_words();
-  std::string out = fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
-                                comparison.occasion ? " " + comparison.occasion->words() : "",
-                                better.empty() ? "" : "; " + better);
+  std::string out =
+      fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
+                  comparison.occasion ? " " + comparison.occasion->words() : "", better.empty() ? "" : "; " + better);
   out += group_table(comparison, scale);
   if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale));
   const std::string notes = remarks(comparison);

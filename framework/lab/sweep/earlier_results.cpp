@@ -23,7 +23,9 @@ constexpr const char* kOf = "of_summary";
 
 std::int64_t taps_of(const Row& summary) { return static_cast<std::int64_t>(summary.number("taps").value_or(0.0)); }
 
-fs::path file_of(const fs::path& job, const Occasion& occasion) { return job / fmt::format("summary_{}.json", occasion.key()); }
+fs::path file_of(const fs::path& job, const Occasion& occasion) {
+  return job / fmt::format("summary_{}.json", occasion.key());
+}
 
 }  // namespace
 

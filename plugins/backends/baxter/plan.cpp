@@ -183,7 +183,8 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   if (options_.calibration && !calibrated_) {
     out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare()));
   }
-  const std::vector<std::string> motion = tapping::describe(options_.motion.of_request(request), scene_.desk(), request, from);
+  const std::vector<std::string> motion =
+      tapping::describe(options_.motion.of_request(request), scene_.desk(), request, from);
   out.insert(out.end(), motion.begin(), motion.end());
   out.push_back("stop whatever it does when the force changes by " + tapping::newtons(options_.force_stop) +
                 " upwards or downwards, and by half as much again sideways");

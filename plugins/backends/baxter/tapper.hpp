@@ -104,9 +104,9 @@ class Tapper {
   bool calibrated_ = false;
   double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
-  double moving_ = 0.0;      ///< N along z that it reads beside while the arm comes down in the air
-  double shown_sign_ = 0.0;  ///< by the latest contact that was believed; 0 if nothing showed it
-  int told_ = 0;             ///< of how many taps moving_ was noted
+  double moving_ = 0.0;         ///< N along z that it reads beside while the arm comes down in the air
+  double shown_sign_ = 0.0;     ///< by the latest contact that was believed; 0 if nothing showed it
+  int told_ = 0;                ///< of how many taps moving_ was noted
   std::optional<double> peak_;  ///< N, the most that was felt of this tap against the tool; none before its descent
 };
 

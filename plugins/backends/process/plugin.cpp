@@ -146,8 +146,8 @@ class Process final : public Backend {
   }
 
   std::vector<std::string> describe(const TapRequest& request) override {
-    std::vector<std::string> out = tapping::describe(options_.motion.of_request(request), context_.scene.desk(),
-                                                     request, request.previous);
+    std::vector<std::string> out =
+        tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, request.previous);
     out.insert(out.begin(),
                fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
                            process::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
