@@ -30,7 +30,7 @@ std::string descent(const MotionOptions& motion, double desk, const TapRequest& 
 }
 
 std::string touch(const MotionOptions& motion) {
-  const std::string first = fmt::format("stop at {} above the tare: a contact", newtons(motion.threshold));
+  std::string first = fmt::format("stop at {} above the tare: a contact", newtons(motion.threshold));
   if (motion.type != MotionOptions::Type::two_stage) return first;
   return fmt::format("{}; then {} back and again at {} to {}", first, centimetres(motion.back_off),
                      per_second(motion.fine_speed), newtons(motion.fine_threshold));
