@@ -3,6 +3,8 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
+
 namespace palpate {
 
 Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context)
@@ -27,6 +29,17 @@ bool Chooser::starting(const TapBelief& belief) const {
   return true;
 }
 
+std::optional<int> Chooser::second_look(const TapBelief& belief) const {
+  constexpr double kSure = 0.95;
+  for (std::size_t i = 0; search_ && i < contacts_.size(); ++i) {
+    const std::size_t place = contacts_[i].candidate;
+    if (!contacts_[i].hit || belief.doubt_of(i) > kSure || !allowed_[place]) continue;
+    const auto here = [place](const Touched& one) { return one.candidate == place; };
+    if (std::count_if(contacts_.begin(), contacts_.end(), here) == 1) return static_cast<int>(place);
+  }
+  return std::nullopt;
+}
+
 void Chooser::allow(const TapBelief& belief) {
   allowed_.assign(failed_.size(), true);
   for (std::size_t i = 0; i < failed_.size(); ++i) allowed_[i] = !failed_[i];
@@ -49,7 +62,8 @@ bool Chooser::choose_place(TapBelief& belief, TapRecord& tap) {
   allow(belief);
   if (starting(belief)) {
     tap.source = Source::initial;
-    tap.candidate = search_ ? search_->next(allowed_) : initial_[taps_];
+    const std::optional<int> again = second_look(belief);
+    tap.candidate = again ? *again : search_ ? search_->next(allowed_) : initial_[taps_];
     return true;
   }
   tap.source = Source::acquisition;

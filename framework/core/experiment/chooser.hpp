@@ -26,7 +26,7 @@ class Chooser {
   Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context);
 
   /// Whether the next tap is the initial design's. A search is over once a hit is believed, or when it has looked
-  /// everywhere.
+  /// everywhere; a hit that is not it looks at again, once, before it goes on.
   bool starting(const TapBelief& belief) const;
 
   /// What is read for a tap of the acquisition, or of the initial design.
@@ -57,6 +57,8 @@ class Chooser {
   };
 
   bool choose_place(TapBelief& belief, TapRecord& tap);
+  /// Where a hit is doubted, but not for sure a lie, and nobody has looked again: of the allowed.
+  std::optional<int> second_look(const TapBelief& belief) const;
   /// Finds the candidates that may be tapped: those that were not, and those whose contacts are all doubted.
   void allow(const TapBelief& belief);
 

@@ -13,8 +13,10 @@
 namespace palpate {
 
 /// A greedy search. Some thousand discs, each a place where the object could be hidden, are drawn; the next tap goes
-/// where most of them are, and those that hold it drop out. Of places that as many hold, as of all once no disc is
-/// left, it takes the middle of the largest gap: the one farthest from all taps and from the edge of the area.
+/// where most of them are, and those that hold it drop out, but for how probable it is that the tap missed the object
+/// beside its edge, or did not feel it: an arm that is off by millimetres may not strike off what it passed by. Of
+/// places that as much speaks for, as of all once no disc is left, it takes the middle of the largest gap: the one
+/// farthest from all taps and from the edge of the area.
 ///
 /// Diameters run from the smallest object to the area's shorter side, uniformly in their logarithms: of the smallest
 /// alone, the search would comb the area in narrow rows and meet a large object late; the large discs send the first
@@ -37,16 +39,20 @@ class Search {
  private:
   struct Disc {
     double x, y, radius;
+    int weight;  ///< probability that it was passed by as often as was looked there, in thousandths
   };
 
-  /// How many discs hold each candidate.
-  std::vector<int> counts() const;
+  /// Adds to what the candidates in a disc weigh.
+  void weigh(const Disc& disc, int weight);
+  /// What the discs that hold each candidate weigh.
+  std::vector<int> weights() const;
   /// Radius of the largest disc around a place that lies on the area and has no tap in it.
   double room(const Target& place) const;
 
   const Candidates& candidates_;
   Area area_;
-  std::vector<Disc> discs_;  ///< in which nobody has looked
+  std::vector<Disc> discs_;  ///< those of some weight
+  std::vector<int> rises_;   ///< of weights(), from one candidate of a row to the next; first and last of a row apart
   std::vector<Target> looked_;
 };
 
