@@ -29,9 +29,9 @@ class Chooser {
   /// everywhere; a hit that is not it looks at again, once, before it goes on.
   bool starting(const TapBelief& belief) const;
 
-  /// What is read for a tap of the acquisition, or of the initial design.
-  Quantities reads() const { return acquisition_->reads() | reads_of_initial(); }
-  Quantities reads_of_initial() const { return pace_ ? Pace::kReads : Quantities(); }
+  /// What is read for a tap of the acquisition, and what is predicted at the place of any.
+  Quantities reads() const { return acquisition_->reads(); }
+  Quantities predicts() const { return pace_ ? Pace::kReads : Quantities(); }
   /// What the fallback reads beside that.
   static constexpr Quantities kFallbackReads = Quantity::uncertainty;
   bool may_fall_back() const { return options_.fallback == ExperimentOptions::Fallback::uncertainty; }

@@ -15,11 +15,10 @@ constexpr int kWhole = 1000;
 // same cubes are found as soon: a box is no disc, and the margin covers its corners.
 constexpr double kBlur = 0.002;
 constexpr double kMissed = 0.02;
+constexpr double kFar = 5.0 * kBlur;
 
 /// How probable it is to look so far inside an edge (metres, below 0 outside) and to find nothing.
 double passed_by(double inside) {
-  constexpr double kFar = 5.0 * kBlur;
-  if (inside < -kFar) return 1.0;
   return 1.0 - (1.0 - kMissed) * 0.5 * std::erfc(-inside / (kBlur * std::sqrt(2.0)));
 }
 
@@ -52,10 +51,15 @@ Search::Search(double smallest, const Candidates& candidates, const Area& area, 
   }
 }
 
-void Search::look(const Target& place) {
-  looked_.push_back(place);
+void Search::look(const Target& place) { looked_.push_back(place); }
+
+void Search::strike_off(const Target& place) {
   for (Disc& disc : discs_) {
-    const double inside = disc.radius - std::hypot(place.x - disc.x, place.y - disc.y);
+    const double dx = place.x - disc.x;
+    const double dy = place.y - disc.y;
+    const double square = dx * dx + dy * dy;
+    if (square > (disc.radius + kFar) * (disc.radius + kFar)) continue;
+    const double inside = disc.radius - std::sqrt(square);
     const int left = static_cast<int>(std::lround(disc.weight * passed_by(inside)));
     if (left == disc.weight) continue;
     weigh(disc, left - disc.weight);
@@ -65,7 +69,8 @@ void Search::look(const Target& place) {
   discs_.erase(std::remove_if(discs_.begin(), discs_.end(), is_done), discs_.end());
 }
 
-int Search::next(const std::vector<bool>& allowed) const {
+int Search::next(const std::vector<bool>& allowed) {
+  while (struck_off_ < looked_.size()) strike_off(looked_[struck_off_++]);
   const std::vector<int> weight = weights();
   int best = -1;
   int most = -1;

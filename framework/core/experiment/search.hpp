@@ -34,7 +34,7 @@ class Search {
   void look(const Target& place);
 
   /// The candidate to tap next, one of the `allowed`; of equals the first. At least one must be allowed.
-  int next(const std::vector<bool>& allowed) const;
+  int next(const std::vector<bool>& allowed);
 
  private:
   struct Disc {
@@ -42,6 +42,7 @@ class Search {
     int weight;  ///< probability that it was passed by as often as was looked there, in thousandths
   };
 
+  void strike_off(const Target& place);
   /// Adds to what the candidates in a disc weigh.
   void weigh(const Disc& disc, int weight);
   /// What the discs that hold each candidate weigh.
@@ -54,6 +55,7 @@ class Search {
   std::vector<Disc> discs_;  ///< those of some weight
   std::vector<int> rises_;   ///< of weights(), from one candidate of a row to the next; first and last of a row apart
   std::vector<Target> looked_;
+  std::size_t struck_off_ = 0;  ///< of these: only when the next place is asked for, after a hit nobody asks
 };
 
 }  // namespace palpate

@@ -30,9 +30,9 @@ void Experiment::resume(const std::vector<PastTap>& past) {
 }
 
 Quantities Experiment::reads_for(Source source) const {
-  Quantities out = backend_->expects();
+  Quantities out = belief_.predictable(backend_->expects() | chooser_.predicts());
   if (options_.height.lies) out = out | Quantity::doubt;
-  if (source == Source::initial) return out | chooser_.reads_of_initial();
+  if (source == Source::initial) return out;
   out = out | chooser_.reads();
   if (source == Source::fallback) out = out | Chooser::kFallbackReads;
   if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
@@ -49,7 +49,7 @@ std::vector<ModelReader> Experiment::readers() const {
   if (options_.height.lies) add(Quantity::doubt, "height.lies");
   if (options_.stop.max_standard_deviation) add(Quantity::uncertainty, "stop.max_standard_deviation");
   if (options_.stop.expected_rmse) add(belief_.surface_reads(), "stop.expected_rmse");
-  add(backend_->reads() | backend_->expects(), "backend " + options_.backend.type);
+  add(backend_->reads() | belief_.predictable(backend_->expects()), "backend " + options_.backend.type);
   return out;
 }
 

@@ -291,7 +291,7 @@ void TapBelief::map_labels() {
 }
 
 void TapBelief::map_object() {
-  if (lies_ && doubted_.taps() == object_.process->size()) {
+  if (is_judged()) {
     doubted_.read_mean(*object_.process, height_mean_);
     height_mean_.array() += desk_;
     doubted_.read_variance(*object_.process, object_variance_);
@@ -299,8 +299,7 @@ void TapBelief::map_object() {
     map_surface(*object_.process);
     object_.process->read_variance(0, object_variance_);
   }
-  // All heights share what is not known of the correction.
-  if (systematic_) object_variance_.array() += systematic_->at(seconds_).variance;
+  object_variance_.array() += shared_variance();
   object_.stale = false;
 }
 
@@ -388,8 +387,33 @@ const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {
   return map;
 }
 
+Quantities TapBelief::predictable(Quantities wanted) const {
+  if (!lies_) return wanted;
+  Quantities out;
+  if (wanted.has(Quantity::height)) out = out | Quantity::doubt;
+  if (wanted.has(Quantity::probability)) out = out | Quantity::probability;
+  return out;
+}
+
+Prediction TapBelief::predict_among_lies(int candidate) const {
+  if (!current_) throw std::logic_error("a height is predicted by a belief that is older than the last tap");
+  DoubtedSurface::Height height;
+  if (is_judged()) {
+    height = doubted_.at(*object_.process, candidate);
+  } else {
+    Eigen::VectorXd map;
+    object_.process->read_mean(0, map);
+    height.mean = map(candidate);
+    object_.process->read_variance(0, map);
+    height.variance = map(candidate);
+  }
+  return {height.mean + desk_, std::sqrt(height.variance + shared_variance()), {}};
+}
+
 Prediction TapBelief::predict(int candidate, Quantities wanted) const {
-  Prediction out{height_mean()(candidate), std::sqrt(height_variance()(candidate))};
+  // Whether there are maps or not, a prediction is the same to the last bit.
+  Prediction out = lies_ ? predict_among_lies(candidate)
+                         : Prediction{height_mean()(candidate), std::sqrt(height_variance()(candidate)), {}};
   if (wanted.has(Quantity::probability)) out.probability = probability()(candidate);
   return out;
 }

@@ -135,8 +135,10 @@ class TapBelief final : public Belief {
   /// Standard deviation of the noise of one tap's height, metres.
   double height_noise() const;
 
-  /// Of a candidate: the height, and the probability if that is among the `wanted`; both were asked for.
+  /// Of a candidate: the height, and the probability if that is among the `wanted`. What predictable() says of these
+  /// was asked for: where contacts are doubted, a height at one place needs no map.
   Prediction predict(int candidate, Quantities wanted) const;
+  Quantities predictable(Quantities wanted) const;
 
  private:
   /// A process and all that it is made from; built when it is asked for.
@@ -169,6 +171,11 @@ class TapBelief final : public Belief {
   void map_labels();
   void map_object();
   void map_surface(const Process& process);
+  Prediction predict_among_lies(int candidate) const;
+  /// Whether the surface is that of the judgement, else that of the process.
+  bool is_judged() const { return lies_ && doubted_.judged() && doubted_.taps() == object_.process->size(); }
+  /// All heights share what is not known of the correction.
+  double shared_variance() const { return systematic_ ? systematic_->at(seconds_).variance : 0.0; }
   void map_footprint();
   void judge();
   void believe();

@@ -22,7 +22,6 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion) 
   judged_ = process.size() > 0 && settings.noise > 0.0;
   judgement_.doubt = suspicion;
   if (!judged_) return;
-  cover(process);
   Testimony testimony;
   const auto taps = static_cast<Eigen::Index>(process.size());
   testimony.covariance.resize(taps, taps);
@@ -58,15 +57,17 @@ void DoubtedSurface::cover(const Process& process) {
   }
 }
 
-void DoubtedSurface::read_mean(const Process& process, Eigen::VectorXd& out) const {
+void DoubtedSurface::read_mean(const Process& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_mean(0, out);
+  cover(process);
   out = covariances_.leftCols(covered_) * judgement_.a.segment(1, covered_) +
         broad_.leftCols(covered_) * judgement_.a.tail(covered_);
   out.array() += judgement_.a(0) + process.settings().mean;
 }
 
-void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out) const {
+void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_variance(0, out);
+  cover(process);
   Eigen::MatrixXd z(candidates_.size(), 1 + 2 * covered_);
   z << Eigen::VectorXd::Ones(candidates_.size()), covariances_.leftCols(covered_), broad_.leftCols(covered_);
   out.resize(candidates_.size());
@@ -75,6 +76,23 @@ void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out)
   out += (z * judgement_.b).cwiseProduct(z).rowwise().sum();
   // Rounding may leave less than nothing where taps are close.
   out = out.cwiseMax(0.0);
+}
+
+DoubtedSurface::Height DoubtedSurface::at(const Process& process, int candidate) const {
+  const auto place = candidates_.points.middleRows(candidate, 1);
+  const Points closer = place / kBroader;
+  const Eigen::Index taps = this->taps();
+  Eigen::VectorXd z(1 + 2 * taps);
+  z(0) = 1.0;
+  Eigen::MatrixXd column(taps, 1);
+  process.kernel().covariance(process.places().topRows(taps), place, column);
+  z.segment(1, taps) = column;
+  process.kernel().covariance(Points(process.places().topRows(taps) / kBroader), closer, column);
+  z.tail(taps) = column;
+  Eigen::VectorXd own(1);
+  process.kernel().variance(place, own);
+  return {z.dot(judgement_.a) + process.settings().mean,
+          std::max(0.0, judgement_.s2 * own(0) + z.dot(judgement_.b * z))};
 }
 
 }  // namespace palpate

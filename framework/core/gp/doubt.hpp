@@ -23,9 +23,18 @@ class DoubtedSurface {
   /// Those that were judged last.
   int taps() const { return static_cast<int>(judgement_.doubt.size()); }
 
-  // These size `out`, in the unit of the targets and its square; noise excluded.
-  void read_mean(const Process& process, Eigen::VectorXd& out) const;
-  void read_variance(const Process& process, Eigen::VectorXd& out) const;
+  /// Whether any were: else the surface is that of the process.
+  bool judged() const { return judged_; }
+
+  // Of the process that was judged, in the unit of the targets and its square; noise excluded.
+  /// Over the candidates; these size `out`.
+  void read_mean(const Process& process, Eigen::VectorXd& out);
+  void read_variance(const Process& process, Eigen::VectorXd& out);
+  /// At one of them, without any map.
+  struct Height {
+    double mean, variance;
+  };
+  Height at(const Process& process, int candidate) const;
 
  private:
   void cover(const Process& process);

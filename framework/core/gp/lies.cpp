@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <vector>
@@ -126,6 +127,8 @@ struct Sets {
 };
 
 Sets likeliest(const Court& court, const Effort& effort) {
+  const double hopeless = std::log(effort.hopeless);
+  const double negligible = std::log(effort.negligible);
   Sets out;
   std::multimap<double, Set, std::greater<>> waiting;
   const auto add = [&](Set set, double weight) {
@@ -137,22 +140,28 @@ Sets likeliest(const Court& court, const Effort& effort) {
   out.most = all.log_weight + court.constant(all).log_weight;
   add({}, out.most);
   for (int look = 0; !waiting.empty(); ++look) {
-    const auto [weight, set] = *waiting.begin();
-    const double share = std::exp(weight - out.most);
-    if (share < effort.hopeless) return out;
+    const auto first = waiting.begin();
+    if (first->first - out.most < hopeless) return out;
     if (look == effort.looks) {
-      out.next = share;
+      out.next = std::exp(first->first - out.most);
       return out;
     }
-    waiting.erase(waiting.begin());
+    const Set set = std::move(first->second);
+    waiting.erase(first);
+    const auto to_come = static_cast<std::size_t>(effort.looks - look);
     const Eigen::VectorXd weights = court.neighbours(court.without(set));
     for (int i = 0; i < court.taps(); ++i) {
+      const double weight = weights(i);
+      if (!(weight - out.most >= hopeless)) continue;
+      // What is not summed is of use only where its neighbours come to be looked at.
+      if (weight - out.most < negligible && waiting.size() >= to_come && weight <= std::prev(waiting.end())->first)
+        continue;
       const auto place = std::lower_bound(set.begin(), set.end(), i);
       if (place != set.end() && *place == i) continue;
-      if (std::exp(weights(i) - out.most) < effort.hopeless) continue;
       Set more = set;
       more.insert(more.begin() + (place - set.begin()), i);
-      add(std::move(more), weights(i));
+      add(std::move(more), weight);
+      if (waiting.size() > to_come) waiting.erase(std::prev(waiting.end()));
     }
   }
   return out;

@@ -11,33 +11,23 @@ namespace palpate::footprints {
 
 double Piece::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
-std::pair<double, double> Piece::cut(double py) const {
-  const double dy = py - y;
-  if (family == Family::ellipse) {
+std::pair<double, double> Piece::cut(double py) const { return Cuts(*this).at(py); }
+
+Cuts::Cuts(const Piece& piece) : family_(piece.family), x_(piece.x), y_(piece.y), reach_(piece.reach_y()) {
+  if (family_ == Piece::Family::ellipse) {
     // (u, v) along the cut is linear in x: a quadratic whose middle and half width follow from the reach.
-    const double reach = reach_y();
-    const double rest = 1.0 - dy * dy / (reach * reach);
-    if (rest < 0.0) return {1.0, 0.0};
-    const double middle = x + dy * cosine * sine * (a * a - b * b) / (reach * reach);
-    const double half = a * b / reach * std::sqrt(rest);
-    return {middle - half, middle + half};
+    slope_[0] = piece.cosine * piece.sine * (piece.a * piece.a - piece.b * piece.b) / (reach_ * reach_);
+    half_[0] = piece.a * piece.b / reach_;
+    return;
   }
-  double low = -std::numeric_limits<double>::infinity();
-  double high = -low;
-  // |along * dx + across * dy| <= side, for both pairs of sides.
-  const auto clip = [&](double along, double across, double side) {
-    if (std::abs(along) < 1e-12) {
-      if (std::abs(across * dy) > side) high = -std::numeric_limits<double>::infinity();
-      return;
-    }
-    const double middle = -across * dy / along;
-    const double half = side / std::abs(along);
-    low = std::max(low, middle - half);
-    high = std::min(high, middle + half);
+  // |along * dx + across * dy| <= side; sides that run along x are left to the reach.
+  const auto sides = [this](int pair, double along, double across, double side) {
+    const bool runs_along = std::abs(along) < 1e-12;
+    slope_[pair] = runs_along ? 0.0 : -across / along;
+    half_[pair] = runs_along ? std::numeric_limits<double>::infinity() : side / std::abs(along);
   };
-  clip(cosine, sine, a);
-  clip(-sine, cosine, b);
-  return {x + low, x + high};
+  sides(0, piece.cosine, piece.sine, piece.a);
+  sides(1, -piece.sine, piece.cosine, piece.b);
 }
 
 void Piece::turn(double angle) {

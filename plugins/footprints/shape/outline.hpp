@@ -49,7 +49,7 @@ struct Piece {
   /// Square metres.
   double extent() const;
 
-  /// The ends along x of its cut at `py`; the first is larger where there is none.
+  /// See Cuts.
   std::pair<double, double> cut(double py) const;
 
   /// Turns it about its centre, radians from x to y.
@@ -62,6 +62,36 @@ struct Piece {
   double reach(double along, double across) const {
     return family == Family::box ? std::abs(along) + std::abs(across) : std::sqrt(along * along + across * across);
   }
+};
+
+/// The cuts of a piece along x: what they have in common is computed once.
+class Cuts {
+ public:
+  explicit Cuts(const Piece& piece);
+
+  /// The ends along x of the cut at `py`; the first is larger where there is none.
+  std::pair<double, double> at(double py) const {
+    const double dy = py - y_;
+    if (family_ == Piece::Family::box) {
+      if (std::abs(dy) > reach_) return {1.0, 0.0};
+      return {x_ + std::max(slope_[0] * dy - half_[0], slope_[1] * dy - half_[1]),
+              x_ + std::min(slope_[0] * dy + half_[0], slope_[1] * dy + half_[1])};
+    }
+    const double rest = 1.0 - dy * dy / (reach_ * reach_);
+    if (rest < 0.0) return {1.0, 0.0};
+    const double middle = x_ + slope_[0] * dy;
+    const double half = half_[0] * std::sqrt(rest);
+    return {middle - half, middle + half};
+  }
+
+  /// No cut lies farther from the centre along y.
+  double reach() const { return reach_; }
+
+ private:
+  Piece::Family family_;
+  double x_, y_;
+  double reach_;
+  double slope_[2], half_[2];  ///< of the middle, and half widths: of a box for each pair of sides
 };
 
 /// One piece is a block or a cylinder. Two make an L, a T, or objects that lie apart. A piece without another is a

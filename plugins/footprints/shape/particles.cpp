@@ -216,15 +216,24 @@ class LatticeCounts {
   }
 
   void add(const Outline& outline) {
-    for (int row = 0; row < y_.count; ++row) {
-      const Cells first = cut(outline.first, row);
-      mark(row, first, 1.0);
-      if (outline.kind == Outline::Kind::one) continue;
-      const Cells second = cut(outline.second, row);
-      // What both hold is counted once if they are united, and not at all if one is taken from the other.
-      mark(row, {std::max(first.begin, second.begin), std::min(first.end, second.end)}, -1.0);
-      if (outline.kind == Outline::Kind::two) mark(row, second, 1.0);
+    const Cuts first(outline.first);
+    if (outline.kind == Outline::Kind::one) {
+      const Cells rows = rows_of(outline.first, first);
+      for (int row = rows.begin; row < rows.end; ++row) mark(row, cells(first, row), 1.0);
+      return;
     }
+    const Cuts second(outline.second);
+    const Cells of_first = rows_of(outline.first, first);
+    const Cells of_second = rows_of(outline.second, second);
+    for (int row = of_first.begin; row < of_first.end; ++row) mark(row, cells(first, row), 1.0);
+    // What both hold is counted once if they are united, and not at all if one is taken from the other.
+    for (int row = std::max(of_first.begin, of_second.begin); row < std::min(of_first.end, of_second.end); ++row) {
+      const Cells a = cells(first, row);
+      const Cells b = cells(second, row);
+      mark(row, {std::max(a.begin, b.begin), std::min(a.end, b.end)}, -1.0);
+    }
+    if (outline.kind != Outline::Kind::two) return;
+    for (int row = of_second.begin; row < of_second.end; ++row) mark(row, cells(second, row), 1.0);
   }
 
   void sum(VectorOut out) const {
@@ -237,10 +246,11 @@ class LatticeCounts {
  private:
   LatticeCounts(const Axis& x, const Axis& y) : x_(x), y_(y), marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)) {}
 
-  Cells cut(const Piece& piece, int row) const {
-    const double y = y_.at(row);
-    if (std::abs(y - piece.y) > piece.reach_y()) return {0, 0};
-    const auto [low, high] = piece.cut(y);
+  Cells rows_of(const Piece& piece, const Cuts& cuts) const {
+    return y_.within(piece.y - cuts.reach(), piece.y + cuts.reach());
+  }
+  Cells cells(const Cuts& cuts, int row) const {
+    const auto [low, high] = cuts.at(y_.at(row));
     return low > high ? Cells{0, 0} : x_.within(low, high);
   }
 
