@@ -70,36 +70,37 @@ TEST(Search, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanCh
   EXPECT_LE(mean_first_hit(0.12, 0.02, candidates, searched), 0.6 * mean_first_hit(0.12, 0.02, candidates, drawn));
 }
 
-TEST(Search, TakesThePlaceThatMostDiscsHold) {
+TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
   // The discs anew, from the same stream by the rule of the header, and counted one by one.
   const double smallest = 0.04;
   const Candidates candidates = grid_by_spacing({0.23, 0.10}, 0.01);
   const Area area{0.23, 0.10};
   Random random(9, "initial");
-  std::vector<std::array<double, 3>> discs;
-  for (int i = 0; i < 4000; ++i) {
+  std::vector<std::array<double, 4>> discs;
+  for (int i = 0; i < 16000; ++i) {
     const double radius = smallest / 2 * std::pow(0.10 / smallest, random.uniform());
     const double x = radius + (area.width - 2 * radius) * random.uniform();
     const double y = radius + (area.depth - 2 * radius) * random.uniform();
-    discs.push_back({x, y, radius});
+    discs.push_back({x, y, radius, 1.0});
   }
   Search search(smallest, candidates, area, Random(9, "initial"));
   const std::vector<bool> all(static_cast<std::size_t>(candidates.size()), true);
   for (int tap = 0; tap < 12; ++tap) {
-    std::vector<int> held(all.size(), 0);
-    const auto holds = [&](const std::array<double, 3>& disc, int i) {
-      return std::hypot(candidates.target(i).x - disc[0], candidates.target(i).y - disc[1]) <= disc[2];
+    std::vector<double> held(all.size(), 0.0);
+    const auto inside = [&](const std::array<double, 4>& disc, int i) {
+      return disc[2] - std::hypot(candidates.target(i).x - disc[0], candidates.target(i).y - disc[1]);
     };
     for (int i = 0; i < candidates.size(); ++i) {
-      for (const auto& disc : discs) held[static_cast<std::size_t>(i)] += holds(disc, i) ? 1 : 0;
+      for (const auto& disc : discs) held[static_cast<std::size_t>(i)] += inside(disc, i) >= 0.0 ? disc[3] : 0.0;
     }
-    const int most = *std::max_element(held.begin(), held.end());
+    const double most = *std::max_element(held.begin(), held.end());
     const int next = search.next(all);
     ASSERT_GT(most, 0);
-    ASSERT_EQ(held[static_cast<std::size_t>(next)], most) << "tap " << tap + 1;
+    // Weights are kept in thousandths.
+    ASSERT_GE(held[static_cast<std::size_t>(next)], (1.0 - 1e-3) * most) << "tap " << tap + 1;
     search.look(candidates.target(next));
-    discs.erase(std::remove_if(discs.begin(), discs.end(), [&](const auto& disc) { return holds(disc, next); }),
-                discs.end());
+    // An arm that is off by 2 mm and does not feel one contact in fifty may have passed it by.
+    for (auto& disc : discs) disc[3] *= 1.0 - 0.98 * 0.5 * (1.0 + std::erf(inside(disc, next) / 0.002 / std::sqrt(2.0)));
   }
 }
 

@@ -98,7 +98,11 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
 
 const Truth* Watch::truth() {
   if (!truth_known_) return nullptr;
-  if (!truth_) truth_ = truth_at(candidates_, context_.scene);
+  if (truth_ && (!context_.scene.effects().push || truth_taps_ == result_.taps)) return &*truth_;
+  const auto taps = static_cast<int>(result_.taps);
+  const std::unique_ptr<const Scene> now = context_.scene.after(taps);
+  truth_ = truth_at(candidates_, now ? *now : context_.scene);
+  truth_taps_ = taps;
   return &*truth_;
 }
 

@@ -53,6 +53,7 @@ class Watch {
   std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
   std::vector<bool> touched_;             ///< candidates where there was a contact
   std::optional<Truth> truth_;
+  int truth_taps_ = 0;  ///< taps that it stands after
   std::vector<std::pair<PastTap, Manner>> taps_;
   PhaseClock unrecorded_;              ///< of the models that only people who watch have asked for
   std::unique_ptr<TapBelief> beside_;  ///< these

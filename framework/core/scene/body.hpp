@@ -4,6 +4,7 @@
 
 #include <palpate/shape.hpp>
 
+#include <cmath>
 #include <memory>
 
 namespace palpate {
@@ -28,6 +29,7 @@ class Body {
 
   double x() const { return x_; }
   double y() const { return y_; }
+  double rotation() const { return std::atan2(sine_, cosine_); }
 
  private:
   /// A vector of the frame that is not tilted, in that of the shape.

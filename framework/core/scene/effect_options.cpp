@@ -134,6 +134,22 @@ void list(Shaft& effect, Fields& fields) {
                                  .from("8 cm: less than the paper's objects are high, an estimate"));
 }
 
+void list(Push& effect, Fields& fields) {
+  fields.real(effect.probability, Field("probability", "after each tap, that an object is pushed")
+                                      .at_least(0)
+                                      .at_most(1)
+                                      .from("2 %: an estimate"));
+  fields.real(effect.distance, Field("distance", "by which an object is pushed, in some direction")
+                                   .in(Unit::metre)
+                                   .at_least(0)
+                                   .from("5 mm: what 10 N do to a light object on a smooth desk, an estimate"));
+  fields.real(effect.turn, Field("turn", "by up to which it is turned, either way")
+                               .in(Unit::radian)
+                               .at_least(0)
+                               .from("5 degrees: an estimate"));
+  fields.integer(effect.after, Field("after", "the only tap after which anything is pushed").at_least(1));
+}
+
 /// An effect as a group of options.
 template <class Effect>
 struct Group : Options {
@@ -167,6 +183,7 @@ void EffectOptions::list(Fields& fields) {
   section(fields, values.missed_contacts, Field("missed_contacts", "contacts that are not felt"));
   section(fields, values.false_contacts, Field("false_contacts", "contacts in the air"));
   section(fields, values.reach, Field("reach", "places that the arm cannot reach"));
+  section(fields, values.push, Field("push", "objects are pushed about: the truth is where they stand"));
   section(fields, values.shaft, Field("shaft", "the tool's shaft touches tall objects beside the tip"));
 }
 

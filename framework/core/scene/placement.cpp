@@ -97,4 +97,27 @@ void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t 
               "make them smaller or fewer, or the area larger");
 }
 
+bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, std::uint64_t seed, int taps) {
+  // Where nothing fits after so many looks it stays: it leans on another, or on the rim of the area.
+  constexpr int kTries = 100;
+  bool moved = false;
+  for (int tap = 1; tap <= taps; ++tap) {
+    Random random(seed, "scene/push", static_cast<std::uint64_t>(tap));
+    const bool happens = push.after ? tap == *push.after : random.uniform() < push.probability;
+    if (!happens || bodies.empty()) continue;
+    Body& body = bodies[random.index(bodies.size())];
+    const Body before = body;
+    for (int i = 0; i < kTries; ++i) {
+      const double direction = 2.0 * kPi * random.uniform();
+      const double turn = push.turn * (2.0 * random.uniform() - 1.0);
+      body.place(before.x() + push.distance * std::cos(direction), before.y() + push.distance * std::sin(direction),
+                 before.rotation() + turn);
+      if (beyond(body, area) <= 0.0 && all_separate(bodies)) break;
+      body = before;
+    }
+    moved = moved || body.x() != before.x() || body.y() != before.y();
+  }
+  return moved;
+}
+
 }  // namespace palpate

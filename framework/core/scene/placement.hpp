@@ -20,4 +20,8 @@ void check_inside(const std::vector<Body>& bodies, const Area& area);
 /// others alone. Throws Error, its `where` the path in the config, when no such poses are found.
 void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed);
 
+/// Pushes bodies about as so many taps have; says whether any stands elsewhere. They stay wholly inside the area, and
+/// apart.
+bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, std::uint64_t seed, int taps);
+
 }  // namespace palpate

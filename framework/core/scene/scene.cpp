@@ -52,6 +52,15 @@ class Desk final : public Scene {
 
   bool on_surface(double height) const override { return height > desk_ + margin_; }
 
+  std::unique_ptr<const Scene> after(int taps) const override {
+    if (!effects_.push) return nullptr;
+    std::vector<Body> bodies = bodies_;
+    if (!push_about(bodies, area_, *effects_.push, context_.seed, taps)) return nullptr;
+    auto out = std::make_unique<Desk>(*this);
+    out->bodies_ = std::move(bodies);
+    return out;
+  }
+
  private:
   Area area_;
   double desk_;

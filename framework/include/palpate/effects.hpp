@@ -3,6 +3,7 @@
 // it, and what is absent is not modelled at all. Only simulators read this; a robot brings effects of its own.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 namespace palpate {
@@ -90,6 +91,17 @@ struct Shaft {
   double length = 0.08;
 };
 
+/// Objects do not stay where they are: an object is pushed by `distance` metres in some direction and turned by up to
+/// `turn` radians either way, after each tap with `probability`, or after tap number `after` and no other. Which, and
+/// where to, is drawn from the seed and the number of the tap, whatever that tap touched: so the scene of a run that is
+/// resumed is that of one that was not broken off.
+struct Push {
+  double probability = 0.02;
+  double distance = 0.005;
+  double turn = 0.087;
+  std::optional<std::int64_t> after;
+};
+
 /// The effects of a scene.
 struct Effects {
   std::optional<ForceNoise> force_noise;
@@ -105,6 +117,7 @@ struct Effects {
   std::optional<FalseContacts> false_contacts;
   std::optional<Reach> reach;
   std::optional<Shaft> shaft;
+  std::optional<Push> push;
 };
 
 }  // namespace palpate

@@ -6,6 +6,8 @@
 #include <palpate/effects.hpp>
 #include <palpate/types.hpp>
 
+#include <memory>
+
 namespace palpate {
 
 /// The rectangle of the desk in which taps may fall: [0, width] x [0, depth], metres.
@@ -14,7 +16,8 @@ struct Area {
   double depth = 0.0;
 };
 
-/// A desk with objects on it, seen from above: one height per place. Immutable once built; safe to share.
+/// A desk with objects on it, seen from above: one height per place. Immutable once built; safe to share. What is
+/// pushed about in a run is a scene after the other: after().
 class Scene {
  public:
   virtual ~Scene() = default;
@@ -36,6 +39,12 @@ class Scene {
   /// The rule that separates object from desk, the same for robot, simulator and truth: strictly higher than the desk
   /// plus a margin that the config names (`scene.on_surface_above`).
   virtual bool on_surface(double height) const = 0;
+
+  /// The scene as it stands after so many taps; null where that is this one. Does not outlive it.
+  virtual std::unique_ptr<const Scene> after(int taps) const {
+    static_cast<void>(taps);
+    return nullptr;
+  }
 };
 
 }  // namespace palpate

@@ -33,9 +33,13 @@ Contact Simulator::tap(const TapRequest& request) {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
 #ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
-  if (!perfect_) return imperfect_tap(request, down);
+  if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
+  const Scene& scene = pushed_ ? *pushed_ : scene_;
+  if (!perfect_) return imperfect_tap(request, down, scene);
+#else
+  const Scene& scene = scene_;
 #endif
-  const double surface = scene_.height(request.target.x, request.target.y);
+  const double surface = scene.height(request.target.x, request.target.y);
   Contact contact = ideal_tap(down, surface);
   contact.seconds += tapping::travel_seconds(motion, request);
   return paced(std::move(contact));
@@ -49,7 +53,7 @@ Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
 }
 
 #ifndef PALPATE_WITHOUT_EFFECTS
-Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& tap) const {
+Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
   const Effects& effects = scene_.effects();
   const Target& target = request.target;
   if (effects.reach &&
@@ -65,7 +69,7 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& ta
     dy = effects.pose_noise->lateral * normal();
     dz = effects.pose_noise->vertical * normal();
   }
-  double surface = contact_height(scene_, effects, target.x + dx, target.y + dy);
+  double surface = contact_height(scene, effects, target.x + dx, target.y + dy);
   const bool desk = surface <= scene_.desk();
   if (effects.outliers) {
     surface =

@@ -44,13 +44,14 @@ class Simulator final : public Backend {
     tapping::Descent descent;
   };
   Contact ideal_tap(const Descending& tap, double surface) const;
-  Contact imperfect_tap(const TapRequest& request, const Descending& tap) const;
+  Contact imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
   Contact simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
   Contact paced(Contact contact) const;
 
   SimulatorOptions options_;
   const Context& context_;
   const Scene& scene_;
+  std::unique_ptr<const Scene> pushed_;  ///< as it stood at the latest tap, where things are pushed
   bool perfect_;  ///< the scene has no effects
   bool moves_;    ///< some effect changes how the arm moves or feels
 };
