@@ -45,7 +45,7 @@ void Chooser::allow(const TapBelief& belief) {
   for (std::size_t i = 0; i < failed_.size(); ++i) allowed_[i] = !failed_[i];
   if (options_.repeat == ExperimentOptions::Repeat::allow) return;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (belief.doubt_of(i) < TapBelief::kWorthALook) allowed_[contacts_[i].candidate] = false;
+    if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_[contacts_[i].candidate] = false;
   }
 }
 

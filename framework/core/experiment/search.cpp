@@ -18,9 +18,7 @@ constexpr double kMissed = 0.02;
 constexpr double kFar = 5.0 * kBlur;
 
 /// How probable it is to look so far inside an edge (metres, below 0 outside) and to find nothing.
-double passed_by(double inside) {
-  return 1.0 - (1.0 - kMissed) * 0.5 * std::erfc(-inside / (kBlur * std::sqrt(2.0)));
-}
+double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * std::erfc(-inside / (kBlur * std::sqrt(2.0))); }
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 

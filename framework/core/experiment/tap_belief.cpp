@@ -227,7 +227,10 @@ void TapBelief::update() {
     if (model->process) take_in(*model);
   }
   if (systematic_) correct();
-  if (footprint_asked_) map_footprint();
+  if (footprint_asked_) {
+    map_footprint();
+    follow();
+  }
   if (lies_ && object_.process) {
     judge();
   } else if (uneven_) {
@@ -319,6 +322,36 @@ void TapBelief::correct() {
     for (std::size_t i = 0; i < data.size(); ++i) values(static_cast<Eigen::Index>(i)) = data[i].height;
     if (model->process->correct(values)) model->stale = true;
   }
+}
+
+/// Moves the contacts along with what was pushed since.
+void TapBelief::follow() {
+  // In steps far below what a push can be told by, so that the processes are not made anew after every tap.
+  constexpr double kStep = 1e-3;
+  const auto contacts = static_cast<Eigen::Index>(touches_.size());
+  places_.resize(contacts, 2);
+  for (Eigen::Index i = 0; i < contacts; ++i) {
+    const Target& place = touches_[static_cast<std::size_t>(i)].place;
+    places_.row(i) << place.x, place.y;
+  }
+  places_now_ = places_;
+  footprint_->place_now(places_now_);
+  for (Eigen::Index i = 0; i < contacts; ++i) {
+    for (int k = 0; k < 2; ++k) {
+      const double way = places_now_(i, k) - places_(i, k);
+      places_now_(i, k) = places_(i, k) + kStep * std::round(way / kStep);
+    }
+  }
+  for (Model* model : {&heights_, &labels_}) {
+    if (model->process && model->process->move(places_now_)) model->stale = true;
+  }
+  if (!object_.process) return;
+  Points hits(static_cast<Eigen::Index>(hits_.size()), 2);
+  Eigen::Index hit = 0;
+  for (Eigen::Index i = 0; i < contacts; ++i) {
+    if (touches_[static_cast<std::size_t>(i)].on) hits.row(hit++) = places_now_.row(i);
+  }
+  if (object_.process->move(hits)) object_.stale = true;
 }
 
 /// What is thought of each contact: by its label, which the footprint may take for wrong, and by its height, if it is

@@ -126,6 +126,14 @@ class TapBelief final : public Belief {
     return contact < static_cast<std::size_t>(doubt_.size()) ? doubt_(static_cast<Eigen::Index>(contact)) : 0.0;
   }
 
+  /// Whether the objects are thought to have been pushed since that contact: then it says nothing of its place any
+  /// more.
+  bool moved(std::size_t contact) const {
+    return contact < touches_taken_ &&
+           (places_now_.row(static_cast<Eigen::Index>(contact)) - places_.row(static_cast<Eigen::Index>(contact)))
+                   .squaredNorm() > 0.0;
+  }
+
   /// Fits that found nothing better and kept the old values.
   int failed_fits() const { return failed_fits_; }
 
@@ -180,6 +188,7 @@ class TapBelief final : public Belief {
   void judge();
   void believe();
   void correct();
+  void follow();
   const Eigen::VectorXd& kept(const Eigen::VectorXd& map) const;
 
   const Candidates& candidates_;
@@ -201,6 +210,7 @@ class TapBelief final : public Belief {
   Model object_;                          ///< heights of the taps on an object
   std::vector<Touch> touches_;            ///< all contacts, heights above the desk
   std::vector<int> numbers_;              ///< of their taps
+  Points places_, places_now_;            ///< of those that the footprint has taken: as made, and see Footprint
   std::vector<double> excess_, times_;    ///< of these: heights as they came, when,
   std::vector<int> motions_;              ///< by which motion,
   std::vector<double> share_;             ///< and how far its height is to be trusted for that, in [0, 1]

@@ -88,6 +88,15 @@ bool Process::correct(const VectorView& values) {
   return true;
 }
 
+bool Process::move(const PointsView& places) {
+  if (places == points_.topRows(size_)) return false;
+  points_.topRows(size_) = places;
+  ++generation_;
+  rebuild();
+  keep_accuracy();
+  return true;
+}
+
 bool Process::append(int tap) {
   const int row = factor_.size();
   factored_.row(row) = points_.row(tap);

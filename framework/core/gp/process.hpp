@@ -61,6 +61,9 @@ class Process {
   /// Gives output 0 of all taps so far other values, and rebuilds if they are; says whether.
   bool correct(const VectorView& values);
 
+  /// The same of the places of all taps so far, a row each.
+  bool move(const PointsView& places);
+
   /// Lets the outputs below `outputs` have a map of their mean, at the cost of rebuilding the maps if that is more than
   /// before; at first only output 0 has one.
   void show(int outputs);
@@ -105,7 +108,7 @@ class Process {
   /// Where all taps were made, n x 2, and their targets of an output, as given.
   PointsView places() const { return points_.topRows(size_); }
   VectorView targets(int output = 0) const { return targets_.col(output).head(size_); }
-  /// Rises with every change of the hyperparameters.
+  /// Rises with every change of the hyperparameters, and of the places of taps.
   int generation() const { return generation_; }
 
   const ProcessSettings& settings(int output = 0) const { return outputs_[static_cast<std::size_t>(output)]; }

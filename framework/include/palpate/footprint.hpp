@@ -50,6 +50,10 @@ class Footprint {
   /// A footprint that knows nothing of that leaves 0.
   virtual void doubt(VectorOut out) const { out.setZero(); }
 
+  /// Where each touch so far would be made now, a row each in their order, metres; `places` holds where they were made.
+  /// A footprint that thinks the objects were pushed since moves those made before along with them.
+  virtual void place_now(Eigen::Ref<Points> places) const { static_cast<void>(places); }
+
   /// What it has come to, in numbers; the same names at every touch.
   virtual std::vector<FootprintNumber> numbers() const { return {}; }
 

@@ -30,12 +30,6 @@ Cuts::Cuts(const Piece& piece) : family_(piece.family), x_(piece.x), y_(piece.y)
   sides(1, -piece.sine, piece.cosine, piece.b);
 }
 
-void Piece::turn(double angle) {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  std::tie(cosine, sine) = std::pair(cosine * c - sine * s, sine * c + cosine * s);
-}
-
 void Piece::order_axes() {
   if (b <= a) return;
   std::swap(a, b);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace palpate::footprints {
@@ -53,7 +54,8 @@ struct Piece {
   std::pair<double, double> cut(double py) const;
 
   /// Turns it about its centre, radians from x to y.
-  void turn(double angle);
+  void turn(double angle) { turn_by(std::cos(angle), std::sin(angle)); }
+  void turn_by(double c, double s) { std::tie(cosine, sine) = std::pair(cosine * c - sine * s, sine * c + cosine * s); }
 
   /// Names the longer axis `a` again, the shape stays.
   void order_axes();
@@ -134,6 +136,8 @@ class OutlinePrior {
   };
 
   explicit OutlinePrior(const Settings& settings) : settings_(settings) {}
+
+  const Area& area() const { return settings_.area; }
 
   /// Throws Error where the area has no room for the smallest piece.
   Outline draw(Random& random) const;

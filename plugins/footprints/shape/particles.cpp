@@ -120,14 +120,15 @@ struct Proposal {
   Outline outline;
   double density = 0.0;  ///< of it, by the prior
   double correction = 0.0;
+  Push push{};
 };
 
 /// Shifts, turns or stretches a piece, moves one of its sides, changes its family; adds a second piece or takes it away
 /// again, or draws an outline anew. A second piece is added where the prior would have it or, one time in two, about a
 /// label that the outline has wrong, because there it may set one right. `density` is that of `from`, by the prior.
-Proposal propose(const Outline& from, double density, const OutlinePrior& prior, const std::vector<Touch>& touches,
-                 Random& random) {
-  Proposal out{from, density, 1.0};
+Proposal propose(const Outline& from, double density, const Push& push, const OutlinePrior& prior,
+                 const std::vector<Touch>& touches, Random& random) {
+  Proposal out{from, density, 1.0, push};
   Outline& to = out.outline;
   const double which = random.uniform();
   if (which < 0.02) {
@@ -162,6 +163,69 @@ Proposal propose(const Outline& from, double density, const OutlinePrior& prior,
   }
   out.density = out.correction > 0.0 ? prior.density(to) : 0.0;
   out.correction *= out.density / density;
+  return out;
+}
+
+// How far a push goes: standard deviations along x and y, metres, and of the turn, radians.
+constexpr double kPushed = 0.012;
+constexpr double kTurned = 0.1;
+constexpr double kPushMoves = 0.1;  // share of the moves
+
+/// Of a push, up to a factor.
+double density(const Push& push) {
+  const double angle = push.angle() / kTurned;
+  return std::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushed * kPushed) + angle * angle));
+}
+
+Push some_push(const Area& area, Random& random) {
+  Push out;
+  out.origin_x = 0.5 * area.width;
+  out.origin_y = 0.5 * area.depth;
+  out.dx = kPushed * normal(random);
+  out.dy = kPushed * normal(random);
+  const double angle = kTurned * normal(random);
+  out.cosine = std::cos(angle);
+  out.sine = std::sin(angle);
+  return out;
+}
+
+/// Adds a push or takes it away, or changes it. Either the outline stays where it is now, or where it was before: then
+/// what was touched before agrees with it as well as it did. `rate`: the prior probability of a push between two of
+/// the `touches`, at least 2.
+Proposal propose_push(const Particle& from, const OutlinePrior& prior, int touches, double rate, Random& random) {
+  Proposal out{from.outline, from.density, 0.0, from.push};
+  const bool stays_before = random.uniform() < 0.5;
+  if (random.uniform() < 0.5) {
+    const double odds = rate * (touches - 1);
+    if (from.push) {
+      if (stays_before) out.outline = from.push.then(from.outline);
+      out.push = Push();
+      out.correction = 1.0 / odds;
+    } else {
+      out.push = some_push(prior.area(), random);
+      out.push.before = 1 + static_cast<int>(random.index(static_cast<std::size_t>(touches - 1)));
+      if (stays_before) out.outline = out.push.now(from.outline);
+      out.correction = odds;
+    }
+  } else {
+    if (!from.push) return out;
+    if (random.uniform() < 0.25) {
+      constexpr int kFar = 3;
+      out.push.before += static_cast<int>(random.index(2 * kFar + 1)) - kFar;
+      if (out.push.before < 1 || out.push.before >= touches) return out;
+    } else {
+      const double scale = some_scale(random);
+      out.push.dx += 2.0 * kPushed * scale * either_way(random);
+      out.push.dy += 2.0 * kPushed * scale * either_way(random);
+      const double angle = from.push.angle() + 2.0 * kTurned * scale * either_way(random);
+      out.push.cosine = std::cos(angle);
+      out.push.sine = std::sin(angle);
+      if (stays_before) out.outline = out.push.now(from.push.then(from.outline));
+    }
+    out.correction = density(out.push) / density(from.push);
+  }
+  out.density = prior.density(out.outline);
+  out.correction *= out.density / from.density;
   return out;
 }
 
@@ -306,11 +370,44 @@ void Particles::doubt(VectorOut out) const {
     if (!(particle.loss > 0.0)) continue;  // nothing speaks against it
     const LabelModel& labels = this->labels(particle.blurred);
     for (std::size_t i = 0; i < touches_.size(); ++i) {
-      const Touch& touch = touches_[i];
-      out(static_cast<Eigen::Index>(i)) += labels.wrong(labels.depth(particle.outline, touch.place), touch.on);
+      const double depth = labels.depth(particle.outline, seen_from(particle, i));
+      out(static_cast<Eigen::Index>(i)) += labels.wrong(depth, touches_[i].on);
     }
   }
   out /= static_cast<double>(particles_.size());
+}
+
+void Particles::place_now(Eigen::Ref<Points> places) const {
+  Points sums = Points::Zero(places.rows(), 2);
+  std::vector<int> counts(touches_.size(), 0);
+  for (const Particle& particle : particles_) {
+    for (int i = 0; i < particle.push.before; ++i) {
+      const Target now = particle.push.now(touches_[static_cast<std::size_t>(i)].place);
+      sums.row(i) += Eigen::RowVector2d(now.x, now.y);
+      ++counts[static_cast<std::size_t>(i)];
+    }
+  }
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (2 * counts[i] > size()) places.row(row) = sums.row(row) / counts[i];
+  }
+}
+
+Particles::Pushed Particles::pushed() const {
+  Pushed out;
+  for (const Particle& particle : particles_) {
+    if (!particle.push) continue;
+    const Target now{particle.outline.first.x, particle.outline.first.y};
+    const Target then = particle.push.then(now);
+    out.share += 1.0;
+    out.before += particle.push.before;
+    out.shift += std::hypot(now.x - then.x, now.y - then.y);
+  }
+  if (!(out.share > 0.0)) return out;
+  out.before /= out.share;
+  out.shift /= out.share;
+  out.share /= size();
+  return out;
 }
 
 double Particles::share_of_one() const {
@@ -368,8 +465,11 @@ void Particles::move(Particle& particle) {
   const bool changes_blur = settings_.blur > 0.0 && random_.uniform() < kChangesBlur;
   const bool blurred = particle.blurred != changes_blur;
   const LabelModel& labels = this->labels(blurred);
-  const Proposal proposal = changes_blur ? Proposal{particle.outline, particle.density, 1.0}
-                                         : propose(particle.outline, particle.density, prior_, touches_, random_);
+  const bool pushes = settings_.pushes > 0.0 && touches_.size() > 1 && random_.uniform() < kPushMoves;
+  const Proposal proposal =
+      changes_blur ? Proposal{particle.outline, particle.density, 1.0, particle.push}
+      : pushes     ? propose_push(particle, prior_, static_cast<int>(touches_.size()), settings_.pushes, random_)
+                   : propose(particle.outline, particle.density, particle.push, prior_, touches_, random_);
   if (!(proposal.correction > 0.0)) return;
   // Metropolis and Hastings: taken if a uniform number is below the ratio of the likelihoods times the correction. So
   // much loss is allowed, and most outlines are given up before all labels are looked at: the latest are the nearest to
@@ -378,14 +478,16 @@ void Particles::move(Particle& particle) {
   if (allowed < 0.0) return;
   int mistakes = 0;
   double loss = 0.0;
-  for (auto touch = touches_.rbegin(); touch != touches_.rend(); ++touch) {
-    const double depth = labels.depth(proposal.outline, touch->place);
-    const double one = labels.loss(depth, touch->on);
+  for (auto i = static_cast<int>(touches_.size()); i-- > 0;) {
+    const Touch& touch = touches_[static_cast<std::size_t>(i)];
+    const double depth =
+        labels.depth(proposal.outline, i < proposal.push.before ? proposal.push.now(touch.place) : touch.place);
+    const double one = labels.loss(depth, touch.on);
     mistakes += one > kMistake ? 1 : 0;
     loss += one;
     if (loss > allowed) return;
   }
-  particle = {proposal.outline, proposal.density, mistakes, loss, blurred};
+  particle = {proposal.outline, proposal.density, mistakes, loss, blurred, proposal.push};
   ++moved_;
 }
 

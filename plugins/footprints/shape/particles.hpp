@@ -4,6 +4,7 @@
 #pragma once
 
 #include "outline.hpp"
+#include "push.hpp"
 
 #include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
@@ -19,6 +20,8 @@ struct ParticleSettings {
   /// Standard deviation of the place of a touch, along x and y, metres, if there is any: half of the outlines believe
   /// so at first, and half that places are exact.
   double blur = 0.0;
+  /// Probability, between two touches, that the objects are pushed; an outline has been so once at most.
+  double pushes = 0.0;
   /// Moves of each outline after a touch, over the share of outlines that its label leaves (the effective sample size:
   /// Kong, Liu and Wong 1994): a label that nobody expected leaves many copies of few outlines, which have to part.
   double moves = 4.0;
@@ -70,6 +73,7 @@ struct Particle {
   int mistakes = 0;   ///< touches so far that it has wrong
   double loss = 0.0;  ///< what all of them say against it
   bool blurred = false;
+  Push push;  ///< the outline is that of after it
 };
 
 class Particles {
@@ -87,6 +91,17 @@ class Particles {
   /// The probability that the label of each touch so far is wrong, and no blur accounts for it.
   void doubt(VectorOut out) const;
 
+  /// Where each touch so far would be made now (rows as they were made; set already to where they were): elsewhere
+  /// where more than half of the outlines were pushed since.
+  void place_now(Eigen::Ref<Points> places) const;
+  /// Share of the outlines that were pushed, and the touches before it and the shift of an average one of these.
+  struct Pushed {
+    double share = 0.0;
+    double before = 0.0;
+    double shift = 0.0;  ///< of the first piece, metres
+  };
+  Pushed pushed() const;
+
   /// Touches so far that an outline has wrong, on average.
   double mean_mistakes() const;
   /// Share of the outlines that are one piece.
@@ -100,6 +115,10 @@ class Particles {
  private:
   void resample(const std::vector<double>& weights, double sum);
   void move(Particle& particle);
+  Target seen_from(const Particle& particle, std::size_t touch) const {
+    const Target& place = touches_[touch].place;
+    return static_cast<int>(touch) < particle.push.before ? particle.push.now(place) : place;
+  }
 
   OutlinePrior prior_;
   ParticleSettings settings_;

@@ -4,6 +4,8 @@
 #include "../classifier/laplace.hpp"
 #include "particles.hpp"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <string>
 
@@ -16,6 +18,7 @@ struct ShapeOptions : LaplaceOptions {
   double mistaken = 0.01;
   std::optional<double> lies;
   double blur = 0.0;
+  double pushes = 0.0;
   double contradictions = 4.0;
   std::int64_t particles = 2000;
   void list(Fields& fields) override {
@@ -33,6 +36,9 @@ struct ShapeOptions : LaplaceOptions {
                           .at_most(0.4));
     fields.real(blur,
                 Field("blur", "standard deviation of the place of a touch, along x and y").in(Unit::metre).at_least(0));
+    fields.real(
+        pushes,
+        Field("pushes", "probability, between two touches, that the objects are pushed").at_least(0).at_most(0.5));
     fields.real(contradictions, Field("contradictions",
                                       "hand over to the classifier when an outline has so many more touches wrong, on "
                                       "average, than mistaken lets expect")
@@ -51,7 +57,7 @@ class Shape final : public Footprint {
         classifier_(options, context),
         particles_(prior(options, context.scene.area()),
                    {static_cast<int>(options.particles), options.mistaken, options.lies.value_or(options.mistaken),
-                    options.blur},
+                    options.blur, options.pushes},
                    context.random("footprint/shape")) {}
 
   void add(const Touch& touch) override {
@@ -74,15 +80,28 @@ class Shape final : public Footprint {
     particles_.doubt(out);
   }
 
+  void place_now(Eigen::Ref<Points> places) const override {
+    if (handed_over_at_ == 0 && options_.pushes > 0.0) particles_.place_now(places);
+  }
+
   std::vector<FootprintNumber> numbers() const override {
-    return {{"mistakes", particles_.mean_mistakes()},
-            {"one_piece", particles_.share_of_one()},
-            {"acceptance", particles_.acceptance()},
-            {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
+    std::vector<FootprintNumber> out{{"mistakes", particles_.mean_mistakes()},
+                                     {"one_piece", particles_.share_of_one()},
+                                     {"acceptance", particles_.acceptance()},
+                                     {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
+    if (options_.pushes > 0.0) out.push_back({"pushed", particles_.pushed().share});
+    return out;
   }
 
   std::string remark() const override {
-    if (handed_over_at_ == 0) return {};
+    if (handed_over_at_ == 0) {
+      const Particles::Pushed pushed = particles_.pushed();
+      if (pushed.share <= 0.5) return {};
+      return fmt::format(
+          "the object was pushed after touch {:.0f}, by {:.1f} cm (probability {:.2f}): what was "
+          "touched before counts as if made where it is now",
+          pushed.before, 100.0 * pushed.shift, pushed.share);
+    }
     return "the classifier has taken over at touch " + std::to_string(handed_over_at_) +
            ": no outline of one or two pieces agrees with the touches";
   }

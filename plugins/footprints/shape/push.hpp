@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// That the objects were pushed, all alike, at some time between two touches.
+#pragma once
+
+#include "outline.hpp"
+
+#include <palpate/types.hpp>
+
+#include <cmath>
+
+namespace palpate::footprints {
+
+/// A displacement of the desk's objects, and when: a turn about a fixed origin, the middle of the area, and a shift.
+/// What was touched before is seen where it would be touched now.
+struct Push {
+  int before = 0;                         ///< so many touches were made before it; 0: there was none
+  double origin_x = 0.0, origin_y = 0.0;  ///< metres
+  double dx = 0.0, dy = 0.0;              ///< metres
+  double cosine = 1.0, sine = 0.0;        ///< of the turn from x to y
+
+  explicit operator bool() const { return before > 0; }
+  double angle() const { return std::atan2(sine, cosine); }
+
+  /// Where a place on the object, as it stood before, is now.
+  Target now(const Target& then) const {
+    const double x = then.x - origin_x;
+    const double y = then.y - origin_y;
+    return {origin_x + cosine * x - sine * y + dx, origin_y + sine * x + cosine * y + dy};
+  }
+  /// The way back.
+  Target then(const Target& now) const {
+    const double x = now.x - origin_x - dx;
+    const double y = now.y - origin_y - dy;
+    return {origin_x + cosine * x + sine * y, origin_y - sine * x + cosine * y};
+  }
+
+  Outline now(Outline outline) const {
+    for (Piece* piece : {&outline.first, &outline.second}) {
+      const Target place = now(Target{piece->x, piece->y});
+      piece->x = place.x;
+      piece->y = place.y;
+      piece->turn_by(cosine, sine);
+    }
+    return outline;
+  }
+  Outline then(Outline outline) const {
+    for (Piece* piece : {&outline.first, &outline.second}) {
+      const Target place = then(Target{piece->x, piece->y});
+      piece->x = place.x;
+      piece->y = place.y;
+      piece->turn_by(cosine, -sine);
+    }
+    return outline;
+  }
+};
+
+}  // namespace palpate::footprints
