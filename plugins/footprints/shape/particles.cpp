@@ -196,16 +196,22 @@ Proposal propose_push(const Particle& from, const OutlinePrior& prior, int touch
   Proposal out{from.outline, from.density, 0.0, from.push};
   const bool stays_before = random.uniform() < 0.5;
   if (random.uniform() < 0.5) {
-    const double odds = rate * (touches - 1);
+    // A push that was found out late has been fitted over by then: one time in two it is looked for among the latest.
+    constexpr int kLately = 6;
+    const int lately = std::min(kLately, touches - 1);
+    const auto odds = [&](int before) {
+      return rate / (0.5 / (touches - 1) + (before >= touches - lately ? 0.5 / lately : 0.0));
+    };
     if (from.push) {
       if (stays_before) out.outline = from.push.then(from.outline);
       out.push = Push();
-      out.correction = 1.0 / odds;
+      out.correction = 1.0 / odds(from.push.before);
     } else {
       out.push = some_push(prior.area(), random);
-      out.push.before = 1 + static_cast<int>(random.index(static_cast<std::size_t>(touches - 1)));
+      const int among = random.uniform() < 0.5 ? lately : touches - 1;
+      out.push.before = touches - 1 - static_cast<int>(random.index(static_cast<std::size_t>(among)));
       if (stays_before) out.outline = out.push.now(from.outline);
-      out.correction = odds;
+      out.correction = odds(out.push.before);
     }
   } else {
     if (!from.push) return out;

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Things that are pushed: where they stand after, what is measured against it, and that the belief finds out as surely
+// as draws do that are weighed by all labels.
+#include "shape/particles.hpp"
+#include "support/runs.hpp"
+#include "support/sanitizers.hpp"
+#include "support/testing.hpp"
+#include "tapping_bench.hpp"
+
+#include <cmath>
+
+namespace palpate::footprints {
+namespace {
+
+using test::TappingBench;
+
+constexpr Area kDesk{0.23, 0.23};
+constexpr const char* kCylinder = "[{type: cylinder, diameter: 6 cm, height: 5 cm}]";
+
+/// Middle of all that stands on a desk.
+Target middle(const Scene& scene) {
+  constexpr int kSide = 230;
+  Eigen::Vector2d sum(0.0, 0.0);
+  int on = 0;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Eigen::Vector2d at(kDesk.width * (i + 0.5) / kSide, kDesk.depth * (j + 0.5) / kSide);
+      if (!scene.on_surface(scene.height(at(0), at(1)))) continue;
+      sum += at;
+      ++on;
+    }
+  }
+  sum /= on;
+  return {sum(0), sum(1)};
+}
+
+TEST(Push, MovesAnObjectByItsDistanceAfterTheTapThatTheConfigNamesAndNeverAgain) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const TappingBench bench(kCylinder, "{push: {after: 15, distance: 1.5 cm}}", "{type: paper}", seed);
+    EXPECT_EQ(bench.scene().after(14), nullptr);
+    const auto after = bench.scene().after(15);
+    ASSERT_NE(after, nullptr);
+    const Target here = middle(bench.scene());
+    const Target there = middle(*after);
+    EXPECT_NEAR(std::hypot(there.x - here.x, there.y - here.y), 0.015, 3e-4);
+    const Target later = middle(*bench.scene().after(400));
+    EXPECT_EQ(later.x, there.x);
+    EXPECT_EQ(later.y, there.y);
+  }
+}
+
+TEST(Push, HappensAsOftenAsItsProbabilitySaysAndNothingLeavesTheAreaOrRunsIntoAnother) {
+  const char* const blocks =
+      "[{type: block, length: 8 cm, width: 4 cm, height: 5 cm, at: [6 cm, 6 cm]}, "
+      "{type: block, length: 6 cm, width: 3 cm, height: 7 cm, at: [16 cm, 15 cm]}]";
+  const TappingBench bench(blocks, "{push: {probability: 0.2, distance: 1 cm, turn: 20deg}}", "{type: paper}", 3);
+  constexpr int kTaps = 150;
+  const auto volume = [](const Scene& scene) {
+    double sum = 0.0;
+    for (int i = 0; i < 230; ++i) {
+      for (int j = 0; j < 230; ++j) sum += scene.height(0.001 * (i + 0.5), 0.001 * (j + 0.5));
+    }
+    return sum * 1e-6;
+  };
+  int pushes = 0;
+  Target before = middle(bench.scene());
+  for (int tap = 1; tap <= kTaps; ++tap) {
+    const auto scene = bench.scene().after(tap);
+    if (!scene) continue;
+    const Target now = middle(*scene);
+    pushes += std::hypot(now.x - before.x, now.y - before.y) > 1e-3 ? 1 : 0;
+    before = now;
+    if (tap % 50 == 0) {
+      EXPECT_NEAR(volume(*scene), 0.08 * 0.04 * 0.05 + 0.06 * 0.03 * 0.07, 4e-6) << "after tap " << tap;
+    }
+  }
+  EXPECT_NEAR(pushes, 0.2 * kTaps, 5.0 * std::sqrt(0.2 * 0.8 * kTaps));
+}
+
+TEST(Push, IsThereForTheTapsThatComeAfterAndForTheErrorsOfTheRun) {
+  // A push farther than the object is wide: what was touched at tap 15 is bare from tap 16 on.
+  const TappingBench bench(kCylinder, "{push: {after: 15, distance: 7 cm}}", "{type: paper}");
+  EXPECT_GT(bench.tap(0.115, 0.115, 15).height, 0.04);
+  EXPECT_EQ(bench.tap(0.115, 0.115, 16).height, 0.0);
+  test::Prepared run("default.yaml",
+                     {"scene=cylinder", "taps=17", "scene.effects={push: {after: 15, distance: 2 cm, turn: 0deg}}"});
+  std::vector<Eigen::VectorXd> truths;
+  run.journal.recording = [&](const TapRecord&) { truths.push_back(run.experiment.truth()->height); };
+  run.run();
+  EXPECT_EQ(truths[0], truths[13]);
+  EXPECT_NE(truths[13], truths[14]) << "what is measured after tap 15 is measured against where it stands";
+  EXPECT_EQ(truths[14], truths[16]);
+}
+
+/// Touches of a bar that stood at y = 0.09 for the first four and stands at 0.12 for the others.
+const std::vector<std::pair<Target, bool>> kLabels{{{0.08, 0.09}, true},  {{0.15, 0.09}, true},  {{0.11, 0.11}, false},
+                                                   {{0.11, 0.07}, false}, {{0.08, 0.12}, true},  {{0.14, 0.12}, true},
+                                                   {{0.11, 0.10}, false}, {{0.10, 0.14}, false}, {{0.12, 0.118}, true}};
+
+TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
+  ParticleSettings how;
+  how.count = 4000;
+  how.mistaken = how.lies = 0.05;
+  how.pushes = 0.05;
+  how.moves = 12;
+  OutlinePrior::Settings settings;
+  settings.area = kDesk;
+  settings.two = settings.without = 0.05;  // few draws say much of outlines that fit anything
+  const OutlinePrior prior(settings);
+  const auto touches = static_cast<int>(kLabels.size());
+  Random random(5, "push test");
+  double evidence = 0.0;
+  double pushed = 0.0;
+  Eigen::VectorXd since = Eigen::VectorXd::Zero(touches);  // pushed after that many touches
+  const int draws = test::brief() ? 200000 : 1000000;
+  for (int i = 0; i < draws; ++i) {
+    const Outline outline = prior.draw(random);
+    const auto normal = [&] {
+      return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(2.0 * kPi * random.uniform());
+    };
+    const double dx = 0.012 * normal();
+    const double dy = 0.012 * normal();
+    const double angle = 0.1 * normal();
+    // The suffix sees the outline as it is, the prefix where it was: by hand, about the middle of the area.
+    std::vector<double> now, then;
+    for (const auto& [place, on] : kLabels) {
+      const double x = place.x - 0.115;
+      const double y = place.y - 0.115;
+      const Target moved{0.115 + std::cos(angle) * x - std::sin(angle) * y + dx,
+                         0.115 + std::sin(angle) * x + std::cos(angle) * y + dy};
+      now.push_back(outline.contains(place.x, place.y) == on ? 1.0 - how.mistaken : how.mistaken);
+      then.push_back(outline.contains(moved.x, moved.y) == on ? 1.0 - how.mistaken : how.mistaken);
+    }
+    for (int before = 0; before < touches; ++before) {
+      double weight = before == 0 ? 1.0 : how.pushes;
+      for (int k = 0; k < touches; ++k) weight *= (k < before ? then : now)[static_cast<std::size_t>(k)];
+      evidence += weight;
+      if (before == 0) continue;
+      pushed += weight;
+      since(before) += weight;
+    }
+  }
+  pushed /= evidence;
+  since /= evidence;
+  double found = 0.0;
+  Eigen::VectorXd found_since = Eigen::VectorXd::Zero(touches);
+  constexpr int kRuns = 6;
+  for (int run = 0; run < kRuns; ++run) {
+    Particles belief(prior, how, Random(40 + static_cast<std::uint64_t>(run), "push test"));
+    for (const auto& [place, on] : kLabels) belief.add({place, 0.0, on});
+    found += belief.pushed().share / kRuns;
+    for (const Particle& one : belief.particles()) {
+      if (one.push) found_since(one.push.before) += 1.0 / (how.count * kRuns);
+    }
+  }
+  EXPECT_GT(pushed, 0.2) << "the labels say something";
+  EXPECT_NEAR(found, pushed, 0.05);
+  EXPECT_LT((found_since - since).cwiseAbs().maxCoeff(), 0.05)
+      << found_since.transpose() << " for " << since.transpose();
+}
+
+TEST(Particles, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
+  OutlinePrior::Settings settings;
+  settings.area = kDesk;
+  ParticleSettings how;
+  how.pushes = 0.01;
+  Particles belief(OutlinePrior(settings), how, Random(1, "push test"));
+  // A disc of 6 cm, on a lattice of touches, then the same 1.5 cm to the right.
+  std::vector<Target> places;
+  for (const double shift : {0.0, 0.015}) {
+    for (int i = 0; i < 25; ++i) {
+      const Target place{0.055 + 0.03 * (i % 5), 0.055 + 0.03 * (i / 5)};
+      places.push_back(place);
+      belief.add({place, 0.0, std::hypot(place.x - 0.11 - shift, place.y - 0.11) <= 0.03});
+    }
+  }
+  EXPECT_GT(belief.pushed().share, 0.5);
+  EXPECT_NEAR(belief.pushed().before, 25.0, 3.0);
+  Points now(50, 2);
+  for (Eigen::Index i = 0; i < 50; ++i)
+    now.row(i) << places[static_cast<std::size_t>(i)].x, places[static_cast<std::size_t>(i)].y;
+  belief.place_now(now);
+  const Target& middle = places[12];
+  EXPECT_NEAR(now(12, 0) - middle.x, 0.015, 0.006);
+  EXPECT_NEAR(now(12, 1) - middle.y, 0.0, 0.006);
+  EXPECT_EQ(now(49, 0), places[49].x);
+}
+
+}  // namespace
+}  // namespace palpate::footprints
