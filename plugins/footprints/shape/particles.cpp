@@ -359,7 +359,7 @@ Particles::Particles(const OutlinePrior& prior, const ParticleSettings& settings
   particles_.reserve(static_cast<std::size_t>(settings.count));
   for (int i = 0; i < settings.count; ++i) {
     const Outline outline = prior_.draw(random_);
-    particles_.push_back({outline, prior_.density(outline)});
+    particles_.push_back({outline, prior_.density(outline), 0, 0.0, false, {}});
     particles_.back().blurred = settings.blur > 0.0 && i % 2 == 1;
   }
 }
