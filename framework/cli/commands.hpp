@@ -132,6 +132,8 @@ int report(Program& program, const ReportArguments& arguments);
 
 int explain(Program& program, const std::string& directory, int tap);
 
+int calibrate(Program& program, const std::vector<std::string>& directories);
+
 /// `to`: a folder; "" for export/ of the run.
 int export_run(Program& program, const std::string& directory, const std::string& to);
 

@@ -46,6 +46,7 @@ struct CommandLine {
   std::string directory;  ///< of a command that has no arguments of its own
   std::string to;
   std::vector<std::string> configs;
+  std::vector<std::string> runs;
   std::string plugin;
   bool json = false;
   int tap = 0;
@@ -225,6 +226,11 @@ void add_about_one(CommandLine& line) {
                  line.directory, line.tap);
   sub->add_option("RUN", line.directory, "the run's directory")->required();
   sub->add_option("TAP", line.tap, "the number of the tap, from 1")->required();
+
+  sub = line.add("calibrate", "Effects with which the simulator errs as the arm of recorded taps, as a file",
+                 &Needs::everything, calibrate, line.runs);
+  sub->add_option("RUN", line.runs, "directories of runs whose scenes stood as their configs say: a bare desk, a block")
+      ->required();
 
   sub = line.add("export", "Write the surface and the taps of a run for other programs", all_about(line.directory),
                  export_run, line.directory, line.to);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#include "calibrate/calibrate.hpp"
+
+#include "cli/commands.hpp"
+
+#include <fmt/format.h>
+
+namespace palpate::cli {
+
+int calibrate(Program& program, const std::vector<std::string>& directories) {
+  std::vector<Recording> recordings;
+  for (const std::string& directory : directories) {
+    check_one_run(directory);
+    recordings.push_back(read_recording(program, directory));
+  }
+  fmt::print("{}", palpate::calibrate(program, recordings));
+  return kDone;
+}
+
+}  // namespace palpate::cli

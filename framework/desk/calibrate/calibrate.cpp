@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "calibrate/calibrate.hpp"
+
+#include "calibrate/contacts.hpp"
+#include "calibrate/twin.hpp"
+#include "config/yaml.hpp"
+#include "scene/scene_options.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFewest = 10;  // contacts
+constexpr double kMillimetre = 1e-3;
+constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
+/// A rate cannot be told by motions that show fewer than one in so many.
+constexpr double kShown = 0.1;
+
+/// What these taps do not tell, at the values of an arm of Baxter's class: those that the effects have by themselves.
+Tree assumed() {
+  Tree out = Tree::map();
+  for (const char* effect : {"force_noise", "force_drift", "stiffness", "joint_lag", "latency"})
+    out.at(effect) = Tree::map();
+  return out;
+}
+
+Tree with_rate(const char* effect) {
+  Tree out = assumed();
+  out.at(effect) = Tree::map({{"probability", Tree::scalar("1")}});
+  return out;
+}
+
+std::string words(const Estimated& one, double unit, const char* name) {
+  return fmt::format("{:.3g} [{:.3g}, {:.3g}] {}", one.value / unit, one.low / unit, one.high / unit, name);
+}
+
+/// A run, its twin, and what both come to.
+struct Pair {
+  const Recording& recording;
+  std::unique_ptr<const Scene> scene;
+  Twin twin;
+  Twin::Made made;  ///< by what is assumed
+
+  Pair(const Workshop& workshop, const Recording& from)
+      : recording(from),
+        scene(build_scene(from.config.options.scene, static_cast<std::uint64_t>(from.config.options.seed),
+                          workshop.host)),
+        twin(workshop, from),
+        made(twin.make(assumed())) {}
+};
+
+/// All taps of all runs, as counts and sums.
+struct Sums {
+  double taps = 0.0, failed = 0.0, contacts = 0.0;
+  double on_desk = 0.0;
+};
+
+class Calibrated {
+ public:
+  Calibrated(const Workshop& workshop, const std::vector<Recording>& recordings) {
+    for (const Recording& recording : recordings) {
+      pairs_.emplace_back(workshop, recording);
+      add(pairs_.back());
+    }
+    if (contacts_.size() < kFewest) {
+      throw Error(recordings.front().directory.string(),
+                  fmt::format("{} of {} taps are contacts, and it takes {}", contacts_.size(), sums_.taps, kFewest),
+                  "tap more of a scene that stands where the config has it: a bare desk, a block");
+    }
+    const Scene& scene = *pairs_.front().scene;
+    fit_ = fit_contacts(contacts_, scene.highest() - scene.desk() + 0.1);
+  }
+
+  std::string file() {
+    Tree effects = assumed();
+    std::string lines;
+    const auto line = [&](const char* effect, const std::string& value, const std::string& what) {
+      lines += fmt::format("  {}: {}  # {}\n", effect, value, what);
+      effects.at(effect) = parse_yaml(value, "calibrate");
+    };
+    // The effect's offset is that of the first tap.
+    const double drift = fit_.drift ? fit_.drift->value : 0.0;
+    line("height_offset",
+         fmt::format("{{constant: {:.4g} mm, drift: {:.4g} mm/min}}",
+                     (fit_.offset.value - drift * fit_.mean_elapsed) / kMillimetre, drift / kMillimetrePerMinute),
+         fmt::format("halfway, beyond what is assumed below, {}; {}", words(fit_.offset, kMillimetre, "mm"),
+                     fit_.drift ? "drift " + words(*fit_.drift, kMillimetrePerMinute, "mm/min")
+                                : std::string("no drift is told")));
+    const auto less = [&](double noise) { return std::sqrt(std::max(0.0, noise * noise - simulated_variance_)); };
+    const Estimated vertical{less(fit_.noise.value), less(fit_.noise.low), less(fit_.noise.high)};
+    line("pose_noise",
+         fmt::format("{{lateral: {:.3g} mm, vertical: {:.3g} mm}}",
+                     (fit_.lateral ? fit_.lateral->value : 0.002) / kMillimetre, vertical.value / kMillimetre),
+         fmt::format("lateral {}; vertical {}",
+                     fit_.lateral ? words(*fit_.lateral, kMillimetre, "mm")
+                                  : std::string("is assumed: no tap was beside a step"),
+                     words(vertical, kMillimetre, "mm")));
+    const Estimated failed = share_of(sums_.failed, sums_.taps);
+    rate(line, "missed_contacts", failed, fmt::format("{:g} of {:g} taps came to nothing", sums_.failed, sums_.taps),
+         [](const Twin::Made& made) { return made.failed; });
+    rate(line, "false_contacts", fit_.false_share,
+         fmt::format("{:.2g} of {:g} contacts are nowhere near the scene",
+                     fit_.false_share.value * static_cast<double>(contacts_.size()), sums_.contacts),
+         [](const Twin::Made& made) { return made.far_off; });
+    for (const auto& [effect, value] : kAssumed) line(effect, value, "assumed");
+    return head(effects) + "effects:\n" + lines;
+  }
+
+ private:
+  static constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
+                                                                     {"force_drift", "{per_metre: 10 N/m}"},
+                                                                     {"stiffness", "{object: 1500 N/m}"},
+                                                                     {"joint_lag", "{delay: 350 ms}"},
+                                                                     {"latency", "{deviation: 15 ms}"}};
+
+  void add(const Pair& pair) {
+    const Twin::Made& made = pair.made;
+    const std::vector<TapRequest> requests = requests_of(pair.recording);
+    double variance = 0.0;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      const Contact& contact = pair.recording.taps[i].contact;
+      if (contact.outcome == Outcome::unreachable) continue;
+      ++sums_.taps;
+      variance += made.variance[i];
+      if (contact.outcome != Outcome::contact) {
+        ++sums_.failed;
+        continue;
+      }
+      ++sums_.contacts;
+      const Target& place = requests[i].target;
+      const double there = pair.scene->height(place.x, place.y);
+      sums_.on_desk += pair.scene->on_surface(there) ? 0.0 : 1.0;
+      contacts_.push_back({pair.scene.get(), place, requests[i].elapsed, contact.height - made.error[i]});
+    }
+    simulated_variance_ +=
+        (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(pairs_.size());
+  }
+
+  /// The rate at which the simulator shows as many: none and all of the taps being so, it shows so many.
+  template <class Line, class Shown>
+  void rate(const Line& line, const char* effect, const Estimated& seen, const std::string& what, const Shown& shown) {
+    double none = 0.0;
+    double all = 0.0;
+    for (const Pair& pair : pairs_) {
+      none += shown(pair.made) / static_cast<double>(pairs_.size());
+      all += shown(pair.twin.make(with_rate(effect), pair.made.error)) / static_cast<double>(pairs_.size());
+    }
+    if (all - none < kShown) {
+      return line(effect, "{probability: 0.02}", what + "; the rate is assumed: these motions hardly show it");
+    }
+    const auto rate_of = [&](double share) { return std::clamp((share - none) / (all - none), 0.0, 1.0); };
+    const Estimated out{rate_of(seen.value), rate_of(seen.low), rate_of(seen.high)};
+    line(effect, fmt::format("{{probability: {:.3g}}}", out.value),
+         fmt::format("{}; {}", what, words(out, 1.0, "a tap")));
+  }
+
+  /// About what a tap is off, beyond what is assumed.
+  double offset_at(double elapsed) const {
+    return fit_.offset.value + (fit_.drift ? fit_.drift->value * (elapsed - fit_.mean_elapsed) : 0.0);
+  }
+
+  std::string head(const Tree& effects) {
+    double error = 0.0;
+    double near = 0.0;
+    double twin_error = 0.0;
+    std::string runs;
+    for (const Pair& pair : pairs_) {
+      std::vector<double> expected;
+      for (const TapRequest& request : requests_of(pair.recording)) {
+        expected.push_back(pair.made.error[expected.size()] + offset_at(request.elapsed));
+        const Contact& contact = pair.recording.taps[expected.size() - 1].contact;
+        const double off = contact.height - pair.scene->height(request.target.x, request.target.y);
+        if (contact.outcome != Outcome::contact || std::abs(off - expected.back()) > Twin::kFarOff) continue;
+        error += off;
+        ++near;
+      }
+      twin_error += pair.twin.make(effects, expected).mean_error / static_cast<double>(pairs_.size());
+      runs +=
+          fmt::format("#   {} ({})\n", pair.recording.directory.string(), pair.recording.config.options.backend.type);
+    }
+    return fmt::format(
+        "# Effects of an arm, by {:g} taps of\n{}# {:g} contacts with the desk, {:g} with an object. Values with "
+        "intervals of 95 %; what is assumed, these taps do\n# not tell. Their heights are off by {:.2f} mm on average, "
+        "those of the simulator with these effects by {:.2f} mm.\n",
+        sums_.taps, runs, sums_.on_desk, sums_.contacts - sums_.on_desk, error / std::max(1.0, near) / kMillimetre,
+        twin_error / kMillimetre);
+  }
+
+  std::vector<Pair> pairs_;
+  std::vector<KnownContact> contacts_;
+  Sums sums_;
+  ContactFit fit_;
+  double simulated_variance_ = 0.0;  ///< of the errors of a tap, by what is assumed
+};
+
+}  // namespace
+
+std::string calibrate(const Workshop& workshop, const std::vector<Recording>& recordings) {
+  return Calibrated(workshop, recordings).file();
+}
+
+}  // namespace palpate

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Effects with which the simulator errs as the arm of some recorded taps does.
+#pragma once
+
+#include "record/recording.hpp"
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// A file of effects (`effects: ...`, as configs/effects has them) from taps of scenes that stand where their configs
+/// have them: each value with its interval and what it comes from, as comments. What the simulator's arm adds to the
+/// same taps by what is assumed is taken out first, so that the simulator comes to the same mean error with the result.
+/// Throws Error, with the remedy, for fewer than 10 contacts and for runs that no simulator can repeat.
+std::string calibrate(const Workshop& workshop, const std::vector<Recording>& recordings);
+
+}  // namespace palpate

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "calibrate/twin.hpp"
+
+#include "scene/scene_options.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr int kDraws = 24;
+/// A normal number's standard deviation over its median deviation.
+constexpr double kOfNormal = 1.4826;
+
+/// 0 of none.
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<TapRequest> requests_of(const Recording& recording) {
+  std::vector<TapRequest> out;
+  TapRequest request;
+  for (const PastTap& tap : recording.taps) {
+    request.target = tap.target;
+    request.predicted = tap.predicted;
+    request.motion = tap.motion;
+    out.push_back(request);
+    ++request.number;
+    request.previous = tap.target;
+    request.elapsed += tap.contact.seconds;
+  }
+  return out;
+}
+
+Twin::Twin(const Workshop& workshop, const Recording& recording)
+    : workshop_(workshop), recording_(recording), config_(recording.config.tree) {
+  const Tree* motion = config_.find_path("backend.motion");
+  if (motion == nullptr) {
+    throw Error(recording.directory.string(),
+                "its backend, " + recording.config.options.backend.type + ", has no motion to be simulated by",
+                "calibrate takes runs of backends with 'motion': baxter, process, simulator");
+  }
+  Tree backend = Tree::map({{"type", Tree::scalar("simulator")}, {"motion", *motion}});
+  config_.at("backend") = std::move(backend);
+  config_.erase("expect");
+}
+
+Twin::Made Twin::make(const Tree& effects, const std::vector<double>& expected) const {
+  Tree config = config_;
+  config.at("scene").at("effects") = effects;
+  const ResolvedConfig resolved = resolve_experiment(config, workshop_.host);
+  const auto seed = static_cast<std::uint64_t>(resolved.options.seed);
+  const std::unique_ptr<const Scene> scene = build_scene(resolved.options.scene, seed, workshop_.host);
+  const std::vector<TapRequest> requests = requests_of(recording_);
+  const std::size_t taps = requests.size();
+  std::vector<std::vector<double>> errors(taps);
+  double failed = 0.0;
+  for (std::uint64_t draw = 1; draw <= kDraws; ++draw) {
+    const Context context{workshop_.host, *scene, draw, nullptr};
+    const auto backend = context.create<Backend>(resolved.options.backend);
+    for (std::size_t i = 0; i < taps; ++i) {
+      const Contact contact = backend->tap(requests[i]);
+      const Target& place = requests[i].target;
+      if (contact.outcome == Outcome::contact) {
+        errors[i].push_back(contact.height - scene->height(place.x, place.y));
+      } else if (contact.outcome != Outcome::unreachable) {
+        ++failed;
+      }
+    }
+  }
+  Made out;
+  out.failed = failed / static_cast<double>(taps * kDraws);
+  double all = 0.0;
+  double near = 0.0;
+  for (std::size_t i = 0; i < taps; ++i) {
+    const double middle = median(errors[i]);
+    out.error.push_back(middle);
+    std::vector<double> deviations;
+    for (const double error : errors[i]) deviations.push_back(std::abs(error - middle));
+    const double deviation = kOfNormal * median(deviations);
+    out.variance.push_back(deviation * deviation);
+    for (const double error : errors[i]) {
+      ++all;
+      if (std::abs(error - (expected.empty() ? middle : expected[i])) > kFarOff) continue;
+      ++near;
+      out.mean_error += error;
+    }
+  }
+  out.mean_error /= std::max(1.0, near);
+  out.far_off = (all - near) / std::max(1.0, all);
+  return out;
+}
+
+}  // namespace palpate

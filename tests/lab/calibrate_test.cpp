@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Calibrating: what is found of contacts that were drawn by known numbers, and that a simulator errs by the file as
+// the arm did that it was made from.
+#include "calibrate/calibrate.hpp"
+
+#include "calibrate/contacts.hpp"
+#include "config/yaml.hpp"
+#include "record/session.hpp"
+#include "scene/scene_options.hpp"
+#include "support/filled.hpp"
+#include "support/runs.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/random.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::shared_host;
+using test::TemporaryFolder;
+using ::testing::HasSubstr;
+
+/// What contacts are drawn by.
+struct Arm {
+  double offset = 0.004, drift = 1e-3 / 60.0, noise = 0.0015, lateral = 0.003, lies = 0.05;
+};
+
+std::vector<KnownContact> contacts_of(const Scene& scene, const Arm& arm, int count, std::uint64_t seed) {
+  Random random(seed, "calibrate test");
+  const auto normal = [&] {
+    return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(6.283185307179586 * random.uniform());
+  };
+  std::vector<KnownContact> out;
+  for (int i = 0; i < count; ++i) {
+    KnownContact one{&scene, {0.23 * random.uniform(), 0.23 * random.uniform()}, 3.0 * i};
+    one.height = scene.height(one.place.x + arm.lateral * normal(), one.place.y + arm.lateral * normal()) + arm.offset +
+                 arm.drift * one.elapsed + arm.noise * normal();
+    if (random.uniform() < arm.lies) one.height = 0.15 * random.uniform();
+    out.push_back(one);
+  }
+  return out;
+}
+
+std::unique_ptr<const Scene> block() {
+  return build_scene(test::filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}, objects: [{type: block, length: "
+                                                "14 cm, width: 8 cm, height: 5 cm}]}"),
+                     1, shared_host());
+}
+
+TEST(Contacts, TellOffsetDriftNoisePlaceAndLiesWithinTheirIntervalsAsOftenAsTheseSay) {
+  const auto scene = block();
+  const Arm arm;
+  constexpr int kSets = 60;
+  constexpr int kContacts = 80;
+  int offset = 0, drift = 0, noise = 0, lateral = 0, lies = 0;
+  const auto holds = [](const Estimated& one, double truth) { return one.low <= truth && truth <= one.high ? 1 : 0; };
+  for (std::uint64_t seed = 1; seed <= kSets; ++seed) {
+    const ContactFit fit = fit_contacts(contacts_of(*scene, arm, kContacts, seed), 0.15);
+    offset += holds(fit.offset, arm.offset + arm.drift * fit.mean_elapsed);
+    drift += fit.drift ? holds(*fit.drift, arm.drift) : 0;
+    noise += holds(fit.noise, arm.noise);
+    lateral += fit.lateral ? holds(*fit.lateral, arm.lateral) : 1;
+    lies += holds(fit.false_share, arm.lies);
+  }
+  // Of 60 intervals of 95 %, fewer than 51 hold the truth once in ten thousand.
+  for (const int count : {offset, drift, noise, lateral, lies}) EXPECT_GE(count, 51);
+}
+
+TEST(Contacts, TellNoPlaceOfABareDeskAndNoDriftOfAnArmThatHasNone) {
+  const auto desk = build_scene(test::filled<SceneOptions>("{area: {width: 23 cm, depth: 23 cm}}"), 1, shared_host());
+  Arm arm;
+  arm.drift = 0.0;
+  int drifts = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const ContactFit fit = fit_contacts(contacts_of(*desk, arm, 40, seed), 0.15);
+    EXPECT_FALSE(fit.lateral);
+    drifts += fit.drift ? 1 : 0;
+  }
+  EXPECT_LE(drifts, 5) << "one in twenty, by the level of the test";
+}
+
+TEST(Contacts, ShareOfNoneAndOfAllKeepsToWhatASharesCanBe) {
+  EXPECT_EQ(share_of(0, 40).low, 0.0);
+  EXPECT_GT(share_of(0, 40).high, 0.05);
+  EXPECT_LT(share_of(40, 40).low, 0.95);
+  EXPECT_EQ(share_of(40, 40).high, 1.0);
+  EXPECT_NEAR(share_of(20, 40).low, 0.352, 0.001);  // Wilson's own, by hand
+}
+
+class Calibrate : public testing::Test {
+ protected:
+  Recording recorded(const ResolvedConfig& config) {
+    const fs::path directory = folder_.path() / std::to_string(runs_++);
+    start_run(workshop, config, directory, false, nullptr);
+    return read_recording(workshop, directory);
+  }
+
+  /// What contacts are off the scene, the middle half of them on average.
+  static double mean_error(const Recording& run) {
+    const auto scene =
+        build_scene(run.config.options.scene, static_cast<std::uint64_t>(run.config.options.seed), shared_host());
+    std::vector<double> off;
+    for (const PastTap& tap : run.taps) {
+      if (tap.contact.outcome == Outcome::contact)
+        off.push_back(tap.contact.height - scene->height(tap.target.x, tap.target.y));
+    }
+    std::sort(off.begin(), off.end());
+    const auto quarter = static_cast<std::ptrdiff_t>(off.size() / 4);
+    return std::accumulate(off.begin() + quarter, off.end() - quarter, 0.0) /
+           static_cast<double>(off.end() - off.begin() - 2 * quarter);
+  }
+
+  std::string error_of(const std::vector<Recording>& runs) {
+    try {
+      calibrate(workshop, runs);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+ private:
+  TemporaryFolder folder_;
+  Installation installation_;
+  int runs_ = 0;
+
+ public:
+  Workshop workshop{shared_host(), installation_, {}, nullptr};
+};
+
+TEST_F(Calibrate, HasTheSimulatorErrAsTheArmDidThatTheTapsAreOf) {
+  const std::string effects =
+      "scene.effects={force_noise: {}, force_drift: {}, stiffness: {}, joint_lag: {}, latency: {}, pose_noise: "
+      "{lateral: 3 mm, vertical: 2 mm}, missed_contacts: {probability: 0.1}, height_offset: {constant: -3 mm}}";
+  for (const std::string backend : {"chosen", "paper", "continuous"}) {
+    const std::vector<std::string> words{"scene=block", "acquisition=random", "taps=40", "backend=" + backend, effects};
+    const Recording arm = recorded(test::shipped_config("default.yaml", words));
+    const std::string file = calibrate(workshop, {arm});
+    SCOPED_TRACE(file);
+    Tree found = test::shipped_config("default.yaml", words).tree;
+    found.at("scene").at("effects") = parse_yaml(file, "effects.yaml").at("effects");
+    found.at("seed") = Tree::scalar("12");
+    const Recording twin = recorded(resolve_experiment(found, shared_host()));
+    EXPECT_NEAR(mean_error(twin), mean_error(arm), 0.001);
+    EXPECT_THAT(file, HasSubstr("height_offset"));
+    EXPECT_THAT(file, HasSubstr("# assumed"));
+  }
+}
+
+TEST_F(Calibrate, SaysWhatItLacksOfARun) {
+  EXPECT_THAT(error_of({recorded(test::shipped_config("default.yaml", {"taps=9", "scene=block"}))}),
+              HasSubstr("contacts, and it takes 10"));
+}
+
+}  // namespace
+}  // namespace palpate
