@@ -55,7 +55,7 @@ TEST(OptionalGroups, RefuseWhatIsNoGroupInOneLine) {
 TEST(OptionalGroups, AreDescribedAsAbsentAndEveryEffectSaysWhereItsSizeComesFrom) {
   EffectOptions options;
   const auto fields = describe_fields([&](Fields& list) { options.list(list); });
-  ASSERT_EQ(fields.size(), 13u);
+  ASSERT_EQ(fields.size(), 14u);
   for (const FieldDescription& effect : fields) {
     EXPECT_TRUE(effect.optional) << effect.name;
     for (const FieldDescription& field : effect.fields) {

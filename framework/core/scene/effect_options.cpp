@@ -135,10 +135,9 @@ void list(Shaft& effect, Fields& fields) {
 }
 
 void list(Push& effect, Fields& fields) {
-  fields.real(effect.probability, Field("probability", "after each tap, that an object is pushed")
-                                      .at_least(0)
-                                      .at_most(1)
-                                      .from("2 %: an estimate"));
+  fields.real(
+      effect.probability,
+      Field("probability", "after each tap, that an object is pushed").at_least(0).at_most(1).from("2 %: an estimate"));
   fields.real(effect.distance, Field("distance", "by which an object is pushed, in some direction")
                                    .in(Unit::metre)
                                    .at_least(0)
@@ -147,7 +146,9 @@ void list(Push& effect, Fields& fields) {
                                .in(Unit::radian)
                                .at_least(0)
                                .from("5 degrees: an estimate"));
-  fields.integer(effect.after, Field("after", "the only tap after which anything is pushed").at_least(1));
+  fields.integer(
+      effect.after,
+      Field("after", "the only tap after which anything is pushed").at_least(1).from("none: set it to try one push"));
 }
 
 /// An effect as a group of options.

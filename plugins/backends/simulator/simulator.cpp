@@ -20,7 +20,7 @@ Simulator::Simulator(const Options& options, const Context& context)
   moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.latency ||
            effects.missed_contacts || effects.false_contacts;
   perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
-               effects.height_offset || effects.outliers);
+               effects.height_offset || effects.outliers || effects.push);
   if (scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
@@ -33,13 +33,12 @@ Contact Simulator::tap(const TapRequest& request) {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
 #ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
-  if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
-  const Scene& scene = pushed_ ? *pushed_ : scene_;
-  if (!perfect_) return imperfect_tap(request, down, scene);
-#else
-  const Scene& scene = scene_;
+  if (!perfect_) {
+    if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
+    return imperfect_tap(request, down, pushed_ ? *pushed_ : scene_);
+  }
 #endif
-  const double surface = scene.height(request.target.x, request.target.y);
+  const double surface = scene_.height(request.target.x, request.target.y);
   Contact contact = ideal_tap(down, surface);
   contact.seconds += tapping::travel_seconds(motion, request);
   return paced(std::move(contact));
