@@ -309,7 +309,7 @@ void TapBelief::map_object() {
 /// Takes off all heights what is thought now to be added to them. Whether one was with an object stays as it was read.
 void TapBelief::correct() {
   // In steps far below the noise, so that the processes are not made anew after every tap.
-  constexpr double kStep = 1e-4;
+  constexpr double kStep = 2.5e-4;
   std::size_t hit = 0;
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     touches_[i].height = excess_[i] - kStep * std::round(systematic_->at(times_[i], motions_[i]).value / kStep);

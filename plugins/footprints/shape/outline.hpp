@@ -87,13 +87,28 @@ class Cuts {
   }
 
   /// No cut lies farther from the centre along y.
+  double y() const { return y_; }
   double reach() const { return reach_; }
+
+  /// The same in other units: from these places on, in these steps.
+  Cuts scaled(double from_x, double step_x, double from_y, double step_y) const {
+    Cuts out = *this;
+    out.x_ = (x_ - from_x) / step_x;
+    out.y_ = (y_ - from_y) / step_y;
+    out.reach_ /= step_y;
+    for (int i = 0; i < 2; ++i) {
+      out.slope_[i] *= step_y / step_x;
+      out.half_[i] /= step_x;
+    }
+    return out;
+  }
 
  private:
   Piece::Family family_;
   double x_, y_;
   double reach_;
-  double slope_[2], half_[2];  ///< of the middle, and half widths: of a box for each pair of sides
+  double slope_[2] = {0.0, 0.0},
+         half_[2] = {0.0, 0.0};  ///< of the middle, and half widths: of a box for each pair of sides
 };
 
 /// One piece is a block or a cylinder. Two make an L, a T, or objects that lie apart. A piece without another is a

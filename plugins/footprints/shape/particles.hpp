@@ -44,6 +44,13 @@ class LabelModel {
   /// How much it speaks against the outline, 0 for a label that is right far from the rim; in units() of a logarithm.
   double loss(double depth, bool on) const { return table_[index(depth, on)].loss; }
   double units() const { return units_; }
+  /// The same of a touch: what moves of outlines are made of, and so without a detour over the depth where only in or
+  /// out matters.
+  double loss(const Outline& outline, const Target& place, bool on) const {
+    if (blurs_) return loss(outline.depth(place.x, place.y), on);
+    const std::size_t inside = outline.contains(place.x, place.y) ? 2 * kSteps + 2 : 0;
+    return table_[inside + (on ? 1 : 0)].loss;
+  }
   /// The probability that such a label is wrong, and not just on the other side of a rim by the blur of its place.
   double wrong(double depth, bool on) const { return table_[index(depth, on)].wrong; }
 
