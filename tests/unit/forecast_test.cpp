@@ -8,8 +8,8 @@
 #include "support/stopping.hpp"
 #include "support/testing.hpp"
 
-#include <cmath>
 #include <Eigen/LU>
+#include <cmath>
 
 #include <random>
 
@@ -143,7 +143,7 @@ TEST(Forecast, IsRightMoreOftenThanItPromises) {
   int wrong = 0;
   for (const std::string& scene : test::stopping_scenes()) {
     for (int seed = 5000; seed < 5006; ++seed) {
-      Finished run("default.yaml", {"scene=" + scene, "scene.placement=random", "taps=45",
+      Finished run("default.yaml", {"scene=" + scene, "scene.placement=random", "taps=60",
                                     "seed=" + std::to_string(seed), "stop.expected_rmse=1.5 cm"});
       const RunResult result = run.experiment.result();
       if (result.stop_reason != "expected_rmse") continue;

@@ -100,7 +100,8 @@ TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
     ASSERT_GE(held[static_cast<std::size_t>(next)], (1.0 - 1e-3) * most) << "tap " << tap + 1;
     search.look(candidates.target(next));
     // An arm that is off by 2 mm and does not feel one contact in fifty may have passed it by.
-    for (auto& disc : discs) disc[3] *= 1.0 - 0.98 * 0.5 * (1.0 + std::erf(inside(disc, next) / 0.002 / std::sqrt(2.0)));
+    for (auto& disc : discs)
+      disc[3] *= 1.0 - 0.98 * 0.5 * (1.0 + std::erf(inside(disc, next) / 0.002 / std::sqrt(2.0)));
   }
 }
 

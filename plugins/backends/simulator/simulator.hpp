@@ -52,8 +52,8 @@ class Simulator final : public Backend {
   const Context& context_;
   const Scene& scene_;
   std::unique_ptr<const Scene> pushed_;  ///< as it stood at the latest tap, where things are pushed
-  bool perfect_;  ///< the scene has no effects
-  bool moves_;    ///< some effect changes how the arm moves or feels
+  bool perfect_;                         ///< the scene has no effects
+  bool moves_;                           ///< some effect changes how the arm moves or feels
 };
 
 }  // namespace palpate::backends
