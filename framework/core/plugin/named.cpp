@@ -129,7 +129,7 @@ class NamedFootprint final : public Named<Footprint> {
   void add(const Touch& touch) override { call(&Footprint::add, touch); }
   void probability(const PointsView& places, VectorOut out) override { call(&Footprint::probability, places, out); }
   void doubt(VectorOut out) const override { call(&Footprint::doubt, out); }
-  void place_now(Eigen::Ref<Points> places) const override { call(&Footprint::place_now, places); }
+  void place_now(Points& places) const override { call(&Footprint::place_now, places); }
   std::vector<FootprintNumber> numbers() const override { return call(&Footprint::numbers); }
   std::string remark() const override { return call(&Footprint::remark); }
 };

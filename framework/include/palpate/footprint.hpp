@@ -52,7 +52,7 @@ class Footprint {
 
   /// Where each touch so far would be made now, a row each in their order, metres; `places` holds where they were made.
   /// A footprint that thinks the objects were pushed since moves those made before along with them.
-  virtual void place_now(Eigen::Ref<Points> /*places*/) const {}
+  virtual void place_now(Points& /*places*/) const {}
 
   /// What it has come to, in numbers; the same names at every touch.
   virtual std::vector<FootprintNumber> numbers() const { return {}; }

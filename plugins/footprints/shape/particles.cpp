@@ -386,7 +386,7 @@ void Particles::doubt(VectorOut out) const {
   out /= static_cast<double>(asked);
 }
 
-void Particles::place_now(Eigen::Ref<Points> places) const {
+void Particles::place_now(Points& places) const {
   Points sums = Points::Zero(places.rows(), 2);
   std::vector<int> counts(touches_.size(), 0);
   for (const Particle& particle : particles_) {

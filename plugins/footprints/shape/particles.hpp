@@ -40,19 +40,18 @@ class LabelModel {
   }
 
   /// The probability of a label at this depth (metres; negative: outside).
-  double probability(double depth, bool on) const { return table_[index(depth, on)].probability; }
+  double probability(double depth, bool on) const { return at(depth, on).probability; }
   /// How much it speaks against the outline, 0 for a label that is right far from the rim; in units() of a logarithm.
-  double loss(double depth, bool on) const { return table_[index(depth, on)].loss; }
+  double loss(double depth, bool on) const { return at(depth, on).loss; }
   double units() const { return units_; }
-  /// The same of a touch: what moves of outlines are made of, and so without a detour over the depth where only in or
+  /// The loss of a touch: what moves of outlines are made of, and so without a detour over the depth where only in or
   /// out matters.
   double loss(const Outline& outline, const Target& place, bool on) const {
     if (blurs_) return loss(outline.depth(place.x, place.y), on);
-    const std::size_t inside = outline.contains(place.x, place.y) ? 2 * kSteps + 2 : 0;
-    return table_[inside + (on ? 1 : 0)].loss;
+    return entry(outline.contains(place.x, place.y) ? kSteps + 1 : 0, on).loss;
   }
   /// The probability that such a label is wrong, and not just on the other side of a rim by the blur of its place.
-  double wrong(double depth, bool on) const { return table_[index(depth, on)].wrong; }
+  double wrong(double depth, bool on) const { return at(depth, on).wrong; }
 
  private:
   struct Entry {
@@ -61,10 +60,13 @@ class LabelModel {
     double wrong;
   };
   static constexpr int kSteps = 128;  ///< over the depths at which the place decides
-  std::size_t index(double depth, bool on) const {
+  const Entry& entry(int place, bool on) const {
+    const int row = 2 * place + (on ? 1 : 0);
+    return table_[static_cast<std::size_t>(row)];
+  }
+  const Entry& at(double depth, bool on) const {
     const double step = depth * steps_per_metre_ + 0.5 * kSteps;
-    const int place = step < 0.0 ? 0 : step >= kSteps ? kSteps + 1 : 1 + static_cast<int>(step);
-    return static_cast<std::size_t>(2 * place + (on ? 1 : 0));
+    return entry(step < 0.0 ? 0 : step >= kSteps ? kSteps + 1 : 1 + static_cast<int>(step), on);
   }
 
   bool blurs_;
@@ -100,7 +102,7 @@ class Particles {
 
   /// Where each touch so far would be made now (rows as they were made; set already to where they were): elsewhere
   /// where more than half of the outlines were pushed since.
-  void place_now(Eigen::Ref<Points> places) const;
+  void place_now(Points& places) const;
   /// Share of the outlines that were pushed, and the touches before it and the shift of an average one of these.
   struct Pushed {
     double share = 0.0;

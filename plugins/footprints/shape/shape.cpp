@@ -80,7 +80,7 @@ class Shape final : public Footprint {
     particles_.doubt(out);
   }
 
-  void place_now(Eigen::Ref<Points> places) const override {
+  void place_now(Points& places) const override {
     if (handed_over_at_ == 0 && options_.pushes > 0.0) particles_.place_now(places);
   }
 
