@@ -26,7 +26,7 @@ class Chooser {
   Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context);
 
   /// Whether the next tap is the initial design's. A search is over once a hit is believed, or when it has looked
-  /// everywhere; a hit that is not it looks at again, once, before it goes on.
+  /// everywhere; at a hit that is doubted it looks again, once, before it goes on.
   bool starting(const TapBelief& belief) const;
 
   /// What is read for a tap of the acquisition, and what is predicted at the place of any.

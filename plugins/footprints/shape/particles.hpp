@@ -3,8 +3,7 @@
 // (resample-move: Gilks and Berzuini 2001; moves between one and two pieces: Green 1995).
 #pragma once
 
-#include "outline.hpp"
-#include "push.hpp"
+#include "proposals.hpp"
 
 #include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
@@ -75,14 +74,11 @@ class LabelModel {
   std::vector<Entry> table_;
 };
 
-/// An outline, and what its moves ask for again and again.
-struct Particle {
-  Outline outline;
-  double density;     ///< by the prior, up to a constant factor
+/// An outline, and what its moves ask for again and again. It is that of after its push.
+struct Particle : State {
   int mistakes = 0;   ///< touches so far that it has wrong
   double loss = 0.0;  ///< what all of them say against it
   bool blurred = false;
-  Push push;  ///< the outline is that of after it
 };
 
 class Particles {
