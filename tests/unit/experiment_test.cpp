@@ -176,6 +176,25 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
   }
 }
 
+TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore) {
+  // From there on nobody is judged any more: what was thought of each contact is carried along.
+  const std::vector<std::string> words{"scene=large_block", "taps=150", "seed=4", "scene.effects=standard",
+                                       "height.lies=0.1"};
+  const Finished unbroken("default.yaml", words);
+  ASSERT_GT(unbroken.experiment.counts().on_surface_taps, 105);
+  ASSERT_FALSE(unbroken.taps.back().doubted->empty());
+  for (const std::size_t cut : {100U, 149U}) {
+    Prepared rest("default.yaml", words);
+    rest.experiment.resume(unbroken.past(cut));
+    rest.run();
+    ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
+    for (std::size_t i = 0; i < rest.taps.size(); ++i) {
+      const TapRecord& expected = unbroken.taps[cut + i];
+      ASSERT_EQ(to_json_line(tap_row(rest.taps[i])), to_json_line(tap_row(expected))) << "cut " << cut << " tap " << i;
+    }
+  }
+}
+
 TEST(Experiment, SendsWhoeverTapsByHandWhereTheRunWent) {
   Finished whole("paper/object_i.yaml");
   Prepared by_hand("paper/object_i.yaml", {}, no_backend(true));
