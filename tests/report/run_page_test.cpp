@@ -18,7 +18,8 @@ fs::path made(const test::TemporaryFolder& folder, std::vector<std::string> word
   words.insert(words.begin(), {"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"});
   const test::Ended ran = test::palpate(words, folder.path());
   EXPECT_EQ(ran.status, 0) << ran.err;
-  return test::only_run(folder.path() / "runs");
+  const auto runs = std::find(words.begin(), words.end(), "--runs");
+  return test::only_run(folder.path() / (runs == words.end() ? "runs" : *std::next(runs)));
 }
 
 class ReportedRun : public test::Reports {};
@@ -56,6 +57,19 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
   EXPECT_THAT(seen.values.at(4).get<std::string>(), HasSubstr("Before the first tap."));
   EXPECT_EQ(seen.values.at(5).at(0), GetParam() ? "surface" : "heatmap");
   EXPECT_EQ(seen.values.back(), !GetParam()) << "what the colours of the surface say is a map where there is none";
+}
+
+TEST_F(ReportedRun, SaysByWhichMotionATapWasMadeWhereThereAreSeveral) {
+  const auto story = [&](const std::string& backend) {
+    const fs::path directory = made(folder_, {"taps=3", "backend=" + backend, "--runs", backend});
+    report(directory);
+    const Browsed seen = test::browse(directory / "report.html",
+                                      {drawn(3), "return document.getElementById('story').textContent"}, true);
+    EXPECT_EQ(seen.trouble, "");
+    return seen.values.at(0).get<std::string>();
+  };
+  EXPECT_THAT(story("chosen"), testing::ContainsRegex("chosen by [a-z ]+, by motion [01], touched"));
+  EXPECT_THAT(story("paper"), testing::Not(HasSubstr("by motion")));
 }
 
 TEST_F(ReportedRun, ShowsMarksAboveTheSurfaceAndTheNextTap) {

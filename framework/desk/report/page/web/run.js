@@ -54,7 +54,8 @@ function story(data, moment, drawn) {
     const reason = tap.reason ? `: ${tap.reason}` : "";
     const touched = `touched ${tap.on_surface ? "the object" : "the desk"} at ${shown(tap.height * kCentimetres, 4)} cm`;
     const what = tap.on_surface === null ? `brought no contact (${tap.outcome}${reason})` : touched;
-    out.push(`Tap ${tap.tap} at ${place(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}, ${what}.`);
+    const motion = tap.motion === undefined ? "" : `, by motion ${tap.motion}`;
+    out.push(`Tap ${tap.tap} at ${place(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}${motion}, ${what}.`);
   } else {
     out.push("Before the first tap.");
   }
