@@ -19,14 +19,21 @@ namespace {
 constexpr std::size_t kFewest = 10;  // contacts
 constexpr double kMillimetre = 1e-3;
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
+/// Metres above the highest thing that a jerk may be felt in.
+constexpr double kAbove = 0.1;
 /// A rate cannot be told by motions that show fewer than one in so many.
 constexpr double kShown = 0.1;
 
 /// What these taps do not tell, at the values of an arm of Baxter's class: those that the effects have by themselves.
+constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
+                                                            {"force_drift", "{per_metre: 10 N/m}"},
+                                                            {"stiffness", "{object: 1500 N/m}"},
+                                                            {"joint_lag", "{delay: 350 ms}"},
+                                                            {"latency", "{deviation: 15 ms}"}};
+
 Tree assumed() {
   Tree out = Tree::map();
-  for (const char* effect : {"force_noise", "force_drift", "stiffness", "joint_lag", "latency"})
-    out.at(effect) = Tree::map();
+  for (const auto& [effect, value] : kAssumed) out.at(effect) = parse_yaml(value, "calibrate");
   return out;
 }
 
@@ -73,8 +80,9 @@ class Calibrated {
                   fmt::format("{} of {} taps are contacts, and it takes {}", contacts_.size(), sums_.taps, kFewest),
                   "tap more of a scene that stands where the config has it: a bare desk, a block");
     }
-    const Scene& scene = *pairs_.front().scene;
-    fit_ = fit_contacts(contacts_, scene.highest() - scene.desk() + 0.1);
+    double highest = 0.0;
+    for (const Pair& pair : pairs_) highest = std::max(highest, pair.scene->highest() - pair.scene->desk());
+    fit_ = fit_contacts(contacts_, highest + kAbove);
   }
 
   std::string file() {
@@ -113,12 +121,6 @@ class Calibrated {
   }
 
  private:
-  static constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
-                                                                     {"force_drift", "{per_metre: 10 N/m}"},
-                                                                     {"stiffness", "{object: 1500 N/m}"},
-                                                                     {"joint_lag", "{delay: 350 ms}"},
-                                                                     {"latency", "{deviation: 15 ms}"}};
-
   void add(const Pair& pair) {
     const Twin::Made& made = pair.made;
     const std::vector<TapRequest> requests = requests_of(pair.recording);
