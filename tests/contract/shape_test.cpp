@@ -22,6 +22,8 @@ std::vector<PluginCase> plugin_cases() {
       {"mesh", "mesh", "{" + cup + ", unit: 1 mm}"},
       {"mesh_on_its_side", "mesh", "{" + cup + ", unit: 0.4 mm, up: y}"},
       {"polygon", "polygon", "{outline: [[0 cm, 0 cm], [9 cm, 1 cm], [3 cm, 3 cm], [2 cm, 8 cm]]}"},
+      {"compound", "compound",
+       "{parts: [{type: dome, at: [3 cm, 1 cm]}, {type: ring, at: [-5 cm, 0 cm]}, {type: slope, rotation: 20 deg}]}"},
       {"older_spelling", "plugin", "{shape: {type: cone}}"}};
   for (const std::string& name : plugins_under_contract("shape")) out.push_back({test_name(name), name, "{}"});
   return out;

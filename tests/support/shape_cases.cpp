@@ -102,7 +102,8 @@ ShapeCase ring() {
 
 /// A union of rectangles {left, right, low, high}, less a rectangle.
 ShapeCase bars(const std::string& name, const std::string& options, const std::vector<std::array<double, 4>>& parts,
-               const std::array<double, 4>& hole, std::vector<double> s, std::vector<double> t, double height) {
+               const std::array<double, 4>& hole, const std::vector<double>& s, const std::vector<double>& t,
+               double height) {
   const auto flat = [parts, hole](double x, double y, double slack) {
     const auto in = [&](const std::array<double, 4>& r, double by) {
       return within(x, r[0], r[1], by) && within(y, r[2], r[3], by);
@@ -142,6 +143,12 @@ const std::vector<ShapeCase>& shape_cases() {
       bars("t", "{type: t, length: 10 cm, width: 8 cm, thickness: 2 cm, height: 3 cm}",
            {{-0.05, 0.05, 0.02, 0.04}, {-0.01, 0.01, -0.04, 0.04}}, kNoHole, {-0.05, -0.01, 0.01, 0.05},
            {-0.04, 0.02, 0.04}, 0.03),
+      // The same as the l, of two parts that overlap, not centred, and one of them turned.
+      bars("compound",
+           "{type: compound, parts: [{type: block, length: 10 cm, width: 3 cm, height: 4 cm, at: [7 cm, 2 cm]}, {type: "
+           "block, length: 8 cm, width: 3 cm, height: 4 cm, at: [35 mm, 45 mm], rotation: 90 deg}]}",
+           {{-0.05, 0.05, -0.04, -0.01}, {-0.05, -0.02, -0.04, 0.04}}, kNoHole, {-0.05, -0.02, 0.05},
+           {-0.04, -0.01, 0.04}, 0.04),
       // Anticlockwise outline, clockwise hole, a corner in the middle of an edge, and a rectangle that is not centred.
       bars("polygon",
            "{type: polygon, height: 25 mm, outline: [[1 cm, 2 cm], [9 cm, 2 cm], [9 cm, 4 cm], [9 cm, 8 cm], [1 cm, 8 "

@@ -165,6 +165,10 @@ TEST(Describe, ListsAdoptedPluginsAsCasesWithTheirOptions) {
   EXPECT_EQ(fields[1].cases[0].meaning, "a small shape");
   EXPECT_EQ(fields[1].cases[1].fields[0].name, "width");
   EXPECT_EQ(describe_fields(list)[1].type_name(), "plugin of kind shape") << "without plugins their kind is known";
+  EXPECT_EQ(schema_of(fields).find("additionalProperties")->text, "false");
+  const Tree unknown = schema_of(describe_fields(list));
+  EXPECT_EQ(unknown.find_path("properties.type.type")->text, "string");
+  EXPECT_EQ(unknown.find("additionalProperties"), nullptr) << "the options of the plugin may stand there, too";
 }
 
 }  // namespace

@@ -68,6 +68,17 @@ TEST(SceneOptions, RefuseHolesThatLeaveTheOutline) {
   EXPECT_EQ(outline(square, "[[1 cm, 1 cm], [3 cm, 1 cm]]"), "objects.0.hole: needs three points or more");
 }
 
+TEST(SceneOptions, RefuseACompoundWithoutPartsAndSayWhichPartIsWrong) {
+  EXPECT_EQ(object_refusal("{type: compound}"), "'objects.0.parts' is missing");
+  EXPECT_EQ(object_refusal("{type: compound, parts: []}"), "objects.0.parts: needs at least one part");
+  EXPECT_EQ(object_refusal("{type: compound, parts: [{type: cone}, {at: [1 cm, 1 cm]}]}"),
+            "'objects.0.parts.1.type' is missing");
+  EXPECT_EQ(object_refusal("{type: compound, parts: [{type: cone, height: 0 cm}]}"),
+            "objects.0.parts.0.height: 0 cm is out of range");
+  EXPECT_EQ(object_refusal("{type: compound, parts: [{type: cone, tilt: 5 deg}]}"),
+            "unknown option 'tilt' of objects.0.parts.0");
+}
+
 /// The objects of a scene as the resolved config has them, which ids of runs follow.
 std::string resolved(const std::string& objects) {
   SceneOptions options;

@@ -94,6 +94,7 @@ class Describer final : public Fields {
     FieldDescription& row = rows.back();
     if (plugins_) row.cases = plugins_(choice.kind);
     if (!row.cases.empty()) row.type = Type::choice;
+    row.adopted = row.cases.empty();
   }
   void require(bool, const char*, const std::string&) override {}
 
@@ -202,6 +203,7 @@ Tree value_schema(const FieldDescription& field) {
     case Type::sections:
       return array_schema(group_schema(field.fields));
     case Type::plugin:
+      if (field.adopted) return Tree::map({{"type", Tree::quote("string")}});
       break;
     case Type::plugins: {
       // In a list no group is chosen by its name: every item is a map with a type.
@@ -213,7 +215,7 @@ Tree value_schema(const FieldDescription& field) {
 }
 
 Tree field_schema(const FieldDescription& field) {
-  if (field.type == Type::plugin) return plugin_schema(field.kind);
+  if (field.type == Type::plugin && !field.adopted) return plugin_schema(field.kind);
   const std::string range = field.range.empty() ? "" : " (" + field.range + ")";
   Tree out = Tree::map({{"description", Tree::quote(field.meaning + range)}});
   for (Tree::Entry& entry : value_schema(field).entries) out.entries.push_back(std::move(entry));
@@ -312,9 +314,11 @@ Tree describe_tree(const std::vector<FieldDescription>& fields) {
 Tree schema_of(const std::vector<FieldDescription>& fields) {
   Tree properties = Tree::map();
   add_properties(properties, fields);
-  return Tree::map({{"type", Tree::quote("object")},
-                    {"properties", std::move(properties)},
-                    {"additionalProperties", Tree::scalar("false")}});
+  Tree out = Tree::map({{"type", Tree::quote("object")}, {"properties", std::move(properties)}});
+  const bool open =
+      std::any_of(fields.begin(), fields.end(), [](const FieldDescription& field) { return field.adopted; });
+  if (!open) out.at("additionalProperties") = Tree::scalar("false");
+  return out;
 }
 
 }  // namespace palpate

@@ -27,6 +27,7 @@ struct FieldDescription {
   bool required = false;
   bool optional = false;  ///< a `section` that is absent unless it is written
   bool group = false;     ///< see Field::group()
+  bool adopted = false;   ///< see Fields::adopt(); of a plugin whose options, unknown here, stand beside the field
   std::string heir_of;    ///< see Field::inherits(); "" for none
   Owner owner = Owner::unsaid;
   std::string strategy_part;
@@ -62,8 +63,8 @@ std::string describe_text(const std::vector<FieldDescription>& fields);
 /// The same as a tree to be printed as JSON: name, type, unit, range, default, meaning, source, required.
 Tree describe_tree(const std::vector<FieldDescription>& fields);
 
-/// The `properties` of a JSON Schema object that allows exactly `fields`. A plugin field refers to
-/// "#/definitions/<kind>".
+/// The `properties` of a JSON Schema object that allows exactly `fields`, and any beside an adopted one. A plugin field
+/// refers to "#/definitions/<kind>".
 Tree schema_of(const std::vector<FieldDescription>& fields);
 
 }  // namespace palpate
