@@ -5,32 +5,6 @@
 #include <cmath>
 
 namespace palpate::shapes {
-namespace {
-
-/// Calls visit(x) for every x at which the line `origin + x * direction`, seen from above, crosses the outline. A line
-/// through a corner crosses either of its edges or none: the side of a corner is computed once for both.
-template <class Visit>
-void visit_crossings(const Outline& outline, const Point& origin, const Point& direction, const Visit& visit) {
-  const double squared = direction[0] * direction[0] + direction[1] * direction[1];
-  const auto side = [&](const Point& p) {
-    return direction[0] * (p[1] - origin[1]) - direction[1] * (p[0] - origin[0]);
-  };
-  double before = side(outline.front());
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Point& a = outline[i];
-    const Point& b = next(outline, i);
-    const double after = side(b);
-    if ((before < 0.0) != (after < 0.0)) {
-      const double share = before / (before - after);
-      const double dx = a[0] + (b[0] - a[0]) * share - origin[0];
-      const double dy = a[1] + (b[1] - a[1]) * share - origin[1];
-      visit((dx * direction[0] + dy * direction[1]) / squared);
-    }
-    before = after;
-  }
-}
-
-}  // namespace
 
 bool contains(const Outline& outline, const Point& point) {
   bool inside = false;
@@ -62,7 +36,8 @@ double Prism::first_hit(const Line& line) const {
   if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
     const double s = line.origin.x() + upper * direction[0];
     const double t = line.origin.y() + upper * direction[1];
-    return top(s, t) == height_ ? upper : kInfinity;
+    if (top(s, t) == height_) return upper;
+    return kInfinity;
   }
   // Seen from above, each crossing leads in or out. In at the height of the top: that is the hit; else the first wall
   // before the line is through the plane 0.
@@ -79,7 +54,8 @@ double Prism::first_hit(const Line& line) const {
   visit_crossings(outline_, origin, direction, visit);
   if (!hole_.empty()) visit_crossings(hole_, origin, direction, visit);
   if (inside) return upper;
-  return wall <= lower ? wall : kInfinity;
+  if (wall > lower) return kInfinity;
+  return wall;
 }
 
 double Prism::support(const Eigen::Vector3d& direction) const {

@@ -16,6 +16,29 @@ using Outline = std::vector<Point>;
 /// The corner behind corner `i`.
 inline const Point& next(const Outline& outline, std::size_t i) { return outline[i + 1 == outline.size() ? 0 : i + 1]; }
 
+/// Calls visit(x) for every x at which the line `origin + x * direction`, seen from above, crosses the outline. A line
+/// through a corner crosses either of its edges or none: the side of a corner is computed once for both.
+template <class Visit>
+void visit_crossings(const Outline& outline, const Point& origin, const Point& direction, const Visit& visit) {
+  const double squared = direction[0] * direction[0] + direction[1] * direction[1];
+  const auto side = [&](const Point& p) {
+    return direction[0] * (p[1] - origin[1]) - direction[1] * (p[0] - origin[0]);
+  };
+  double before = side(outline.front());
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Point& a = outline[i];
+    const Point& b = next(outline, i);
+    const double after = side(b);
+    if ((before < 0.0) != (after < 0.0)) {
+      const double share = before / (before - after);
+      const double dx = a[0] + (b[0] - a[0]) * share - origin[0];
+      const double dy = a[1] + (b[1] - a[1]) * share - origin[1];
+      visit((dx * direction[0] + dy * direction[1]) / squared);
+    }
+    before = after;
+  }
+}
+
 bool contains(const Outline& outline, const Point& point);
 
 class Prism : public Shape {

@@ -77,6 +77,7 @@ TEST(SceneOptions, RefuseACompoundWithoutPartsAndSayWhichPartIsWrong) {
             "objects.0.parts.0.height: 0 cm is out of range");
   EXPECT_EQ(object_refusal("{type: compound, parts: [{type: cone, tilt: 5 deg}]}"),
             "unknown option 'tilt' of objects.0.parts.0");
+  EXPECT_EQ(object_refusal("{type: random_outline, number: -1}"), "objects.0.number: -1 is out of range");
 }
 
 /// The objects of a scene as the resolved config has them, which ids of runs follow.

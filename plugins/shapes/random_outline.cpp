@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// An object that nobody drew, for judging a strategy on what it was not developed on: a smooth random outline, lobed
+// and bent, under a smooth random top.
+#include "prism.hpp"
+
+#include <array>
+#include <vector>
+
+namespace palpate::shapes {
+
+struct RandomOutlineOptions : Options {
+  double length = 0.14;
+  double height = 0.05;
+  double roughness = 0.5;
+  std::int64_t number = 0;
+
+  void list(Fields& fields) override {
+    fields.real(length, Field("length", "the longer side of the rectangle around it").in(Unit::metre).at_least(0.05));
+    fields.real(height, Field("height", "of the top above the desk over the middle of that rectangle, but for its wave")
+                            .in(Unit::metre)
+                            .at_least(0.02));
+    fields.real(roughness,
+                Field("roughness", "of the outline: 0 is a bent ellipse, 1 has deep lobes").at_least(0).at_most(1));
+    fields.integer(number, Field("number", "which of the outlines of the run's seed").at_least(0));
+  }
+};
+
+constexpr double kTurn = 2.0 * 3.14159265358979323846;
+constexpr double kLowestTop = 0.015;   ///< metres: well above what counts as desk
+constexpr double kCore = 0.01;         ///< metres: radius of a disk that every outline has within
+constexpr std::size_t kCorners = 240;  ///< edges of 2 mm at 14 cm
+
+/// Uniform between the two.
+double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
+
+/// Left, right, low and high of the rectangle around an outline.
+std::array<double, 4> bounds(const Outline& outline) {
+  std::array<double, 4> out{kInfinity, -kInfinity, kInfinity, -kInfinity};
+  for (const Point& p : outline) {
+    out = {std::min(out[0], p[0]), std::max(out[1], p[0]), std::min(out[2], p[1]), std::max(out[3], p[1])};
+  }
+  return out;
+}
+
+/// A star around the origin, which is what has a radius for every angle: its logarithm is a short Fourier series with
+/// falling amplitudes. Stretched along the first coordinate.
+Outline star(double roughness, Random& random) {
+  constexpr int kLobes = 5;
+  std::array<double, kLobes + 1> amplitude{}, phase{};
+  for (int n = 2; n <= kLobes; ++n) {
+    amplitude[n] = roughness * between(0.3, 1.4, random) / n;
+    phase[n] = kTurn * random.uniform();
+  }
+  const double stretch = between(1.0, 2.2, random);
+  Outline out;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const double angle = kTurn * static_cast<double>(i) / kCorners;
+    double logarithm = 0.0;
+    for (int n = 2; n <= kLobes; ++n) logarithm += amplitude[n] * std::cos(n * angle + phase[n]);
+    const double radius = std::exp(logarithm);
+    out.push_back({stretch * radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return out;
+}
+
+/// Bends the first axis into an arc of a circle. One to one, so that edges of a star do not come to cross: no point
+/// lies as far to the side as the circle's centre, and the arc is less than a turn.
+void bend(Outline& outline, Random& random) {
+  const auto [left, right, low, high] = bounds(outline);
+  const double most = std::min(0.75 / std::max(-low, high), 0.3 * kTurn / std::max(-left, right));
+  const double curvature = most * between(-1.0, 1.0, random);
+  if (std::abs(curvature) < 1e-3) return;
+  for (Point& p : outline) {
+    const double radius = 1.0 / curvature - p[1];
+    p = {radius * std::sin(curvature * p[0]), 1.0 / curvature - radius * std::cos(curvature * p[0])};
+  }
+}
+
+/// Makes the longer side of the rectangle around it as long as said, and lie along.
+void scale(Outline& outline, double length) {
+  const auto [left, right, low, high] = bounds(outline);
+  const bool across = high - low > right - left;
+  const double factor = length / std::max(right - left, high - low);
+  for (Point& p : outline) p = across ? Point{factor * p[1], -factor * p[0]} : Point{factor * p[0], factor * p[1]};
+}
+
+/// Around the origin. What has no core is drawn again, tamer each time: a bent ellipse of that stretch has one.
+Outline random_outline(const RandomOutlineOptions& o, Random& random) {
+  for (double roughness = o.roughness;; roughness *= 0.9) {
+    Outline out = star(roughness, random);
+    bend(out, random);
+    scale(out, o.length);
+    if (std::any_of(out.begin(), out.end(), [](const Point& p) { return std::hypot(p[0], p[1]) < kCore; })) continue;
+    const auto [left, right, low, high] = bounds(out);
+    for (Point& p : out) p = {p[0] - (left + right) / 2, p[1] - (low + high) / 2};
+    return out;
+  }
+}
+
+class RandomOutline final : public Shape {
+ public:
+  using Options = RandomOutlineOptions;
+  RandomOutline(const Options& o, const Context& context)
+      : RandomOutline(o, context.random("shape/random_outline", static_cast<std::uint64_t>(o.number))) {}
+
+  double top(double s, double t) const override {
+    return contains(outline_, {s, t}) ? middle_ + slope_[0] * s + slope_[1] * t + swell_ * std::cos(phase(s, t))
+                                      : -kInfinity;
+  }
+
+  double first_hit(const Line& line) const override {
+    const double begin = (middle_ + relief_ - line.origin.z()) / line.direction.z();
+    const double end = -line.origin.z() / line.direction.z();
+    const Point direction{line.direction.x(), line.direction.y()};
+    // So near to the vertical it passes all heights over one place.
+    if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
+      const double height = top(line.origin.x() + begin * direction[0], line.origin.y() + begin * direction[1]);
+      return (height - line.origin.z()) / line.direction.z();
+    }
+    // Seen from above, it is within the outline between the first and the second crossing, the third and the fourth,
+    // ...
+    std::array<double, kCorners> crossings{};
+    std::size_t count = 0;
+    visit_crossings(outline_, {line.origin.x(), line.origin.y()}, direction, [&](double x) { crossings[count++] = x; });
+    std::sort(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i + 1 < count; i += 2) {
+      const double hit = descend(line, std::max(begin, crossings[i]), std::min(end, crossings[i + 1]));
+      if (hit < kInfinity) return hit;
+    }
+    return kInfinity;
+  }
+
+  /// Across the wave the top is straight, so that no point reaches farther than one on the outline does.
+  double support(const Vector3d& direction) const override {
+    const double up = std::max(0.0, direction.z());
+    const Point rise{direction.x() + up * slope_[0], direction.y() + up * slope_[1]};
+    const auto reach = [&](double s, double t, double phase) {
+      return rise[0] * s + rise[1] * t + up * (middle_ + swell_ * std::cos(phase));
+    };
+    double most = -kInfinity;
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      const Point& a = outline_[i];
+      const Point& b = next(outline_, i);
+      const double before = phase(a[0], a[1]);
+      most = std::max(most, reach(a[0], a[1], before));
+      // Between the corners it is most where it neither rises nor falls, on the side of a crest.
+      const double turn = phase(b[0], b[1]) - before;
+      const double sine = (rise[0] * (b[0] - a[0]) + rise[1] * (b[1] - a[1])) / (up * swell_ * turn);
+      if (!(std::abs(sine) <= 1.0)) continue;
+      const double crest = std::asin(sine);
+      const double there = crest + kTurn * std::round((before + turn / 2 - crest) / kTurn);
+      const double share = (there - before) / turn;
+      if (share < 0.0 || share > 1.0) continue;
+      most = std::max(most, reach(a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), there));
+    }
+    return most;
+  }
+
+ private:
+  RandomOutline(const Options& o, Random random)
+      : outline_(random_outline(o, random)), middle_(o.height), relief_(o.height - kLowestTop) {
+    double farthest = 0.0;
+    for (const Point& p : outline_) farthest = std::max(farthest, std::hypot(p[0], p[1]));
+    // Together no more than the relief: the top stays above kLowestTop.
+    const double steepness = between(0.1, 0.6, random) * relief_ / farthest;
+    swell_ = between(0.1, 0.4, random) * relief_;
+    const double uphill = kTurn * random.uniform();
+    const double onwards = kTurn * random.uniform();
+    const double rate = kTurn / (between(0.5, 1.0, random) * o.length);
+    slope_ = {steepness * std::cos(uphill), steepness * std::sin(uphill)};
+    wave_ = {rate * std::cos(onwards), rate * std::sin(onwards)};
+    phase_ = kTurn * random.uniform();
+  }
+
+  /// Of the wave of the top.
+  double phase(double s, double t) const { return wave_[0] * s + wave_[1] * t + phase_; }
+
+  /// Where the line, within the outline between the two, is first not above the top; infinity if nowhere. Each step
+  /// goes to where a parabola with the greatest curvature of all is down, so that none goes too far; behind a crossing
+  /// of the top they are as quick as Newton's.
+  double descend(const Line& line, double from, double to) const {
+    const Vector3d& u = line.direction;
+    const double rate = wave_[0] * u.x() + wave_[1] * u.y();
+    const double curvature = swell_ * rate * rate;
+    for (double x = from; x <= to;) {
+      const Vector3d p = line.origin + x * u;
+      const double at = phase(p.x(), p.y());
+      const double clear = p.z() - (middle_ + slope_[0] * p.x() + slope_[1] * p.y() + swell_ * std::cos(at));
+      if (clear <= 0.0) return x;
+      const double slope = u.z() - slope_[0] * u.x() - slope_[1] * u.y() + swell_ * rate * std::sin(at);
+      const double root = std::sqrt(slope * slope + 2 * curvature * clear);
+      const double next = x + (slope < 0.0 ? 2 * clear / (root - slope) : (root + slope) / curvature);
+      if (!(next > x)) return x;
+      x = next;
+    }
+    return kInfinity;
+  }
+
+  Outline outline_;
+  double middle_, relief_;  ///< the top is within middle +- relief
+  double swell_ = 0.0, phase_ = 0.0;
+  Point slope_{}, wave_{};
+};
+
+PALPATE_PLUGIN(Shape, RandomOutline, "random_outline", "smooth random outline and top, from the seed")
+
+}  // namespace palpate::shapes
