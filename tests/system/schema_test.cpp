@@ -56,7 +56,7 @@ class Schema : public Shell {
 
 TEST_F(Schema, AcceptsEveryShippedExperiment) {
   int files = 0;
-  for (const char* folder : {"configs/paper", "configs/ci", "configs/sweep", "runs/reference"}) {
+  for (const char* folder : {"configs/paper", "configs/ci", "configs/sweep", "configs/scene", "runs/reference"}) {
     for (const auto& entry : fs::recursive_directory_iterator(test::source_folder() / folder)) {
       if (entry.path().extension() != ".yaml") continue;
       ++files;
