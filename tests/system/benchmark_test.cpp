@@ -25,6 +25,16 @@ TEST_F(Benchmark, ComparesSixStrategiesOnTwelveObjectsByTwoMotionsWithAndWithout
   EXPECT_EQ(lines(sweep("--list seed=1000", kStrategies).out), 2 * 6 * 12 * 2);
 }
 
+TEST_F(Benchmark, ComparesThemOnTenEverydayThingsAndOnARandomOutlineForEachSeed) {
+  for (const auto& [file, jobs] :
+       {std::pair{"benchmark/everyday.yaml", 10 * 25}, {"benchmark/random_outlines.yaml", 200}}) {
+    EXPECT_EQ(lines(sweep("--list", config(file)).out), 6 * jobs);
+    const std::vector<Cells> rows = csv_rows(text_of(swept("strategy=random taps=20", config(file)) / "results.csv"));
+    ASSERT_EQ(rows.size(), static_cast<std::size_t>(jobs)) << file;
+    for (const Cells& row : rows) EXPECT_EQ(row.at("status"), "done") << "each fits into the area";
+  }
+}
+
 TEST_F(Benchmark, RunsTheDefaultAsItIsShipped) {
   const Words print = "name=x --print-config";
   const std::string in_sweep = run(print + "strategy=default scene=object_i backend=chosen", kStrategies).out;
