@@ -157,6 +157,7 @@ TEST(Documents, LinkToFilesThatAreThere) {
   const fs::path root = test::source_folder();
   std::vector<fs::path> documents{root / "README.md",
                                   root / "runs/README.md",
+                                  root / "runs/reference/README.md",
                                   root / "plugins/README.md",
                                   root / "framework/README.md",
                                   root / "CONTRIBUTING.md",
