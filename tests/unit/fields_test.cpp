@@ -43,6 +43,7 @@ TEST(Fields, AreWhatTheTablesOfTheFormatSay) {
   EXPECT_THAT(format, HasSubstr(test::table_of(tap_list())));
   EXPECT_THAT(format, HasSubstr(test::table_of(timing_list())));
   EXPECT_THAT(format, HasSubstr(test::table_of(summary_list())));
+  EXPECT_THAT(format, HasSubstr(test::table_of(object_list())));
 }
 
 TEST(Fields, OfInterventionsAreAllThatARunCounts) {

@@ -19,10 +19,13 @@ Eigen::VectorXd gated(const SurfaceMaps& maps) {
 }  // namespace
 
 Truth truth_at(const Candidates& candidates, const Scene& scene) {
-  Truth truth{Eigen::VectorXd(candidates.size()), Eigen::Array<bool, Eigen::Dynamic, 1>(candidates.size())};
+  Truth truth{Eigen::VectorXd(candidates.size()), Eigen::Array<bool, Eigen::Dynamic, 1>(candidates.size()),
+              Eigen::ArrayXi(candidates.size()), scene.objects()};
   for (int i = 0; i < candidates.size(); ++i) {
-    truth.height(i) = scene.height(candidates.points(i, 0), candidates.points(i, 1));
+    const Target at = candidates.target(i);
+    truth.height(i) = scene.height(at.x, at.y);
     truth.on(i) = scene.on_surface(truth.height(i));
+    truth.object(i) = truth.on(i) ? scene.object(at.x, at.y) : Scene::kNoObject;
   }
   return truth;
 }

@@ -15,6 +15,8 @@ namespace palpate {
 struct Truth {
   Eigen::VectorXd height;                    ///< metres
   Eigen::Array<bool, Eigen::Dynamic, 1> on;  ///< the cell's centre is on an object
+  Eigen::ArrayXi object = {};                ///< which, as Scene::object() numbers them; kNoObject where `on` is not
+  int objects = 0;                           ///< of the scene
 };
 
 Truth truth_at(const Candidates& candidates, const Scene& scene);

@@ -4,6 +4,7 @@
 
 #include "experiment/forecast.hpp"
 #include "experiment/metrics.hpp"
+#include "experiment/object_errors.hpp"
 #include "experiment/phases.hpp"
 #include "experiment/tap_belief.hpp"
 
@@ -88,6 +89,15 @@ constexpr const char* kStoppedByUser = "interrupted";
 /// The reason of a tap that failed because its height is none.
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 
+/// The contacts with an object: those at a cell of it, whatever was made of them.
+struct ObjectTouches {
+  int taps = 0;
+  std::optional<int> first_tap;
+};
+
+/// What became of one object in a run.
+struct ObjectResult : ObjectErrors, ObjectTouches {};
+
 /// The result of a run, in the order of summary.json but for what the record adds (clocks, memory, names).
 struct RunResult : ModelState {
   std::string stop_reason;
@@ -98,6 +108,7 @@ struct RunResult : ModelState {
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
   Calibration calibration;
+  std::optional<std::vector<ObjectResult>> objects;  ///< of the scene, in its order; absent where no truth is known
   double robot_seconds = 0.0;
   double jitter_max = 0.0;
   std::map<std::string, int> interventions;  ///< by kind, zeros included

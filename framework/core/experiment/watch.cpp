@@ -45,6 +45,7 @@ Watch::Watch(const ExperimentOptions& options, const Candidates& candidates, con
 void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, bool hit) {
   const Contact& contact = tap.contact;
   taps_.emplace_back(tap, manner);
+  if (contact.outcome == Outcome::contact) note_object(candidate);
   if (beside_) beside_->observe(tap.target, tap.contact, manner);
   ++result_.taps;
   result_.robot_seconds += contact.seconds;
@@ -59,6 +60,17 @@ void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, boo
   if (!hit) return;
   if (!result_.first_hit_tap) result_.first_hit_tap = result_.taps;
   if (forecaster_) forecaster_->hit(contact.height - context_.scene.desk());
+}
+
+void Watch::note_object(int candidate) {
+  const Truth* const real = truth();  // as it was tapped: what is pushed by this tap is pushed after it
+  if (real == nullptr) return;
+  touches_.resize(static_cast<std::size_t>(real->objects));
+  const int object = real->object(candidate);
+  if (object == Scene::kNoObject) return;
+  ObjectTouches& touches = touches_[static_cast<std::size_t>(object)];
+  ++touches.taps;
+  if (!touches.first_tap) touches.first_tap = result_.taps + 1;
 }
 
 std::optional<Forecast> Watch::forecast(TapBelief& belief) const {
@@ -133,7 +145,12 @@ RunResult Watch::result(TapBelief& belief) {
   out.interrupted = out.stop_reason == kStoppedByUser;
   if (const Truth* real = truth()) {
     belief.build(kErrorsRead);
-    out.errors = errors_of(maps_of(belief, kErrorsRead), *real);
+    const SurfaceMaps maps = maps_of(belief, kErrorsRead);
+    out.errors = errors_of(maps, *real);
+    touches_.resize(static_cast<std::size_t>(real->objects));
+    out.objects.emplace();
+    for (const ObjectErrors& errors : object_errors(maps, *real, candidates_))
+      out.objects->push_back({errors, touches_[out.objects->size()]});
     out.calibration = calibration(belief, *real, touched_);
   }
   const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {

@@ -45,6 +45,9 @@ class Watch {
   RunResult result(TapBelief& belief);
 
  private:
+  /// Counts a contact at `candidate` for the object that is there.
+  void note_object(int candidate);
+
   const ExperimentOptions& options_;
   const Candidates& candidates_;
   const Context& context_;
@@ -52,6 +55,7 @@ class Watch {
   RunResult result_;
   std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
   std::vector<bool> touched_;             ///< candidates where there was a contact
+  std::vector<ObjectTouches> touches_;    ///< of each object, where the truth is known
   std::optional<Truth> truth_;
   int truth_taps_ = 0;  ///< taps that it stands after
   std::vector<std::pair<PastTap, Manner>> taps_;

@@ -2,6 +2,7 @@
 #include "record/fields.hpp"
 
 #include "record/files.hpp"
+#include "record/sample.hpp"
 #include "record/tap_row.hpp"
 
 #include <fmt/format.h>
@@ -232,6 +233,80 @@ constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fit
                                                           "updating the models", "scoring and choosing",
                                                           "writing the record of the tap before"};
 
+/// The number of a run's objects of which `holds` holds; none where no truth is known.
+template <class Holds>
+std::optional<int> count_objects(const Summary& summary, Holds holds) {
+  if (!summary.objects) return std::nullopt;
+  return static_cast<int>(std::count_if(summary.objects->begin(), summary.objects->end(), holds));
+}
+
+/// What `sum_up` makes of a number of each object that has it; none where none has.
+template <class SumUp>
+std::optional<double> over_objects(const Summary& summary, std::optional<double> ObjectErrors::*value, SumUp sum_up) {
+  std::vector<double> values;
+  if (summary.objects) {
+    for (const ObjectResult& one : *summary.objects)
+      if (one.*value) values.push_back(*(one.*value));
+  }
+  return values.empty() ? std::nullopt : std::optional<double>(sum_up(values));
+}
+
+void list_objects(FieldList<Summary>& list) {
+  const char* const no_object = "no truth is known, or no object has a cell";
+  const auto count = [&](const char* name, const char* meaning, auto holds) -> RecordField& {
+    return list.add(name, meaning, [=](const Summary& s) { return count_objects(s, holds); }).absent(kNoTruth);
+  };
+  count("objects", "how many the scene has", [](const ObjectResult&) { return true; });
+  count("objects_found", "those with a contact at a cell that truly is theirs, whatever the label said",
+        [](const ObjectResult& o) { return o.taps > 0; })
+      .more();
+  count("objects_merged",
+        "those that the footprint (cells with a probability >= 1/2 that share sides) has in one piece with another "
+        "object, across a gap, at least a fifth of the cells of each",
+        [](const ObjectResult& o) { return o.merged; })
+      .less();
+  count("objects_split",
+        "those of one piece that the footprint has in several, each with at least a fifth of the cells",
+        [](const ObjectResult& o) { return o.split; })
+      .less();
+  list.add("object_iou",
+           "mean over the objects of the intersection over union of one alone: its cells against those with a "
+           "probability >= 1/2 that are its own, or on no object and nearest to it",
+           [](const Summary& s) { return over_objects(s, &ObjectErrors::iou, mean_of); })
+      .more()
+      .absent(no_object);
+  list.add("object_iou_worst", "the least of these",
+           [](const Summary& s) {
+             return over_objects(s, &ObjectErrors::iou,
+                                 [](const auto& all) { return *std::min_element(all.begin(), all.end()); });
+           })
+      .more()
+      .absent(no_object);
+  list.add("object_rmse_height_m", "mean over the objects of the error of the height mean over the cells of one",
+           [](const Summary& s) { return over_objects(s, &ObjectErrors::rmse_height, mean_of); })
+      .in(Unit::metre)
+      .less()
+      .absent(no_object);
+}
+
+FieldList<ObjectRow> make_object_list() {
+  FieldList<ObjectRow> list;
+  list.add("object", "its place in `scene.objects`, from 0", &ObjectRow::object);
+  list.add("type", "its shape", &ObjectRow::type);
+  list.add("cells", "candidates that are on it and not on a higher one", [](const ObjectRow& o) { return o.cells; });
+  list.add("taps", "contacts there", [](const ObjectRow& o) { return o.taps; });
+  list.add("first_tap", "number of the first of them", [](const ObjectRow& o) { return o.first_tap; })
+      .absent("there was none");
+  list.add("found", "whether there was one", [](const ObjectRow& o) { return o.taps > 0; });
+  list.add("merged", "with another object: see `objects_merged`", [](const ObjectRow& o) { return o.merged; });
+  list.add("split", "see `objects_split`", [](const ObjectRow& o) { return o.split; });
+  list.add("iou", "see `object_iou`", [](const ObjectRow& o) { return o.iou; }).absent("it has no cell");
+  list.add("rmse_height_m", "of the height mean over its cells", [](const ObjectRow& o) { return o.rmse_height; })
+      .in(Unit::metre)
+      .absent("it has no cell");
+  return list;
+}
+
 FieldList<Summary> make_summary_list() {
   FieldList<Summary> list;
   const char* const no_cell = "no truth is known, or no cell of the object was left untapped";
@@ -266,6 +341,7 @@ FieldList<Summary> make_summary_list() {
       .absent(no_cell)
       .called("95 % coverage")
       .headline();
+  list_objects(list);
   const auto seconds = [&](const std::string& name, const std::string& meaning, auto get) -> RecordField& {
     return list.add(name, meaning, get).in(Unit::second).less();
   };
@@ -342,6 +418,21 @@ const FieldList<Summary>& summary_list() {
 const FieldList<TapTimes>& timing_list() {
   static const FieldList<TapTimes> list = make_timing_list();
   return list;
+}
+
+const FieldList<ObjectRow>& object_list() {
+  static const FieldList<ObjectRow> list = make_object_list();
+  return list;
+}
+
+std::string objects_csv(const Summary& summary) {
+  std::vector<Row> rows;
+  if (!summary.objects) return {};
+  for (const ObjectResult& one : *summary.objects) {
+    const ObjectOptions& options = summary.config.options.scene.objects[rows.size()];
+    rows.push_back(object_list().row({one, static_cast<int>(rows.size()), options.shape.type}));
+  }
+  return to_csv(rows);
 }
 
 const std::vector<RecordField>& summary_fields() {

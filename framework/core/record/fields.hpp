@@ -34,9 +34,19 @@ struct TapTimes {
   std::array<double, kPhases> seconds{};
 };
 
+/// A line of objects.csv.
+struct ObjectRow : ObjectResult {
+  int object = 0;
+  std::string type;
+};
+
 const FieldList<TapRecord>& tap_list();
 const FieldList<Summary>& summary_list();
 const FieldList<TapTimes>& timing_list();
+const FieldList<ObjectRow>& object_list();
+
+/// objects.csv: what became of each object, where the truth is known; "" where it is not.
+std::string objects_csv(const Summary& summary);
 
 /// The fields that every summary has, in their order; those of the models depend on the config.
 const std::vector<RecordField>& summary_fields();

@@ -84,7 +84,7 @@ RunStatus read_status(const fs::path& directory) {
 }
 
 RunDirectory::RunDirectory(const fs::path& directory) : path_(make_folder(directory)), lock_(path_ / kLock) {
-  remove_neighbours(path_, {"config.yaml", "manifest.json", "taps.csv", "surface.csv", kSummary});
+  remove_neighbours(path_, {"config.yaml", "manifest.json", "taps.csv", "surface.csv", "objects.csv", kSummary});
   remove_neighbours(path_ / "maps", {});
 }
 

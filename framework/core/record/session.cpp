@@ -180,11 +180,13 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   if (!failure.empty()) result = experiment.counts();
   note_learnt(directory, experiment.backend().learnt());
   report.interrupted = result.interrupted;
-  report.summary = summary_list().row({result, config, failure, watch.wall_seconds(), watch.cpu_seconds(),
-                                       directory.total_seconds(), peak_rss_bytes()});
+  const Summary summary{
+      result, config, failure, watch.wall_seconds(), watch.cpu_seconds(), directory.total_seconds(), peak_rss_bytes()};
+  report.summary = summary_list().row(summary);
   directory.write("taps.csv", to_csv(directory.rows()));
   if (result.interrupted) return report;
   if (log.surface && failure.empty()) directory.write("surface.csv", surface_csv(experiment));
+  if (const std::string objects = objects_csv(summary); !objects.empty()) directory.write("objects.csv", objects);
   directory.write("summary.json", to_json_text(report.summary));
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
   return report;

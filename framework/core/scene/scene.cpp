@@ -52,6 +52,20 @@ class Desk final : public Scene {
 
   bool on_surface(double height) const override { return height > desk_ + margin_; }
 
+  int objects() const override { return static_cast<int>(bodies_.size()); }
+
+  int object(double x, double y) const override {
+    double above = 0.0;
+    int out = kNoObject;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const double height = bodies_[i].height(x, y);
+      if (height <= above) continue;
+      above = height;
+      out = static_cast<int>(i);
+    }
+    return out;
+  }
+
   std::unique_ptr<const Scene> after(int taps) const override {
     if (!effects_.push) return nullptr;
     std::vector<Body> bodies = bodies_;

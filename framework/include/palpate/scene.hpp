@@ -45,6 +45,13 @@ class Scene {
     static_cast<void>(taps);
     return nullptr;
   }
+
+  /// How many objects the config puts on the desk.
+  virtual int objects() const = 0;
+
+  /// Which of them, from 0 in the order of the config, is the highest at (x, y); kNoObject where there is none.
+  virtual int object(double x, double y) const = 0;
+  static constexpr int kNoObject = -1;
 };
 
 }  // namespace palpate
