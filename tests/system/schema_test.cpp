@@ -86,6 +86,14 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/scene/objects/0", {{"length", "3 cm"}})) << "an object without type";
   EXPECT_FALSE(refused("/scene/objects/0", {{"type", "ring"}, {"inner", "3 cm"}, {"at", {"9 cm", "9 cm"}}}));
   EXPECT_FALSE(refused("/kernel", "matern52")) << "a group by name is legal";
+  const Json ring = {{"type", "ring"}, {"inner", "between(3 cm, 4 cm)"}, {"height", "5 cm"}};
+  const Json draw = {{"least", 1}, {"most", 3}, {"of", Json::array({ring})}};
+  EXPECT_FALSE(refused("/scene/objects", {{"draw", draw}}));
+  EXPECT_TRUE(refused("/scene/objects", Json::array({ring}))) << "a range that nobody draws";
+  EXPECT_TRUE(refused("/scene/objects", {{"drow", draw}})) << "unknown key";
+  EXPECT_TRUE(refused("/scene/objects", {{"draw", {{"least", 1}, {"of", draw["of"]}}}})) << "no most";
+  const Json cubes = {{"least", 1}, {"most", 3}, {"of", Json::array({{{"type", "cube"}}})}};
+  EXPECT_TRUE(refused("/scene/objects", {{"draw", cubes}})) << "unknown shape";
   const Json rbf = {{"type", "rbf"}, {"length_scale", "2 cm"}};
   const Json scaled = {{"type", "scale"}, {"factor", 2}, {"kernel", rbf}};
   EXPECT_FALSE(refused("/kernel", {{"type", "sum"}, {"kernels", Json::array({rbf, scaled})}}));

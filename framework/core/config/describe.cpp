@@ -178,6 +178,37 @@ Tree section_schema(const FieldDescription& field) {
   return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
 }
 
+/// A schema in which any number may be drawn: `between(3 cm, 8 cm)`.
+Tree or_between(Tree schema) {
+  const Tree* type = schema.find("type");
+  if (schema.find("pattern") != nullptr || (type != nullptr && (type->text == "number" || type->text == "integer"))) {
+    const Tree between = Tree::map({{"type", Tree::quote("string")}, {"pattern", Tree::quote("^between\\(.*\\)$")}});
+    return Tree::map({{"anyOf", Tree::list({std::move(schema), between})}});
+  }
+  for (Tree& item : schema.items) item = or_between(std::move(item));
+  for (Tree::Entry& entry : schema.entries) entry.value = or_between(std::move(entry.value));
+  return schema;
+}
+
+/// A list of groups, or what draws one: see scene/draw.hpp.
+Tree list_schema(const FieldDescription& field) {
+  Tree item = group_schema(field.fields);
+  Tree list = array_schema(item);
+  if (!field.drawable) return list;
+  const auto closed = [](Tree properties) {
+    Tree required = Tree::list();
+    for (const Tree::Entry& entry : properties.entries) required.items.push_back(Tree::quote(entry.key));
+    return Tree::map({{"type", Tree::quote("object")},
+                      {"properties", std::move(properties)},
+                      {"required", std::move(required)},
+                      {"additionalProperties", Tree::scalar("false")}});
+  };
+  const Tree count = Tree::map({{"type", Tree::quote("integer")}});
+  const Tree draw =
+      closed(Tree::map({{"least", count}, {"most", count}, {"of", array_schema(or_between(std::move(item)))}}));
+  return Tree::map({{"anyOf", Tree::list({std::move(list), closed(Tree::map({{"draw", draw}}))})}});
+}
+
 /// What values a field takes.
 Tree value_schema(const FieldDescription& field) {
   switch (field.type) {
@@ -201,7 +232,7 @@ Tree value_schema(const FieldDescription& field) {
     case Type::section:
       return section_schema(field);
     case Type::sections:
-      return array_schema(group_schema(field.fields));
+      return list_schema(field);
     case Type::plugin:
       if (field.adopted) return Tree::map({{"type", Tree::quote("string")}});
       break;
@@ -260,6 +291,7 @@ FieldDescription describe_key(const Field& field) {
   out.source = field.source;
   out.required = field.required;
   out.group = field.is_group;
+  out.drawable = field.is_drawable;
   out.heir_of = field.heir_of;
   out.owner = field.owner;
   out.strategy_part = field.strategy_part;

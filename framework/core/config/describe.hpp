@@ -28,6 +28,7 @@ struct FieldDescription {
   bool optional = false;  ///< a `section` that is absent unless it is written
   bool group = false;     ///< see Field::group()
   bool adopted = false;   ///< see Fields::adopt(); of a plugin whose options, unknown here, stand beside the field
+  bool drawable = false;  ///< see Field::drawable()
   std::string heir_of;    ///< see Field::inherits(); "" for none
   Owner owner = Owner::unsaid;
   std::string strategy_part;

@@ -52,6 +52,9 @@ constexpr std::array kUnits{
     UnitName{"N/mm", Unit::newton_per_metre, 3},
 };
 
+/// How what is drawn is written: scene/draw.hpp.
+constexpr std::string_view kBetween = "between(";
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool looks_octal(std::string_view number) {
@@ -92,6 +95,10 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   if (!tree.is_scalar()) refuse(tree, name, "is a list or a map, not a number", unit);
   const std::string_view text = tree.text;
   const std::size_t length = decimal_length(text);
+  if (length == 0 && text.substr(0, kBetween.size()) == kBetween) {
+    refuse(tree, name, fmt::format("'{}' is not a number", text),
+           "only an object that is drawn may say so, one of scene.objects.draw.of");
+  }
   if (length == 0) refuse(tree, name, fmt::format("'{}' is not a number", text), unit);
   std::string_view rest = text.substr(length);
   rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));

@@ -5,6 +5,7 @@
 #include "config/quantity.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
+#include "scene/draw.hpp"
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/classification.hpp>
@@ -51,6 +52,11 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   input.erase("sweep");
   input.erase("expect");
   ResolvedConfig out;
+  if (draws_objects(input)) {
+    if (const Tree* seed = input.find("seed")) out.options.seed = read_integer(*seed, "seed");
+    draw_objects(input, static_cast<std::uint64_t>(out.options.seed), plugins);
+    out.composed = std::make_shared<const Tree>(composed);
+  }
   std::vector<std::string> beside;
   for (const Field& field : keys_beside_options()) beside.emplace_back(field.name);
   out.tree = resolve(out.options, input, plugins, out.notes, beside);
@@ -63,6 +69,12 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
 }
 
 void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins) {
+  if (config.composed) {
+    Tree anew = *config.composed;
+    anew.at("seed") = seed;
+    config = resolve_experiment(anew, plugins);
+    return;
+  }
   Tree input = Tree::map();
   input.at("seed") = seed;
   SeedOptions options;

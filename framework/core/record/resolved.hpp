@@ -6,6 +6,7 @@
 #include "experiment/experiment_options.hpp"
 #include "record/expectation.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ResolvedConfig {
   ResolveNotes notes;                     ///< where the values came from
   std::vector<Expectation> expectations;  ///< of `expect:`
   std::string id;                         ///< 12 hex digits: a hash of all that decides what a run computes
+  std::shared_ptr<const Tree> composed;   ///< where the seed draws objects: what was resolved, for another seed
 };
 
 /// Throws Error for a config of a later format than this program's (kFormat).
@@ -26,7 +28,8 @@ void check_format(const Tree& config);
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
 
 /// Gives `config` another seed, with all that follows from it: what composing and resolving would give, but at a tenth
-/// of the cost, because no other option depends on the seed. Throws the same Error for what is no seed.
+/// of the cost where no other option depends on the seed, as objects that are drawn do. Throws the same Error for what
+/// is no seed.
 void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins);
 
 /// Hex digits of an id.

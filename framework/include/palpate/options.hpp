@@ -86,6 +86,9 @@ class Field {
   /// Of what is the run's own, an option that a strategy may bring along for runs that do not say it.
   Field& but_of_strategy(const char* option) { return strategy_part = option, *this; }
 
+  /// A list, in whose place `{draw: {least, most, of}}` may stand: items that are drawn from the seed.
+  Field& drawable() { return is_drawable = true, *this; }
+
   const char* name;
   const char* meaning;
   const char* source = "";
@@ -95,6 +98,7 @@ class Field {
   bool open_below = false;
   bool required = false;
   bool is_group = false;
+  bool is_drawable = false;
   const char* heir_of = "";
   Owner owner = Owner::unsaid;
   const char* strategy_part = "";

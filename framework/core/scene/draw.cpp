@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "scene/draw.hpp"
+
+#include "config/expand.hpp"
+#include "scene/scene_options.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/random.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr const char* kObjects = "scene.objects";
+constexpr const char* kBetween = "write between(3 cm, 8 cm), both ends with the same unit, the lower one first";
+
+struct DrawOptions : Options {
+  std::int64_t least = 1;
+  std::int64_t most = 1;
+  std::vector<ObjectOptions> of;
+
+  void list(Fields& fields) override {
+    constexpr double kMost = 1000;
+    fields.integer(least, Field("least", "fewest objects").at_least(0).at_most(kMost).needed());
+    fields.integer(most, Field("most", "most objects").at_least(0).at_most(kMost).needed());
+    fields.sections(of, Field("of", "objects, of which each is drawn").needed());
+    fields.require(least <= most, "most", fmt::format("is less than least, which is {}", least));
+    fields.require(!of.empty(), "of", "is empty, name an object or more");
+  }
+};
+
+/// What stands in the place of a list of objects.
+struct DrawnObjects : Options {
+  DrawOptions draw;
+  void list(Fields& fields) override { fields.section(draw, Field("draw", "objects from the seed").needed()); }
+};
+
+/// The ends of what `value` says to be drawn; none if it says no such thing.
+std::optional<std::pair<Bound, Bound>> range_of(const Tree& value, const std::string& path) {
+  const std::optional<Call> call = parse_call(value, path, {"between"}, kBetween);
+  if (!call) return std::nullopt;
+  const auto refuse = [&](const char* reason) {
+    throw Error(value.place.text(), fmt::format("{}: '{}' {}", path, value.text, reason), kBetween);
+  };
+  const std::vector<Bound>& ends = call->bounds;
+  if (ends.size() != 2) refuse("does not have two ends");
+  if (ends[0].unit != ends[1].unit) refuse("has ends of different units");
+  if (ends[0].value > ends[1].value) refuse("has its larger end first");
+  return std::pair(ends[0], ends[1]);
+}
+
+/// Puts a number in the place of each range of an object, in their order: at a share of the way from its lower end to
+/// its upper one, which `share` tells of the range with that number. Returns how many there are.
+int settle(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
+  if (const auto range = range_of(tree, path)) {
+    const auto& [low, high] = *range;
+    const double part = share(count);
+    tree = number(part == 1.0 ? high.value : low.value + part * (high.value - low.value), low.unit, tree);
+    return count + 1;
+  }
+  for (std::size_t i = 0; i < tree.items.size(); ++i)
+    count = settle(tree.items[i], fmt::format("{}.{}", path, i), share, count);
+  for (Tree::Entry& entry : tree.entries) count = settle(entry.value, path + "." + entry.key, share, count);
+  return count;
+}
+
+/// Reads `described`, what stands at scene.objects, with its ranges where `share` puts them; returns how many ranges
+/// the object with the most has.
+int read_drawn(DrawnObjects& options, Tree described, const std::function<double(int)>& share,
+               const PluginSource& plugins) {
+  int most = 0;
+  if (Tree* of = const_cast<Tree*>(described.find_path("draw.of"))) {
+    for (std::size_t i = 0; i < of->items.size(); ++i)
+      most = std::max(most, settle(of->items[i], fmt::format("{}.draw.of.{}", kObjects, i), share));
+  }
+  Tree scene = Tree::map();
+  scene.place = described.place;
+  scene.at("objects") = std::move(described);
+  fill(scene, plugins, "scene", [&](Fields& fields) { fields.section(options, Field("objects", "")); });
+  return most;
+}
+
+}  // namespace
+
+bool draws_objects(const Tree& config) {
+  const Tree* objects = config.find_path(kObjects);
+  return objects != nullptr && objects->is_map();
+}
+
+void draw_objects(Tree& config, std::uint64_t seed, const PluginSource& plugins) {
+  Tree& slot = config.at_path(kObjects, config.place);
+  DrawnObjects options;
+  const auto at_ends = [&](double end, int other) {
+    return read_drawn(
+        options, slot, [=](int range) { return range == other ? 1.0 - end : end; }, plugins);
+  };
+  constexpr int kNone = -1;
+  const int ranges = at_ends(0.0, kNone);
+  if (ranges > 0) at_ends(1.0, kNone);
+  for (int other = 0; ranges > 1 && other < ranges; ++other) {
+    at_ends(0.0, other);
+    at_ends(1.0, other);
+  }
+
+  const Tree& of = *slot.find_path("draw.of");
+  Tree drawn = Tree::list();
+  drawn.place = slot.place;
+  drawn.layer = slot.layer;
+  const auto more = static_cast<std::uint64_t>(options.draw.most - options.draw.least);
+  const std::uint64_t count =
+      static_cast<std::uint64_t>(options.draw.least) + Random(seed, "scene/objects").index(more + 1);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Random random(seed, "scene/objects", i + 1);
+    const std::size_t which = random.index(of.items.size());
+    drawn.items.push_back(of.items[which]);
+    settle(drawn.items.back(), fmt::format("{}.draw.of.{}", kObjects, which), [&](int) { return random.uniform(); });
+  }
+  slot = std::move(drawn);
+}
+
+}  // namespace palpate
