@@ -250,6 +250,9 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
       {"sweep/trade_motion.yaml", {"seed=4", "taps=17"}},
       {"ci/strategy.yaml", {}},
       {"benchmark/strategies.yaml", {"seed=1000,1001", "scene=ring,rod"}},
+      {"benchmark/clutter.yaml", {"seed=1000,1001"}},
+      {"paper/object_i.yaml",
+       {"scene=clutter", "sweep.zip={scene.objects.draw.least: [1, 4], scene.objects.draw.most: [1, 4]}", "seed=1,2"}},
       {"paper/object_i.yaml", {"strategy=weighted_two_part,default", "scene.effects=none,standard"}},
   };
   for (const RoundTrip& one : cases) is_made_again({kConfigs / one.file, one.words});
