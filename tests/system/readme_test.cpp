@@ -2,6 +2,7 @@
 // README and the pages of framework/docs tell the truth: their commands run, and what they quote is what comes out.
 #include "system/shell.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,9 +50,8 @@ void expect_table(const std::string& page, const std::string& printed) {
     if (runs != "1000") continue;
     ++compared;
     const auto percent = [](std::string text) { return text.insert(text.size() - 1, " "); };
-    EXPECT_THAT(plain,
-                HasSubstr("| " + name + " | " + live + " " + live_spread + " | " + all + " " + all_spread + " | " +
-                          percent(dead) + " | " + percent(found) + " | " + error + " " + error_spread + " cm |"));
+    EXPECT_THAT(plain, HasSubstr(fmt::format("| {} | {} {} | {} {} | {} | {} | {} {} cm |", name, live, live_spread,
+                                             all, all_spread, percent(dead), percent(found), error, error_spread)));
   }
   EXPECT_EQ(compared, 4);
 }

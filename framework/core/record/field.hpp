@@ -74,9 +74,8 @@ class FieldList {
 
   /// Fields that stand in a list of their own, because several records have them; `write` adds them to a row.
   void add_shared(const std::vector<RecordField>& fields, std::function<void(Row&, const Record&)> write) {
-    for (const RecordField& one : fields)
-      insert(
-          one, false, &one == &fields.back() ? std::move(write) : [](Row&, const Record&) {});
+    for (const RecordField& one : fields) insert(one, false, [](Row&, const Record&) {});
+    if (!fields.empty()) entries_.back().write = std::move(write);
   }
 
   /// Fields whose names only a record knows, such as those of a kernel: `pattern` stands for them in documents,
