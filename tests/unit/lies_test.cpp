@@ -71,12 +71,12 @@ struct Trial {
   }
 };
 
-struct Belief {
+struct Judged {
   Eigen::VectorXd doubt, mean, variance;
 };
 
 /// What a judgement says at the probes.
-Belief read(const Trial& trial, const Judgement& judgement) {
+Judged read(const Trial& trial, const Judgement& judgement) {
   const auto taps = static_cast<Eigen::Index>(trial.places.size());
   const auto probes = static_cast<Eigen::Index>(trial.probes.size());
   Eigen::MatrixXd z = Eigen::MatrixXd::Ones(probes, 1 + 2 * taps);
@@ -86,13 +86,13 @@ Belief read(const Trial& trial, const Judgement& judgement) {
   return {judgement.doubt, z * judgement.a, Eigen::VectorXd::Constant(probes, judgement.s2) + form};
 }
 
-Belief sum_over_all_sets(const Trial& trial) {
+Judged sum_over_all_sets(const Trial& trial) {
   const std::size_t taps = trial.places.size();
   const Testimony& t = trial.testimony;
   Points probes(5, 2);
   for (Eigen::Index i = 0; i < 5; ++i)
     probes.row(i) << trial.probes[static_cast<std::size_t>(i)].x, trial.probes[static_cast<std::size_t>(i)].y;
-  Belief out{Eigen::VectorXd::Zero(t.heights.size()), Eigen::VectorXd::Zero(5), Eigen::VectorXd::Zero(5)};
+  Judged out{Eigen::VectorXd::Zero(t.heights.size()), Eigen::VectorXd::Zero(5), Eigen::VectorXd::Zero(5)};
   double sum = 0.0;
   for (const double signal : t.signals) {
     for (const double noise : t.noises) {
@@ -138,11 +138,11 @@ TEST_P(Lies, AreThoseOfTheSumOverAllSetsWhereNoneIsLeftOut) {
   const int taps = GetParam();
   for (const bool rich : {false, true}) {
     const Trial trial(taps, rich ? 1.0 : 0.0, rich, static_cast<std::uint64_t>(taps));
-    const Belief expected = sum_over_all_sets(trial);
+    const Judged expected = sum_over_all_sets(trial);
     const Judgement judgement = judge(trial.testimony, {1 << taps, 0.0, 0.0});
     EXPECT_EQ(judgement.sets, 4 << taps) << "two signals, two noises";
     EXPECT_EQ(judgement.next, 0.0);
-    const Belief got = read(trial, judgement);
+    const Judged got = read(trial, judgement);
     // The covariance has a condition of some ten thousand, which takes four or five digits off sixteen.
     EXPECT_LT((got.doubt - expected.doubt).lpNorm<Eigen::Infinity>(), 1e-10);
     EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-10);
@@ -161,8 +161,8 @@ TEST(LikeliestLies, AreEnoughForTheDoubtsAndTheSurface) {
   double deviation = 0.0;
   for (int i = 0; i < (brief() ? 2 : 10); ++i) {
     const Trial trial(10, 1.0, true, static_cast<std::uint64_t>(100 + i), 0.1);
-    const Belief all = read(trial, judge(trial.testimony, {1 << 10, 0.0, 0.0}));
-    const Belief some = read(trial, judge(trial.testimony));
+    const Judged all = read(trial, judge(trial.testimony, {1 << 10, 0.0, 0.0}));
+    const Judged some = read(trial, judge(trial.testimony));
     doubt = std::max(doubt, (some.doubt - all.doubt).lpNorm<Eigen::Infinity>());
     mean = std::max(mean, (some.mean - all.mean).lpNorm<Eigen::Infinity>());
     deviation = std::max(deviation, (some.variance.cwiseSqrt() - all.variance.cwiseSqrt()).lpNorm<Eigen::Infinity>());
