@@ -93,7 +93,8 @@ int read_drawn(DrawnObjects& options, Tree described, const std::function<double
 
 bool draws_objects(const Tree& config) {
   const Tree* objects = config.find_path(kObjects);
-  return objects != nullptr && objects->is_map();
+  // One object without the brackets of a list is told so where the list is read.
+  return objects != nullptr && objects->is_map() && objects->find_path("type") == nullptr;
 }
 
 void draw_objects(Tree& config, std::uint64_t seed, const PluginSource& plugins) {
