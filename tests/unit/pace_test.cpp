@@ -94,29 +94,35 @@ TEST(Pace, LearnsWhichMotionComesToNothingHowLongItTakesAndHowFarItErrs) {
   const Believed one;
   Pace failing = pace_of({{2.0, 0.001}, {2.2, 0.001}});
   EXPECT_EQ(one.choose(failing, 0.05, 0.05).motion, 0);
-  for (int i = 0; i < 3; ++i) failing.observe(tapped(0, Outcome::aborted, 2.0), std::nullopt, std::nullopt);
+  for (int i = 0; i < 3; ++i) failing.observe(tapped(0, Outcome::aborted, 2.0), std::nullopt);
   EXPECT_EQ(one.choose(failing, 0.05, 0.05).motion, 1);
 
   Pace late = pace_of({{2.0, 0.001}, {2.2, 0.001}});
-  for (int i = 0; i < 5; ++i) late.observe(tapped(0, Outcome::contact, 4.0), std::nullopt, 0.001);
+  for (int i = 0; i < 5; ++i) late.observe(tapped(0, Outcome::contact, 4.0), std::nullopt);
   EXPECT_EQ(one.choose(late, 0.05, 0.05).motion, 1);
   EXPECT_NEAR(one.choose(late, 0.05, 0.05).seconds, 2.2, 1e-12);
-  for (int i = 0; i < 5; ++i) late.observe(tapped(1, Outcome::contact, 6.2), std::nullopt, 0.001);
+  for (int i = 0; i < 5; ++i) late.observe(tapped(1, Outcome::contact, 6.2), std::nullopt);
   EXPECT_NEAR(one.choose(late, 0.05, 0.05).seconds, 3.0, 1e-12) << "half of what it was late: ten taps in all";
 
   Pace rough = pace_of({{2.0, 0.001}, {2.0, 0.001}});
-  for (int i = 0; i < 15; ++i) rough.observe(tapped(1, Outcome::contact, 2.0), std::nullopt, 0.008);
+  std::vector<Touch> touches(15, {{0.1, 0.1}, 0.008, false});
+  std::vector<int> motions(15, 1);
+  rough.see_desk(touches, motions);
   EXPECT_EQ(rough.roughness(0), 0.0);
   EXPECT_NEAR(rough.roughness(1), std::sqrt(0.75 * (0.008 * 0.008 - 0.001 * 0.001)), 1e-12) << "15 taps and 5";
-  rough.observe(tapped(0, Outcome::contact, 2.0), std::nullopt, 0.5);
-  EXPECT_EQ(rough.roughness(0), 0.0) << "half a metre above the desk is not the desk";
+  for (const bool on : {false, true}) {
+    touches.push_back({{0.1, 0.1}, on ? 0.009 : 0.5, on});
+    motions.push_back(0);
+    rough.see_desk(touches, motions);
+    EXPECT_EQ(rough.roughness(0), 0.0) << "neither half a metre above the desk is it, nor an object";
+  }
 }
 
 TEST(Pace, RefusesATapOfAMotionThatThereIsNot) {
   Pace pace = pace_of({{2.0, 0.001}, {2.0, 0.001}});
   for (const int motion : {-1, 2}) {
     try {
-      pace.observe(tapped(motion, Outcome::contact, 2.0), std::nullopt, std::nullopt);
+      pace.observe(tapped(motion, Outcome::contact, 2.0), std::nullopt);
       FAIL() << "it was taken";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("a recorded tap was made by motion"), std::string::npos);

@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+
 namespace palpate::test {
 namespace {
 
@@ -25,7 +27,7 @@ struct Desk {
     for (int i = 0; i < contacts; ++i) {
       seconds.push_back(7.0 * i);
       excess.push_back(offset + drift * seconds.back() + 0.002 * (2.0 * random.uniform() - 1.0));
-      systematic.add({0.2 * random.uniform(), 0.2 * random.uniform()}, seconds.back(), excess.back(), false);
+      systematic.add({0.2 * random.uniform(), 0.2 * random.uniform()}, seconds.back(), excess.back());
     }
   }
 };
@@ -57,17 +59,99 @@ TEST(Systematic, KnowsNothingButItsPriorBeforeTheFirstContact) {
 TEST(Systematic, IsNotMovedByAJerkJustAboveTheDesk) {
   Desk desk(10, 0.0, 0.0, 2);
   const double before = desk.systematic.at(70.0).value;
-  desk.systematic.add({0.1, 0.1}, 70.0, 0.009, false);
+  desk.systematic.add({0.1, 0.1}, 70.0, 0.009);
   EXPECT_NEAR(desk.systematic.at(70.0).value, before, 0.0002);
 }
 
 TEST(Systematic, TakesTheRimOfALowThingForNoDeskAndTheFootOfAWallForOne) {
   for (const bool rim : {true, false}) {
     Systematic systematic(kOffset, kDrift, kNoise);
-    systematic.add({0.10, 0.10}, 0.0, rim ? 0.02 : 0.08, true);
-    for (int i = 1; i < 12; ++i) systematic.add({0.11 + 0.001 * i, 0.1}, 5.0 * i, 0.005, false);
+    systematic.add({0.10, 0.10}, 0.0, rim ? 0.02 : 0.08);
+    for (int i = 1; i < 12; ++i) systematic.add({0.11 + 0.001 * i, 0.1}, 5.0 * i, 0.005);
     EXPECT_NEAR(systematic.at(60.0).value, rim ? 0.0 : 0.005, 0.0005) << rim;
   }
+}
+
+TEST(Systematic, KnowsWhatLiesAboveTheLowestOnceTwoThatAreLowAgree) {
+  Systematic systematic(kOffset, kDrift, kNoise);
+  const auto add = [&](int i, double excess) { systematic.add({0.02 * i, 0.1}, 7.0 * i, excess); };
+  for (int i = 0; i < 6; ++i) add(i, 0.013 + 0.0002 * i);
+  EXPECT_FALSE(systematic.above(0)) << "an arm may be off by that";
+  add(8, 0.0);
+  EXPECT_FALSE(systematic.above(0)) << "the one that is low may lie";
+  add(9, 0.001);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(systematic.above(i), i < 6) << i;
+  EXPECT_NEAR(systematic.at(60.0).value, 0.0005, 0.0005);
+}
+
+TEST(Systematic, IsNotPulledDownByOneContactThatIsLowAlone) {
+  Desk desk(10, 0.0, 0.0, 4);
+  desk.systematic.add({0.1, 0.1}, 70.0, -0.012);
+  for (std::size_t i = 0; i < 11; ++i) EXPECT_FALSE(desk.systematic.above(i)) << i;
+  EXPECT_NEAR(desk.systematic.at(70.0).value, 0.0, 0.0015);
+}
+
+/// The search from below with a matrix inverted for each prediction; what is true of `left` is left.
+std::vector<bool> searched_by_the_book(const Eigen::VectorXd& times, const std::vector<int>& motions,
+                                       const Eigen::VectorXd& excess) {
+  const auto contacts = excess.size();
+  const auto covariance = [&](Eigen::Index a, Eigen::Index b) {
+    const bool alike = motions[static_cast<std::size_t>(a)] == motions[static_cast<std::size_t>(b)];
+    return kOffset * kOffset * (alike ? 1.0 : 0.8) + kDrift * kDrift * times(a) * times(b);
+  };
+  std::vector<Eigen::Index> taken;
+  std::vector<bool> left(static_cast<std::size_t>(contacts), true);
+  for (;;) {
+    const auto n = static_cast<Eigen::Index>(taken.size());
+    const auto at = [&](Eigen::Index i) { return taken[static_cast<std::size_t>(i)]; };
+    const Eigen::MatrixXd inverse =
+        Eigen::MatrixXd(Eigen::MatrixXd::NullaryExpr(n, n, [&](Eigen::Index i, Eigen::Index j) {
+          return covariance(at(i), at(j)) + (i == j ? kNoise * kNoise : 0.0);
+        })).inverse();
+    const Eigen::VectorXd seen = Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index i) { return excess(at(i)); });
+    double lowest = 2.4;
+    Eigen::Index next = -1;
+    for (Eigen::Index i = 0; i < contacts; ++i) {
+      if (!left[static_cast<std::size_t>(i)]) continue;
+      const Eigen::VectorXd k = Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index j) { return covariance(i, at(j)); });
+      const double variance = covariance(i, i) - k.dot(inverse * k) + kNoise * kNoise;
+      const double deviations = (excess(i) - k.dot(inverse * seen)) / std::sqrt(variance);
+      if (deviations >= lowest) continue;
+      lowest = deviations;
+      next = i;
+    }
+    if (next < 0) return left;
+    left[static_cast<std::size_t>(next)] = false;
+    taken.push_back(next);
+  }
+}
+
+TEST(Systematic, SearchesFromBelowAsByTheBook) {
+  Random random(5, "systematic test");
+  int high = 0;
+  int checked = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    constexpr int kContacts = 12;
+    Systematic systematic(kOffset, kDrift, kNoise);
+    Eigen::VectorXd times(kContacts), excess(kContacts);
+    std::vector<int> motions;
+    for (int i = 0; i < kContacts; ++i) {
+      times(i) = 20.0 * i;
+      excess(i) = 0.012 * random.uniform() + (random.uniform() < 0.4 ? 0.014 : 0.0);
+      motions.push_back(static_cast<int>(3.0 * random.uniform()));
+      systematic.add({0.2 * random.uniform(), 0.2 * random.uniform()}, times(i), excess(i), motions.back());
+    }
+    const std::vector<bool> expected = searched_by_the_book(times, motions, excess);
+    const auto above = std::count(expected.begin(), expected.end(), true);
+    if (above >= kContacts - 1) continue;  // what is low alone bounds nothing
+    ++checked;
+    for (std::size_t i = 0; i < kContacts; ++i) {
+      EXPECT_EQ(systematic.above(i), expected[i]) << trial << " " << i;
+      high += expected[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(checked, 200);
+  EXPECT_GT(high, 200);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ bool Chooser::starting(const TapBelief& belief) const {
   if (taps_ >= failed_.size()) return false;
   constexpr double kBelieved = 0.5;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (contacts_[i].hit && belief.doubt_of(i) < kBelieved) return false;
+    if (belief.touches()[i].on && belief.doubt_of(i) < kBelieved) return false;
   }
   return true;
 }
@@ -32,10 +32,9 @@ bool Chooser::starting(const TapBelief& belief) const {
 std::optional<int> Chooser::second_look(const TapBelief& belief) const {
   constexpr double kSure = 0.95;
   for (std::size_t i = 0; search_ && i < contacts_.size(); ++i) {
-    const std::size_t place = contacts_[i].candidate;
-    if (!contacts_[i].hit || belief.doubt_of(i) > kSure || !allowed_[place]) continue;
-    const auto here = [place](const Touched& one) { return one.candidate == place; };
-    if (std::count_if(contacts_.begin(), contacts_.end(), here) == 1) return static_cast<int>(place);
+    const std::size_t place = contacts_[i];
+    if (!belief.touches()[i].on || belief.doubt_of(i) > kSure || !allowed_[place]) continue;
+    if (std::count(contacts_.begin(), contacts_.end(), place) == 1) return static_cast<int>(place);
   }
   return std::nullopt;
 }
@@ -45,7 +44,7 @@ void Chooser::allow(const TapBelief& belief) {
   for (std::size_t i = 0; i < failed_.size(); ++i) allowed_[i] = !failed_[i];
   if (options_.repeat == ExperimentOptions::Repeat::allow) return;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_[contacts_[i].candidate] = false;
+    if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_[contacts_[i]] = false;
   }
 }
 
@@ -93,17 +92,20 @@ const Eigen::VectorXd& Chooser::scores(const TapBelief& belief) {
               Error::Kind::run);
 }
 
-void Chooser::observe(const PastTap& tap, int candidate, bool hit, const std::optional<Target>& previous,
-                      std::optional<double> excess) {
+void Chooser::observe(const PastTap& tap, int candidate, const std::optional<Target>& previous,
+                      const TapBelief& belief) {
   ++taps_;
-  if (pace_) pace_->observe(tap, previous, excess);
+  if (pace_) {
+    pace_->observe(tap, previous);
+    pace_->see_desk(belief.touches(), belief.motions());
+  }
   // A tap that was broken off says nothing of what is there.
   const Outcome outcome = tap.contact.outcome;
   const bool looked = outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;
   if (search_ && looked) search_->look(tap.target);
   const auto place = static_cast<std::size_t>(candidate);
   if (outcome == Outcome::contact) {
-    contacts_.push_back({place, hit});
+    contacts_.push_back(place);
   } else {
     failed_[place] = true;
   }

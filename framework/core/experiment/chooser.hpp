@@ -18,8 +18,8 @@
 
 namespace palpate {
 
-/// Chooses one tap after the other. It is told where was tapped and whether anything was hit, and reads the rest in the
-/// belief.
+/// Chooses one tap after the other. It is told where was tapped and reads the rest in the belief: what was hit, too, as
+/// it is thought now.
 class Chooser {
  public:
   /// All must outlive it. Throws Error for an acquisition that cannot be made.
@@ -43,19 +43,13 @@ class Chooser {
   /// What the acquisition gives each candidate, until it is asked again. Throws Error for what is no finite number.
   const Eigen::VectorXd& scores(const TapBelief& belief);
 
-  /// Notes a tap at `candidate`; `hit`: a contact on an object; `excess`: see Pace.
-  void observe(const PastTap& tap, int candidate, bool hit, const std::optional<Target>& previous,
-               std::optional<double> excess);
+  /// Notes a tap at `candidate`, of which `belief` knows already.
+  void observe(const PastTap& tap, int candidate, const std::optional<Target>& previous, const TapBelief& belief);
 
   /// What the motion of a tap adds to the noise of its height, metres: 0 where there is but one.
   double roughness(int motion) const { return pace_ ? pace_->roughness(motion) : 0.0; }
 
  private:
-  struct Touched {
-    std::size_t candidate;
-    bool hit;
-  };
-
   bool choose_place(TapBelief& belief, TapRecord& tap);
   /// Where a hit is doubted, but not for sure a lie, and nobody has looked again: of the allowed.
   std::optional<int> second_look(const TapBelief& belief) const;
@@ -69,8 +63,8 @@ class Chooser {
   std::optional<Search> search_;  ///< the other one
   std::optional<Pace> pace_;      ///< where the backend has several motions
   Eigen::VectorXd scores_;
-  std::vector<bool> failed_;       ///< candidates at which a tap came to nothing
-  std::vector<Touched> contacts_;  ///< all others, in their order
+  std::vector<bool> failed_;           ///< candidates at which a tap came to nothing
+  std::vector<std::size_t> contacts_;  ///< those of all others, in their order
   std::vector<bool> allowed_;
   std::size_t taps_ = 0;
 };

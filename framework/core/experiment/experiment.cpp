@@ -53,15 +53,10 @@ std::optional<TapRecord> Experiment::choose_next() {
 
 void Experiment::observe(const PastTap& tap) {
   const int candidate = candidates_.nearest(tap.target.x, tap.target.y, scene_->area());
-  TapBelief::Reading reading;
-  if (tap.contact.outcome == Outcome::contact) reading = belief_.read(tap.contact, tap.motion);
-  const bool hit = reading.on;
-  const bool desk = tap.contact.outcome == Outcome::contact && !hit;
   const Manner manner = manner_of(tap);
   belief_.observe(tap.target, tap.contact, manner);
-  chooser_.observe(tap, candidate, hit, previous_,
-                   desk ? std::optional(reading.height - scene_->desk()) : std::nullopt);
-  watch_.observe(tap, manner, candidate, hit);
+  chooser_.observe(tap, candidate, previous_, belief_);
+  watch_.observe(tap, manner, candidate, belief_);
   previous_ = tap.target;
 }
 

@@ -64,7 +64,7 @@ Pace::Choice Pace::choose(const TapBelief& belief, int candidate, const Target& 
   return best;
 }
 
-void Pace::observe(const PastTap& tap, const std::optional<Target>& previous, std::optional<double> excess) {
+void Pace::observe(const PastTap& tap, const std::optional<Target>& previous) {
   if (tap.motion < 0 || tap.motion >= motions_->count()) {
     throw Error(
         "", fmt::format("a recorded tap was made by motion {}, but the config has {}", tap.motion, motions_->count()),
@@ -80,9 +80,20 @@ void Pace::observe(const PastTap& tap, const std::optional<Target>& previous, st
   request.predicted = tap.predicted;
   request.motion = tap.motion;
   shown.late += tap.contact.seconds - motions_->seconds(request, tap.contact.height);
-  if (!excess || std::abs(*excess) > kFarOff) return;
-  shown.squares += *excess * *excess;
-  ++shown.on_desk;
+}
+
+void Pace::see_desk(const std::vector<Touch>& touches, const std::vector<int>& motions) {
+  for (Shown& shown : shown_) {
+    shown.squares = 0.0;
+    shown.on_desk = 0;
+  }
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Touch& touch = touches[i];
+    if (touch.on || std::abs(touch.height) > kFarOff) continue;
+    Shown& shown = shown_[static_cast<std::size_t>(motions[i])];
+    shown.squares += touch.height * touch.height;
+    ++shown.on_desk;
+  }
 }
 
 }  // namespace palpate

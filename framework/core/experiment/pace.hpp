@@ -40,9 +40,10 @@ class Pace {
   /// What a motion adds to the noise that the most precise of them has, metres.
   double roughness(int motion) const;
 
-  /// Learns from a tap; `excess`: metres by which a contact with the bare desk was off, if it was one. Throws Error for
-  /// a motion that there is not, of a damaged record.
-  void observe(const PastTap& tap, const std::optional<Target>& previous, std::optional<double> excess);
+  /// Learns from a tap. Throws Error for a motion that there is not, of a damaged record.
+  void observe(const PastTap& tap, const std::optional<Target>& previous);
+  /// Learns from all contacts so far, each made by one of the `motions`, how far those with the desk are off.
+  void see_desk(const std::vector<Touch>& touches, const std::vector<int>& motions);
 
  private:
   /// What the taps of a motion have shown.

@@ -23,8 +23,8 @@ void Experiment::resume(const std::vector<PastTap>& past) {
   for (const PastTap& tap : past) {
     observe(tap);
     read = read | reads_for(tap.source);
-    // Who is doubted depends on who was, once there are many.
-    if (options_.height.lies) belief_.ask(read);
+    // Who is doubted depends on who was, once there are many; a fit on what was taken off the heights at its tap.
+    if (options_.height.lies || options_.height.systematic) belief_.ask(read);
   }
   belief_.ask(read);
 }

@@ -17,22 +17,84 @@ constexpr double kBeside = 0.03;  // metres
 
 Systematic::Systematic(double offset, double drift, double noise) : offset_(offset), drift_(drift), noise_(noise) {}
 
-void Systematic::add(const Target& place, double seconds, double excess, bool on, int motion) {
-  (on ? highs_ : lows_).push_back({place, {seconds, motion}, excess});
+void Systematic::add(const Target& place, double seconds, double excess, int motion) {
+  const auto known = std::find(motions_.begin(), motions_.end(), motion);
+  const Eigen::Index own = known - motions_.begin();
+  if (known == motions_.end()) motions_.push_back(motion);
+  touched_.push_back({place, {seconds, motion}, own, excess});
+  find_desk();
   judge_all();
 }
 
+void Systematic::find_desk() {
+  const std::size_t contacts = touched_.size();
+  std::vector<bool> left(contacts, true);  // but for those that are low all alone
+  above_ = left;
+  search_from_below(above_);
+  std::vector<bool> found = above_;
+  for (;;) {
+    std::vector<std::size_t> lows;
+    for (std::size_t i = 0; i < contacts; ++i) {
+      if (left[i] && !found[i]) lows.push_back(i);
+    }
+    if (lows.size() > 1) above_ = found;
+    if (lows.size() != 1) return;  // of none: there are no two that agree, and the first search stands
+    left[lows.front()] = false;
+    found = left;
+    search_from_below(found);
+  }
+}
+
+/// Of the contacts that are `left` those remain so that lie clearly above the others.
+void Systematic::search_from_below(std::vector<bool>& left) const {
+  // The process of covariance() as a regression: what all share, the drift, and what is each motion's alone.
+  const auto motions = static_cast<Eigen::Index>(motions_.size());
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(2 + motions);
+  Eigen::VectorXd prior = Eigen::VectorXd::Constant(2 + motions, (1.0 - kShared) * offset_ * offset_);
+  prior.head<2>() << kShared * offset_ * offset_, drift_ * drift_;
+  Eigen::MatrixXd covariance = prior.asDiagonal();
+  for (;;) {
+    double lowest = kClearly;
+    double deviation = 0.0;
+    std::size_t next = touched_.size();
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+      if (!left[i]) continue;
+      const double t = touched_[i].when.seconds;
+      const Eigen::Index own = 2 + touched_[i].own;
+      const double variance = covariance(0, 0) + t * t * covariance(1, 1) + covariance(own, own) +
+                              2.0 * (t * covariance(0, 1) + covariance(0, own) + t * covariance(1, own));
+      const double wide = std::sqrt(std::max(variance, 0.0) + noise_ * noise_);
+      const double above = (touched_[i].excess - mean(0) - t * mean(1) - mean(own)) / wide;
+      if (above >= lowest) continue;
+      lowest = above;
+      deviation = wide;
+      next = i;
+    }
+    if (next == touched_.size()) return;
+    left[next] = false;
+    const Eigen::VectorXd gain =
+        (covariance.col(0) + touched_[next].when.seconds * covariance.col(1) + covariance.col(2 + touched_[next].own)) /
+        deviation;
+    mean += gain * lowest;
+    covariance.noalias() -= gain * gain.transpose();
+  }
+}
+
 bool Systematic::at_a_rim(const Target& place) const {
-  return std::any_of(highs_.begin(), highs_.end(), [&](const Touched& one) {
-    return one.excess < kRim && std::hypot(one.place.x - place.x, one.place.y - place.y) < kBeside;
-  });
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    const Touched& one = touched_[i];
+    if (above_[i] && one.excess < kRim && std::hypot(one.place.x - place.x, one.place.y - place.y) < kBeside)
+      return true;
+  }
+  return false;
 }
 
 void Systematic::judge_all() {
   judged_.clear();
   std::vector<double> excess;
-  for (const Touched& low : lows_) {
-    if (at_a_rim(low.place)) continue;
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    const Touched& low = touched_[i];
+    if (above_[i] || at_a_rim(low.place)) continue;
     judged_.push_back(low.when);
     excess.push_back(low.excess);
   }

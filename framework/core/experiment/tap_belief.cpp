@@ -60,6 +60,8 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
                                        const ProcessSettings& settings) const {
   Model model;
   model.name = name;
+  model.kernel_choice = kernel;
+  model.fitting_choice = fitting;
   model.kernel = context_.create<Kernel>(kernel);
   model.fitting = context_.create<Fitting>(fitting);
   model.outputs = {settings};
@@ -103,8 +105,8 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
   }
   if (height.systematic)
     systematic_.emplace(height.systematic->offset, height.systematic->drift, height.systematic->noise);
-  footprint_ = context.create<Footprint>(options.footprint);
-  footprint_type_ = options.footprint.type;
+  footprint_choice_ = options.footprint;
+  footprint_ = context.create<Footprint>(footprint_choice_);
   if (footprint_->is_weight()) footprint_.reset();
   if (two_part_) {
     object_ = make_model("fitting/surface", height_kernel, height_fitting,
@@ -136,22 +138,49 @@ void TapBelief::observe(const Target& place, const Contact& contact, const Manne
       manner.roughness > 0.0 ? noise * noise / (noise * noise + manner.roughness * manner.roughness) : 1.0;
   share_.push_back(std::round(share * kSteps) / kSteps);
   uneven_ = uneven_ || share_.back() < 1.0;
+  motions_.push_back(manner.motion);
   if (reading.on) hits_.push_back(touches_.back());
   current_ = false;
   if (!systematic_) return;
   excess_.push_back(contact.height - desk_);
   times_.push_back(began);
-  motions_.push_back(manner.motion);
-  systematic_->add(place, began, excess_.back(), reading.on, manner.motion);
+  systematic_->add(place, began, excess_.back(), manner.motion);
+  read_again();
+}
+
+/// Takes off all heights what is thought now to be added to them, and says anew which were with an object.
+void TapBelief::read_again() {
+  // In steps far below the noise, so that the processes are not made anew after every tap.
+  constexpr double kStep = 2.5e-4;
+  const double noise = systematic_->noise();
+  hits_.clear();
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    Touch& touch = touches_[i];
+    const Systematic::Estimate estimate = systematic_->at(times_[i], motions_[i]);
+    touch.height = excess_[i] - kStep * std::round(estimate.value / kStep);
+    const bool clear =
+        systematic_->above(i) || touch.height > Systematic::kClearly * std::sqrt(estimate.variance + noise * noise);
+    const bool on = clear && context_.scene.on_surface(desk_ + touch.height);
+    if (on != touch.on && i + 1 < touches_.size()) flipped_ = true;
+    touch.on = on;
+    if (on) hits_.push_back(touch);
+  }
+}
+
+std::optional<int> TapBelief::first_hit_tap() const {
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    if (touches_[i].on) return numbers_[i];
+  }
+  return std::nullopt;
 }
 
 TapBelief::Reading TapBelief::read(const Contact& contact, int motion) const {
   if (!systematic_) return {contact.height, context_.scene.on_surface(contact.height)};
   // Until the desk is known, what is hardly higher than it may be is more probably the desk than so low an object.
-  constexpr double kDeviations = 2.4;
   const Systematic::Estimate estimate = systematic_->at(seconds_, motion);
   const double height = contact.height - estimate.value;
-  const double unsure = kDeviations * std::sqrt(estimate.variance + systematic_->noise() * systematic_->noise());
+  const double unsure =
+      Systematic::kClearly * std::sqrt(estimate.variance + systematic_->noise() * systematic_->noise());
   return {height, context_.scene.on_surface(height) && height - desk_ > unsure};
 }
 
@@ -187,7 +216,7 @@ std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
   if (all.has(Quantity::uncertainty)) out.emplace_back("height process");
   if ((all.has(Quantity::height) || all.has(Quantity::doubt)) && two_part_) out.emplace_back("surface process");
   if (all.has(Quantity::weight)) out.emplace_back("weight process");
-  if (quantities.has(Quantity::probability) && footprint_) out.push_back("footprint " + footprint_type_);
+  if (quantities.has(Quantity::probability) && footprint_) out.push_back("footprint " + footprint_choice_.type);
   return out;
 }
 
@@ -231,6 +260,7 @@ void TapBelief::show(Model& model, int output) {
 void TapBelief::update() {
   if (current_) return;
   const PhaseClock::Scope infer(clock_, Phase::infer);
+  if (flipped_) begin_again();
   for (Model* model : {&heights_, &labels_, &object_}) {
     if (model->process) take_in(*model);
   }
@@ -250,6 +280,29 @@ void TapBelief::update() {
   if (labels_.stale) map_labels();
   if (object_.stale && height_asked_) map_object();
   current_ = true;
+}
+
+/// Forgets what the models made of labels that are others now; they take in all taps anew.
+void TapBelief::begin_again() {
+  flipped_ = false;
+  if (joined_) begin_again(heights_);
+  begin_again(labels_);
+  begin_again(object_);
+  doubted_.forget();
+  touches_taken_ = 0;
+  probability_.resize(0);
+  if (footprint_) footprint_ = context_.create<Footprint>(footprint_choice_);
+}
+
+void TapBelief::begin_again(Model& model) {
+  if (!model.process) return;
+  const int shown = model.process->shown();
+  const bool of_labels = model.of_labels;
+  const std::vector<ProcessSettings> outputs = model.outputs;
+  model = make_model(model.name, model.kernel_choice, model.fitting_choice, outputs.front());
+  model.outputs = outputs;
+  model.of_labels = of_labels;
+  show(model, shown - 1);
 }
 
 void TapBelief::take_in(Model& model) {
@@ -274,7 +327,7 @@ void TapBelief::fit(Model& model) {
   Random random = context_.random(model.name, static_cast<std::uint64_t>(taps));
   model.fit = model.process->fit(*model.fitting, random);
   model.fit_at = taps;
-  if (model.fit.failed) ++failed_fits_;
+  if (model.fit.failed) ++model.failed_fits;
 }
 
 TapBelief::Output TapBelief::output(const Model& model, int output) {
@@ -314,15 +367,8 @@ void TapBelief::map_object() {
   object_.stale = false;
 }
 
-/// Takes off all heights what is thought now to be added to them. Whether one was with an object stays as it was read.
+/// Gives the processes the heights as they read now.
 void TapBelief::correct() {
-  // In steps far below the noise, so that the processes are not made anew after every tap.
-  constexpr double kStep = 2.5e-4;
-  std::size_t hit = 0;
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    touches_[i].height = excess_[i] - kStep * std::round(systematic_->at(times_[i], motions_[i]).value / kStep);
-    if (touches_[i].on) hits_[hit++].height = touches_[i].height;
-  }
   for (Model* model : {&heights_, &object_}) {
     if (!model->process) continue;
     const std::vector<Touch>& data = data_of(*model);

@@ -50,8 +50,16 @@ class TapBelief final : public Belief {
   /// What is taken off the heights of a motion as of now, where that is learnt.
   std::optional<Systematic::Estimate> systematic(int motion = 0) const;
 
-  /// Notes a tap. Only contacts reach the models: heights above the desk, and labels 1 or 0, as they read.
+  /// Notes a tap. Only contacts reach the models: heights above the desk, and labels 1 or 0, as they read. Where the
+  /// config has learnt what is added to all heights, every contact so far is read again by what is thought of it now.
   void observe(const Target& place, const Contact& contact, const Manner& manner = {});
+
+  /// The contacts so far, in the order of their taps: heights above the desk and labels as they read now; the motions
+  /// that they were made by; those with an object; the number of the first tap that made one.
+  const std::vector<Touch>& touches() const { return touches_; }
+  const std::vector<int>& motions() const { return motions_; }
+  const std::vector<Touch>& hits() const { return hits_; }
+  std::optional<int> first_hit_tap() const;
 
   /// From now on these quantities are kept and belong to the record: builds the models that they lack, with all taps so
   /// far, and updates. Models go through the very states that they would have had, had they been there from the first
@@ -135,7 +143,7 @@ class TapBelief final : public Belief {
   }
 
   /// Fits that found nothing better and kept the old values.
-  int failed_fits() const { return failed_fits_; }
+  int failed_fits() const { return heights_.failed_fits + labels_.failed_fits + object_.failed_fits; }
 
   /// Height of the desk, metres.
   double desk() const { return desk_; }
@@ -152,6 +160,7 @@ class TapBelief final : public Belief {
   /// A process and all that it is made from; built when it is asked for.
   struct Model {
     const char* name = "";
+    PluginChoice kernel_choice, fitting_choice;
     std::shared_ptr<Kernel> kernel;
     std::shared_ptr<Fitting> fitting;
     std::vector<ProcessSettings> outputs;
@@ -160,6 +169,7 @@ class TapBelief final : public Belief {
     bool stale = false;  ///< its maps are older than the process
     FitSummary fit;
     int fit_at = 0;  ///< taps that the process had at its latest fit
+    int failed_fits = 0;
   };
 
   Model make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
@@ -185,6 +195,9 @@ class TapBelief final : public Belief {
   /// All heights share what is not known of the correction.
   double shared_variance() const { return systematic_ ? systematic_->at(seconds_).variance : 0.0; }
   void map_footprint();
+  void read_again();
+  void begin_again();
+  void begin_again(Model& model);
   void judge();
   void believe();
   void correct();
@@ -203,28 +216,28 @@ class TapBelief final : public Belief {
   int initial_taps_ = 0;
   Quantities asked_;
   bool current_ = true;   ///< update() has seen all taps
+  bool flipped_ = false;  ///< labels of contacts that it has seen are others now
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<Systematic> systematic_;
   Model heights_;
-  Model labels_;                          ///< unless joined
-  Model object_;                          ///< heights of the taps on an object
-  std::vector<Touch> touches_;            ///< all contacts, heights above the desk
-  std::vector<int> numbers_;              ///< of their taps
-  Points places_, places_now_;            ///< of those that the footprint has taken: as made, and see Footprint
-  std::vector<double> excess_, times_;    ///< of these: heights as they came, when,
-  std::vector<int> motions_;              ///< by which motion,
-  std::vector<double> share_;             ///< and how far its height is to be trusted for that, in [0, 1]
-  bool uneven_ = false;                   ///< some less than others
-  std::vector<Touch> hits_;               ///< those on an object
-  std::optional<double> lies_;            ///< of contacts, where some are not believed
-  DoubtedSurface doubted_;                ///< the surface process, then
-  Eigen::VectorXd doubt_, by_label_;      ///< a value a contact
+  Model labels_;                        ///< unless joined
+  Model object_;                        ///< heights of the taps on an object
+  std::vector<Touch> touches_;          ///< all contacts, heights above the desk
+  std::vector<int> numbers_;            ///< of their taps
+  Points places_, places_now_;          ///< of those that the footprint has taken: as made, and see Footprint
+  std::vector<double> excess_, times_;  ///< of these: heights as they came, when,
+  std::vector<int> motions_;            ///< by which motion (also where nothing is learnt),
+  std::vector<double> share_;           ///< and how far its height is to be trusted for that, in [0, 1]
+  bool uneven_ = false;                 ///< some less than others
+  std::vector<Touch> hits_;             ///< those on an object
+  std::optional<double> lies_;          ///< of contacts, where some are not believed
+  DoubtedSurface doubted_;              ///< the surface process, then
+  Eigen::VectorXd doubt_, by_label_;    ///< a value a contact
+  PluginChoice footprint_choice_;
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
-  std::string footprint_type_;
   bool footprint_asked_ = false;
   bool height_asked_ = false;      ///< and not only whether it is believed
   std::size_t touches_taken_ = 0;  ///< by the footprint
-  int failed_fits_ = 0;
   /// Empty until somebody asks for them.
   Eigen::VectorXd uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
 };

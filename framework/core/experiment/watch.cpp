@@ -37,12 +37,11 @@ Watch::Watch(const ExperimentOptions& options, const Candidates& candidates, con
       touched_(static_cast<std::size_t>(candidates.size()), false) {
   constexpr std::int64_t kRoom = 1024;  // within it no tap of the loop has to make any
   taps_.reserve(static_cast<std::size_t>(std::min(options.taps, kRoom)));
-  if (options.stop.expected_rmse) forecaster_.emplace();
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
 
-void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, bool hit) {
+void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, const TapBelief& belief) {
   const Contact& contact = tap.contact;
   taps_.emplace_back(tap, manner);
   if (contact.outcome == Outcome::contact) note_object(candidate);
@@ -56,10 +55,9 @@ void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, boo
     return;
   }
   touched_[static_cast<std::size_t>(candidate)] = true;
-  ++(hit ? result_.on_surface_taps : result_.off_surface_taps);
-  if (!hit) return;
-  if (!result_.first_hit_tap) result_.first_hit_tap = result_.taps;
-  if (forecaster_) forecaster_->hit(contact.height - context_.scene.desk());
+  result_.on_surface_taps = static_cast<int>(belief.hits().size());
+  result_.off_surface_taps = static_cast<int>(belief.touches().size() - belief.hits().size());
+  result_.first_hit_tap = belief.first_hit_tap();
 }
 
 void Watch::note_object(int candidate) {
@@ -74,9 +72,11 @@ void Watch::note_object(int candidate) {
 }
 
 std::optional<Forecast> Watch::forecast(TapBelief& belief) const {
-  if (!forecaster_) return std::nullopt;
-  if (forecaster_->hits() > 0) belief.ask(belief.surface_reads());
-  return forecaster_->forecast(belief);
+  if (!options_.stop.expected_rmse) return std::nullopt;
+  Forecaster forecaster;
+  for (const Touch& hit : belief.hits()) forecaster.hit(hit.height);
+  if (forecaster.hits() > 0) belief.ask(belief.surface_reads());
+  return forecaster.forecast(belief);
 }
 
 void Watch::describe(TapRecord& tap, TapBelief& belief) {

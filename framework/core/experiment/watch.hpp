@@ -22,8 +22,8 @@ class Watch {
   /// `truth_known`: the config's scene is the world that is tapped. All else must outlive it.
   Watch(const ExperimentOptions& options, const Candidates& candidates, const Context& context, bool truth_known);
 
-  /// Counts a tap at `candidate`; `hit`: a contact on an object.
-  void observe(const PastTap& tap, const Manner& manner, int candidate, bool hit);
+  /// Counts a tap at `candidate`, of which `belief` knows already: contacts with an object as they read now.
+  void observe(const PastTap& tap, const Manner& manner, int candidate, const TapBelief& belief);
   void stop(const std::string& reason) { result_.stop_reason = reason; }
 
   /// What was counted so far, without errors: builds and computes nothing.
@@ -53,9 +53,8 @@ class Watch {
   const Context& context_;
   bool truth_known_;
   RunResult result_;
-  std::optional<Forecaster> forecaster_;  ///< where a stop rule asks for it
-  std::vector<bool> touched_;             ///< candidates where there was a contact
-  std::vector<ObjectTouches> touches_;    ///< of each object, where the truth is known
+  std::vector<bool> touched_;           ///< candidates where there was a contact
+  std::vector<ObjectTouches> touches_;  ///< of each object, where the truth is known
   std::optional<Truth> truth_;
   int truth_taps_ = 0;  ///< taps that it stands after
   std::vector<std::pair<PastTap, Manner>> taps_;

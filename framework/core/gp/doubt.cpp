@@ -39,6 +39,12 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion) 
   judgement_ = palpate::judge(testimony);
 }
 
+void DoubtedSurface::forget() {
+  judgement_ = {};
+  judged_ = false;
+  covered_ = 0;
+}
+
 void DoubtedSurface::cover(const Process& process) {
   const Eigen::Index taps = process.size();
   if (generation_ != process.generation()) covered_ = 0;

@@ -17,6 +17,9 @@ class DoubtedSurface {
   /// Without noise nobody is judged: the surface is that of the process.
   void judge(const Process& process, const VectorView& suspicion);
 
+  /// To be called before another process is judged.
+  void forget();
+
   /// The probability that each tap lies; as suspected where nobody was judged.
   const Eigen::VectorXd& doubt() const { return judgement_.doubt; }
 

@@ -164,7 +164,7 @@ FieldList<TapRecord> make_tap_list() {
   list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
-  list.add("on_surface", "whether a contact was one with an object", &Tap::on_surface);
+  list.add("on_surface", "whether a contact was one with an object, as it was read when it was made", &Tap::on_surface);
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
   list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
                  "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
@@ -320,7 +320,13 @@ FieldList<Summary> make_summary_list() {
       "(`backend/baxter: ...` where the backend could go on no more)",
       [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
   list.add("taps", "all of them; the next three add up to it", &Summary::taps).less().headline();
-  list.add("on_surface_taps", "contacts with an object", &Summary::on_surface_taps).more().headline();
+  list.add("on_surface_taps",
+           "contacts with an object, as they are read at the end: with `height.systematic` all are read again after "
+           "every "
+           "tap",
+           &Summary::on_surface_taps)
+      .more()
+      .headline();
   list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less();
   list.add("failed_taps", "taps without a contact", &Summary::failed_taps).less();
   list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)

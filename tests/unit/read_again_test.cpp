@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Whether a contact was with an object is read again when more is known of what the arm adds to all heights.
+#include "experiment/tap_belief.hpp"
+
+#include "record/json.hpp"
+#include "record/tap_row.hpp"
+#include "support/runs.hpp"
+#include "support/testing.hpp"
+
+#include <algorithm>
+
+namespace palpate::test {
+namespace {
+
+/// The belief of the default, of heights to which nothing or something is added.
+struct Reader {
+  explicit Reader(std::vector<std::string> words = {})
+      : config(shipped_config("default.yaml", words)),
+        scene(build_scene(config.options.scene, 1, shared_host())),
+        context{shared_host(), *scene, 1, nullptr, {}},
+        candidates(grid_by_count(scene->area(), 21)),
+        belief(config.options, candidates, context, clock) {}
+
+  ResolvedConfig config;
+  std::unique_ptr<const Scene> scene;
+  Context context;
+  Candidates candidates;
+  PhaseClock clock;
+  TapBelief belief;
+};
+
+/// Six taps on a plate of 1.4 cm, then three beside it.
+const std::vector<Touch>& taps_of_a_plate() {
+  static const std::vector<Touch> taps{
+      {{0.10, 0.10}, 0.014, true}, {{0.13, 0.10}, 0.014, true}, {{0.10, 0.13}, 0.014, true},
+      {{0.13, 0.13}, 0.014, true}, {{0.10, 0.07}, 0.014, true}, {{0.07, 0.10}, 0.014, true},
+      {{0.01, 0.01}, 0.0, false},  {{0.01, 0.22}, 0.0, false},  {{0.22, 0.01}, 0.0, false}};
+  return taps;
+}
+
+constexpr Quantities kAll = Quantity::height | Quantity::probability | Quantity::weight | Quantity::uncertainty;
+
+TEST(ReadAgain, APlateTakenForTheDeskIsKnownAsAnObjectOnceTheDeskWasTouched) {
+  Reader one;
+  one.belief.ask(kAll);
+  std::vector<std::size_t> hits;
+  for (const Touch& tap : taps_of_a_plate()) {
+    one.belief.observe(tap.place, contact_at(tap.height));
+    one.belief.update();
+    hits.push_back(one.belief.hits().size());
+  }
+  EXPECT_THAT(hits, testing::ElementsAre(0, 0, 0, 0, 0, 0, 0, 6, 6));
+  EXPECT_EQ(one.belief.first_hit_tap(), 1);
+  const int middle = one.candidates.nearest(0.115, 0.115, one.scene->area());
+  EXPECT_GT(one.belief.probability()(middle), 0.95);
+  EXPECT_NEAR(one.belief.height_mean()(middle), 0.014, 0.002);
+}
+
+TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{},
+                                                {"footprint=regression"},
+                                                {"height.lies=none", "fitting=ceres", "surface=single"}}) {
+    Reader late(words);
+    Reader soon(words);
+    soon.belief.ask(kAll);
+    for (const Touch& tap : taps_of_a_plate()) {
+      for (Reader* reader : {&late, &soon}) reader->belief.observe(tap.place, contact_at(tap.height));
+      soon.belief.update();
+    }
+    late.belief.ask(kAll);
+    EXPECT_EQ(soon.belief.probability(), late.belief.probability());
+    EXPECT_EQ(soon.belief.weight(), late.belief.weight());
+    EXPECT_EQ(soon.belief.doubt(), late.belief.doubt());
+    if (words.size() < 3) {  // of a fit the heights, whose process is not made anew, remember what they were then
+      EXPECT_LT((soon.belief.height_mean() - late.belief.height_mean()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT((soon.belief.height_variance() - late.belief.height_variance()).cwiseAbs().maxCoeff(), 1e-12);
+    }
+  }
+}
+
+/// Contacts that read otherwise at the end than when they were made.
+int flips(const Finished& run) {
+  int out = 0;
+  std::size_t contact = 0;
+  for (const TapRecord& tap : run.taps) {
+    if (!tap.on_surface) continue;
+    out += run.experiment.belief().touches()[contact++].on != *tap.on_surface ? 1 : 0;
+  }
+  return out;
+}
+
+TEST(ReadAgain, NothingFlipsWhereTheArmIsOffAndNoObjectIsLow) {
+  for (const char* scene : {"object_ii", "cylinder", "large_block"}) {
+    for (const char* effects : {"scene.effects=none", "scene.effects={height_offset: {constant: 8 mm}}"})
+      EXPECT_EQ(flips(Finished("default.yaml", {std::string("scene=") + scene, effects})), 0) << scene << effects;
+  }
+}
+
+TEST(ReadAgain, AResumedRunAndOneThatIsTappedAgainGoOnAsTheUnbrokenOne) {
+  const std::vector<std::string> words{"scene=plate", "scene.placement=random", "scene.effects=standard", "seed=3"};
+  Finished unbroken("default.yaml", words);
+  ASSERT_GT(flips(unbroken), 0);
+  const RunResult result = unbroken.experiment.result();
+  EXPECT_EQ(result.on_surface_taps, static_cast<int>(unbroken.experiment.belief().hits().size()));
+  EXPECT_EQ(result.on_surface_taps + result.off_surface_taps + result.failed_taps, result.taps);
+  for (std::size_t cut = 0; cut < unbroken.taps.size(); cut += 3) {
+    Prepared rest("default.yaml", words);
+    rest.experiment.resume(unbroken.past(cut));
+    rest.run();
+    ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
+    for (std::size_t i = 0; i < rest.taps.size(); ++i) {
+      ASSERT_EQ(to_json_line(tap_row(rest.taps[i])), to_json_line(tap_row(unbroken.taps[cut + i])))
+          << "cut " << cut << " tap " << i;
+    }
+    EXPECT_EQ(rest.experiment.result().errors.rmse, result.errors.rmse);
+    EXPECT_EQ(rest.experiment.counts().first_hit_tap, result.first_hit_tap);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
