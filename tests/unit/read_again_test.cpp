@@ -96,7 +96,7 @@ TEST(ReadAgain, NothingFlipsWhereTheArmIsOffAndNoObjectIsLow) {
   }
 }
 
-TEST(ReadAgain, AResumedRunAndOneThatIsTappedAgainGoOnAsTheUnbrokenOne) {
+TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
   const std::vector<std::string> words{"scene=plate", "scene.placement=random", "scene.effects=standard", "seed=3"};
   Finished unbroken("default.yaml", words);
   ASSERT_GT(flips(unbroken), 0);
