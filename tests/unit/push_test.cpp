@@ -169,10 +169,12 @@ TEST(Particles, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
   // A disc of 6 cm, on a lattice of touches, then the same 1.5 cm to the right.
   std::vector<Target> places;
   for (const double shift : {0.0, 0.015}) {
-    for (int i = 0; i < 25; ++i) {
-      const Target place{0.055 + 0.03 * (i % 5), 0.055 + 0.03 * (i / 5)};
-      places.push_back(place);
-      belief.add({place, 0.0, std::hypot(place.x - 0.11 - shift, place.y - 0.11) <= 0.03});
+    for (int row = 0; row < 5; ++row) {
+      for (int column = 0; column < 5; ++column) {
+        const Target place{0.055 + 0.03 * column, 0.055 + 0.03 * row};
+        places.push_back(place);
+        belief.add({place, 0.0, std::hypot(place.x - 0.11 - shift, place.y - 0.11) <= 0.03});
+      }
     }
   }
   EXPECT_GT(belief.pushed().share, 0.5);

@@ -14,7 +14,7 @@ namespace {
 
 /// The belief of the default, of heights to which nothing or something is added.
 struct Reader {
-  explicit Reader(std::vector<std::string> words = {})
+  explicit Reader(const std::vector<std::string>& words = {})
       : config(shipped_config("default.yaml", words)),
         scene(build_scene(config.options.scene, 1, shared_host())),
         context{shared_host(), *scene, 1, nullptr, {}},
