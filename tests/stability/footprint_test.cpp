@@ -66,6 +66,24 @@ INSTANTIATE_TEST_SUITE_P(OfLabels, FootprintExtremes,
                            return name;
                          });
 
+TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
+  for (const double height : {0.0, 0.05, 1e3}) {
+    const auto footprint =
+        test::make<Footprint>(test::shared_host(), "shape", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
+    int number = 0;
+    for (Touch touch : test::disorderly_touches(kMany / 10)) {
+      touch.height = ++number % 3 == 0 ? -height : height;
+      footprint->add(touch);
+    }
+    EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, test::lattice(47, 47)))) << height;
+    for (const FootprintNumber& one : footprint->numbers()) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
+    // All alike at one place: each of the others makes the piece a hundred times as probable.
+    const auto one = test::make<Footprint>(test::shared_host(), "shape", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
+    for (int i = 0; i < kMany / 10; ++i) one->add({{0.1, 0.12}, height, true});
+    EXPECT_NEAR(test::probability_of(*one, Points{{0.1, 0.12}})(0), 1.0, 1e-6) << height;
+  }
+}
+
 /// A run of the loop over such touches, every number of the footprint that it recorded checked.
 void expect_sound_run(const std::string& labels, int taps, std::vector<std::string> words) {
   words.insert(words.end(), {fmt::format("taps={}", taps), "repeat=allow"});

@@ -27,7 +27,7 @@ Eigen::MatrixXd written_inside(Eigen::Index rows, Eigen::Index columns, const Wr
   Eigen::MatrixXd around = Eigen::MatrixXd::Constant(rows + 4, columns + 2, kUntouched);
   Eigen::Ref<Eigen::MatrixXd> inside = around.block(2, 1, rows, columns);
   write(inside);
-  const Eigen::MatrixXd out = inside;
+  Eigen::MatrixXd out = inside;
   inside.setConstant(kUntouched);
   EXPECT_TRUE((around.array() == kUntouched).all()) << "something was written beside the output";
   return out;

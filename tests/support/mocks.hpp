@@ -19,6 +19,7 @@ class WrittenBelief final : public Belief {
   int count = 0;  ///< of taps
   Points places;
   Eigen::VectorXd u, w, p, mean, variance;
+  OutlineSample sample;
   mutable Quantities read;
 
   const Points& candidates() const override { return places; }
@@ -28,6 +29,10 @@ class WrittenBelief final : public Belief {
   const Eigen::VectorXd& uncertainty() const override { return seen(Quantity::uncertainty, u); }
   const Eigen::VectorXd& weight() const override { return seen(Quantity::weight, w); }
   const Eigen::VectorXd& probability() const override { return seen(Quantity::probability, p); }
+  const OutlineSample& outlines() const override {
+    read = read | Quantity::outlines;
+    return sample;
+  }
   const Eigen::VectorXd& height_mean() const override { return seen(Quantity::height, mean); }
   const Eigen::VectorXd& height_variance() const override { return seen(Quantity::height, variance); }
 

@@ -178,8 +178,8 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
 
 TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore) {
   // From there on nobody is judged any more: what was thought of each contact is carried along.
-  const std::vector<std::string> words{"scene=large_block", "taps=150", "seed=4", "scene.effects=standard",
-                                       "height.lies=0.1"};
+  const std::vector<std::string> words{"scene=large_block",      "taps=150",        "seed=4",
+                                       "scene.effects=standard", "height.lies=0.1", "acquisition={type: inside}"};
   const Finished unbroken("default.yaml", words);
   ASSERT_GT(unbroken.experiment.counts().on_surface_taps, 105);
   ASSERT_FALSE(unbroken.taps.back().doubted->empty());

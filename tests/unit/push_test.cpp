@@ -99,21 +99,22 @@ const std::vector<std::pair<Target, bool>> kLabels{{{0.08, 0.09}, true},  {{0.15
 
 TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
   ParticleSettings how;
-  how.count = 4000;
+  how.count = 2000;
   how.mistaken = how.lies = 0.05;
   how.pushes = 0.05;
-  how.moves = 40;  // a push is found slowly: with 12 a seventh less of them
-  how.most_moves = 200;
+  how.moves = 160;  // a push is found slowly: with 40 a twentieth less of them, with 12 a fifth
+  how.most_moves = 800;
   OutlinePrior::Settings settings;
   settings.area = kDesk;
-  settings.two = settings.without = 0.05;  // few draws say much of outlines that fit anything
+  settings.expected = 1.0;
+  settings.hollow = 0.05;  // few draws say much of outlines that fit anything
   const OutlinePrior prior(settings);
   const auto touches = static_cast<int>(kLabels.size());
   Random random(5, "push test");
   double evidence = 0.0;
   double pushed = 0.0;
   Eigen::VectorXd since = Eigen::VectorXd::Zero(touches);  // pushed after that many touches
-  const int draws = test::brief() ? 200000 : 1000000;
+  const int draws = test::brief() ? 100000 : 400000;
   for (int i = 0; i < draws; ++i) {
     const Outline outline = prior.draw(random);
     const auto normal = [&] {
@@ -155,7 +156,8 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
     }
   }
   EXPECT_GT(pushed, 0.2) << "the labels say something";
-  EXPECT_NEAR(found, pushed, 0.05);
+  // Two runs differ by 0.01 or less.
+  EXPECT_NEAR(found, pushed, 0.03);
   EXPECT_LT((found_since - since).cwiseAbs().maxCoeff(), 0.05)
       << found_since.transpose() << " for " << since.transpose();
 }
@@ -178,7 +180,9 @@ TEST(Particles, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
     }
   }
   EXPECT_GT(belief.pushed().share, 0.5);
-  EXPECT_NEAR(belief.pushed().before, 25.0, 3.0);
+  // Of the labels from the 15th to the 36th each is the same wherever the disc is.
+  EXPECT_GE(belief.pushed().before, 14.0);
+  EXPECT_LE(belief.pushed().before, 36.0);
   Points now(50, 2);
   for (Eigen::Index i = 0; i < 50; ++i)
     now.row(i) << places[static_cast<std::size_t>(i)].x, places[static_cast<std::size_t>(i)].y;

@@ -48,6 +48,14 @@ class Resolver final : public Fields {
     return std::move(output_);
   }
 
+  void gone(const char* key, const char* instead) override {
+    if (silent_) return;
+    for (const Tree::Entry& entry : input_.entries) {
+      if (entry.key == key && entry.value.layer >= type_layer_)
+        throw Error(entry.place.text(), fmt::format("option '{}' is no more", key), instead);
+    }
+  }
+
   void real(double& value, const Field& field) override {
     if (const Tree* tree = claim(field)) value = quantity(*tree, field);
     write(field, Tree::scalar(write_quantity(value, field.unit)));

@@ -203,6 +203,7 @@ Quantities TapBelief::known(Quantities asked) const {
   const bool of_heights = asked.has(Quantity::uncertainty) || (asked.has(Quantity::height) && !two_part_) ||
                           (of_weight && joined_);  // two outputs of one process
   Quantities out = asked;
+  if (asked.has(Quantity::outlines)) out = out | Quantity::probability;
   if (of_weight) out = out | Quantity::weight;
   if (of_weight && !footprint_) out = out | Quantity::probability;
   if (of_heights) out = out | Quantity::uncertainty;
@@ -241,6 +242,11 @@ void TapBelief::build(Quantities wanted) {
   }
   if (footprint_ && all.has(Quantity::probability) && !footprint_asked_) {
     footprint_asked_ = true;
+    current_ = false;
+  }
+  if (footprint_ && all.has(Quantity::outlines) && !outlines_asked_) {
+    outlines_asked_ = true;
+    probability_.resize(0);
     current_ = false;
   }
   update();
@@ -466,6 +472,7 @@ void TapBelief::map_footprint() {
   for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
   probability_.resize(candidates_.size());
   footprint_->probability(candidates_.points, probability_);
+  if (outlines_asked_) footprint_->sample(candidates_.points, outlines_);
 }
 
 const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {

@@ -88,6 +88,7 @@ class TapBelief final : public Belief {
   const Eigen::VectorXd& uncertainty() const override { return kept(uncertainty_); }
   const Eigen::VectorXd& weight() const override { return kept(clip_ ? weight_ : weight_mean_); }
   const Eigen::VectorXd& probability() const override { return kept(probability_); }
+  const OutlineSample& outlines() const override { return outlines_; }
   const Eigen::VectorXd& height_mean() const override { return kept(height_mean_); }
   const Eigen::VectorXd& height_variance() const override { return kept(two_part_ ? object_variance_ : variance_); }
 
@@ -236,6 +237,8 @@ class TapBelief final : public Belief {
   PluginChoice footprint_choice_;
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight
   bool footprint_asked_ = false;
+  bool outlines_asked_ = false;
+  OutlineSample outlines_;
   bool height_asked_ = false;      ///< and not only whether it is believed
   std::size_t touches_taken_ = 0;  ///< by the footprint
   /// Empty until somebody asks for them.

@@ -38,6 +38,7 @@ class Declared final : public Belief {
   const Eigen::VectorXd& probability() const override {
     return declared(Quantity::probability, "the probability p").probability();
   }
+  const OutlineSample& outlines() const override { return declared(Quantity::outlines, "the outlines").outlines(); }
   const Eigen::VectorXd& height_mean() const override { return declared(Quantity::height, "the height").height_mean(); }
   const Eigen::VectorXd& height_variance() const override {
     return declared(Quantity::height, "the height").height_variance();
@@ -128,6 +129,7 @@ class NamedFootprint final : public Named<Footprint> {
   bool is_weight() const override { return call(&Footprint::is_weight); }
   void add(const Touch& touch) override { call(&Footprint::add, touch); }
   void probability(const PointsView& places, VectorOut out) override { call(&Footprint::probability, places, out); }
+  void sample(const PointsView& places, OutlineSample& out) const override { call(&Footprint::sample, places, out); }
   void doubt(VectorOut out) const override { call(&Footprint::doubt, out); }
   void place_now(Points& places) const override { call(&Footprint::place_now, places); }
   std::vector<FootprintNumber> numbers() const override { return call(&Footprint::numbers); }

@@ -14,6 +14,7 @@ enum class Quantity : unsigned {
   probability = 4,  ///< p
   height = 8,       ///< mean and variance
   doubt = 16,       ///< which contacts are believed; nothing that a plugin reads
+  outlines = 32,    ///< some of the outlines that p is the mean of
 };
 
 /// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.
@@ -56,6 +57,9 @@ class Belief {
   virtual const Eigen::VectorXd& weight() const = 0;
   /// p: the probability that a candidate is on an object, by the config's footprint; M values in [0, 1].
   virtual const Eigen::VectorXd& probability() const = 0;
+  /// Outlines that p is the mean of, some of them: what p alone does not tell, that places are on an object together.
+  /// Empty where the footprint has none.
+  virtual const OutlineSample& outlines() const = 0;
   /// Mean of the height process, metres.
   virtual const Eigen::VectorXd& height_mean() const = 0;
   /// Variance of the height process, noise excluded, square metres.

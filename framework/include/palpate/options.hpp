@@ -155,6 +155,8 @@ class Fields {
   /// Another plugin, whose name and options stand among the fields at hand instead of in a group of their own: the
   /// needed `field` names it. Throws Error where one of its options has the name of a field beside it.
   virtual void adopt(PluginChoice& choice, const Field& field) = 0;
+  /// A key that earlier versions had: it is refused, and `instead` says what to write now.
+  virtual void gone(const char* /*key*/, const char* /*instead*/) {}
   /// A law between fields: when `holds` is false, reading fails with `reason` at the place of `field`, which may be a
   /// dotted path to a field of a nested group.
   virtual void require(bool holds, const char* field, const std::string& reason) = 0;

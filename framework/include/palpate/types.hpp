@@ -26,6 +26,15 @@ struct Target {
   double y = 0.0;
 };
 
+/// Some outlines, drawn as probably as they are believed in, over M places: of each place, a column, which of them hold
+/// it. Outline k is bit k % 64 of row k / 64.
+struct OutlineSample {
+  int count = 0;  ///< a multiple of 64; 0 where nothing is believed of whole outlines
+  Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic> holds;
+  /// What a tap at a place is expected to find, apart from all that was touched so far: its extent, square metres.
+  Eigen::VectorXd to_find;
+};
+
 /// What became of one tap. Only `contact` reaches the models; all others are recorded and leave the belief as it was.
 enum class Outcome {
   contact,      ///< the tool touched something; the height is valid

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace palpate::footprints {
 
@@ -27,6 +28,9 @@ struct Axis {
   Axis(double from, double to, int places)
       : first(from), step(places > 1 ? (to - from) / (places - 1) : 1.0), count(places) {}
 
+  bool operator==(const Axis& other) const {
+    return first == other.first && step == other.step && count == other.count;
+  }
   double at(int i) const { return first + i * step; }
   /// Those of them between two ends, in steps from the first.
   Cells within(double low, double high) const { return {not_below(low), std::min(count, above(high))}; }
@@ -61,26 +65,51 @@ class LatticeCounts {
     return LatticeCounts(x, y);
   }
 
-  void add(const Outline& outline) {
-    const Cuts first = Cuts(outline.first).scaled(x_.first, x_.step, y_.first, y_.step);
-    if (outline.kind == Outline::Kind::one) {
-      const Cells rows = rows_of(first);
-      for (int row = rows.begin; row < rows.end; ++row) mark(row, cells(first, row), 1.0);
+  void add(const Outline& outline, double weight = 1.0) {
+    if (outline.size() == 1 && !outline[0].hollow) {
+      const Cuts cuts = in_steps(outline[0].form);
+      const Cells rows = rows_of(cuts);
+      for (int row = rows.begin; row < rows.end; ++row) mark(row, cells(cuts, row), weight);
       return;
     }
-    const Cuts second = Cuts(outline.second).scaled(x_.first, x_.step, y_.first, y_.step);
-    const Cells of_first = rows_of(first);
-    const Cells of_second = rows_of(second);
-    for (int row = of_first.begin; row < of_first.end; ++row) mark(row, cells(first, row), 1.0);
-    // What both hold is counted once if they are united, and not at all if one is taken from the other.
-    for (int row = std::max(of_first.begin, of_second.begin); row < std::min(of_first.end, of_second.end); ++row) {
-      const Cells a = cells(first, row);
-      const Cells b = cells(second, row);
-      mark(row, {std::max(a.begin, b.begin), std::min(a.end, b.end)}, -1.0);
-    }
-    if (outline.kind != Outline::Kind::two) return;
-    for (int row = of_second.begin; row < of_second.end; ++row) mark(row, cells(second, row), 1.0);
+    for_each_run(outline, [&](int row, const Cells& cells) { mark(row, cells, weight); });
   }
+
+  /// Calls visit(row, cells) for all that the outline holds, each place once.
+  template <class Visit>
+  void for_each_run(const Outline& outline, const Visit& visit) {
+    parts_.clear();
+    Cells rows{y_.count, 0};
+    for (const Piece& piece : outline) {
+      const Cuts cuts = in_steps(piece.form);
+      parts_.push_back({cuts, piece.hollow ? in_steps(piece.hole) : cuts, rows_of(cuts), piece.hollow});
+      rows = {std::min(rows.begin, parts_.back().rows.begin), std::max(rows.end, parts_.back().rows.end)};
+    }
+    for (int row = rows.begin; row < rows.end; ++row) {
+      runs_.clear();
+      for (const Part& part : parts_) {
+        if (row < part.rows.begin || row >= part.rows.end) continue;
+        const Cells whole = cells(part.cuts, row);
+        const Cells hole = part.hollow ? cells(part.hole, row) : Cells{0, 0};
+        if (hole.begin >= hole.end) {
+          add_run(whole);
+        } else {
+          add_run({whole.begin, std::min(whole.end, hole.begin)});
+          add_run({std::max(whole.begin, hole.end), whole.end});
+        }
+      }
+      // Few, and mostly in order.
+      int reached = 0;
+      for (const Cells& run : runs_) {
+        if (run.end <= reached) continue;
+        visit(row, Cells{std::max(run.begin, reached), run.end});
+        reached = run.end;
+      }
+    }
+  }
+
+  int columns() const { return x_.count; }
+  bool same_places(const LatticeCounts& other) const { return x_ == other.x_ && y_ == other.y_; }
 
   void sum(VectorOut out) const {
     for (int row = 0; row < y_.count; ++row) {
@@ -99,14 +128,31 @@ class LatticeCounts {
     return low > high ? Cells{0, 0} : x_.within(low, high);
   }
 
-  void mark(int row, const Cells& cells, double sign) {
-    if (cells.begin >= cells.end) return;
-    marks_(cells.begin, row) += sign;
-    marks_(cells.end, row) -= sign;
+  Cuts in_steps(const Form& form) const { return Cuts(form).scaled(x_.first, x_.step, y_.first, y_.step); }
+
+  void add_run(const Cells& run) {
+    if (run.begin >= run.end) return;
+    auto place = runs_.end();
+    while (place != runs_.begin() && (place - 1)->begin > run.begin) --place;
+    runs_.insert(place, run);
   }
+
+  void mark(int row, const Cells& cells, double weight) {
+    if (cells.begin >= cells.end) return;
+    marks_(cells.begin, row) += weight;
+    marks_(cells.end, row) -= weight;
+  }
+
+  struct Part {
+    Cuts cuts, hole;
+    Cells rows;
+    bool hollow;
+  };
 
   Axis x_, y_;
   Eigen::MatrixXd marks_;
+  std::vector<Part> parts_;  ///< of the outline that is looked at, and the runs of a row of it
+  std::vector<Cells> runs_;
 };
 
 }  // namespace palpate::footprints

@@ -3,132 +3,142 @@
 
 #include <palpate/error.hpp>
 
-#include <algorithm>
-#include <limits>
 #include <tuple>
 
 namespace palpate::footprints {
+namespace {
 
-double Piece::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
+/// Of the ordered logarithms of two half axes up to `longest`, and a direction, none of which is preferred.
+double even_density(double shortest, double longest) {
+  const double range = std::log(longest / shortest);
+  return 2.0 / (range * range * kPi);
+}
 
-std::pair<double, double> Piece::cut(double py) const { return Cuts(*this).at(py); }
+}  // namespace
 
-Cuts::Cuts(const Piece& piece) : family_(piece.family), x_(piece.x), y_(piece.y), reach_(piece.reach_y()) {
-  if (family_ == Piece::Family::ellipse) {
-    // (u, v) along the cut is linear in x: a quadratic whose middle and half width follow from the reach.
-    slope_[0] = piece.cosine * piece.sine * (piece.a * piece.a - piece.b * piece.b) / (reach_ * reach_);
-    half_[0] = piece.a * piece.b / reach_;
-    return;
+OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
+  const Area& area = settings_.area;
+  // What is longer than the diagonal never fits.
+  longest_ = 0.5 * std::min(settings_.largest, std::hypot(area.width, area.depth));
+  // Which share of the forms that keep no bounds fits: summed up over a grid, fine enough for a thousandth.
+  constexpr int kAxes = 48;
+  constexpr int kTurns = 32;
+  const double shortest = 0.5 * settings_.smallest;
+  const auto half_axis = [&](int i) { return shortest * std::pow(longest_ / shortest, (i + 0.5) / kAxes); };
+  std::array<double, kAxes> halves{};
+  for (int i = 0; i < kAxes; ++i) halves[static_cast<std::size_t>(i)] = half_axis(i);
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Form form;
+    form.turn(kPi * (turn + 0.5) / kTurns);
+    for (const Form::Family family : {Form::Family::box, Form::Family::ellipse}) {
+      form.family = family;
+      const double share = this->family(form);
+      for (const double a : halves) {
+        for (const double b : halves) {
+          if (b > a) break;
+          form.a = a;
+          form.b = b;
+          if (fits(form)) form_ += (b == a ? 1.0 : 2.0) * share;
+        }
+      }
+    }
   }
-  // |along * dx + across * dy| <= side; sides that run along x are left to the reach.
-  const auto sides = [this](int pair, double along, double across, double side) {
-    const bool runs_along = std::abs(along) < 1e-12;
-    slope_[pair] = runs_along ? 0.0 : -across / along;
-    half_[pair] = runs_along ? std::numeric_limits<double>::infinity() : side / std::abs(along);
-  };
-  sides(0, piece.cosine, piece.sine, piece.a);
-  sides(1, -piece.sine, piece.cosine, piece.b);
+  form_ = longest_ > shortest ? form_ / (kAxes * kAxes * kTurns) : 0.0;
+  if (!(form_ > 1e-5)) {
+    throw Error("footprint", "hardly any outline of this prior fits into the area",
+                "make smallest and largest smaller");
+  }
+  form_ = even_density(shortest, longest_) / form_;
 }
 
-void Piece::order_axes() {
-  if (b <= a) return;
-  std::swap(a, b);
-  std::tie(cosine, sine) = std::pair(-sine, cosine);
-}
-
-Piece OutlinePrior::draw_form(double longest, Random& random) const {
+Form OutlinePrior::draw_form(double longest, Random& random) const {
   const double shortest = 0.5 * settings_.smallest;
   const auto half_axis = [&] { return shortest * std::pow(longest / shortest, random.uniform()); };
-  Piece out;
-  out.family = random.uniform() < settings_.ellipses ? Piece::Family::ellipse : Piece::Family::box;
+  Form out;
+  out.family = random.uniform() < settings_.ellipses ? Form::Family::ellipse : Form::Family::box;
   std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
   out.turn(kPi * random.uniform());
   return out;
 }
 
-Piece OutlinePrior::draw_piece(Random& random) const {
-  // Drawn until it fits: that is what the prior says. Small ones nearly always fit where any do.
-  constexpr int kPatience = 100000;
-  const double width = settings_.area.width;
-  const double depth = settings_.area.depth;
-  // What is longer than the diagonal would never fit, so it need not be drawn.
-  const double longest = 0.5 * std::min(settings_.largest, std::hypot(width, depth));
-  for (int tries = 0; tries < kPatience; ++tries) {
-    Piece out = draw_form(longest, random);
-    const double reach_x = out.reach_x();
-    const double reach_y = out.reach_y();
-    if (out.a > settings_.most_slender * out.b) continue;
-    if (2.0 * reach_x >= width || 2.0 * reach_y >= depth) continue;
-    out.x = reach_x + (width - 2.0 * reach_x) * random.uniform();
-    out.y = reach_y + (depth - 2.0 * reach_y) * random.uniform();
-    return out;
-  }
-  throw Error("footprint", "hardly any outline of this prior fits into the area", "make smallest and largest smaller");
+bool OutlinePrior::fits(const Form& form) const {
+  return 2.0 * form.b >= settings_.smallest && form.a <= longest_ && form.a <= settings_.most_slender * form.b &&
+         2.0 * form.reach_x() < settings_.area.width && 2.0 * form.reach_y() < settings_.area.depth;
 }
 
-Piece OutlinePrior::draw_second(Outline::Kind kind, const Piece& first, Random& random) const {
-  if (kind == Outline::Kind::two) return draw_piece(random);
-  Piece out = draw_form(first.a, random);
+Piece OutlinePrior::draw_piece(Random& random) const {
+  // Drawn until it fits: that is what the prior says.
+  Piece out;
+  do {
+    out.form = draw_form(longest_, random);
+  } while (!fits(out.form));
+  const double reach_x = out.form.reach_x();
+  const double reach_y = out.form.reach_y();
+  out.form.x = reach_x + (settings_.area.width - 2.0 * reach_x) * random.uniform();
+  out.form.y = reach_y + (settings_.area.depth - 2.0 * reach_y) * random.uniform();
+  out.density = density(out);
+  return out;
+}
+
+Form OutlinePrior::draw_hole(const Form& form, Random& random) const {
+  Form out = draw_form(form.a, random);
   double u, v;
   do {
     u = 2.0 * random.uniform() - 1.0;
     v = 2.0 * random.uniform() - 1.0;
-  } while (first.family == Piece::Family::ellipse && u * u + v * v > 1.0);
-  out.x = first.x + first.cosine * u * first.a - first.sine * v * first.b;
-  out.y = first.y + first.sine * u * first.a + first.cosine * v * first.b;
+  } while (form.family == Form::Family::ellipse && u * u + v * v > 1.0);
+  out.x = form.x + form.cosine * u * form.a - form.sine * v * form.b;
+  out.y = form.y + form.sine * u * form.a + form.cosine * v * form.b;
+  return out;
+}
+
+Piece OutlinePrior::draw_piece_or_hollow(Random& random) const {
+  Piece out = draw_piece(random);
+  if (random.uniform() >= whole(out.form)) {
+    out.hole = draw_hole(out.form, random);
+    out.hollow = true;
+    out.density = density(out);
+  }
   return out;
 }
 
 Outline OutlinePrior::draw(Random& random) const {
   for (;;) {
     Outline out;
-    const double kind = random.uniform();
-    out.first = draw_piece(random);
-    if (kind >= settings_.two + settings_.without) return out;
-    out.kind = kind < settings_.two ? Outline::Kind::two : Outline::Kind::without;
-    // Nothing can be taken from a piece that is smaller.
-    if (out.kind == Outline::Kind::without && out.first.a < settings_.smallest) continue;
-    out.second = draw_second(out.kind, out.first, random);
-    return out;
+    double time = -std::log(1.0 - random.uniform());
+    for (; time < settings_.expected && out.size() < settings_.most; time -= std::log(1.0 - random.uniform()))
+      out.add(draw_piece_or_hollow(random));
+    if (time >= settings_.expected) return out;
   }
 }
 
-double OutlinePrior::odds(Outline::Kind kind) const {
-  if (kind == Outline::Kind::one) return 1.0;
-  return (kind == Outline::Kind::two ? settings_.two : settings_.without) / (1.0 - settings_.two - settings_.without);
+double OutlinePrior::family(const Form& form) const {
+  return form.family == Form::Family::ellipse ? settings_.ellipses : 1.0 - settings_.ellipses;
 }
 
-double OutlinePrior::family(const Piece& piece) const {
-  return piece.family == Piece::Family::ellipse ? settings_.ellipses : 1.0 - settings_.ellipses;
-}
-
-double OutlinePrior::centre_density(const Piece& piece) const {
-  if (2.0 * piece.b < settings_.smallest || 2.0 * piece.a > settings_.largest) return 0.0;
-  if (piece.a > settings_.most_slender * piece.b) return 0.0;
-  const double reach_x = piece.reach_x();
-  const double reach_y = piece.reach_y();
+double OutlinePrior::centre_density(const Form& form) const {
+  if (!fits(form)) return 0.0;
+  const double reach_x = form.reach_x();
+  const double reach_y = form.reach_y();
   const double width = settings_.area.width;
   const double depth = settings_.area.depth;
-  if (piece.x < reach_x || piece.x + reach_x > width || piece.y < reach_y || piece.y + reach_y > depth) return 0.0;
+  if (form.x < reach_x || form.x + reach_x > width || form.y < reach_y || form.y + reach_y > depth) return 0.0;
   return 1.0 / ((width - 2.0 * reach_x) * (depth - 2.0 * reach_y));
 }
 
-double OutlinePrior::second_centre_density(const Outline& outline) const {
-  if (outline.kind == Outline::Kind::two) return centre_density(outline.second);
-  const Piece& first = outline.first;
-  if (first.a < settings_.smallest) return 0.0;  // as in draw()
-  if (2.0 * outline.second.b < settings_.smallest || outline.second.a > first.a) return 0.0;
-  return first.contains(outline.second.x, outline.second.y) ? 1.0 / first.extent() : 0.0;
+double OutlinePrior::hole_centre_density(const Form& form, const Form& hole) const {
+  if (2.0 * hole.b < settings_.smallest || hole.a > form.a) return 0.0;
+  return form.contains(hole.x, hole.y) ? 1.0 / form.extent() : 0.0;
 }
 
-double OutlinePrior::density(const Outline& outline) const {
-  const double first = centre_density(outline.first) * family(outline.first);
-  if (outline.kind == Outline::Kind::one || first <= 0.0) return first;
-  const double second = second_centre_density(outline) * family(outline.second);
-  // Half axes of what is taken away are spread over a range that the first piece gives.
-  const double range =
-      outline.kind == Outline::Kind::without ? std::log(2.0 * outline.first.a / settings_.smallest) : 1.0;
-  return odds(outline.kind) * first * second / (range * range);
+double OutlinePrior::density(const Piece& piece) const {
+  const double of_form = centre_density(piece.form) * family(piece.form) * form_;
+  // Nothing can be taken from a piece that is smaller.
+  if (!piece.hollow) return of_form * whole(piece.form);
+  const double hollow = 1.0 - whole(piece.form);
+  if (of_form <= 0.0 || hollow <= 0.0) return 0.0;
+  return of_form * hollow * hole_centre_density(piece.form, piece.hole) * family(piece.hole) *
+         even_density(0.5 * settings_.smallest, piece.form.a);
 }
 
 }  // namespace palpate::footprints

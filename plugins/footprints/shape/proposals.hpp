@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The moves of the Markov chain over outlines: what an outline is changed into, and how often that is to be taken.
+// The moves of the Markov chain over outlines: what an outline is changed into, and how often that is to be taken
+// (between outlines of unlike numbers of pieces: Green 1995; splitting and merging: Richardson and Green 1997).
 #pragma once
 
 #include "outline.hpp"
@@ -8,31 +9,56 @@
 #include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace palpate::footprints {
 
-/// An outline, where it was before, and how probable that is by the prior of the outline, up to a factor.
+/// What an outline says of each touch: bit i is set where piece i holds it.
+using Holders = std::vector<std::uint16_t>;
+
+/// An outline, and where it was before.
 struct State {
   Outline outline;
-  double density = 0.0;
   Push push;
 };
 
 /// A change, and what Metropolis and Hastings multiply the ratio of the likelihoods by: its prior density times the
 /// density of proposing the way back, over those of what it was and of the way there. 0 where there is no way.
 struct Proposal : State {
+  /// What it does. Each of change_form, replace and push is the way back of its own kind; the others are in pairs.
+  enum class Kind { change_form, replace, add, remove, make_hole, fill_hole, split, merge, push };
+  Kind kind = Kind::change_form;
   double correction = 0.0;
+
+  /// Beyond these circles the outline holds what it held, each place by the same pieces.
+  struct Circle {
+    double x, y, radius;
+  };
+  static constexpr int kMostCircles = 4;
+  std::array<Circle, kMostCircles> circles;
+  int changed = 0;          ///< how many of them
+  bool everywhere = false;  ///< there is no such beyond
 };
 
-/// Shifts, turns or stretches a piece, moves one of its sides, changes its family; adds a second piece or takes it away
-/// again, or draws an outline anew. A second piece is added where the prior would have it or, one time in two, about a
-/// label that the outline has wrong, because there it may set one right.
-Proposal propose(const State& from, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random);
+/// What the moves are told of the touches: where each is seen by the outline that is to be moved, its label, and who
+/// holds it.
+struct Seen {
+  const std::vector<Touch>* touches;
+  const Holders* holders;
+};
+
+/// Shifts, turns or stretches a form, moves one of its sides, changes its family; adds a piece or takes one away, makes
+/// a hole or fills it, splits a piece or merges two, or draws one anew. A piece is added where the prior would have it
+/// or, one time in two, about a touch of an object that no piece holds, a hole about one of the desk that the piece
+/// holds: there they may set a label right. Pieces near the latest touch are moved more often, as they know least of
+/// it. `out` is `from` at first.
+void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random);
 
 /// Adds a push or takes it away, or changes it. Either the outline stays where it is now, or where it was before: then
 /// what was touched before agrees with it as well as it did. `rate`: the prior probability of a push between two of
 /// the `touches`, at least 2.
-Proposal propose_push(const State& from, const OutlinePrior& prior, int touches, double rate, Random& random);
+void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double rate, Random& random);
 
 }  // namespace palpate::footprints

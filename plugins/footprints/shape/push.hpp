@@ -35,22 +35,26 @@ struct Push {
   }
 
   Outline now(Outline outline) const {
-    for (Piece* piece : {&outline.first, &outline.second}) {
-      const Target place = now(Target{piece->x, piece->y});
-      piece->x = place.x;
-      piece->y = place.y;
-      piece->turn_by(cosine, sine);
-    }
+    each(outline, [this](Form& form) { carry(form, now(Target{form.x, form.y}), cosine, sine); });
     return outline;
   }
   Outline then(Outline outline) const {
-    for (Piece* piece : {&outline.first, &outline.second}) {
-      const Target place = then(Target{piece->x, piece->y});
-      piece->x = place.x;
-      piece->y = place.y;
-      piece->turn_by(cosine, -sine);
-    }
+    each(outline, [this](Form& form) { carry(form, then(Target{form.x, form.y}), cosine, -sine); });
     return outline;
+  }
+
+ private:
+  static void carry(Form& form, const Target& to, double c, double s) {
+    form.x = to.x;
+    form.y = to.y;
+    form.turn_by(c, s);
+  }
+  template <class Carry>
+  static void each(Outline& outline, const Carry& carry) {
+    for (Piece& piece : outline) {
+      carry(piece.form);
+      carry(piece.hole);
+    }
   }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A Bayesian belief over outlines of one or two simple pieces: the probability of a place is the share of outlines that
-// hold it. Where the touches contradict all of these, the classifier takes over.
+// A Bayesian belief over outlines of any number of simple pieces: the probability of a place is the share of outlines
+// that hold it. Where the touches contradict all of these, the classifier takes over.
 #include "../classifier/laplace.hpp"
 #include "particles.hpp"
 
@@ -14,21 +14,26 @@ namespace palpate::footprints {
 struct ShapeOptions : LaplaceOptions {
   double smallest = 0.02;
   double largest = 0.22;
-  double one_piece = 0.3;
+  double expected = 2.0;
+  double hollow = 0.25;
   double mistaken = 0.01;
   std::optional<double> lies;
   double blur = 0.0;
   double pushes = 0.0;
+  bool heights = true;
   double contradictions = 4.0;
-  std::int64_t particles = 2000;
+  std::int64_t particles = 600;
   void list(Fields& fields) override {
     fields.real(smallest, Field("smallest", "least width of a piece").in(Unit::metre).above(0));
     fields.real(largest, Field("largest", "greatest length of a piece").in(Unit::metre).above(0));
-    fields.real(one_piece, Field("one_piece",
-                                 "probability that an outline is one box or ellipse; others are two of them, or one "
-                                 "without the other, with equal probability")
-                               .at_least(1e-3)
-                               .at_most(1));
+    fields.real(expected, Field("expected",
+                                "boxes and ellipses that are expected on 23 cm x 23 cm; on another area as "
+                                "many for its size")
+                              .above(0)
+                              .at_most(20));
+    fields.real(hollow,
+                Field("hollow", "probability that a box or an ellipse is taken from a piece").at_least(0).at_most(0.9));
+    fields.gone("one_piece", "write expected and hollow: how many pieces are expected, and how often one has a hole");
     fields.real(mistaken,
                 Field("mistaken", "probability that the label of a touch is wrong").at_least(1e-6).at_most(0.4));
     fields.real(lies, Field("lies", "the same of a touch of the desk, if that is more often taken for an object")
@@ -39,6 +44,7 @@ struct ShapeOptions : LaplaceOptions {
     fields.real(
         pushes,
         Field("pushes", "probability, between two touches, that the objects are pushed").at_least(0).at_most(0.5));
+    fields.flag(heights, Field("heights", "whether touches of unlike height speak for two pieces"));
     fields.real(contradictions, Field("contradictions",
                                       "hand over to the classifier when an outline has so many more touches wrong, on "
                                       "average, than mistaken lets expect")
@@ -57,7 +63,7 @@ class Shape final : public Footprint {
         classifier_(options, context),
         particles_(prior(options, context.scene.area()),
                    {static_cast<int>(options.particles), options.mistaken, options.lies.value_or(options.mistaken),
-                    options.blur, options.pushes},
+                    options.blur, options.pushes, options.heights},
                    context.random("footprint/shape")) {}
 
   void add(const Touch& touch) override {
@@ -71,8 +77,12 @@ class Shape final : public Footprint {
 
   void probability(const PointsView& places, VectorOut out) override {
     if (handed_over_at_ > 0) return classifier_.probability(places, out);
-    particles_.count_inside(places, out);
-    out /= particles_.size();
+    particles_.probability(places, out);
+  }
+
+  void sample(const PointsView& places, OutlineSample& out) const override {
+    if (handed_over_at_ > 0) return Footprint::sample(places, out);
+    particles_.sample(places, kSample, out);
   }
 
   void doubt(VectorOut out) const override {
@@ -86,7 +96,8 @@ class Shape final : public Footprint {
 
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"mistakes", particles_.mean_mistakes()},
-                                     {"one_piece", particles_.share_of_one()},
+                                     {"pieces", particles_.mean_pieces()},
+                                     {"left", particles_.left(kWorthFinding)},
                                      {"acceptance", particles_.acceptance()},
                                      {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
     if (options_.pushes > 0.0) out.push_back({"pushed", particles_.pushed().share});
@@ -103,16 +114,20 @@ class Shape final : public Footprint {
           pushed.before, 100.0 * pushed.shift, pushed.share);
     }
     return "the classifier has taken over at touch " + std::to_string(handed_over_at_) +
-           ": no outline of one or two pieces agrees with the touches";
+           ": no outline of few pieces agrees with the touches";
   }
 
  private:
+  static constexpr int kSample = 256;
+  static constexpr double kWorthFinding = 0.03;  // metres
+
   static OutlinePrior prior(const Options& options, const Area& area) {
     OutlinePrior::Settings settings;
     settings.area = area;
     settings.smallest = options.smallest;
     settings.largest = options.largest;
-    settings.two = settings.without = 0.5 * (1.0 - options.one_piece);
+    settings.expected = options.expected * area.width * area.depth / (0.23 * 0.23);
+    settings.hollow = options.hollow;
     return OutlinePrior(settings);
   }
 
@@ -124,6 +139,6 @@ class Shape final : public Footprint {
 };
 
 PALPATE_PLUGIN(Footprint, Shape, "shape",
-               "a belief over outlines of one or two boxes or ellipses, given up where the touches contradict it")
+               "a belief over outlines of any number of boxes and ellipses, given up where the touches contradict it")
 
 }  // namespace palpate::footprints

@@ -134,9 +134,11 @@ void explain_range_of_weight(Page& page, const Row& row, bool clipped) {
 void explain_footprint(Page& page, const Row& row, const std::string& type) {
   const std::string prefix = "footprint.";
   std::vector<std::string> numbers = numbers_below(row, prefix);
-  for (std::string& one : numbers) one = parameter_words(one) + " " + number_words(row, prefix + one);
+  for (std::string& one : numbers) one = fmt::format("{} {}", parameter_words(one), number_words(row, prefix + one));
   page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
                        numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
+  if (const auto left = row.number("footprint.left"))
+    page.say(fmt::format("{:.0f} % that something of 3 cm or more is left that nobody has touched.", 100.0 * *left));
   if (const std::string remark = row.text("footprint.remark"); !remark.empty())
     page.say(fmt::format("Its remark: {}.", remark));
 }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// What outlines are made of: boxes and ellipses of all directions.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace palpate::footprints {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+/// A box or an ellipse. Lengths in metres, in the frame of the area.
+struct Form {
+  enum class Family { box, ellipse };
+  Family family = Family::box;
+  double x = 0.0;  ///< of the centre
+  double y = 0.0;
+  double a = 0.0;       ///< half of the long axis
+  double b = 0.0;       ///< half of the short axis, at most `a`
+  double cosine = 1.0;  ///< of the angle from x to the long axis: as a direction it needs no trigonometry to be asked
+  double sine = 0.0;
+
+  bool contains(double px, double py) const {
+    const double u = cosine * (px - x) + sine * (py - y);
+    const double v = cosine * (py - y) - sine * (px - x);
+    if (family == Family::box) return std::abs(u) <= a && std::abs(v) <= b;
+    return u * u * (b * b) + v * v * (a * a) <= a * a * (b * b);
+  }
+
+  /// How far inside a place lies, metres; negative: outside. Exact of a box; of an ellipse to first order in the
+  /// distance from the rim. Nowhere more than what is left to a circle about it: beyond that by some reach, it is at
+  /// least that far outside.
+  double depth(double px, double py) const {
+    const double u = cosine * (px - x) + sine * (py - y);
+    const double v = cosine * (py - y) - sine * (px - x);
+    if (family == Family::box) {
+      const double along = a - std::abs(u);
+      const double across = b - std::abs(v);
+      return std::max(along, across) < 0.0 ? -std::sqrt(along * along + across * across) : std::min(along, across);
+    }
+    const double q = std::sqrt(u * u * (b * b) + v * v * (a * a)) / (a * b);
+    const double slope = std::sqrt(u * u * (b * b * b * b) + v * v * (a * a * a * a)) / (a * a * b * b);
+    return slope > 0.0 ? std::min(q * (1.0 - q) / slope, a - std::sqrt(u * u + v * v)) : b;
+  }
+
+  /// How far it reaches from its centre along x and along y.
+  double reach_x() const { return reach(cosine * a, sine * b); }
+  double reach_y() const { return reach(sine * a, cosine * b); }
+
+  /// And in a direction of unit length.
+  double reach_along(double dx, double dy) const {
+    return reach(a * (cosine * dx + sine * dy), b * (cosine * dy - sine * dx));
+  }
+
+  /// No place of it is farther from its centre.
+  double radius() const { return std::sqrt(a * a + b * b); }
+
+  /// Square metres.
+  double extent() const;
+
+  /// See Cuts.
+  std::pair<double, double> cut(double py) const;
+
+  /// Turns it about its centre, radians from x to y.
+  void turn(double angle) { turn_by(std::cos(angle), std::sin(angle)); }
+  void turn_by(double c, double s) { std::tie(cosine, sine) = std::pair(cosine * c - sine * s, sine * c + cosine * s); }
+
+  /// Names the longer axis `a` again, the shape stays.
+  void order_axes();
+
+ private:
+  double reach(double along, double across) const {
+    return family == Family::box ? std::abs(along) + std::abs(across) : std::sqrt(along * along + across * across);
+  }
+};
+
+/// Whether two forms have a place in common; of ellipses that pass close by each other it may say so too early.
+bool meet(const Form& one, const Form& other);
+
+/// The cuts of a form along x: what they have in common is computed once.
+class Cuts {
+ public:
+  explicit Cuts(const Form& piece);
+
+  /// The ends along x of the cut at `py`; the first is larger where there is none.
+  std::pair<double, double> at(double py) const {
+    const double dy = py - y_;
+    if (family_ == Form::Family::box) {
+      if (std::abs(dy) > reach_) return {1.0, 0.0};
+      return {x_ + std::max(slope_[0] * dy - half_[0], slope_[1] * dy - half_[1]),
+              x_ + std::min(slope_[0] * dy + half_[0], slope_[1] * dy + half_[1])};
+    }
+    const double rest = 1.0 - dy * dy / (reach_ * reach_);
+    if (rest < 0.0) return {1.0, 0.0};
+    const double middle = x_ + slope_[0] * dy;
+    const double half = half_[0] * std::sqrt(rest);
+    return {middle - half, middle + half};
+  }
+
+  /// No cut lies farther from the centre along y.
+  double y() const { return y_; }
+  double reach() const { return reach_; }
+
+  /// The same in other units: from these places on, in these steps.
+  Cuts scaled(double from_x, double step_x, double from_y, double step_y) const {
+    Cuts out = *this;
+    out.x_ = (x_ - from_x) / step_x;
+    out.y_ = (y_ - from_y) / step_y;
+    out.reach_ /= step_y;
+    for (int i = 0; i < 2; ++i) {
+      out.slope_[i] *= step_y / step_x;
+      out.half_[i] /= step_x;
+    }
+    return out;
+  }
+
+ private:
+  Form::Family family_;
+  double x_, y_;
+  double reach_;
+  double slope_[2] = {0.0, 0.0},
+         half_[2] = {0.0, 0.0};  ///< of the middle, and half widths: of a box for each pair of sides
+};
+
+}  // namespace palpate::footprints

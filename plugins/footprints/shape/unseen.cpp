@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "unseen.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::footprints {
+namespace {
+
+constexpr int kPieces = 8192;
+
+/// Share of the outlines that have no place in common with a form.
+float share_apart(const Form& form, const std::vector<const Outline*>& known) {
+  const auto lies_apart = [&](const Outline* outline) {
+    return std::none_of(outline->begin(), outline->end(), [&](const Piece& piece) { return meet(piece.form, form); });
+  };
+  return static_cast<float>(std::count_if(known.begin(), known.end(), lies_apart)) / static_cast<float>(known.size());
+}
+
+}  // namespace
+
+Unseen::Unseen(const OutlinePrior& prior, Random& random)
+    : weights_(kPieces, kWhole),
+      apart_(kPieces, 1.0F),
+      xs_(kPieces),
+      ys_(kPieces),
+      radii_(kPieces),
+      unit_(prior.settings().expected / (static_cast<double>(kPieces) * kWhole)),
+      counted_(kPieces, 0) {
+  pieces_.reserve(kPieces);
+  for (int i = 0; i < kPieces; ++i) {
+    const Piece& piece = pieces_.emplace_back(prior.draw_piece_or_hollow(random));
+    xs_(i) = static_cast<float>(piece.form.x);
+    ys_(i) = static_cast<float>(piece.form.y);
+    radii_(i) = static_cast<float>(piece.form.radius() + 1e-6);  // above what rounding takes off
+  }
+}
+
+const Piece& Unseen::Holding::draw(Random& random) const {
+  const auto at = static_cast<std::uint64_t>(static_cast<double>(reached_.back()) * random.uniform());
+  const auto one = std::upper_bound(reached_.begin(), reached_.end(), at) - reached_.begin();
+  return *pieces_[std::min(static_cast<std::size_t>(one), pieces_.size() - 1)];
+}
+
+Unseen::Holding Unseen::holding(const Target& place) const {
+  Holding out;
+  std::uint64_t sum = 0;
+  const auto x = static_cast<float>(place.x);
+  const auto y = static_cast<float>(place.y);
+  const Eigen::Array<bool, Eigen::Dynamic, 1> near = (xs_ - x).square() + (ys_ - y).square() <= radii_.square();
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (!near(static_cast<Eigen::Index>(i)) || weights_[i] == 0 || !pieces_[i].contains(place.x, place.y)) continue;
+    out.pieces_.push_back(&pieces_[i]);
+    out.reached_.push_back(sum += weights_[i]);
+  }
+  out.rate_ = unit_ * static_cast<double>(sum);
+  return out;
+}
+
+void Unseen::change(std::size_t one, Weight to) {
+  if (to == weights_[one]) return;
+  weights_[one] = to;
+  changed_.push_back(one);
+}
+
+void Unseen::add(const Touch& touch, const LabelModel& labels) {
+  const double outside = labels.probability(LabelModel::kOutside, false);
+  const auto x = static_cast<float>(touch.place.x);
+  const auto y = static_cast<float>(touch.place.y);
+  const Eigen::Array<bool, Eigen::Dynamic, 1> near =
+      (xs_ - x).square() + (ys_ - y).square() <= (radii_ + static_cast<float>(labels.reach())).square();
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (!near(static_cast<Eigen::Index>(i)) || weights_[i] == 0) continue;
+    const Piece& piece = pieces_[i];
+    if (touch.on) {
+      if (piece.contains(touch.place.x, touch.place.y)) change(i, 0);
+      continue;
+    }
+    const double depth = piece.depth(touch.place.x, touch.place.y);
+    if (depth < -labels.reach()) continue;
+    const double share = labels.probability(labels.step(depth), false) / outside;
+    change(i, static_cast<Weight>(std::lround(weights_[i] * share)));
+  }
+}
+
+void Unseen::rates(const PointsView& places, VectorOut out) {
+  std::optional<LatticeCounts> lattice = LatticeCounts::over(places);
+  if (!lattice) {
+    for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = holding({places(i, 0), places(i, 1)}).rate();
+    return;
+  }
+  if (!counts_ || !counts_->same_places(*lattice)) {
+    counts_ = std::move(lattice);
+    std::fill(counted_.begin(), counted_.end(), 0);
+    changed_.resize(pieces_.size());
+    for (std::size_t i = 0; i < changed_.size(); ++i) changed_[i] = i;
+  }
+  Outline outline;
+  outline.add({});
+  for (const std::size_t i : changed_) {
+    if (weights_[i] == counted_[i]) continue;
+    outline[0] = pieces_[i];
+    counts_->add(outline, static_cast<double>(weights_[i]) - counted_[i]);
+    counted_[i] = weights_[i];
+  }
+  changed_.clear();
+  counts_->sum(out);
+  out *= unit_;
+}
+
+void Unseen::lie_apart_from(const std::vector<const Outline*>& known) {
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (weights_[i] > 0) apart_[i] = share_apart(pieces_[i].form, known);
+  }
+}
+
+double Unseen::apart(double size) const {
+  double sum = 0.0;
+  for_each([&](const Piece& piece, double expected, double apart) {
+    sum += 2.0 * piece.form.a >= size ? expected * apart : 0.0;
+  });
+  return sum;
+}
+
+void Unseen::to_find(const PointsView& places, VectorOut out) const {
+  std::optional<LatticeCounts> counts = LatticeCounts::over(places);
+  out.setZero();
+  Outline outline;
+  outline.add({});
+  constexpr int kOneIn = 2;  // is asked
+  int next = 0;
+  for_each([&](const Piece& piece, double expected, double apart) {
+    if (next++ % kOneIn != 0 || !(apart > 0.0)) return;
+    const double extent = kOneIn * expected * apart * piece.form.extent();
+    outline[0] = piece;
+    if (counts) return counts->add(outline, extent);
+    for (Eigen::Index k = 0; k < out.size(); ++k) out(k) += outline.contains(places(k, 0), places(k, 1)) ? extent : 0.0;
+  });
+  if (counts) counts->sum(out);
+  out = out.cwiseMax(0.0);  // sums of both signs leave some rounding where there is nothing
+}
+
+std::vector<Outline> Unseen::draw(int count, Random& random) const {
+  Holding all;
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (weights_[i] == 0) continue;
+    all.pieces_.push_back(&pieces_[i]);
+    all.reached_.push_back(sum += weights_[i]);
+  }
+  std::vector<Outline> out(static_cast<std::size_t>(count));
+  for (Outline& outline : out) {
+    // Poisson: as many as fit into the unit of time.
+    const auto pause = [&] { return -std::log(1.0 - random.uniform()); };
+    const double time = unit_ * static_cast<double>(sum);
+    for (double at = pause(); at < time && outline.size() < Outline::kMost; at += pause())
+      outline.add(all.draw(random));
+  }
+  return out;
+}
+
+}  // namespace palpate::footprints

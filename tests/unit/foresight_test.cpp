@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Looking ahead, beside what it is an abbreviation of: the error that is expected after a tap, outline by outline.
+#include "support/mocks.hpp"
+#include "support/testing.hpp"
+
+#include <palpate/acquisition.hpp>
+#include <palpate/random.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace palpate::test {
+namespace {
+
+constexpr int kPlaces = 40;
+constexpr int kOutlines = 128;
+
+bool holds(const OutlineSample& sample, int outline, int place) {
+  return (sample.holds(outline / 64, place) >> static_cast<unsigned>(outline % 64) & 1U) != 0;
+}
+
+/// Outlines of chance, of which neighbouring places are much alike; a few places are in all or in none.
+WrittenBelief some_belief() {
+  WrittenBelief out;
+  out.places = Points::Zero(kPlaces, 2);
+  out.p = Eigen::VectorXd::Constant(kPlaces, 0.3);
+  out.sample.count = kOutlines;
+  out.sample.holds.setZero(kOutlines / 64, kPlaces);
+  out.sample.to_find.resize(kPlaces);
+  Random random(5, "foresight test");
+  for (int k = 0; k < kOutlines; ++k) {
+    bool on = random.uniform() < 0.4;
+    for (int i = 0; i < kPlaces; ++i) {
+      if (random.uniform() < 0.2) on = !on;
+      const bool held = i == 7 || (i != 9 && on);
+      if (held) out.sample.holds(k / 64, i) |= std::uint64_t{1} << static_cast<unsigned>(k % 64);
+    }
+  }
+  for (int i = 0; i < kPlaces; ++i) out.sample.to_find(i) = i % 5 == 0 ? 1e-4 * i : 0.0;
+  return out;
+}
+
+/// The sum over all places of the square that is expected of the error, where `counts` says which outlines there are:
+/// the best that can be shown is their mean.
+double expected_square(const OutlineSample& sample, const std::vector<int>& outlines) {
+  double sum = 0.0;
+  for (int place = 0; place < kPlaces; ++place) {
+    double mean = 0.0;
+    for (const int k : outlines) mean += holds(sample, k, place) ? 1.0 / static_cast<double>(outlines.size()) : 0.0;
+    sum += mean * (1.0 - mean);
+  }
+  return sum;
+}
+
+TEST(Foresight, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpectedToFind) {
+  const WrittenBelief belief = some_belief();
+  for (const double find : {0.0, 1.5}) {
+    std::vector<double> expected;
+    std::vector<int> all;
+    for (int k = 0; k < kOutlines; ++k) all.push_back(k);
+    for (int x = 0; x < kPlaces; ++x) {
+      std::vector<int> with, without;
+      for (const int k : all) (holds(belief.sample, k, x) ? with : without).push_back(k);
+      double gain = 0.0;
+      if (!with.empty() && !without.empty()) {
+        const double share = static_cast<double>(with.size()) / kOutlines;
+        gain = expected_square(belief.sample, all) - share * expected_square(belief.sample, with) -
+               (1.0 - share) * expected_square(belief.sample, without);
+      }
+      expected.push_back(gain * belief.area().width * belief.area().depth / kPlaces + find * belief.sample.to_find(x));
+    }
+    const double most = *std::max_element(expected.begin(), expected.end());
+    for (double& one : expected) one /= most;
+    Eigen::VectorXd out(kPlaces);
+    make<Acquisition>(shared_host(), "foresight", fmt::format("{{find: {}}}", find))->score(belief, out);
+    EXPECT_THAT(std::vector<double>(out.data(), out.data() + kPlaces),
+                testing::Pointwise(testing::DoubleNear(1e-9), expected));
+  }
+}
+
+TEST(Foresight, TakesEachPlaceForItselfWhereTheFootprintKnowsNoOutlines) {
+  WrittenBelief belief;
+  belief.places = Points::Zero(4, 2);
+  belief.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0}};
+  Eigen::VectorXd out(4);
+  make<Acquisition>(shared_host(), "foresight", "{}")->score(belief, out);
+  EXPECT_THAT(std::vector<double>(out.data(), out.data() + 4), testing::ElementsAre(0.0, 0.75, 1.0, 0.0));
+}
+
+TEST(Foresight, IsFlatWhereAllIsSettledAndNothingIsLeft) {
+  WrittenBelief belief = some_belief();
+  belief.sample.holds.setZero();
+  belief.sample.to_find.setZero();
+  Eigen::VectorXd out(kPlaces);
+  make<Acquisition>(shared_host(), "foresight", "{}")->score(belief, out);
+  EXPECT_EQ(out, Eigen::VectorXd::Zero(kPlaces));
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// Boxes and ellipses, against the simplest ways to compute the same: corners and foci.
+#include "shape/form.hpp"
+
+#include "outline_bench.hpp"
+#include "support/support.hpp"
+#include "support/testing.hpp"
+#include "support/touches.hpp"
+
+namespace palpate::footprints {
+namespace {
+
+/// Forms and holes as the prior has them.
+std::vector<Form> forms(std::size_t count, std::uint64_t seed) {
+  OutlinePrior::Settings settings;
+  settings.area = {0.23, 0.23};
+  const OutlinePrior prior(settings);
+  Random random(seed, "form test");
+  std::vector<Form> out;
+  while (out.size() < count) {
+    const Form form = prior.draw_piece(random).form;
+    out.push_back(form);
+    out.push_back(prior.draw_hole(form, random));
+  }
+  return out;
+}
+
+/// The rim, corners among it.
+std::vector<Point> rim(const Form& o) {
+  std::vector<Point> out;
+  constexpr int kSteps = 4000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double turn = 2.0 * kPi * i / kSteps;
+    if (o.family == Form::Family::ellipse) out.push_back(placed(o, o.a * std::cos(turn), o.b * std::sin(turn)));
+  }
+  for (const double one : {-1.0, 1.0}) {
+    for (const double other : {-1.0, 1.0})
+      if (o.family == Form::Family::box) out.push_back(placed(o, one * o.a, other * o.b));
+  }
+  return out;
+}
+
+TEST(Form, HoldsWhatItsEdgesOrItsFociSay) {
+  const Points places = test::lattice(97, 97);
+  for (const Form& form : forms(60, 1)) {
+    for (Eigen::Index i = 0; i < places.rows(); ++i) {
+      const double inside = inside_of(form, {places(i, 0), places(i, 1)});
+      if (std::abs(inside) <= kOnTheRim) continue;
+      ASSERT_EQ(form.contains(places(i, 0), places(i, 1)), inside > 0.0) << inside;
+      ASSERT_EQ(form.depth(places(i, 0), places(i, 1)) > 0.0, inside > 0.0) << inside;
+    }
+  }
+}
+
+TEST(Form, ReachesAsFarAsItsRim) {
+  Random random(1, "form test: directions");
+  for (const Form& form : forms(200, 2)) {
+    const double angle = 2.0 * kPi * random.uniform();
+    const Point to{std::cos(angle), std::sin(angle)};
+    double x = 0.0, y = 0.0, along = 0.0, radius = 0.0;
+    for (const Point& p : rim(form)) {
+      x = std::max(x, std::abs(p[0] - form.x));
+      y = std::max(y, std::abs(p[1] - form.y));
+      along = std::max(along, std::abs((p[0] - form.x) * to[0] + (p[1] - form.y) * to[1]));
+      radius = std::max(radius, std::hypot(p[0] - form.x, p[1] - form.y));
+    }
+    // The farthest of 4000 points of an ellipse falls short by half the square of half a step.
+    EXPECT_NEAR(form.reach_x(), x, 1e-7);
+    EXPECT_NEAR(form.reach_y(), y, 1e-7);
+    EXPECT_NEAR(form.reach_along(to[0], to[1]), along, 1e-7);
+    EXPECT_GE(form.radius(), radius - 1e-12);
+  }
+}
+
+TEST(Form, IsCutWhereALineEntersAndLeavesIt) {
+  for (const Form& form : forms(100, 3)) {
+    for (int row = -60; row <= 60; ++row) {
+      const double y = form.y + row / 50.0 * form.reach_y();
+      const auto [low, high] = form.cut(y);
+      for (int column = -120; column <= 120; ++column) {
+        const double x = form.x + column / 100.0 * form.reach_x();
+        const double inside = inside_of(form, {x, y});
+        if (std::abs(inside) > kOnTheRim) {
+          ASSERT_EQ(low <= x && x <= high, inside > 0.0) << "row " << row << " column " << column;
+        }
+      }
+    }
+  }
+}
+
+TEST(Form, OfAnUprightBoxAndACircleIsWhatItIs) {
+  const Form box{Form::Family::box, 0.1, 0.1, 0.04, 0.02, 1.0, 0.0};
+  EXPECT_DOUBLE_EQ(box.cut(0.115).first, 0.06);
+  EXPECT_DOUBLE_EQ(box.cut(0.115).second, 0.14);
+  EXPECT_GT(box.cut(0.125).first, box.cut(0.125).second) << "beyond it";
+  EXPECT_DOUBLE_EQ(box.depth(0.13, 0.1), 0.01);
+  EXPECT_DOUBLE_EQ(box.extent(), 0.08 * 0.04);
+  const Form circle{Form::Family::ellipse, 0.1, 0.1, 0.05, 0.05, 0.8, 0.6};
+  EXPECT_DOUBLE_EQ(circle.cut(0.13).first, 0.06);
+  EXPECT_DOUBLE_EQ(circle.cut(0.13).second, 0.14);
+  EXPECT_GT(circle.cut(0.1501).first, circle.cut(0.1501).second);
+  EXPECT_NEAR(circle.depth(0.1, 0.16), -0.01, 2e-3) << "to first order";
+  EXPECT_DOUBLE_EQ(circle.extent(), kPi * 0.05 * 0.05);
+}
+
+TEST(Form, IsAsDeepNearItsRimAsThatIsFar) {
+  for (const Form& form : forms(200, 4)) {
+    for (int i = 0; i < 40; ++i) {
+      const double turn = 2.0 * kPi * (i + 0.5) / 40.0;
+      const double c = std::cos(turn);
+      const double s = std::sin(turn);
+      // Of an ellipse by its normal; of a box from the middle third of a side.
+      const bool ellipse = form.family == Form::Family::ellipse;
+      const Point at = ellipse                     ? Point{form.a * c, form.b * s}
+                       : std::abs(c) > std::abs(s) ? Point{std::copysign(form.a, c), form.b * s / 3.0}
+                                                   : Point{form.a * c / 3.0, std::copysign(form.b, s)};
+      Point normal = ellipse                     ? Point{form.b * c, form.a * s}
+                     : std::abs(c) > std::abs(s) ? Point{std::copysign(1.0, c), 0.0}
+                                                 : Point{0.0, std::copysign(1.0, s)};
+      const double length = std::hypot(normal[0], normal[1]);
+      // So far that an ellipse bends by a hundredth of it.
+      const double far = 0.02 * form.b * form.b / form.a;
+      for (const double depth : {-far, far}) {
+        const Point p = placed(form, at[0] - depth * normal[0] / length, at[1] - depth * normal[1] / length);
+        ASSERT_NEAR(form.depth(p[0], p[1]), depth, 0.05 * far);
+      }
+    }
+  }
+}
+
+TEST(Form, IsBeyondACircleAboutItNoNearerThanThat) {
+  Random random(7, "form test: beyond");
+  for (const Form& form : forms(300, 6)) {
+    for (int i = 0; i < 300; ++i) {
+      const double angle = 2.0 * kPi * random.uniform();
+      const double beyond = 0.05 * random.uniform();
+      const double far = form.radius() + beyond;
+      ASSERT_LE(form.depth(form.x + far * std::cos(angle), form.y + far * std::sin(angle)), -beyond + 1e-12);
+    }
+  }
+  const Form box{Form::Family::box, 0.1, 0.1, 0.04, 0.02, 1.0, 0.0};
+  EXPECT_NEAR(box.depth(0.143, 0.124), -0.005, 1e-15) << "from a corner";
+}
+
+TEST(Form, KeepsWhatItHoldsWhenItsAxesAreNamedAgainAndTurnsFromXToY) {
+  for (const Form& form : forms(50, 5)) {
+    Form other = form;
+    std::swap(other.a, other.b);
+    other.turn(0.5 * kPi);
+    Form again = other;
+    again.order_axes();
+    EXPECT_LE(again.b, again.a);
+    Random random(6, "form test: places");
+    for (int i = 0; i < 500; ++i) {
+      const Point p =
+          placed(form, 1.2 * form.a * (2.0 * random.uniform() - 1.0), 1.2 * form.b * (2.0 * random.uniform() - 1.0));
+      if (std::abs(inside_of(form, p)) < 1e-9) continue;
+      ASSERT_EQ(other.contains(p[0], p[1]), form.contains(p[0], p[1]));
+      ASSERT_EQ(again.contains(p[0], p[1]), form.contains(p[0], p[1]));
+    }
+  }
+  Form quarter{Form::Family::box, 0.0, 0.0, 0.04, 0.02, 1.0, 0.0};
+  quarter.turn(kPi / 6.0);
+  EXPECT_TRUE(quarter.contains(0.039 * std::cos(kPi / 6.0), 0.039 * std::sin(kPi / 6.0)));
+  EXPECT_FALSE(quarter.contains(0.039 * std::cos(kPi / 6.0), -0.039 * std::sin(kPi / 6.0)));
+}
+
+}  // namespace
+}  // namespace palpate::footprints

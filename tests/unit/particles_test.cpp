@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+// A belief as a set of outlines: what is told of them is what is told of each one, and they are drawn by their weights.
+#include "shape/particles.hpp"
+
+#include "outline_bench.hpp"
+#include "support/sanitizers.hpp"
+#include "support/testing.hpp"
+#include "support/touches.hpp"
+
+#include <array>
+
+namespace palpate::footprints {
+namespace {
+
+Particles belief_of(int count, double moves, double mistaken, std::uint64_t seed) {
+  OutlinePrior::Settings settings;
+  settings.area = {0.23, 0.23};
+  ParticleSettings how;
+  how.count = count;
+  how.moves = moves;
+  how.mistaken = how.lies = mistaken;
+  return {OutlinePrior(settings), how, Random(seed, "particles test")};
+}
+
+std::vector<Outline> outlines(const Particles& belief) {
+  std::vector<Outline> out;
+  for (const Particle& particle : belief.particles()) out.push_back(particle.outline);
+  return out;
+}
+
+bool equal_forms(const Form& one, const Form& other) {
+  return one.family == other.family && one.x == other.x && one.y == other.y && one.a == other.a && one.b == other.b &&
+         one.cosine == other.cosine && one.sine == other.sine;
+}
+
+bool equal_outlines(const Outline& one, const Outline& other) {
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(), [](const Piece& a, const Piece& b) {
+    return equal_forms(a.form, b.form) && a.hollow == b.hollow && (!a.hollow || equal_forms(a.hole, b.hole));
+  });
+}
+
+/// Whether bit `k` of a sample is set at place `i`.
+template <class Bits>
+bool bit(const Bits& bits, int k, Eigen::Index i) {
+  return (bits(k / 64, i) >> (k % 64) & 1U) != 0;
+}
+
+TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTheirOutlines) {
+  Particles belief = belief_of(500, 4, 0.02, 4);
+  std::vector<Touch> touches = test::disc_touches(6);
+  touches.insert(touches.begin() + 2, test::touch_at(0.115, 0.115, true));
+  for (const Touch& touch : touches) {
+    belief.add(touch);
+    for (const auto& [columns, rows] : {std::pair{31, 31}, {31, 7}, {1, 40}, {40, 1}, {1, 1}}) {
+      const Points places = test::lattice(columns, rows);
+      Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
+      belief.probability(places, inside);
+      const Points twice = test::doubled(places, 0.0);  // which is no lattice
+      Eigen::VectorXd one_by_one = Eigen::VectorXd::Zero(twice.rows());
+      belief.probability(twice, one_by_one);
+      for (Eigen::Index i = 0; i < places.rows(); ++i) {
+        ASSERT_NEAR(inside(i), one_by_one(2 * i), 1e-9) << columns << " x " << rows << ", place " << i;
+        const auto held = std::count_if(belief.particles().begin(), belief.particles().end(), [&](const Particle& one) {
+          return one.outline.contains(places(i, 0), places(i, 1));
+        });
+        ASSERT_GE(inside(i), static_cast<double>(held) / belief.size() - 1e-12);
+        ASSERT_LE(inside(i), 1.0);
+      }
+    }
+  }
+}
+
+TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
+  constexpr int kSample = 6400;
+  constexpr int kCount = 320;
+  Particles belief = belief_of(kCount, 4, 0.02, 5);
+  const std::vector<Touch> touches{test::touch_at(0.08, 0.08, true), test::touch_at(0.03, 0.10, false),
+                                   test::touch_at(0.09, 0.14, false), test::touch_at(0.12, 0.05, false)};
+  for (const Touch& touch : touches) belief.add(touch);
+  for (const Points& where : {test::lattice(23, 23), test::scattered(200)}) {
+    OutlineSample sample;
+    belief.sample(where, kSample, sample);
+    ASSERT_EQ(sample.count, kSample);
+    Eigen::VectorXd probability(where.rows());
+    belief.probability(where, probability);
+    Eigen::VectorXd held = Eigen::VectorXd::Zero(where.rows());
+    Eigen::VectorXd touched = Eigen::VectorXd::Zero(where.rows());
+    for (int k = 0; k < kSample; ++k) {
+      const Outline& outline = belief.particles()[static_cast<std::size_t>(k / (kSample / kCount))].outline;
+      for (Eigen::Index i = 0; i < where.rows(); ++i) {
+        const bool holds = bit(sample.holds, k, i);
+        const bool has = outline.contains(where(i, 0), where(i, 1));
+        ASSERT_TRUE(holds || !has);
+        held(i) += holds ? 1.0 / kSample : 0.0;
+        touched(i) += has ? 1.0 / kSample : 0.0;
+      }
+    }
+    for (Eigen::Index i = 0; i < where.rows(); ++i)
+      EXPECT_LE(held(i), probability(i) + 5.0 * std::sqrt(probability(i) * (1.0 - probability(i)) / kSample) + 1e-12);
+    EXPECT_GT(held.sum(), 1.01 * touched.sum()) << "some pieces that were not touched meet some that were";
+  }
+}
+
+TEST(Particles, ExpectToFindWhatThePriorHasWhereNothingWasTouchedAndLessBesideAnObject) {
+  const Points places = test::scattered(12);
+  Eigen::VectorXd exact = Eigen::VectorXd::Zero(places.rows());
+  OutlinePrior::Settings settings;
+  settings.area = {0.23, 0.23};
+  const OutlinePrior prior(settings);
+  Random random(31, "particles test");
+  const int draws = test::brief() ? 50000 : 200000;
+  for (int i = 0; i < draws; ++i) {
+    const Piece piece = prior.draw_piece_or_hollow(random);
+    for (Eigen::Index k = 0; k < places.rows(); ++k) {
+      if (piece.contains(places(k, 0), places(k, 1))) exact(k) += settings.expected * piece.form.extent() / draws;
+    }
+  }
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(places.rows());
+  Eigen::VectorXd beside = Eigen::VectorXd::Zero(places.rows());
+  constexpr int kRuns = 10;
+  OutlineSample sample;
+  for (int run = 0; run < kRuns; ++run) {
+    Particles belief = belief_of(100, 20, 0.02, 40 + static_cast<std::uint64_t>(run));
+    belief.sample(places, 64, sample);
+    mean += sample.to_find / kRuns;
+    belief.add(test::touch_at(places(0, 0), places(0, 1), true));
+    belief.sample(places, 64, sample);
+    beside += sample.to_find / kRuns;
+    EXPECT_EQ(sample.to_find(0), 0.0) << "what holds it was found";
+  }
+  // Each run stands for the prior by four thousand pieces, of which at least one in a hundred holds a place.
+  EXPECT_LT((mean - exact).cwiseQuotient(exact).cwiseAbs().maxCoeff(), 5.0 / std::sqrt(4096.0 * kRuns * 0.01));
+  EXPECT_TRUE((beside.array() <= mean.array() + 1e-15).all());
+}
+
+TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
+  constexpr std::size_t kCount = 100;
+  const int seeds = test::brief() ? 40 : 400;
+  constexpr double kWrong = 0.2;
+  const std::array<std::size_t, 3> looked_at{0, kCount / 2, kCount - 1};
+  std::array<double, 3> excess{};
+  std::array<int, 3> times{};
+  for (int seed = 1; seed <= seeds; ++seed) {
+    Particles belief = belief_of(static_cast<int>(kCount), 0.0, kWrong, static_cast<std::uint64_t>(seed));  // no moves
+    belief.add(test::touch_at(0.11, 0.12, true));  // of which each outline makes its own
+    Random random(static_cast<std::uint64_t>(seed), "particles test: places");
+    for (int touch = 0; touch < 5; ++touch) {
+      const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
+      const std::vector<Outline> before = outlines(belief);
+      const double evidence = belief.add({place, 0.0, false});
+      const std::vector<Outline> after = outlines(belief);
+      // Evidence is the mean weight; from it is seen how probable it was that something new is there.
+      const auto weight = [&](const Outline& one) { return one.contains(place.x, place.y) ? kWrong : 1.0 - kWrong; };
+      double mean = 0.0;
+      for (const Outline& one : before) mean += weight(one) / kCount;
+      if (mean < kWrong + 1e-9) continue;  // all hold it
+      const double something_new = (mean - evidence) / (mean - kWrong);
+      ASSERT_GE(something_new, -1e-9);
+      ASSERT_LT(something_new, 0.9);
+      for (std::size_t k = 0; k < looked_at.size(); ++k) {
+        const Outline& one = before[looked_at[k]];
+        const auto equal = [&](const Outline& other) { return equal_outlines(other, one); };
+        const auto alike = static_cast<double>(std::count_if(before.begin(), before.end(), equal));
+        const auto copies = static_cast<double>(std::count_if(after.begin(), after.end(), equal));
+        const double expected = ((1.0 - something_new) * weight(one) + something_new * kWrong) / evidence;
+        ASSERT_LT(std::abs(copies - alike * expected), alike + 1e-9);
+        if (alike > 1.0) continue;
+        excess[k] += copies - expected;
+        ++times[k];
+      }
+    }
+  }
+  // A count that is one of two neighbours has a standard deviation of at most 1/2.
+  for (std::size_t k = 0; k < excess.size(); ++k) {
+    EXPECT_LT(std::abs(excess[k]) / times[k], 5.0 * 0.5 / std::sqrt(times[k])) << k;
+    EXPECT_GT(times[k], seeds / 2) << k;
+  }
+}
+
+TEST(Particles, OfOneSeedAreTheSameToTheLastBitAndOfAnotherAreOthers) {
+  const auto after = [](std::uint64_t seed) {
+    Particles belief = belief_of(300, 4, 0.02, seed);
+    for (const Touch& touch : test::disc_touches(8)) belief.add(touch);
+    return outlines(belief);
+  };
+  const std::vector<Outline> one = after(7);
+  EXPECT_TRUE(std::equal(one.begin(), one.end(), after(7).begin(), equal_outlines));
+  EXPECT_FALSE(std::equal(one.begin(), one.end(), after(8).begin(), equal_outlines));
+}
+
+TEST(Particles, AgreeWithLabelsThatAnOutlineExplains) {
+  Particles belief = belief_of(1000, 4, 0.02, 9);
+  for (const Touch& touch : test::disc_touches(25)) belief.add(touch);
+  EXPECT_LT(belief.mean_mistakes(), 0.7);
+  // Objects and desk by turns at one place: one half of the labels is wrong whatever the outline.
+  Particles puzzled = belief_of(1000, 4, 0.02, 9);
+  for (const Touch& touch : test::contradictory_touches(24)) puzzled.add(touch);
+  EXPECT_NEAR(puzzled.mean_mistakes(), 12.0, 1e-9);
+}
+
+TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
+  OutlinePrior::Settings settings;
+  settings.area = {0.23, 0.23};
+  const OutlinePrior prior(settings);
+  for (const double blur : {0.0, 0.004}) {
+    ParticleSettings how;
+    how.count = 300;
+    how.mistaken = 0.05;
+    how.lies = 0.02;
+    how.blur = blur;
+    Particles belief(prior, how, Random(10, "particles test"));
+    const std::vector<Touch> touches = test::disc_touches(25);
+    for (const Touch& touch : touches) belief.add(touch);
+    int pieces = 0;
+    for (const Particle& one : belief.particles()) {
+      const LabelModel labels(how.mistaken, how.lies, one.blurred ? blur : 0.0);
+      double loss = 0.0;
+      for (std::size_t i = 0; i < touches.size(); ++i) {
+        const Target& place = touches[i].place;
+        unsigned holders = 0;
+        double deepest = -1.0;
+        for (int p = 0; p < one.outline.size(); ++p) {
+          holders |= one.outline[p].contains(place.x, place.y) ? 1U << p : 0U;
+          deepest = std::max(deepest, one.outline[p].depth(place.x, place.y));
+        }
+        ASSERT_EQ(one.holders[i], holders);
+        const LabelModel::Step step =
+            !one.blurred ? (holders != 0 ? LabelModel::kInside : LabelModel::kOutside) : labels.step(deepest);
+        ASSERT_EQ(one.depths[i], step);
+        loss += labels.loss(step, touches[i].on);
+      }
+      // Summed up over some hundred moves.
+      ASSERT_NEAR(one.labels, loss, 1e-9);
+      for (const Piece& piece : one.outline) {
+        ASSERT_EQ(piece.density, prior.density(piece));
+        ASSERT_TRUE(touched(piece, touches));
+      }
+      pieces += one.outline.size();
+    }
+    EXPECT_DOUBLE_EQ(belief.mean_pieces(), pieces / 300.0);
+  }
+}
+
+/// Whether two pieces have a place in common, but for a hole: as is seen on a lattice.
+bool meet(const Piece& one, const Piece& other, const Points& places) {
+  const double distance = std::hypot(one.form.x - other.form.x, one.form.y - other.form.y);
+  if (distance > one.form.radius() + other.form.radius()) return false;
+  for (Eigen::Index i = 0; i < places.rows(); ++i) {
+    if (one.form.contains(places(i, 0), places(i, 1)) && other.form.contains(places(i, 0), places(i, 1))) return true;
+  }
+  return false;
+}
+
+TEST(Particles, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLabels) {
+  constexpr double kWrong = 0.05;
+  constexpr double kLong = 0.04;
+  EXPECT_EQ(belief_of(10, 0, kWrong, 11).left(1.0), 0.0) << "nothing is a metre long";
+  // Once the desk alone, and once a thing in the middle.
+  for (const bool on : {false, true}) {
+    std::vector<Touch> touches;
+    const Points places = test::lattice(3, 3);
+    for (Eigen::Index i = 0; i < places.rows(); ++i)
+      touches.push_back(test::touch_at(places(i, 0), places(i, 1), on && i == 4));
+    const int runs = test::brief() ? 3 : 8;
+    double found = 0.0;
+    for (int run = 0; run < runs; ++run) {
+      Particles belief = belief_of(500, 40, kWrong, 20 + static_cast<std::uint64_t>(run));
+      for (const Touch& touch : touches) belief.add(touch);
+      found += belief.left(kLong) / runs;
+    }
+    OutlinePrior::Settings settings;
+    settings.area = {0.23, 0.23};
+    const OutlinePrior prior(settings);
+    Random random(12, "particles test");
+    const Points fine = test::lattice(47, 47);
+    double evidence = 0.0;
+    double squares = 0.0;
+    double left = 0.0;
+    double before = 0.0;
+    const int draws = test::brief() ? 20000 : 80000;
+    for (int k = 0; k < draws; ++k) {
+      const Outline outline = prior.draw(random);
+      double weight = 1.0;
+      for (const Touch& touch : touches)
+        weight *= outline.contains(touch.place.x, touch.place.y) == touch.on ? 1.0 - kWrong : kWrong;
+      const auto is_long = [](const Piece& piece) { return 2.0 * piece.form.a >= kLong; };
+      before += std::any_of(outline.begin(), outline.end(), is_long) ? 1.0 / draws : 0.0;
+      // Of those with little weight some are taken by lot and weigh more.
+      constexpr double kLittle = 0.1;
+      if (weight < kLittle && random.uniform() >= weight / kLittle) continue;
+      weight = std::max(weight, kLittle);
+      const auto [seen, unseen] = parts_of(outline, touches);
+      const bool any = std::any_of(unseen.begin(), unseen.end(), [&, &known = seen](const Piece& piece) {
+        return is_long(piece) &&
+               std::none_of(known.begin(), known.end(), [&](const Piece& one) { return meet(one, piece, fine); });
+      });
+      evidence += weight;
+      squares += weight * weight;
+      left += any ? weight : 0.0;
+    }
+    left /= evidence;
+    // What is left is counted by the touches of the desk for each piece, not for all together: that comes to less than
+    // a hundredth, as does what is not seen on the lattice.
+    EXPECT_NEAR(found, left, 5.0 * std::sqrt(left * (1.0 - left) * squares) / evidence + 0.02);
+    EXPECT_LT(left, before - 0.2) << "the labels say something";
+  }
+}
+
+}  // namespace
+}  // namespace palpate::footprints
