@@ -278,9 +278,7 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     unsigned seen = 0;
     for (const std::size_t touch : heights_.touches()) seen |= holders_[touch];
     if (seen + 1 != 1U << proposal.outline.size()) return false;
-  }
-  if ((held_otherwise || proposal.outline.size() != particle.outline.size()) && settings_.heights) {
-    heights = heights_.evidence(holders_, proposal.outline.size());
+    if (settings_.heights) heights = heights_.evidence(holders_, proposal.outline.size());
     if (heights < particle.heights && std::log(1.0 - random_.uniform()) > heights - particle.heights) return false;
   }
   for (std::size_t i = 0; i < changed_.size(); ++i) {
