@@ -131,7 +131,7 @@ TEST(Pace, RefusesATapOfAMotionThatThereIsNot) {
 }
 
 TEST(Pace, ARunRecordsByWhichMotionEachTapWasMadeAndGoesOnAsItWouldHave) {
-  const std::vector<std::string> words{"scene=large_block", "scene.effects=standard", "taps=24", "seed=1"};
+  const std::vector<std::string> words{"scene=cone", "scene.effects=standard", "taps=24", "seed=1"};
   Finished whole("default.yaml", words);
   std::set<int> motions;
   double expected = 0.0;
