@@ -104,12 +104,25 @@ Particles::View Particles::look(const Outline& outline, const Target& place, con
   }
   double deepest = -1.0;
   for (int i = 0; i < outline.size(); ++i) {
+    // Most pieces are elsewhere, where how far away they are makes no difference.
+    const Form& form = outline[i].form;
+    const double dx = place.x - form.x;
+    const double dy = place.y - form.y;
+    const double reach = labels.reach();
+    if (dx * dx + dy * dy > 2.0 * (form.a * form.a + form.b * form.b + reach * reach)) continue;
     const double depth = outline[i].depth(place.x, place.y);
     if (depth >= 0.0) out.holders = static_cast<std::uint16_t>(out.holders | 1U << i);
     deepest = std::max(deepest, depth);
   }
   out.depth = labels.step(deepest);
   return out;
+}
+
+Particles::View Particles::look_again(std::uint16_t holders, const Outline& outline, int only, const Target& place) {
+  const unsigned bit = 1U << only;
+  const unsigned others = holders & ~bit;
+  const unsigned now = outline[only].contains(place.x, place.y) ? others | bit : others;
+  return {now != 0 ? LabelModel::kInside : LabelModel::kOutside, static_cast<std::uint16_t>(now)};
 }
 
 double Particles::add(const Touch& touch) {
@@ -212,6 +225,7 @@ void Particles::move(Particle& particle) {
   proposal.correction = 0.0;
   proposal.changed = 0;
   proposal.everywhere = false;
+  proposal.only = -1;
   bool blurred = particle.blurred;
   if (settings_.blur > 0.0 && random_.uniform() < kChangesBlur) {
     blurred = !blurred;
@@ -234,7 +248,6 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
   const double allowed = std::log(proposal.correction / (1.0 - random_.uniform()));
   const double allowed_at_most = allowed + particle.labels;
   if (allowed_at_most < 0.0) return false;
-  const bool all = proposal.everywhere || proposal.push;
   struct Reach {
     float x, y, square;
   };
@@ -244,11 +257,11 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     const auto reach = static_cast<float>(circle.radius + labels.reach() + 1e-5);  // rounding is far below that
     circles[static_cast<std::size_t>(i)] = {static_cast<float>(circle.x), static_cast<float>(circle.y), reach * reach};
   }
-  const auto near = [&](std::size_t touch) {
+  const auto near = [&](float x, float y) {
     for (int i = 0; i < proposal.changed; ++i) {
       const Reach& circle = circles[static_cast<std::size_t>(i)];
-      const float dx = xs_[touch] - circle.x;
-      const float dy = ys_[touch] - circle.y;
+      const float dx = x - circle.x;
+      const float dy = y - circle.y;
       if (dx * dx + dy * dy <= circle.square) return true;
     }
     return false;
@@ -259,9 +272,17 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
   double loss = 0.0;
   bool held_otherwise = false;
   for (std::size_t touch = touches_.size(); touch-- > 0;) {
-    if (!all && !near(touch)) continue;
+    Target place = touches_[touch].place;
+    if (static_cast<int>(touch) < proposal.push.before) {
+      place = proposal.push.now(place);
+      if (!proposal.everywhere && !near(static_cast<float>(place.x), static_cast<float>(place.y))) continue;
+    } else if (!proposal.everywhere && !near(xs_[touch], ys_[touch])) {
+      continue;
+    }
     const bool on = touches_[touch].on;
-    const View view = look(proposal.outline, seen_from(proposal, touch), labels);
+    const View view = proposal.only >= 0 && !labels.blurs()
+                          ? look_again(particle.holders[touch], proposal.outline, proposal.only, place)
+                          : look(proposal.outline, place, labels);
     loss += labels.loss(view.depth, on);
     if (loss > allowed_at_most) return false;
     before += labels_before.loss(particle.depths[touch], on);

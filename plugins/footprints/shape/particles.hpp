@@ -89,6 +89,8 @@ class Particles {
     std::uint16_t holders;
   };
   View look(const Outline& outline, const Target& place, const LabelModel& labels) const;
+  /// The same of a touch that had these holders, where one piece is not what it was, and labels do not blur.
+  static View look_again(std::uint16_t holders, const Outline& outline, int only, const Target& place);
   /// So many of the outlines, evenly among all.
   std::vector<const Outline*> some(int count) const;
   void resample(const std::vector<double>& weights, double sum);

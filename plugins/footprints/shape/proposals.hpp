@@ -40,6 +40,11 @@ struct Proposal : State {
   std::array<Circle, kMostCircles> circles;
   int changed = 0;          ///< how many of them
   bool everywhere = false;  ///< there is no such beyond
+  int only = -1;            ///< all other pieces are what they were; -1: that is not said
+
+  void changes_about(const Form& form) {
+    circles[static_cast<std::size_t>(changed++)] = {form.x, form.y, form.radius()};
+  }
 };
 
 /// What the moves are told of the touches: where each is seen by the outline that is to be moved, its label, and who
@@ -55,6 +60,10 @@ struct Seen {
 /// holds: there they may set a label right. Pieces near the latest touch are moved more often, as they know least of
 /// it. `out` is `from` at first.
 void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random);
+
+/// Two of the moves of propose(): a piece is split into two, or two that are near each other are merged.
+void propose_split(Proposal& out, const OutlinePrior& prior, Random& random);
+void propose_merge(Proposal& out, const OutlinePrior& prior, Random& random);
 
 /// Adds a push or takes it away, or changes it. Either the outline stays where it is now, or where it was before: then
 /// what was touched before agrees with it as well as it did. `rate`: the prior probability of a push between two of

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "push.hpp"
+
+#include "proposals.hpp"
+#include "steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::footprints {
+namespace {
+
+// How far a push goes: standard deviations along x and y, metres, and of the turn, radians.
+constexpr double kPushed = 0.012;
+constexpr double kTurned = 0.1;
+
+/// Of a push, up to a factor.
+double density(const Push& push) {
+  const double angle = push.angle() / kTurned;
+  return std::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushed * kPushed) + angle * angle));
+}
+
+Push some_push(const Area& area, Random& random) {
+  Push out;
+  out.origin_x = 0.5 * area.width;
+  out.origin_y = 0.5 * area.depth;
+  out.dx = kPushed * normal(random);
+  out.dy = kPushed * normal(random);
+  const double angle = kTurned * normal(random);
+  out.cosine = std::cos(angle);
+  out.sine = std::sin(angle);
+  return out;
+}
+
+}  // namespace
+
+void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double rate, Random& random) {
+  const State from = out;
+  out.kind = Proposal::Kind::push;
+  out.everywhere = true;
+  const bool stays_before = random.uniform() < 0.5;
+  if (random.uniform() < 0.5) {
+    // A push that was found out late has been fitted over by then: one time in two it is looked for among the latest.
+    constexpr int kLately = 6;
+    const int lately = std::min(kLately, touches - 1);
+    const auto odds = [&](int before) {
+      return rate / (0.5 / (touches - 1) + (before >= touches - lately ? 0.5 / lately : 0.0));
+    };
+    if (from.push) {
+      if (stays_before) out.outline = from.push.then(from.outline);
+      out.push = Push();
+      out.correction = 1.0 / odds(from.push.before);
+    } else {
+      out.push = some_push(prior.settings().area, random);
+      const int among = random.uniform() < 0.5 ? lately : touches - 1;
+      out.push.before = touches - 1 - static_cast<int>(random.index(static_cast<std::size_t>(among)));
+      if (stays_before) out.outline = out.push.now(from.outline);
+      out.correction = odds(out.push.before);
+    }
+  } else {
+    if (!from.push) return;
+    if (random.uniform() < 0.25) {
+      constexpr int kFar = 3;
+      out.push.before += static_cast<int>(random.index(2 * kFar + 1)) - kFar;
+      if (out.push.before < 1 || out.push.before >= touches) return;
+    } else {
+      const double scale = some_scale(random);
+      out.push.dx += 2.0 * kPushed * scale * either_way(random);
+      out.push.dy += 2.0 * kPushed * scale * either_way(random);
+      const double angle = from.push.angle() + 2.0 * kTurned * scale * either_way(random);
+      out.push.cosine = std::cos(angle);
+      out.push.sine = std::sin(angle);
+      if (stays_before) out.outline = out.push.now(from.push.then(from.outline));
+    }
+    out.correction = density(out.push) / density(from.push);
+  }
+  for (int i = 0; i < out.outline.size(); ++i) {
+    Piece& piece = out.outline[i];
+    piece.density = prior.density(piece);
+    out.correction *= piece.density / from.outline[i].density;
+  }
+}
+
+}  // namespace palpate::footprints
