@@ -48,8 +48,8 @@ void Chooser::allow(const TapBelief& belief) {
   }
 }
 
-bool Chooser::choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous) {
-  if (!choose_place(belief, tap)) return false;
+bool Chooser::choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous, const Wish* wish) {
+  if (!choose_place(belief, tap, wish)) return false;
   if (!pace_) return true;
   const Pace::Choice choice = pace_->choose(belief, tap.candidate, candidates_.target(tap.candidate), previous);
   tap.motion = choice.motion;
@@ -57,19 +57,27 @@ bool Chooser::choose(TapBelief& belief, TapRecord& tap, const std::optional<Targ
   return true;
 }
 
-bool Chooser::choose_place(TapBelief& belief, TapRecord& tap) {
+bool Chooser::choose_place(TapBelief& belief, TapRecord& tap, const Wish* wish) {
   allow(belief);
-  if (starting(belief)) {
+  if (wish == nullptr && starting(belief)) {
     tap.source = Source::initial;
     const std::optional<int> again = second_look(belief);
     tap.candidate = again ? *again : search_ ? search_->next(allowed_) : initial_[taps_];
     return true;
   }
-  tap.source = Source::acquisition;
-  Pick picked = pick_best(scores(belief), allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
+  if (wish != nullptr && wish->choice) {
+    tap = *wish->choice;
+    if (tap.source == Source::fallback) belief.ask(kFallbackReads);
+    return true;
+  }
+  tap.source = wish != nullptr ? Source::caller : Source::acquisition;
+  // Of scores from outside nobody says how large they are before the first tap.
+  Pick picked = wish != nullptr
+                    ? pick_best(wish->scores, allowed_, 0.0, options_.tie_tolerance)
+                    : pick_best(scores(belief), allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
   if (picked.flat && may_fall_back()) {
     tap.source = Source::fallback;
-    tap.why = *picked.flat;
+    tap.why = (wish != nullptr ? kOfCaller : "") + *picked.flat;
     belief.ask(kFallbackReads);
     picked = pick_best(belief.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
   }

@@ -18,6 +18,13 @@
 
 namespace palpate {
 
+/// A choice that is not the strategy's: scores of somebody else, one a candidate, or the choice that these had led to,
+/// of which the record tells what the scores would.
+struct Wish {
+  Eigen::VectorXd scores;           ///< finite; empty if there is a `choice`
+  std::optional<TapRecord> choice;  ///< candidate, source, why, and all about its score
+};
+
 /// Chooses one tap after the other. It is told where was tapped and reads the rest in the belief: what was hit, too, as
 /// it is thought now.
 class Chooser {
@@ -38,7 +45,8 @@ class Chooser {
 
   /// Chooses a candidate and, after a tap at `previous`, a motion for it; notes in `tap` which, by whom, and all about
   /// its score. `belief` has been asked for what is read; a fallback asks it for more. False if no candidate is left.
-  bool choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous);
+  /// With a `wish` (may be null) the scores are those, under the same rules.
+  bool choose(TapBelief& belief, TapRecord& tap, const std::optional<Target>& previous, const Wish* wish = nullptr);
 
   /// What the acquisition gives each candidate, until it is asked again. Throws Error for what is no finite number.
   const Eigen::VectorXd& scores(const TapBelief& belief);
@@ -50,7 +58,7 @@ class Chooser {
   double roughness(int motion) const { return pace_ ? pace_->roughness(motion) : 0.0; }
 
  private:
-  bool choose_place(TapBelief& belief, TapRecord& tap);
+  bool choose_place(TapBelief& belief, TapRecord& tap, const Wish* wish);
   /// Where a hit is doubted, but not for sure a lie, and nobody has looked again: of the allowed.
   std::optional<int> second_look(const TapBelief& belief) const;
   /// Finds the candidates that may be tapped: those that were not, and those whose contacts are all doubted.

@@ -13,36 +13,53 @@
 namespace palpate {
 
 void Experiment::run(Journal& journal, int most_taps) {
-  const std::int64_t budget = std::min<std::int64_t>(options_.taps, most_taps);
-  for (;;) {
-    belief_.update();  // fit, infer
-    show_belief();
-    if (std::optional<std::string> reason = stop_reason(budget)) return watch_.stop(*reason);
-    std::optional<TapRecord> tap = choose_next();
-    if (!tap) return watch_.stop("no candidate is left");
-    if (!journal.permits(*tap)) return watch_.stop(kStoppedByUser);
-    journal.announce(*tap);
+  while (std::optional<TapRecord> tap = begin(journal, most_taps)) {
     tap->contact = touch(*tap);
     if (is_broken_off(tap->contact)) return watch_.stop(kStoppedByUser);
-    if (tap->contact.outcome == Outcome::contact) {
-      const TapBelief::Reading reading = belief_.read(tap->contact, tap->motion);
-      tap->on_surface = reading.on;
-      if (belief_.systematic()) tap->corrected = reading.height;
-    }
-    observe(*tap);
-    journal.record(*tap, clock_.take());
-    check_backend(tap->contact);
+    end(*tap, journal);
   }
 }
 
-std::optional<TapRecord> Experiment::choose_next() {
+std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, const Wish* wish) {
+  belief_.update();  // fit, infer
+  show_belief();
+  const std::int64_t budget = std::min<std::int64_t>(options_.taps, most_taps);
+  std::optional<std::string> reason = stop_reason(budget, wish != nullptr ? Source::caller : Source::acquisition);
+  std::optional<TapRecord> tap;
+  if (!reason) {
+    tap = choose_next(wish);
+    if (!tap) reason = "no candidate is left";
+  }
+  if (tap && !journal.permits(*tap)) reason = kStoppedByUser;
+  if (reason) {
+    watch_.stop(*reason);
+    return std::nullopt;
+  }
+  journal.announce(*tap);
+  return tap;
+}
+
+void Experiment::end(TapRecord& tap, Journal& journal) {
+  if (tap.contact.outcome == Outcome::contact) {
+    const TapBelief::Reading reading = belief_.read(tap.contact, tap.motion);
+    tap.on_surface = reading.on;
+    if (belief_.systematic()) tap.corrected = reading.height;
+  }
+  observe(tap);
+  journal.record(tap, clock_.take());
+  check_backend(tap.contact);
+}
+
+std::optional<TapRecord> Experiment::choose_next(const Wish* wish) {
   TapRecord tap;
-  tap.number = watch_.counts().taps + 1;
   {
     const PhaseClock::Scope acquire(clock_, Phase::acquire);
-    belief_.ask(reads_for(chooser_.starting(belief_) ? Source::initial : Source::acquisition));
-    if (!chooser_.choose(belief_, tap, previous_)) return std::nullopt;
+    belief_.ask(reads_for(wish != nullptr              ? Source::caller
+                          : chooser_.starting(belief_) ? Source::initial
+                                                       : Source::acquisition));
+    if (!chooser_.choose(belief_, tap, previous_, wish)) return std::nullopt;
   }
+  tap.number = watch_.counts().taps + 1;
   tap.target = candidates_.target(tap.candidate);
   if (const Quantities expected = backend_->expects(); expected != Quantities())
     tap.predicted = belief_.predict(tap.candidate, expected);
@@ -60,13 +77,13 @@ void Experiment::observe(const PastTap& tap) {
   previous_ = tap.target;
 }
 
-std::optional<std::string> Experiment::stop_reason(std::int64_t budget) {
+std::optional<std::string> Experiment::stop_reason(std::int64_t budget, Source source) {
   if (stop_wished()) return kStoppedByUser;
   if (watch_.counts().taps >= budget) return "tap budget";
   const StopOptions& stop = options_.stop;
   if (stop.robot_time && watch_.counts().robot_seconds >= *stop.robot_time) return "robot_time";
   if (chooser_.starting(belief_)) return std::nullopt;
-  belief_.ask(reads_for(Source::acquisition));
+  belief_.ask(reads_for(source));
   if (stop.max_standard_deviation &&
       std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
     return "max_standard_deviation";

@@ -22,8 +22,8 @@ namespace palpate {
 
 /// One run of one config. Owns the loop and the objects in it; writes nothing.
 ///
-/// The loop has two halves, for those who tap by other means than a backend: choose_next() says where, observe() takes
-/// what came of it.
+/// The loop has two halves, for those who tap by other means than a backend: begin() says where, end() takes what came
+/// of it; choose_next() and observe() do the same and tell nobody.
 class Experiment {
  public:
   /// Builds scene, candidates, strategy and, unless one is given, backend. `factory` and `interrupted` (may be null)
@@ -39,9 +39,20 @@ class Experiment {
   /// backend cannot go on; the last tap is then told already.
   void run(Journal& journal, int most_taps = std::numeric_limits<int>::max());
 
+  /// Chooses the next tap, by the `wish` if there is one, asks `journal` for leave and announces it. None when the run
+  /// is over: counts() says why.
+  std::optional<TapRecord> begin(Journal& journal, int most_taps = std::numeric_limits<int>::max(),
+                                 const Wish* wish = nullptr);
+
+  /// Takes in what came of the tap that begin() chose, and tells `journal`. Throws Error as run() does.
+  void end(TapRecord& tap, Journal& journal);
+
+  /// Ends the run before its budget, for this reason.
+  void stop(const std::string& reason) { watch_.stop(reason); }
+
   /// Chooses the next tap, whatever the budget, and describes the state that it is chosen from; makes none. The same
   /// again until the next observe(). None if no candidate is left.
-  std::optional<TapRecord> choose_next();
+  std::optional<TapRecord> choose_next(const Wish* wish = nullptr);
 
   /// Notes a tap that was made, wherever. The models take it in when next they are asked.
   void observe(const PastTap& tap);
@@ -69,6 +80,9 @@ class Experiment {
   /// Has the belief hold these quantities from now on, and choose_next() describe them, as if the strategy read them.
   void ask(Quantities quantities) { belief_.ask(quantities); }
 
+  /// Has the belief hold these quantities as of now, for who looks at it; the record is the same without.
+  void build(Quantities quantities) { belief_.build(quantities); }
+
   /// The errors as of now, none where no truth is known. For people who watch: what is recorded, times included, is the
   /// same without them, because models that nobody else reads are kept apart.
   Errors errors() { return watch_.errors(belief_); }
@@ -82,7 +96,8 @@ class Experiment {
   const Truth* truth() { return watch_.truth(); }
 
  private:
-  std::optional<std::string> stop_reason(std::int64_t budget);
+  /// `source`: who would choose the next tap.
+  std::optional<std::string> stop_reason(std::int64_t budget, Source source);
   bool stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
   /// What a tap of this source reads of the belief: strategy, stop rules and backend. What a forecast reads is asked
   /// for by itself, from the first hit on.

@@ -33,9 +33,10 @@ Quantities Experiment::reads_for(Source source) const {
   Quantities out = belief_.predictable(backend_->expects() | chooser_.predicts());
   if (options_.height.lies) out = out | Quantity::doubt;
   if (source == Source::initial) return out;
+  if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
+  if (source == Source::caller) return out;
   out = out | chooser_.reads();
   if (source == Source::fallback) out = out | Chooser::kFallbackReads;
-  if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
   return out;
 }
 

@@ -21,7 +21,10 @@
 namespace palpate {
 
 /// Who chose a tap.
-enum class Source { initial, acquisition, fallback };
+enum class Source { initial, acquisition, fallback, caller };
+
+/// How the reason of a fallback begins where scores from outside were at fault.
+constexpr const char* kOfCaller = "of the caller's scores: ";
 
 /// A process as it stood when a tap was chosen.
 struct ProcessState {

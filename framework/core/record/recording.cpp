@@ -32,13 +32,11 @@ class Absent : public Backend {
   bool truth_known_;
 };
 
-/// Answers with the recorded contacts in their order, whatever the target: a target that differs shows in the record.
+/// Reads what the run's own backend read. The taps are those of the record, whatever the target: a target that differs
+/// shows.
 class Recorded final : public Absent {
  public:
   explicit Recorded(const Recording& recording) : Absent(recording.truth_known()), recording_(recording) {}
-  Contact tap(const TapRequest& request) override {
-    return recording_.taps.at(static_cast<std::size_t>(request.number - 1)).contact;
-  }
   Quantities expects() const override {
     Quantities out;
     if (recording_.rows.front().number("predicted.height")) out = out | Quantity::height;
@@ -60,6 +58,27 @@ class Collector final : public Journal {
   void announce(const TapRecord&) override {}
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override { rows.push_back(tap_row(tap)); }
 };
+
+/// What somebody had chosen by scores of their own; none where the strategy chose.
+std::optional<Wish> wish_of(const Row& row, const Experiment& experiment) {
+  const std::string source = row.text("source");
+  const std::string why = row.text("why");
+  const bool fell_back = source == source_name(Source::fallback) && why.rfind(kOfCaller, 0) == 0;
+  if (source != source_name(Source::caller) && !fell_back) return std::nullopt;
+  const Candidates& candidates = experiment.candidates();
+  TapRecord tap;
+  tap.source = fell_back ? Source::fallback : Source::caller;
+  tap.why = why;
+  tap.candidate =
+      candidates.nearest(row.number("x").value_or(0.0), row.number("y").value_or(0.0), experiment.scene().area());
+  tap.score = row.number("score");
+  if (const auto ties = row.number("ties")) tap.ties = static_cast<int>(*ties);
+  if (const auto x = row.number("runner_up.x")) {
+    tap.runner_up = Target{*x, row.number("runner_up.y").value_or(0.0)};
+    tap.runner_up_score = row.number("runner_up.score");
+  }
+  return Wish{{}, tap};
+}
 
 std::string shown(const Scalar* value) {
   if (value == nullptr || std::holds_alternative<std::monostate>(*value)) return "null";
@@ -154,7 +173,13 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   Experiment experiment(recording.config.options, workshop.host, workshop.interrupted,
                         std::make_shared<Recorded>(recording));
   Collector collector;
-  experiment.run(collector, made);
+  for (std::size_t i = 0;; ++i) {
+    const std::optional<Wish> wish = i < recorded.size() ? wish_of(recorded[i], experiment) : std::nullopt;
+    std::optional<TapRecord> tap = experiment.begin(collector, made, wish ? &*wish : nullptr);
+    if (!tap) break;
+    tap->contact = recording.taps.at(i).contact;
+    experiment.end(*tap, collector);
+  }
 
   ReplayReport report;
   report.taps = made;

@@ -81,23 +81,6 @@ std::string file_cell(const Scalar& value) {
   return text != nullptr ? csv_text(guarded(*text)) : csv_cell(value);
 }
 
-/// The names of all fields of all rows: a name stands behind the one that it follows in its row.
-std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
-  for (const Row& row : rows) {
-    std::size_t at = 0;  // where the next field of this row is expected
-    for (const auto& [name, value] : row.fields) {
-      if (at >= names.size() || names[at] != name) {
-        const auto found = std::find(names.begin(), names.end(), name);
-        at = found != names.end() ? static_cast<std::size_t>(found - names.begin()) : at;
-        if (found == names.end()) names.insert(names.begin() + static_cast<std::ptrdiff_t>(at), name);
-      }
-      ++at;
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 const Scalar* Row::find(std::string_view name) const {
@@ -181,6 +164,22 @@ std::string to_json_text(const Row& row) {
   std::string out;
   write_object(out, row, 0, "", "  ");
   return out + "\n";
+}
+
+std::vector<std::string> names_of(const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) {
+    std::size_t at = 0;  // where the next field of this row is expected
+    for (const auto& [name, value] : row.fields) {
+      if (at >= names.size() || names[at] != name) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        at = found != names.end() ? static_cast<std::size_t>(found - names.begin()) : at;
+        if (found == names.end()) names.insert(names.begin() + static_cast<std::ptrdiff_t>(at), name);
+      }
+      ++at;
+    }
+  }
+  return names;
 }
 
 std::string to_csv(const std::vector<Row>& rows) {

@@ -51,8 +51,11 @@ std::string to_json_line(const Row& row);
 /// The same, one field a line.
 std::string to_json_text(const Row& row);
 
-/// A table of rows that may differ in their fields: the header has every name, each behind the one that it follows in
-/// its row; cells are found by name. A text that a spreadsheet would compute ("=1+1") has an apostrophe before it.
+/// The names of all fields of all rows, each behind the one that it follows in its row.
+std::vector<std::string> names_of(const std::vector<Row>& rows);
+
+/// A table of rows that may differ in their fields: the header is names_of() them; cells are found by name. A text that
+/// a spreadsheet would compute ("=1+1") has an apostrophe before it.
 std::string to_csv(const std::vector<Row>& rows);
 
 /// Text in quotes with JSON escapes; bytes that are not UTF-8 become U+FFFD, for no reader would take them.

@@ -2,13 +2,16 @@
 #include "record/session.hpp"
 
 #include "config/yaml.hpp"
-#include "experiment/experiment.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
 #include "record/summary.hpp"
 
 #include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <utility>
 
 namespace palpate {
 
@@ -136,9 +139,11 @@ class Relay final : public Journal {
 };
 
 /// Builds the experiment. What only building finds out names an option; the config knows where that was written.
-Experiment build_experiment(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory) {
+std::unique_ptr<Experiment> build_experiment(const Workshop& workshop, const ResolvedConfig& config,
+                                             const fs::path& directory) {
   try {
-    return Experiment(config.options, workshop.host, workshop.interrupted, nullptr, directory.string());
+    return std::make_unique<Experiment>(config.options, workshop.host, workshop.interrupted, nullptr,
+                                        directory.string());
   } catch (const Error& trouble) {  // thrown on, with the place that only the config knows
     const std::string place = config.tree.place_of(trouble.where()).text();
     if (place.empty()) throw;
@@ -155,44 +160,132 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
               "leave it out");
 }
 
+/// A run in a directory that this process holds, from its first tap here to what ends it.
+class Course {
+ public:
+  Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Company& company,
+         const Stopwatch& watch)
+      : config_(config),
+        directory_(directory),
+        experiment_(experiment),
+        watch_(watch),
+        relay(config.options, experiment, directory, company) {
+    const LogOptions& log = config.options.log;
+    const bool once = !experiment.backend().repeatable();  // then a tap of which nobody saw the end must leave a trace
+    directory.open(once, log.sync == LogOptions::Sync::tap || (once && log.sync != LogOptions::Sync::none));
+  }
+
+  /// Goes on with the run by `part`, and says of an exception why the run ends with it; "" if there was none.
+  template <class Part>
+  static std::string failure_in(const Part& part) {
+    try {
+      part();
+      return {};
+    } catch (const std::exception& trouble) {
+      return trouble.what();
+    } catch (...) {
+      return "a plugin threw something that is no exception";
+    }
+  }
+
+  /// Writes what ends a run. `failure`: why it did not end well, else "".
+  RunReport finish(std::string failure) {
+    RunResult result;
+    if (failure.empty()) failure = failure_in([&] { result = experiment_.result(); });
+    directory_.check_in_place();
+    // A model that failed once is not asked again.
+    if (!failure.empty()) result = experiment_.counts();
+    note_learnt(directory_, experiment_.backend().learnt());
+    RunReport report;
+    report.directory = directory_.path();
+    report.interrupted = result.interrupted;
+    const Summary summary{
+        result,          config_, failure, watch_.wall_seconds(), watch_.cpu_seconds(), directory_.total_seconds(),
+        peak_rss_bytes()};
+    report.summary = summary_list().row(summary);
+    directory_.write("taps.csv", to_csv(directory_.rows()));
+    if (result.interrupted) return report;
+    if (config_.options.log.surface && failure.empty()) directory_.write("surface.csv", surface_csv(experiment_));
+    if (const std::string objects = objects_csv(summary); !objects.empty()) directory_.write("objects.csv", objects);
+    directory_.write("summary.json", to_json_text(report.summary));
+    if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
+    return report;
+  }
+
+ private:
+  const ResolvedConfig& config_;
+  RunDirectory& directory_;
+  Experiment& experiment_;
+  const Stopwatch& watch_;
+
+ public:
+  Relay relay;  ///< who hears of its taps
+};
+
 /// Runs the experiment in an open directory and writes what ends a run.
 RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment,
                     const Company& company, const Stopwatch& watch) {
-  const LogOptions& log = config.options.log;
-  const bool once = !experiment.backend().repeatable();  // then a tap of which nobody saw the end must leave a trace
-  directory.open(once, log.sync == LogOptions::Sync::tap || (once && log.sync != LogOptions::Sync::none));
-  Relay relay(config.options, experiment, directory, company);
-
-  RunReport report;
-  report.directory = directory.path();
-  std::string failure;
-  RunResult result;
-  try {
-    experiment.run(relay);
-    result = experiment.result();
-  } catch (const std::exception& trouble) {
-    failure = trouble.what();
-  } catch (...) {
-    failure = "a plugin threw something that is no exception";
-  }
-  directory.check_in_place();
-  // A model that failed once is not asked again.
-  if (!failure.empty()) result = experiment.counts();
-  note_learnt(directory, experiment.backend().learnt());
-  report.interrupted = result.interrupted;
-  const Summary summary{
-      result, config, failure, watch.wall_seconds(), watch.cpu_seconds(), directory.total_seconds(), peak_rss_bytes()};
-  report.summary = summary_list().row(summary);
-  directory.write("taps.csv", to_csv(directory.rows()));
-  if (result.interrupted) return report;
-  if (log.surface && failure.empty()) directory.write("surface.csv", surface_csv(experiment));
-  if (const std::string objects = objects_csv(summary); !objects.empty()) directory.write("objects.csv", objects);
-  directory.write("summary.json", to_json_text(report.summary));
-  if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
-  return report;
+  Course course(config, directory, experiment, company, watch);
+  return course.finish(Course::failure_in([&] { experiment.run(course.relay); }));
 }
 
 RunReport report_done(const fs::path& directory) { return {directory, true, false, read_summary(directory).value()}; }
+
+/// An experiment, and the directory for its record; neither where the directory has the finished run.
+struct Begun {
+  std::unique_ptr<RunDirectory> directory;
+  std::unique_ptr<Experiment> experiment;
+};
+
+Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
+                bool supervised) {
+  const RunStatus status = read_status(directory);
+  if (status.state == RunStatus::State::running) FileLock{directory / "lock"};  // throws: busy
+  if (status.state != RunStatus::State::absent && !force) {
+    const std::string where = directory.string();
+    switch (status.state) {
+      case RunStatus::State::done:
+        if (recorded_build(directory) == build_hash(workshop.host, config.notes.plugins)) return {};
+        throw Error(where, "this run was finished by another build of palpate or its plugins",
+                    "--force moves it aside and runs again");
+      case RunStatus::State::failed:
+        throw Error(where, fmt::format("this run failed: {}", status.stop_reason),
+                    "'palpate resume --retry-failed' carries on, --force starts again");
+      default:
+        throw Error(where, fmt::format("this run was broken off after {} taps", status.taps),
+                    "'palpate resume' carries on, --force starts again");
+    }
+  }
+  // Built before the directory is touched: what only building finds out leaves no trace.
+  std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
+  if (supervised) check_worth_asking(config, *experiment);
+  if (status.state != RunStatus::State::absent) move_away(directory);
+  auto held = std::make_unique<RunDirectory>(directory);
+  // Another process may have run it, whole or in part, while this one was still building.
+  if (read_record(directory).state != RunStatus::State::absent) {
+    throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
+                Error::Kind::busy);
+  }
+  held->write("config.yaml", to_yaml(config.tree));
+  held->write("manifest.json", manifest_text(workshop, config, *experiment));
+  return {std::move(held), std::move(experiment)};
+}
+
+enum class Taps { by_backend, by_caller };
+
+/// Throws Error where the taps of a run are made by somebody else. `command`: of the program, that was to make them.
+void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& command) {
+  const std::string& backend = config.options.backend.type;
+  const bool by_caller = backend == kCaller;
+  if (by_caller == (taps == Taps::by_caller)) return;
+  if (by_caller) {
+    throw Error("backend", "the taps of this run are made by a program of somebody's own, not by palpate",
+                command == "run" ? "palpate.Experiment(...) in Python asks for them, or choose another backend"
+                                 : "palpate.Experiment.resume(DIR) in Python carries it on");
+  }
+  throw Error("backend", fmt::format("the taps of this run are made by backend {}, not by a caller", backend),
+              command == "run" ? "choose the backend caller" : "'palpate resume' carries it on");
+}
 
 }  // namespace
 
@@ -208,37 +301,11 @@ fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {
 
 RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
                     Journal* observer, Supervisor* supervisor) {
+  check_who_taps(config, Taps::by_backend, "run");
   const Stopwatch watch;
-  const RunStatus status = read_status(directory);
-  if (status.state == RunStatus::State::running) FileLock{directory / "lock"};  // throws: busy
-  if (status.state != RunStatus::State::absent && !force) {
-    const std::string where = directory.string();
-    switch (status.state) {
-      case RunStatus::State::done:
-        if (recorded_build(directory) == build_hash(workshop.host, config.notes.plugins)) return report_done(directory);
-        throw Error(where, "this run was finished by another build of palpate or its plugins",
-                    "--force moves it aside and runs again");
-      case RunStatus::State::failed:
-        throw Error(where, fmt::format("this run failed: {}", status.stop_reason),
-                    "'palpate resume --retry-failed' carries on, --force starts again");
-      default:
-        throw Error(where, fmt::format("this run was broken off after {} taps", status.taps),
-                    "'palpate resume' carries on, --force starts again");
-    }
-  }
-  // Built before the directory is touched: what only building finds out leaves no trace.
-  Experiment experiment = build_experiment(workshop, config, directory);
-  if (supervisor != nullptr) check_worth_asking(config, experiment);
-  if (status.state != RunStatus::State::absent) move_away(directory);
-  RunDirectory held(directory);
-  // Another process may have run it, whole or in part, while this one was still building.
-  if (read_record(directory).state != RunStatus::State::absent) {
-    throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
-                Error::Kind::busy);
-  }
-  held.write("config.yaml", to_yaml(config.tree));
-  held.write("manifest.json", manifest_text(workshop, config, experiment));
-  return carry_out(config, held, experiment, {observer, supervisor}, watch);
+  const Begun run = begin_run(workshop, config, directory, force, supervisor != nullptr);
+  if (!run.experiment) return report_done(directory);
+  return carry_out(config, *run.directory, *run.experiment, {observer, supervisor}, watch);
 }
 
 Tree read_run_config(const fs::path& directory) {
@@ -277,12 +344,15 @@ RunReport resume_run(const Workshop& workshop, const fs::path& directory, const 
   return resume_held(workshop, config, held, options, observer, supervisor);
 }
 
-RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
-                      const ResumeOptions& options, Journal* observer, Supervisor* supervisor) {
-  const Stopwatch watch;
+namespace {
+
+/// The experiment as it was after the recorded taps of a directory that this process holds; none where the run is done.
+std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                                  const ResumeOptions& options, Taps taps, bool supervised) {
   const fs::path& directory = held.path();
   const RunStatus status = read_record(directory);
-  if (status.state == RunStatus::State::done) return report_done(directory);
+  if (status.state == RunStatus::State::done) return nullptr;
+  check_who_taps(config, taps, "resume");
   if (status.state == RunStatus::State::failed && !options.retry_failed) {
     throw Error(directory.string(), fmt::format("this run failed: {}", status.stop_reason),
                 "--retry-failed carries on all the same", Error::Kind::run);
@@ -290,17 +360,113 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, directory);
   if (objection) throw *objection;
   const std::vector<PastTap> past = held.recover();
-  Experiment experiment = build_experiment(workshop, config, directory);
-  if (supervisor != nullptr) check_worth_asking(config, experiment);
-  experiment.resume(past);
+  std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
+  if (supervised) check_worth_asking(config, *experiment);
+  experiment->resume(past);
   if (recorded_build(directory).empty()) {
-    held.write("manifest.json", manifest_text(workshop, config, experiment));
+    held.write("manifest.json", manifest_text(workshop, config, *experiment));
   } else {
     note_resume(workshop, config, held, static_cast<int>(past.size()));
   }
   std::error_code none;
   fs::remove(directory / "summary.json", none);
-  return carry_out(config, held, experiment, {observer, supervisor}, watch);
+  return experiment;
+}
+
+/// The one CallersRun: what is begun or carried on, whichever, goes on alike.
+class Held final : public CallersRun {
+ public:
+  Held(const ResolvedConfig& config, Begun begun)
+      : config_(config),
+        begun_(std::move(begun)),
+        course_(config_, *begun_.directory, *begun_.experiment, {}, watch_) {}
+
+  const TapRecord* begin(const Eigen::VectorXd* scores) override {
+    if (finished()) return nullptr;
+    if (tap_ && scores != nullptr) {
+      throw Error(fmt::format("tap {}", tap_->number), "is asked for already", "tell first what came of it");
+    }
+    if (tap_) return &*tap_;
+    const std::optional<Wish> wish = scores != nullptr ? std::optional(Wish{*scores, {}}) : std::nullopt;
+    const std::string failure = Course::failure_in([&] {
+      tap_ = begun_.experiment->begin(course_.relay, std::numeric_limits<int>::max(), wish ? &*wish : nullptr);
+    });
+    if (tap_ && failure.empty()) return &*tap_;
+    end_with(failure);
+    return nullptr;
+  }
+
+  void end(Contact contact) override {
+    if (!tap_) throw Error("tell", "no tap is asked for", "ask first where to tap");
+    tap_->contact = std::move(contact);
+    const std::string failure = Course::failure_in([&] { begun_.experiment->end(*tap_, course_.relay); });
+    tap_.reset();
+    if (!failure.empty()) end_with(failure);
+  }
+
+  const RunReport& finish() override {
+    if (!finished()) {
+      if (tap_) throw Error(fmt::format("tap {}", tap_->number), "is asked for", "tell first what came of it");
+      begun_.experiment->stop("ended by the caller");
+      end_with({});
+    }
+    return *report_;
+  }
+
+  bool finished() const override { return report_.has_value(); }
+  Experiment& experiment() override { return *begun_.experiment; }
+  const ResolvedConfig& config() const override { return config_; }
+  const fs::path& directory() const override { return begun_.directory->path(); }
+
+ private:
+  /// A run that failed is finished as well.
+  void end_with(const std::string& failure) {
+    tap_.reset();
+    report_.emplace();
+    report_->directory = directory();
+    *report_ = course_.finish(failure);
+  }
+
+  Stopwatch watch_;
+  ResolvedConfig config_;
+  Begun begun_;
+  Course course_;
+  std::optional<TapRecord> tap_;  ///< that is to be made
+  std::optional<RunReport> report_;
+};
+
+/// Throws Error for a run that is there already.
+Error finished_error(const fs::path& directory) {
+  return Error(directory.string(), "this run is finished", "force moves it aside and runs again");
+}
+
+}  // namespace
+
+std::unique_ptr<CallersRun> CallersRun::start(const Workshop& workshop, const ResolvedConfig& config,
+                                              const fs::path& directory, bool force) {
+  check_who_taps(config, Taps::by_caller, "run");
+  Begun begun = begin_run(workshop, config, directory, force, false);
+  if (!begun.experiment) throw finished_error(directory);
+  return std::make_unique<Held>(config, std::move(begun));
+}
+
+std::unique_ptr<CallersRun> CallersRun::resume(const Workshop& workshop, const fs::path& directory,
+                                               const ResumeOptions& options) {
+  const ResolvedConfig config = load_run(workshop.host, directory);
+  Begun begun;
+  begun.directory = std::make_unique<RunDirectory>(directory);
+  begun.experiment = go_on(workshop, config, *begun.directory, options, Taps::by_caller, false);
+  if (!begun.experiment) throw finished_error(directory);
+  return std::make_unique<Held>(config, std::move(begun));
+}
+
+RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                      const ResumeOptions& options, Journal* observer, Supervisor* supervisor) {
+  const Stopwatch watch;
+  const std::unique_ptr<Experiment> experiment =
+      go_on(workshop, config, held, options, Taps::by_backend, supervisor != nullptr);
+  if (!experiment) return report_done(held.path());
+  return carry_out(config, held, *experiment, {observer, supervisor}, watch);
 }
 
 }  // namespace palpate

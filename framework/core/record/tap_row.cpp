@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<const char*, 3> kSources{"initial", "acquisition", "fallback"};
+constexpr std::array<const char*, 4> kSources{"initial", "acquisition", "fallback", "caller"};
 constexpr std::array<const char*, 6> kOutcomes{"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
 
 /// A number that may have been written without a point.

@@ -85,6 +85,10 @@ class Explanation {
         explain_fallback();
         explain_score(1.0);  // that of u
         break;
+      case Source::caller:
+        page_.say("The caller chose it, by scores of its own.");
+        explain_score(0.0);
+        break;
     }
     explain_place(page_, row_, options_.footprint.type);
     explain_repeats();
@@ -126,9 +130,13 @@ class Explanation {
   }
 
   void explain_fallback() {
-    const std::string why = row_.text("why");
-    page_.say(fmt::format("The acquisition, {}, had nothing to go by: {}.", acquisition_words(),
-                          why.empty() ? "its scores told no candidate from another" : why));
+    std::string why = row_.text("why");
+    const bool of_caller = why.rfind(kOfCaller, 0) == 0;
+    if (of_caller) why.erase(0, std::string(kOfCaller).size());
+    page_.say(
+        fmt::format("{} had nothing to go by: {}.",
+                    of_caller ? "The scores of the caller" : fmt::format("The acquisition, {},", acquisition_words()),
+                    why.empty() ? "its scores told no candidate from another" : why));
     const double greatest = row_.number("max_weight").value_or(1.0);
     if (hits_before() == 0)
       page_.say("No tap has hit an object yet" +

@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: MIT
+"""Active touch from Python: read runs, run experiments, and be asked where to tap.
+
+    import palpate
+
+    run = palpate.load("runs/default/07bf62eed612")     # or run = palpate.run("configs/default.yaml", "taps=20")
+    run.taps["height"], run.surface, run.after(5).probability
+
+    with palpate.Experiment("configs/default.yaml", "taps=40", seed=3) as experiment:
+        while tap := experiment.ask():
+            height, force = my_arm.tap(tap.x, tap.y)
+            experiment.tell(height, force)
+
+All lengths are in metres, forces in newtons, times in seconds. A map has a row for each y and a column for each x of the
+candidates: map[i, k] lies at (x[k], y[i]), from the lower left corner of the area.
+
+What is computed is what the program `palpate` computes: the same config and seed give the same bytes.
+"""
+
+from __future__ import annotations
+
+import json as _json
+import os as _os
+
+import numpy as _np
+
+from . import _palpate
+from ._palpate import Error, Tap
+
+__all__ = ["Belief", "Error", "Experiment", "Maps", "Run", "Tap", "describe", "load", "run"]
+__version__ = _palpate.version
+
+Error.__doc__ = """Input that can be mended: `place`, `reason` and `remedy` (perhaps "") say where, what and how."""
+Tap.__doc__ = """A tap to make.
+
+`number`: from 1. `x`, `y`: the place, metres. `candidate`: its index among the candidates, row by row. `source`: who
+chose it, "initial", "acquisition", "fallback" or "caller"; `why`: of a fallback. `score`: None of an initial tap.
+"""
+
+
+def _overrides(overrides, settings):
+    return [*overrides, *(f"{key}={_value(value)}" for key, value in settings.items())]
+
+
+def _value(value):
+    return value if isinstance(value, str) else _json.dumps(value)
+
+
+def _json_file(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return _json.load(file)
+    except FileNotFoundError:
+        return None
+
+
+class Maps:
+    """What was believed after `taps` taps, over the candidates; every map is an array of rows x columns.
+
+    `height_mean`, `height_standard_deviation`: of the height, metres (of `surface: two_part` of that of an object).
+    `uncertainty`: u, the variance relative to the prior, 0 to 1. `weight`: w. `probability`: p, that an object is there.
+    `surface`: as reconstructed, metres.
+    """
+
+    __slots__ = ("taps", "height_mean", "height_standard_deviation", "uncertainty", "weight", "probability", "surface")
+
+    def __init__(self, taps, maps):
+        self.taps = taps
+        for name, value in maps.items():
+            setattr(self, name, value)
+
+
+class Run:
+    """A recorded run: load() opens one. Nothing is read before it is asked for, but for the taps."""
+
+    def __init__(self, directory):
+        self.directory = _os.fspath(directory)
+        self._record = _palpate.Record(self.directory)
+        self.id = self._record.id()
+
+    def __repr__(self):
+        return f"<palpate.Run {self.directory}: {len(self)} taps>"
+
+    def __len__(self):
+        return self._record.size()
+
+    @property
+    def config(self) -> dict:
+        """As it was run, every value resolved; quantities are texts with their units."""
+        return self._record.config()
+
+    @property
+    def summary(self) -> dict | None:
+        """summary.json, nested by its dots; None of a run that has not ended."""
+        return _json_file(_os.path.join(self.directory, "summary.json"))
+
+    @property
+    def manifest(self) -> dict | None:
+        """manifest.json: program, build, plugins, command line."""
+        return _json_file(_os.path.join(self.directory, "manifest.json"))
+
+    @property
+    def taps(self) -> _np.ndarray:
+        """A structured array of a row a tap; describe() says what its fields mean. Numbers that a tap lacks are NaN."""
+        columns = [(name, _np.asarray(values, dtype=object) if isinstance(values, list) else values)
+                   for name, values in self._record.taps()]
+        out = _np.empty(len(self), dtype=[(name, values.dtype) for name, values in columns])
+        for name, values in columns:
+            out[name] = values
+        return out
+
+    def after(self, taps: int) -> Maps:
+        """The models after the first `taps` taps, computed again from the record; cheapest in ascending order."""
+        return Maps(taps, self._record.after(taps))
+
+    @property
+    def surface(self) -> _np.ndarray:
+        """The surface as reconstructed from all taps, metres."""
+        return self.after(len(self)).surface
+
+    @property
+    def truth(self) -> _np.ndarray | None:
+        """Heights of the scene that was tapped, metres; None where another world was tapped, as by a robot."""
+        return self._record.truth()
+
+    @property
+    def x(self) -> _np.ndarray:
+        """Of the columns of a map, metres."""
+        return self._record.axes()[0]
+
+    @property
+    def y(self) -> _np.ndarray:
+        """Of the rows of a map, metres."""
+        return self._record.axes()[1]
+
+
+def load(directory) -> Run:
+    """The run in a directory. Raises Error for what is none, or damaged."""
+    return Run(directory)
+
+
+def describe() -> dict[str, tuple[str, str]]:
+    """Unit and meaning of each field of `Run.taps`, by its name. `*` stands for names that only a run knows."""
+    return {name: (unit, meaning) for name, unit, meaning in _palpate.tap_fields()}
+
+
+def run(config, *overrides, runs="runs", force=False, progress=None, **settings) -> Run:
+    """Runs an experiment, as `palpate run CONFIG KEY=VALUE ...` does, and loads it.
+
+    `settings` are overrides of keys that are Python names: seed=3 is "seed=3". A finished run of this build is loaded,
+    not run again; `force` moves it aside. `progress(n)` is called after every tap. Ctrl-C ends the run; it can be carried
+    on by `palpate resume`.
+    """
+    return Run(_palpate.run(_os.fspath(config), _overrides(overrides, settings), _os.fspath(runs), force, progress))
+
+
+class Belief:
+    """What an Experiment believes now: read-only maps, of rows x columns, that are true until the next tell().
+
+    No map is copied: copy what is to be kept (`belief.probability.copy()`). To look changes neither taps nor record.
+    """
+
+    __slots__ = ("_asked",)
+
+    def __init__(self, asked):
+        self._asked = asked
+
+    @property
+    def x(self) -> _np.ndarray:
+        """Of the columns, metres."""
+        return self._asked.xs()
+
+    @property
+    def y(self) -> _np.ndarray:
+        """Of the rows, metres."""
+        return self._asked.ys()
+
+    @property
+    def uncertainty(self) -> _np.ndarray:
+        """u: variance of the height relative to its prior, 0 to 1."""
+        return self._asked.uncertainty()
+
+    @property
+    def weight(self) -> _np.ndarray:
+        """w: mean of the weight process."""
+        return self._asked.weight()
+
+    @property
+    def probability(self) -> _np.ndarray:
+        """p: the probability that an object is there."""
+        return self._asked.probability()
+
+    @property
+    def height_mean(self) -> _np.ndarray:
+        """Mean of the height, metres."""
+        return self._asked.height_mean()
+
+    @property
+    def height_variance(self) -> _np.ndarray:
+        """Its variance, square metres."""
+        return self._asked.height_variance()
+
+
+class Experiment:
+    """An experiment whose taps the caller makes: ask() says where, tell() takes what came of it.
+
+    The config's backend is replaced by `caller`; of its scene only area and desk count. The record is that of `palpate
+    run`, in `runs`: it can be replayed, reported, and carried on by Experiment.resume(). As a context manager it is
+    finished at the end, unless by an exception: then it can be carried on.
+    """
+
+    def __init__(self, config, *overrides, runs="runs", force=False, **settings):
+        all_overrides = _overrides(overrides, settings) + ["backend.type=caller"]
+        self._asked = _palpate.Asked(_os.fspath(config), all_overrides, _os.fspath(runs), force)
+        self.directory = self._asked.directory()
+
+    @classmethod
+    def resume(cls, directory, retry_failed=False, force=False) -> "Experiment":
+        """Carries on a run that has not ended. A tap that was asked for and never told counts as one of outcome unknown."""
+        self = cls.__new__(cls)
+        self._asked = _palpate.Asked(_os.fspath(directory), retry_failed, force)
+        self.directory = self._asked.directory()
+        return self
+
+    def __repr__(self):
+        return f"<palpate.Experiment {self.directory}>"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        if kind is None and not self._asked.finished():
+            self.finish()
+        self.close()
+
+    @property
+    def belief(self) -> Belief:
+        """What is believed now."""
+        return Belief(self._asked)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run has ended: ask() gives no further tap."""
+        return self._asked.finished()
+
+    def __len__(self):
+        """Taps told so far."""
+        return self._asked.taps()
+
+    def ask(self, scores=None) -> Tap | None:
+        """The tap to make next; the same until tell(). None when the run is over.
+
+        `scores`: one value a candidate, as a map or row by row; above 0 where a tap is worth something. The highest is
+        tapped, under the framework's rules about ties, repeats and the fallback, in the place of the config's strategy.
+        """
+        return self._asked.ask(None if scores is None else _np.asarray(scores, dtype=float))
+
+    def tell(self, height=None, force=None, seconds=None, *, outcome=None, reason="", ends_run=False) -> None:
+        """What came of the tap that was asked for.
+
+        `height`: of the touched point, metres; `force` at contact, newtons; `seconds` that it took. Without a height an
+        `outcome` says why: "no_contact", "unreachable", "timeout" or "aborted", with a `reason` for people. `ends_run`:
+        nobody may tap before somebody has seen to the robot; the run fails, and resume(retry_failed=True) carries it on.
+        """
+        if outcome is None:
+            if height is None:
+                raise _error("tell", "neither a height nor an outcome is told", 'tell a height, or outcome="no_contact"')
+            outcome = "contact"
+        elif (outcome == "contact") != (height is not None):
+            raise _error("tell", "a height belongs to a contact, and to nothing else", "leave one of the two out")
+        self._asked.tell(outcome, float(height or 0.0), float(force or 0.0), float(seconds or 0.0), reason, ends_run)
+
+    def finish(self) -> dict:
+        """Ends the run, its budget reached or not, and returns its summary."""
+        return _json.loads(self._asked.finish())
+
+    def close(self) -> None:
+        """Lets go of the record. What is not finished can be carried on."""
+        self._asked.close()
+
+
+def _error(place, reason, remedy):
+    error = Error(f"{place}: {reason}, {remedy}")
+    error.place, error.reason, error.remedy = place, reason, remedy
+    return error

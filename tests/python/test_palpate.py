@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: MIT
+"""The Python module against the program and its files. Where it is built: PALPATE_BUILD."""
+
+import csv
+import math
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import palpate
+
+BUILD = pathlib.Path(os.environ["PALPATE_BUILD"])
+CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
+DEFAULT = CONFIGS / "default.yaml"
+
+
+def program(*words, code=0):
+    done = subprocess.run([BUILD / "palpate", *map(str, words)], capture_output=True, text=True)
+    assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def cells(file):
+    with open(file, encoding="utf-8", newline="") as text:
+        return list(csv.DictReader(text))
+
+
+class Module(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def begun(self, *overrides, config=DEFAULT, **settings):
+        experiment = palpate.Experiment(config, *overrides, runs=self.folder, **settings)
+        self.addCleanup(experiment.close)
+        return experiment
+
+    def refuses(self, place, reason, remedy, action):
+        with self.assertRaises(palpate.Error) as caught:
+            action()
+        for part, of in ((place, caught.exception.place), (reason, caught.exception.reason),
+                         (remedy, caught.exception.remedy)):
+            self.assertIn(part, of)
+            self.assertIn(part, str(caught.exception))
+
+    def test_a_run_from_python_leaves_the_bytes_that_the_program_leaves(self):
+        by_python = palpate.run(DEFAULT, "taps=12", seed=3, runs=self.folder / "a")
+        program("run", DEFAULT, "taps=12", "seed=3", "--quiet", "--runs", self.folder / "b")
+        for name in ("taps.csv", "taps.jsonl", "surface.csv", "objects.csv", "config.yaml"):
+            one = pathlib.Path(by_python.directory) / name
+            other = next((self.folder / "b").glob("*/*/" + name))
+            self.assertEqual(one.read_bytes(), other.read_bytes(), name)
+        self.assertIn("12 taps", program("replay", by_python.directory))
+        self.assertIn("already done", program("resume", by_python.directory), "it is a run of the same build")
+
+    def test_a_finished_run_is_loaded_and_not_run_again(self):
+        taps = []
+        first = palpate.run(DEFAULT, "taps=3", runs=self.folder, progress=taps.append)
+        again = palpate.run(DEFAULT, "taps=3", runs=self.folder, progress=taps.append)
+        self.assertEqual(taps, [1, 2, 3])
+        self.assertEqual(first.id, again.id)
+
+    def test_taps_are_those_of_the_table_and_every_field_is_described(self):
+        run = palpate.run(DEFAULT, "taps=8", "scene.effects=standard", runs=self.folder)
+        rows = cells(pathlib.Path(run.directory) / "taps.csv")
+        self.assertEqual(len(run), 8)
+        self.assertEqual(list(run.taps.dtype.names), list(rows[0]))
+        described = palpate.describe()
+        for name in run.taps.dtype.names:
+            known = name in described or any("*" in one or "<" in one for one in described)
+            self.assertTrue(known, name)
+            for value, row in zip(run.taps[name], rows):
+                if isinstance(value, (np.bool_, bool)):
+                    self.assertEqual(str(bool(value)).lower(), row[name])
+                elif isinstance(value, str):
+                    self.assertEqual(value, row[name])
+                elif value is None or math.isnan(value):
+                    self.assertEqual("", row[name], name)
+                else:
+                    self.assertEqual(float(value), float(row[name]), name)
+        self.assertEqual(described["height"][0], "m")
+
+    def test_config_summary_and_manifest_are_those_of_the_files(self):
+        run = palpate.run(DEFAULT, "taps=3", runs=self.folder)
+        self.assertEqual((run.config["taps"], run.config["name"], run.config["stop"]), (3, "default", {}))
+        self.assertEqual(run.config["kernel"], {"type": "rbf", "length_scale": "0.03 m"})
+        self.assertEqual(run.summary["taps"], 3)
+        self.assertEqual(run.manifest["command_line"], ["python"])
+
+    def test_models_after_a_tap_are_the_maps_that_the_run_had_then(self):
+        run = palpate.run(DEFAULT, "taps=9", "log.maps=true", runs=self.folder)
+        folder = pathlib.Path(run.directory)
+        for taps in (5, 8, 2):
+            maps = cells(folder / "maps" / f"tap_{taps + 1:03}.csv")
+            after = run.after(taps)
+            for column, values in (("u", after.uncertainty), ("p", after.probability)):
+                np.testing.assert_array_equal(values.ravel(), [float(row[column]) for row in maps], column)
+        surface = cells(folder / "surface.csv")
+        for column, values in (("reconstructed_height", run.surface), ("true_height", run.truth),
+                               ("height_mean", run.after(9).height_mean)):
+            np.testing.assert_array_equal(values.ravel(), [float(row[column]) for row in surface], column)
+        x, y = np.meshgrid(run.x, run.y)
+        np.testing.assert_array_equal(x.ravel(), [float(row["x"]) for row in surface])
+        np.testing.assert_array_equal(y.ravel(), [float(row["y"]) for row in surface])
+        self.refuses("after", "there are 9 taps", "take fewer", lambda: run.after(10))
+
+    def test_who_tells_what_the_simulator_felt_is_sent_where_the_simulator_was(self):
+        felt = palpate.run(DEFAULT, "taps=14", "backend=gentle", seed=5, runs=self.folder)
+        with self.begun("taps=14", seed=5) as experiment:
+            for row in felt.taps:
+                tap = experiment.ask()
+                self.assertEqual((tap.number, tap.x, tap.y, tap.source), (row["tap"], row["x"], row["y"], row["source"]))
+                self.assertIs(type(tap.candidate), int)
+                experiment.tell(row["height"], row["force"], row["robot_seconds"])
+            self.assertIsNone(experiment.ask())
+            self.assertTrue(experiment.finished)
+        told = palpate.load(experiment.directory)
+        self.assertEqual((told.summary["status"], told.summary["stop_reason"]), ("done", "tap budget"))
+        np.testing.assert_array_equal(told.surface, felt.surface)
+        self.assertIsNone(told.truth, "nobody knows what a caller taps")
+        self.assertIn("all equal", program("replay", experiment.directory))
+
+    def test_what_is_believed_is_read_only_never_copied_and_leaves_the_record_as_it_is(self):
+        for config in (DEFAULT, CONFIGS / "paper" / "object_i.yaml"):
+            records = []
+            for looks in (False, True):
+                with self.begun("taps=8", config=config, name=f"looks_{looks}") as experiment:
+                    while tap := experiment.ask():
+                        if looks:
+                            belief = experiment.belief
+                            for name in ("uncertainty", "weight", "probability", "height_mean", "height_variance"):
+                                values = getattr(belief, name)
+                                self.assertEqual(values.shape, (len(belief.y), len(belief.x)))
+                                self.assertTrue(np.isfinite(values).all(), name)
+                                self.assertTrue(np.shares_memory(values, getattr(belief, name)), name)
+                                with self.assertRaises(ValueError):
+                                    values[0, 0] = 1.0
+                        experiment.tell(0.04 if math.hypot(tap.x - 0.115, tap.y - 0.115) < 0.05 else 0.0, 8.0, 2.0)
+                records.append((pathlib.Path(experiment.directory) / "taps.jsonl").read_bytes())
+            self.assertEqual(records[0], records[1], config)
+
+    def test_scores_of_the_caller_choose_and_the_record_can_be_played_again(self):
+        with self.begun("taps=9") as experiment:
+            wish = np.zeros((len(experiment.belief.y), len(experiment.belief.x)))
+            wish[3, 4] = 2.0
+            wish[10, 7] = 1.0
+            tap = experiment.ask(wish)
+            self.assertEqual((tap.source, tap.score, tap.candidate), ("caller", 2.0, 3 * wish.shape[1] + 4))
+            self.assertEqual((tap.x, tap.y), (experiment.belief.x[4], experiment.belief.y[3]))
+            self.assertEqual(experiment.ask().number, 1, "the same until it is told")
+            self.refuses("tap 1", "is asked for already", "tell first", lambda: experiment.ask(wish))
+            experiment.tell(0.05)
+            self.assertEqual(experiment.ask(wish).candidate, 10 * wish.shape[1] + 7, "none is tapped again")
+            experiment.tell(0.0)
+            tap = experiment.ask(wish)
+            self.assertEqual(tap.source, "fallback")
+            self.assertIn("of the caller's scores: no score is positive", tap.why)
+            experiment.tell(0.0)
+            equal = experiment.ask(wish.ravel() + 5.0 - wish.ravel())
+            self.assertEqual(equal.source, "fallback")
+            experiment.tell(outcome="no_contact", reason="nothing there")
+            while tap := experiment.ask():
+                self.assertIn(tap.source, ("initial", "acquisition"), "without scores the strategy chooses")
+                experiment.tell(0.0)
+        self.assertIn("all equal", program("replay", experiment.directory))
+        self.assertIn("by scores of its own", program("explain", experiment.directory, "--tap", 1))
+        self.assertIn("The scores of the caller", program("explain", experiment.directory, "--tap", 3))
+
+    def test_bad_scores_and_answers_are_refused_and_lose_nothing(self):
+        experiment = self.begun("taps=3")
+        self.refuses("scores", "has 3 values", "2209", lambda: experiment.ask([1, 2, 3]))
+        self.refuses("scores", "not a finite number", "0 is", lambda: experiment.ask(np.full(2209, np.nan)))
+        self.refuses("tell", "no tap is asked for", "ask first", lambda: experiment.tell(0.0))
+        experiment.ask()
+        self.refuses("tell", "neither a height nor an outcome", "no_contact", experiment.tell)
+        self.refuses("tell", "no outcome 'missed'", "no_contact", lambda: experiment.tell(outcome="missed"))
+        self.refuses("tell", "not a finite number", "no_contact", lambda: experiment.tell(math.inf))
+        self.refuses("tell", "belongs to a contact", "leave one", lambda: experiment.tell(0.1, outcome="timeout"))
+        self.refuses("tap 1", "is asked for", "tell first", experiment.finish)
+        experiment.tell(0.0)
+        self.assertEqual(experiment.finish()["stop_reason"], "ended by the caller")
+        self.assertEqual(len(palpate.load(experiment.directory)), 1)
+        self.refuses("command line", "unknown option 'length'", "length_scale",
+                     lambda: palpate.run(DEFAULT, "kernel.length=3", runs=self.folder))
+        self.refuses(str(self.folder), "not a run directory", "config.yaml", lambda: palpate.load(self.folder))
+
+    def test_a_run_that_was_killed_goes_on_and_the_tap_that_nobody_told_is_unknown(self):
+        script = ("import os, sys, palpate\n"
+                  "e = palpate.Experiment(sys.argv[1], 'taps=6', runs=sys.argv[2])\n"
+                  "for _ in range(3): e.ask(); e.tell(0.0)\n"
+                  "e.ask(); print(e.directory, flush=True); os.kill(os.getpid(), 9)\n")
+        killed = subprocess.run([sys.executable, "-c", script, DEFAULT, self.folder], capture_output=True, text=True)
+        directory = killed.stdout.strip()
+        self.assertIn("palpate.Experiment.resume(DIR)", program("resume", directory, code=2))
+        with palpate.Experiment.resume(directory) as experiment:
+            self.assertEqual(len(experiment), 4)
+            self.refuses(directory, "is", "", lambda: palpate.Experiment.resume(directory))
+            while experiment.ask():
+                experiment.tell(0.0)
+        run = palpate.load(directory)
+        self.assertEqual([*run.taps["outcome"]], ["contact"] * 3 + ["unknown"] + ["contact"] * 2)
+        self.assertIn("all equal", program("replay", directory))
+        self.assertIn("already done", program("resume", directory))
+        self.refuses(directory, "is finished", "force", lambda: palpate.Experiment.resume(directory))
+
+    def test_who_ends_a_run_carries_it_on_only_when_told_to(self):
+        experiment = self.begun("taps=4")
+        experiment.ask()
+        with self.assertRaises(palpate.Error) as caught:
+            experiment.tell(outcome="aborted", reason="the arm is stuck", ends_run=True)
+        self.assertIn("the arm is stuck", str(caught.exception))
+        self.assertTrue(experiment.finished)
+        self.assertIsNone(experiment.ask())
+        experiment.close()
+        self.assertEqual(palpate.load(experiment.directory).summary["status"], "failed")
+        self.refuses("", "the arm is stuck", "", lambda: palpate.Experiment.resume(experiment.directory))
+        with palpate.Experiment.resume(experiment.directory, retry_failed=True) as again:
+            while again.ask():
+                again.tell(0.0)
+        self.assertEqual(palpate.load(experiment.directory).summary["status"], "done")
+
+    def test_an_exception_leaves_a_run_that_can_be_carried_on(self):
+        with self.assertRaises(ZeroDivisionError):
+            with self.begun("taps=4") as experiment:
+                experiment.ask()
+                experiment.tell(0.0)
+                1 / 0
+        self.assertIsNone(palpate.load(experiment.directory).summary)
+        with palpate.Experiment.resume(experiment.directory) as again:
+            self.assertEqual(again.ask().number, 2)
+            again.tell(0.0)
+
+    def test_ctrl_c_ends_a_run_which_the_program_carries_on(self):
+        def interrupt(number):
+            if number == 4:
+                os.kill(os.getpid(), signal.SIGINT)
+        with self.assertRaises(KeyboardInterrupt):
+            palpate.run(DEFAULT, "taps=12", runs=self.folder, progress=interrupt)
+        directory = next(self.folder.glob("*/*"))
+        self.assertLess(len(palpate.load(directory)), 12)
+        self.assertIn("done: tap budget after 12 taps", program("resume", directory))
+
+    def test_other_threads_go_on_while_taps_are_computed(self):
+        turns = 0
+        over = threading.Event()
+
+        def count():
+            nonlocal turns
+            while not over.is_set():
+                turns += 1
+                time.sleep(0)
+        thread = threading.Thread(target=count)
+        thread.start()
+        try:
+            before = turns
+            palpate.run(DEFAULT, "taps=20", "footprint.particles=3000", runs=self.folder)
+            self.assertGreater(turns - before, 100)
+        finally:
+            over.set()
+            thread.join()
+
+    def test_many_runs_in_one_process_take_no_more_memory(self):
+        def peak():
+            return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # KiB
+        runs = int(os.environ.get("PALPATE_RUNS", "120"))
+        for seed in range(runs):
+            run = palpate.run(DEFAULT, "taps=3", seed=seed, runs=self.folder)
+            run.after(2)
+            with self.begun("taps=2", "name=asked", seed=seed) as experiment:
+                while experiment.ask():
+                    experiment.tell(0.0)
+            if seed == runs // 3:
+                third = peak()
+        self.assertLess(peak() - third, 4096)
+
+
+if __name__ == "__main__":
+    unittest.main()
