@@ -5,6 +5,7 @@ import csv
 import math
 import os
 import pathlib
+import re
 import resource
 import signal
 import subprocess
@@ -172,8 +173,8 @@ class Module(unittest.TestCase):
                 self.assertIn(tap.source, ("initial", "acquisition"), "without scores the strategy chooses")
                 experiment.tell(0.0)
         self.assertIn("all equal", program("replay", experiment.directory))
-        self.assertIn("by scores of its own", program("explain", experiment.directory, "--tap", 1))
-        self.assertIn("The scores of the caller", program("explain", experiment.directory, "--tap", 3))
+        self.assertIn("by scores of its own", program("explain", experiment.directory, 1))
+        self.assertIn("The scores of the caller", program("explain", experiment.directory, 3))
 
     def test_bad_scores_and_answers_are_refused_and_lose_nothing(self):
         experiment = self.begun("taps=3")
@@ -238,6 +239,16 @@ class Module(unittest.TestCase):
         with palpate.Experiment.resume(experiment.directory) as again:
             self.assertEqual(again.ask().number, 2)
             again.tell(0.0)
+
+    def test_the_examples_of_the_page_about_python_run(self):
+        page = (CONFIGS.parent / "framework" / "docs" / "python.md").read_text(encoding="utf-8")
+        examples = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+        self.assertEqual(len(examples), 2)
+        (self.folder / "configs").symlink_to(CONFIGS)
+        for example in examples:
+            done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("'caller'", done.stdout)
 
     def test_ctrl_c_ends_a_run_which_the_program_carries_on(self):
         def interrupt(number):
