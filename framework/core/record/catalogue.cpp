@@ -47,7 +47,7 @@ std::pair<std::time_t, long> begun(const fs::path& directory) {
 }
 
 /// Adds what is in `folder` and as many levels below; returns whether there was a record.
-bool collect(const fs::path& folder, int levels, Catalogue& out) {
+bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
   if (is_record(folder)) {
     // Given by its own path it is meant all the same.
     const bool aside = levels < kLevels && is_moved_aside(folder);
@@ -60,7 +60,7 @@ bool collect(const fs::path& folder, int levels, Catalogue& out) {
   for (; levels > 0 && one != fs::directory_iterator(); one.increment(none)) {
     const bool hidden = one->path().filename().string().front() == '.';
     if (hidden || one->is_symlink(none) || !one->is_directory(none)) continue;
-    any = collect(one->path(), levels - 1, out) || any;
+    any = collect_records(one->path(), levels - 1, out) || any;
   }
   if (!any && levels == kLevels - 1) ++out.strangers;
   return any;
@@ -154,7 +154,7 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
 
 Catalogue read_catalogue(const fs::path& folder) {
   Catalogue out;
-  collect(folder, kLevels, out);
+  collect_records(folder, kLevels, out);
   std::sort(out.records.begin(), out.records.end(),
             [](const fs::path& a, const fs::path& b) { return std::tuple(begun(a), a) < std::tuple(begun(b), b); });
   return out;
