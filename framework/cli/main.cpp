@@ -39,7 +39,7 @@ constexpr const char* kMeantBy = ": its directory, a folder with one in it, its 
 /// The commands with what they are called with.
 struct CommandLine {
   CLI::App& app;
-  bool asked;                            ///< only what the command takes
+  bool asked;                            ///< what the command takes, and no more: see needs.hpp
   std::function<int(Program&)> perform;  ///< the command that was named, once the command line is understood
   Need need;
   RunArguments run;
@@ -64,7 +64,7 @@ struct CommandLine {
   void add_record(CLI::App* sub, const char* name, Texts& texts, Wanted wanted, const std::string& help) const {
     const auto find = [wanted, only_asked = asked](std::string& words) -> std::string {
       const auto trouble = trouble_in([&] { words = find_record(words, wanted).string(); });
-      if (trouble && !only_asked) throw *trouble;  // see needs.hpp
+      if (trouble && !only_asked) throw *trouble;
       return {};
     };
     sub->add_option(name, texts, help + kMeantBy)->required()->transform(CLI::Validator(find, ""));

@@ -67,17 +67,17 @@ TEST_F(List, OfAFolderWithoutRunsIsOneLine) {
 }
 
 TEST_F(List, NamesStandForARunOrASweepInEveryCommandThatTakesOne) {
-  const fs::path run = ran({"taps=6", "name=a b"});
+  const fs::path run = ran({"taps=12", "name=a b"});
   for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
     for (const char* words : {"a b", "a b@latest", "runs/a-b", "runs"}) {
       const Ended ended = palpate({command, words});
       EXPECT_NE(ended.status, 2) << command << " " << words << ": " << ended.err;
     }
   }
-  EXPECT_THAT(palpate({"explain", "a b", "6"}).out, StartsWith("Tap 6 of 6, run a b"));
+  EXPECT_THAT(palpate({"explain", "a b", "6"}).out, StartsWith("Tap 6 of 12, run a b"));
   EXPECT_TRUE(fs::exists(run / "report.html"));
-  swept("name=many taps=3 seed=1,2");
-  for (const char* command : {"pareto many --cost taps --error rmse_m", "compare runs --by seed --metric rmse_m",
+  swept("name=many taps=3 seed=1,2 acquisition=weighted,uncertainty");
+  for (const char* command : {"pareto many --cost taps --error rmse_m", "compare runs --by acquisition --metric rmse_m",
                               "resume many --quiet", "status many@latest", "report many"}) {
     EXPECT_EQ(palpate(command).status, 0) << command;
   }
