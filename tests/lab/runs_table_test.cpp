@@ -36,7 +36,8 @@ class RunsTable : public InFolder {
   }
   static void begin(const fs::path& config, int hours) {
     constexpr std::time_t kFirstOfMarch = 1772323200;
-    const utimbuf then{kFirstOfMarch + 3600 * hours, kFirstOfMarch + 3600 * hours};
+    const std::time_t begun = kFirstOfMarch + std::time_t{3600} * hours;
+    const utimbuf then{begun, begun};
     ASSERT_EQ(::utime(config.c_str(), &then), 0);
   }
   fs::path done(const std::string& name, int hours, const std::string& rmse) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `palpate list` as a user calls it, and names of runs as every command takes them.
+#include "record/json.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +12,7 @@ namespace {
 class List : public Shell {
  protected:
   Ended list(const Words& more = {}) const {
-    const Ended ended = palpate(Words{"list"} + more);
+    Ended ended = palpate(Words{"list"} + more);
     EXPECT_EQ(ended.status, 0) << ended.err;
     return ended;
   }

@@ -22,7 +22,7 @@ class Records : public InFolder {
   /// A run that was begun so many minutes after the others, with this seed and whatever else its config says.
   fs::path run(const std::string& directory, int minute, const std::string& config = "name: first\nseed: 1\n") const {
     const fs::path file = folder_.write("runs/" + directory + "/config.yaml", config);
-    fs::last_write_time(file, kBegin + std::chrono::minutes(minute));
+    fs::last_write_time(file, begin_ + std::chrono::minutes(minute));
     return file.parent_path();
   }
   fs::path sweep(const std::string& directory, int minute) const {
@@ -38,7 +38,7 @@ class Records : public InFolder {
   }
 
  private:
-  fs::file_time_type kBegin = fs::file_time_type::clock::now() - std::chrono::hours(24);
+  fs::file_time_type begin_ = fs::file_time_type::clock::now() - std::chrono::hours(24);
 };
 
 TEST_F(Records, StandInTheOrderInWhichTheyWereBegun) {

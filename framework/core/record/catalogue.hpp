@@ -17,7 +17,7 @@ struct Catalogue {
   std::vector<std::filesystem::path>
       records;          ///< directories of runs and sweeps, in the order in which they were begun
   int strangers = 0;    ///< folders right in it with no record below
-  int moved_aside = 0;  ///< runs that --force put in the place of none: <id>.old-N
+  int moved_aside = 0;  ///< runs that --force moved out of the way: <id>.old-N
 };
 
 /// Looks through `folder`, which may be a record itself. What may not be entered holds nothing. Throws nothing.
