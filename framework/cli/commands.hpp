@@ -87,6 +87,13 @@ struct ResumeArguments {
 };
 int resume(Program& program, const ResumeArguments& arguments);
 
+struct ListArguments {
+  std::string folder = "runs";
+  std::optional<std::string> where;
+  bool json = false;
+};
+int list_runs(Program& program, const ListArguments& arguments);
+
 int status(Program& program, const std::string& directory);
 int replay(Program& program, const std::string& directory);
 /// For commands that read one run: throws Error for the directory of a sweep, saying which of its folders are runs.

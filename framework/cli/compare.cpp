@@ -75,11 +75,7 @@ std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
   std::optional<Condition> where;
-  if (arguments.where) {
-    Tree text = Tree::scalar(*arguments.where, true);
-    text.place.file = std::make_shared<const std::string>("command line: --where");
-    where.emplace(text);
-  }
+  if (arguments.where) where = Condition::of_command_line(*arguments.where);
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::vector<Row>& results, const std::optional<Occasion>& occasion) {
     for (const std::string& metric : arguments.metrics) {

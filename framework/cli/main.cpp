@@ -5,6 +5,8 @@
 #include "cli/interrupt.hpp"
 #include "cli/needs.hpp"
 #include "config/tree.hpp"
+#include "config/trouble.hpp"
+#include "record/catalogue.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
@@ -32,9 +34,12 @@ Need all_about(const std::string& directory) {
   };
 }
 
+constexpr const char* kMeantBy = ": its directory, a folder with one in it, its NAME in runs/, or NAME@latest";
+
 /// The commands with what they are called with.
 struct CommandLine {
   CLI::App& app;
+  bool asked;                            ///< what the command takes, and no more: see needs.hpp
   std::function<int(Program&)> perform;  ///< the command that was named, once the command line is understood
   Need need;
   RunArguments run;
@@ -43,6 +48,7 @@ struct CommandLine {
   ParetoArguments pareto;
   CompareArguments compare;
   ReportArguments report;
+  ListArguments list;
   std::string directory;  ///< of a command that has no arguments of its own
   std::string to;
   std::vector<std::string> configs;
@@ -51,7 +57,18 @@ struct CommandLine {
   bool json = false;
   int tap = 0;
 
-  explicit CommandLine(CLI::App& commands) : app(commands) {}
+  CommandLine(CLI::App& commands, bool only_asked) : app(commands), asked(only_asked) {}
+
+  /// An argument that says which run or sweep is meant: the command gets the directory of it, or of each.
+  template <class Texts>
+  void add_record(CLI::App* sub, const char* name, Texts& texts, Wanted wanted, const std::string& help) const {
+    const auto find = [wanted, only_asked = asked](std::string& words) -> std::string {
+      const auto trouble = trouble_in([&] { words = find_record(words, wanted).string(); });
+      if (trouble && !only_asked) throw *trouble;
+      return {};
+    };
+    sub->add_option(name, texts, help + kMeantBy)->required()->transform(CLI::Validator(find, ""));
+  }
 
   /// The arguments are read when the command is performed.
   template <class... Parameters, class... Arguments>
@@ -135,13 +152,24 @@ void add_resume(CommandLine& line) {
   CLI::App* sub = line.add(
       "resume", "Carry on a broken run or sweep", [&line](Needs& needs) { needs.record(line.resume.directory); },
       resume, line.resume);
-  sub->add_option("DIR", line.resume.directory, "its directory")->required();
+  line.add_record(sub, "DIR", line.resume.directory, Wanted::any, "the run or the sweep");
   sub->add_flag("--retry-failed", line.resume.options.retry_failed, "carry on what failed, too");
   sub->add_flag("--force", line.resume.options.force, "carry on what another build began");
   sub->add_option("--jobs", line.resume.jobs,
                   "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
   add_launch(sub, line.resume.launch);
   sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
+}
+
+void add_list(CommandLine& line) {
+  CLI::App* sub = line.add("list", "The runs and sweeps in a folder, in the order in which they were begun",
+                           &Needs::whole, list_runs, line.list);
+  sub->add_option("FOLDER", line.list.folder, "three folders deep: runs, runs/NAME, or what holds runs")
+      ->capture_default_str();
+  sub->add_option("--where", line.list.where,
+                  "list only those of which this holds, on columns, fields of the summary and keys of the config: "
+                  "\"rmse_m < 8 mm and kernel.type == rbf\"");
+  sub->add_flag("--json", line.list.json, "as JSON");
 }
 
 void add_rest(CommandLine& line) {
@@ -151,12 +179,12 @@ void add_rest(CommandLine& line) {
         if (is_sweep(line.directory)) needs.whole();
       },
       status, line.directory);
-  sub->add_option("DIR", line.directory, "its directory")->required();
+  line.add_record(sub, "DIR", line.directory, Wanted::any, "the run or the sweep");
 
   sub = line.add(
       "replay", "Send recorded taps through the same models and compare every number",
       [&line](Needs& needs) { needs.record(line.directory); }, replay, line.directory);
-  sub->add_option("DIR", line.directory, "the run's directory")->required();
+  line.add_record(sub, "DIR", line.directory, Wanted::run, "the run");
 
   sub = line.add(
       "validate", "Check configs, run nothing",
@@ -174,7 +202,7 @@ void add_rest(CommandLine& line) {
 
   sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
                  pareto, line.pareto);
-  sub->add_option("DIR", line.pareto.directory, "the sweep's directory")->required();
+  line.add_record(sub, "DIR", line.pareto.directory, Wanted::sweep, "the sweep");
   sub->add_option("--cost", line.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")
       ->required();
   sub->add_option("--error", line.pareto.error, "another, an error: footprint_iou")->required();
@@ -189,7 +217,7 @@ void add_compare(CommandLine& line) {
       "compare", "Groups of a sweep's jobs, with intervals and paired tests",
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
-  sub->add_option("DIR", line.compare.directory, "the sweep's directory")->required();
+  line.add_record(sub, "DIR", line.compare.directory, Wanted::sweep, "the sweep");
   const auto list = [&](const char* name, auto& values, const char* help) {
     return sub->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
   };
@@ -218,23 +246,23 @@ void add_compare(CommandLine& line) {
 void add_about_one(CommandLine& line) {
   CLI::App* sub = line.add("report", "A run or a sweep as one HTML page, and as pictures",
                            all_about(line.report.directory), report, line.report);
-  sub->add_option("DIR", line.report.directory, "its directory")->required();
+  line.add_record(sub, "DIR", line.report.directory, Wanted::any, "the run or the sweep");
   sub->add_flag("--figures", line.report.figures, "PNG of the same panels, too, by gnuplot");
   sub->add_flag("--paper", line.report.paper, "laid out as the figures of the paper");
 
   sub = line.add("explain", "Why a run made a tap where it made it, in words", all_about(line.directory), explain,
                  line.directory, line.tap);
-  sub->add_option("RUN", line.directory, "the run's directory")->required();
+  line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
   sub->add_option("TAP", line.tap, "the number of the tap, from 1")->required();
 
   sub = line.add("calibrate", "Effects with which the simulator errs as the arm of recorded taps, as a file",
                  &Needs::everything, calibrate, line.runs);
-  sub->add_option("RUN", line.runs, "directories of runs whose scenes stood as their configs say: a bare desk, a block")
-      ->required();
+  line.add_record(sub, "RUN", line.runs, Wanted::run,
+                  "runs whose scenes stood as their configs say, a bare desk, a block; each");
 
   sub = line.add("export", "Write the surface and the taps of a run for other programs", all_about(line.directory),
                  export_run, line.directory, line.to);
-  sub->add_option("RUN", line.directory, "the run's directory")->required();
+  line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
   sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
       ->check(CLI::Validator(
           [](const std::string& format) -> std::string {
@@ -291,8 +319,8 @@ int run_main(int argc, char** argv) {
   // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
-  CommandLine line(app);
-  for (const auto add : {add_run, add_sweep, add_resume, add_rest, add_compare, add_about_one}) add(line);
+  CommandLine line(app, asked);
+  for (const auto add : {add_run, add_sweep, add_resume, add_list, add_rest, add_compare, add_about_one}) add(line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

@@ -112,7 +112,8 @@ TEST_F(Plugins, ListsEveryOneAndTheOptionsOfOne) {
 }
 
 TEST_F(CommandLine, HelpGoesToStdoutWithStatus0) {
-  for (const char* command : {"", "run", "sweep", "resume", "status", "replay", "validate", "plugins", "schema"}) {
+  for (const char* command :
+       {"", "run", "sweep", "resume", "list", "status", "replay", "validate", "plugins", "schema"}) {
     const Ended help = palpate(Words(command) + "--help");
     EXPECT_EQ(help.status, 0) << command;
     EXPECT_EQ(help.err, "") << command;

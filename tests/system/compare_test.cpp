@@ -127,7 +127,8 @@ TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
   const Words where = compare + "--by acquisition --metric rmse_m --where";
   EXPECT_THAT(refused(where + Words{"taps >"}), StartsWith("command line: --where: the condition 'taps >'"));
   EXPECT_THAT(refused(where + Words{"taps > 100"}), StartsWith("command line: --where: leaves none of the 24 jobs"));
-  EXPECT_THAT(refused(Words{"compare", here()} + "--by acquisition --metric rmse_m"),
+  fs::create_directory(here() / "empty");
+  EXPECT_THAT(refused(Words{"compare", here() / "empty"} + "--by acquisition --metric rmse_m"),
               EndsWith("is not the directory of a sweep, it has no manifest.jsonl\n"));
 }
 

@@ -342,7 +342,7 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
               "tap " + std::string(tap) + ": the run has 17 taps, ask for one of 1 to 17\n");
   }
   EXPECT_THAT(refused({"explain", directory, "x"}), HasSubstr("TAP"));
-  EXPECT_THAT(refused("explain nowhere 1"), HasSubstr("nowhere: is not a run directory"));
+  EXPECT_THAT(refused("explain nowhere 1"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
   const fs::path sweep = swept("seed=1,2 taps=4");
   for (const Words& words : {Words{"explain", sweep, "1"}, Words{"replay", sweep}}) {
     EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, give one of them: " +

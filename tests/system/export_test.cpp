@@ -183,7 +183,7 @@ TEST_F(Export, RefusesInOneLineWhatItCannotExport) {
   EXPECT_THAT(refused(words + "--format obj"), HasSubstr("--format: obj is not known, write ply"));
   EXPECT_THAT(refused(words + "--format csv"),
               HasSubstr("--format: the tables are surface.csv (log.surface=true) and taps.csv of the run itself"));
-  EXPECT_THAT(refused("export nowhere"), HasSubstr("nowhere: is not a run directory"));
+  EXPECT_THAT(refused("export nowhere"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
   EXPECT_FALSE(fs::exists(here() / "nowhere"));
   EXPECT_THAT(refused(words + Words{"--to", directory / "summary.json"}, 1), HasSubstr("cannot be made"));
   const fs::path sweep = swept("seed=1,2 taps=4");

@@ -92,6 +92,7 @@ TEST_F(FirstCommand, SweepsTakeEverythingAndTheirTablesNoPlugin) {
   write("sweep/manifest.jsonl", "");
   EXPECT_EQ(needs({"resume", "sweep"}), everything);
   EXPECT_EQ(needs({"status", "sweep"}), Targets{"palpate_whole"});
+  EXPECT_EQ(needs("list"), Targets{"palpate_whole"});
   EXPECT_EQ(needs({"pareto", "sweep", "--cost", "taps", "--error", "rmse_m"}), Targets{"palpate_whole"});
   EXPECT_EQ(needs({"compare", "sweep", "--by", "seed", "--metric", "rmse_m", "--at", "3"}), everything);
 }

@@ -166,7 +166,8 @@ TEST_F(Pareto, RefusesWhatCannotBeComparedInOneLine) {
       << "a variable that is not set";
   EXPECT_EQ(refused(words(sweep, "robot_seconds", "rmse_m") + "--within 5"),
             "command line: --within: '5' lacks its unit, write a length like '1.7 cm'\n");
-  EXPECT_THAT(refused(words(here(), "robot_seconds", "rmse_m")),
+  fs::create_directory(here() / "empty");
+  EXPECT_THAT(refused(words(here() / "empty", "robot_seconds", "rmse_m")),
               EndsWith("is not the directory of a sweep, it has no manifest.jsonl\n"));
 }
 

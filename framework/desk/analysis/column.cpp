@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/column.hpp"
 
+#include "config/quantity.hpp"
 #include "config/tree.hpp"
 
 #include <palpate/error.hpp>
@@ -52,6 +53,12 @@ CellNumber number_of(const Scalar* cell) {
   const char* const end = text->data() + text->size();
   const auto read = std::from_chars(text->data(), end, number);
   return read.ec == std::errc() && read.ptr == end ? CellNumber{number} : CellNumber{{}, true};
+}
+
+std::string written_in(const std::string& column, const Scalar& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  if (const auto* number = std::get_if<double>(&cell)) return write_quantity(*number, unit_of_column(column));
+  return csv_cell(cell);
 }
 
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option) {

@@ -36,6 +36,9 @@ struct CellNumber {
 };
 CellNumber number_of(const Scalar* cell);
 
+/// What a condition sees in a column: as it would be written in a config, with its unit, as it knows no other lengths.
+std::string written_in(const std::string& column, const Scalar& cell);
+
 /// What became of a job of which a column is asked. Where a pair of jobs is, it has the fate that stands first.
 enum class Fate {
   left_out,  ///< by a condition, which fails where it asks for what a job has not

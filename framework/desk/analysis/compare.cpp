@@ -3,7 +3,6 @@
 
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
-#include "config/quantity.hpp"
 #include "sweep/earlier_results.hpp"
 
 #include <palpate/error.hpp>
@@ -62,13 +61,6 @@ void check_keys(const Sweep& sweep, const CompareQuery& query) {
   }
 }
 
-/// What a condition sees in a column: as it would be written in a config, with its unit, as it knows no other lengths.
-std::string text_of(const std::string& name, const Scalar& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* number = std::get_if<double>(&value)) return write_quantity(*number, unit_of_column(name));
-  return csv_cell(value);
-}
-
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, Comparison& out) {
@@ -79,7 +71,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       if (contains(sweep.keys, name)) return value_of(sweep, job, name);
       if (!contains(columns, name)) return std::nullopt;
       const Scalar* value = row != nullptr ? row->find(name) : nullptr;
-      return value != nullptr ? text_of(name, *value) : std::string();
+      return value != nullptr ? written_in(name, *value) : std::string();
     };
     return query.where == nullptr || query.where->holds(value_in_job, names);
   };

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string_view>
 
 namespace palpate {
@@ -175,6 +176,12 @@ bool compare(const Number& left, const std::string& sign, const Number& right) {
 Condition::Condition(const Tree& text) : place_(text.place.text()) {
   if (!text.is_scalar()) throw Error(place_, "a condition is a text", kHowTo);
   formula_ = Reader(text.text, place_, comparisons_).read();
+}
+
+Condition Condition::of_command_line(const std::string& text) {
+  Tree tree = Tree::scalar(text, true);
+  tree.place.file = std::make_shared<const std::string>("command line: --where");
+  return Condition(tree);
 }
 
 bool Condition::holds(const Values& value_of, const std::vector<std::string>& known) const {

@@ -36,6 +36,8 @@ class Condition {
 
   /// Throws Error, with the place of `text`, for what is no condition.
   explicit Condition(const Tree& text);
+  /// Of the option --where of a command.
+  static Condition of_command_line(const std::string& text);
 
   /// A comparison with a name that has no value does not hold, whatever it compares. `and` and `or` look no further
   /// than they need to, so `spacing != none and spacing > 2 mm` is fine. Throws Error, with the place of the condition,

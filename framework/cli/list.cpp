@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/runs_table.hpp"
+#include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "config/trouble.hpp"
+#include "record/catalogue.hpp"
+#include "record/files.hpp"
+#include "report/words/words.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void print_json(const std::vector<Row>& rows) {
+  std::vector<std::string> lines;
+  for (const Row& row : rows) lines.push_back("  " + to_json_line(row));
+  fmt::print("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n");
+}
+
+/// Why fewer are listed than there are folders.
+void mention_others(const Catalogue& all, const fs::path& folder) {
+  std::vector<std::string> others;
+  if (all.strangers > 0) others.push_back(counted(all.strangers, "folder") + " without a run");
+  if (all.moved_aside > 0) others.push_back(counted(all.moved_aside, "run") + " that --force moved aside");
+  if (!others.empty()) mention(fmt::format("{}: not listed: {}\n", folder.string(), fmt::join(others, ", ")));
+}
+
+}  // namespace
+
+int list_runs(Program&, const ListArguments& arguments) {
+  const fs::path folder = arguments.folder;
+  if (!is_there(folder)) throw Error(folder.string(), "is no folder", "'palpate run' makes runs/, or name another");
+  std::error_code trouble_there;
+  const fs::directory_iterator readable(folder, trouble_there);
+  if (trouble_there) throw Error(folder.string(), trouble_there.message(), "name a folder with runs");
+  std::optional<Condition> where;
+  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const Catalogue all = read_catalogue(folder);
+  std::vector<ListedRecord> records;
+  for (const fs::path& directory : all.records) {
+    const auto trouble = trouble_in([&] { records.push_back(list_record(directory)); });
+    // One that is damaged is no reason to be silent about the others.
+    if (trouble) mention(fmt::format("{}\n", trouble->what()));
+  }
+  std::vector<Row> rows;
+  if (where) {
+    rows = rows_where(records, *where);
+  } else {
+    for (ListedRecord& one : records) rows.push_back(std::move(one.row));
+  }
+  arguments.json ? print_json(rows) : mention(runs_table(rows), stdout);
+  if (all.records.empty()) mention(fmt::format("{}: holds no run and no sweep\n", folder.string()));
+  if (where && rows.empty() && !records.empty())
+    mention(fmt::format("command line: --where: leaves none of {}\n", records.size()));
+  mention_others(all, folder);
+  return kDone;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "record/catalogue.hpp"
+
+#include "config/trouble.hpp"
+#include "record/files.hpp"
+#include "record/resolved.hpp"
+#include "record/run_directory.hpp"
+#include "record/session.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <boost/algorithm/string/predicate.hpp>
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <tuple>
+#include <utility>
+
+#include <sys/stat.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kLevels = 3;
+constexpr const char* kLatest = "@latest";
+
+/// Damaged ones, too: what is wrong with them is for the command to say.
+bool is_record(const fs::path& folder) {
+  constexpr std::array<const char*, 4> kParts{"config.yaml", "manifest.jsonl", "taps.jsonl", "summary.json"};
+  return std::any_of(kParts.begin(), kParts.end(), [&](const char* part) { return is_there(folder / part); });
+}
+
+bool is_moved_aside(const fs::path& directory) {
+  const std::string name = directory.filename().string();
+  return begins_with_id(name) && name.compare(kIdLength, 5, ".old-") == 0;
+}
+
+/// Seconds and nanoseconds: runs of the same second have an order, too.
+std::pair<std::time_t, long> begun(const fs::path& directory) {
+  struct stat what {};
+  const bool known = ::stat((directory / "config.yaml").c_str(), &what) == 0;
+  return known ? std::pair(what.st_mtim.tv_sec, what.st_mtim.tv_nsec) : std::pair(std::time_t{0}, 0L);
+}
+
+/// Adds what is in `folder` and as many levels below; returns whether there was a record.
+bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
+  if (is_record(folder)) {
+    // Given by its own path it is meant all the same.
+    const bool aside = levels < kLevels && is_moved_aside(folder);
+    aside ? void(++out.moved_aside) : out.records.push_back(folder);
+    return true;
+  }
+  bool any = false;
+  std::error_code none;
+  fs::directory_iterator one(folder, none);
+  for (; levels > 0 && one != fs::directory_iterator(); one.increment(none)) {
+    const bool hidden = one->path().filename().string().front() == '.';
+    if (hidden || one->is_symlink(none) || !one->is_directory(none)) continue;
+    any = collect_records(one->path(), levels - 1, out) || any;
+  }
+  if (!any && levels == kLevels - 1) ++out.strangers;
+  return any;
+}
+
+void add_values(const Tree& tree, const std::string& path, Row& out) {
+  const std::string behind = path.empty() ? "" : path + ".";
+  if (tree.is_scalar()) out.add(path, tree.text);
+  for (const Tree::Entry& entry : tree.entries) add_values(entry.value, behind + entry.key, out);
+  for (std::size_t i = 0; i < tree.items.size(); ++i) add_values(tree.items[i], behind + std::to_string(i), out);
+}
+
+/// The same of who only compares: of a damaged config nothing is known.
+Row settings_of(const fs::path& directory) {
+  Row out;
+  trouble_in([&] { out = read_settings(directory); });
+  return out;
+}
+
+/// The records of that name: their folder has it, or stands for it where a folder cannot be called so.
+std::vector<fs::path> records_named(const std::string& name, const fs::path& runs) {
+  const std::string folder = slug(name);
+  std::vector<fs::path> out = read_catalogue(runs / folder).records;
+  if (folder == name) return out;
+  const auto other = [&](const fs::path& one) { return settings_of(one).text("name") != name; };
+  out.erase(std::remove_if(out.begin(), out.end(), other), out.end());
+  return out;
+}
+
+/// The keys at which the configs differ: the seed first, as it is what most runs of a name differ by.
+std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
+  std::vector<std::string> out;
+  for (const Row& config : configs) {
+    for (const auto& [key, value] : config.fields) {
+      const auto same = [&, at = &key, there = &value](const Row& other) {
+        const Scalar* found = other.find(*at);
+        return found != nullptr && *found == *there;
+      };
+      const bool known = std::find(out.begin(), out.end(), key) != out.end();
+      if (!known && !std::all_of(configs.begin(), configs.end(), same)) out.push_back(key);
+    }
+  }
+  std::stable_partition(out.begin(), out.end(), [](const std::string& key) { return key == "seed"; });
+  return out;
+}
+
+/// "a and 3 more, 'palpate list' shows them": of many the last ones, each with what sets it apart from those.
+Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
+  constexpr std::size_t kShown = 4;
+  constexpr std::size_t kKeys = 3;
+  const std::size_t all = records.size();
+  const auto sweeps = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_sweep));
+  const char* const noun = sweeps == all ? "sweeps" : sweeps == 0 ? "runs" : "runs and sweeps";
+  std::reverse(records.begin(), records.end());
+  records.resize(std::min(all, kShown));
+  std::vector<Row> configs;
+  for (const fs::path& one : records) configs.push_back(settings_of(one));
+  std::vector<std::string> keys = differing_keys(configs);
+  std::vector<std::string> shown;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    std::string apart = begun_text(records[i]);
+    std::size_t told = 0;
+    for (const std::string& key : keys) {
+      if (told == kKeys || configs[i].find(key) == nullptr) continue;
+      apart += fmt::format("{}{} {}", apart.empty() ? "" : ", ", key, configs[i].text(key));
+      ++told;
+    }
+    shown.push_back(records[i].string() + (apart.empty() ? "" : " (" + apart + ")"));
+  }
+  if (all > kShown) shown.push_back(fmt::format("{} that were begun before", all - kShown));
+  return Error(words, fmt::format("stands for {} {}: {}", all, noun, fmt::join(shown, "; ")),
+               fmt::format("give the directory of one, or {}{} for the last", base, kLatest));
+}
+
+/// What could be meant by a name that nothing has.
+Error unknown(const std::string& words, const std::string& name, const fs::path& runs) {
+  std::vector<std::string> known;
+  std::error_code none;
+  for (fs::directory_iterator one(runs, none); one != fs::directory_iterator(); one.increment(none))
+    known.push_back(one->path().filename().string());
+  std::sort(known.begin(), known.end());
+  const std::string near = nearest(name, known);
+  const bool misspelt = name.find('@') != std::string::npos;
+  return Error(words, fmt::format("is no folder, and in {} nothing has that name", runs.string()),
+               misspelt        ? fmt::format("behind a name {} alone may stand", kLatest)
+               : !near.empty() ? fmt::format("did you mean '{}'?", near)
+                               : "'palpate list' shows what there is");
+}
+
+}  // namespace
+
+Catalogue read_catalogue(const fs::path& folder) {
+  Catalogue out;
+  collect_records(folder, kLevels, out);
+  std::sort(out.records.begin(), out.records.end(),
+            [](const fs::path& a, const fs::path& b) { return std::tuple(begun(a), a) < std::tuple(begun(b), b); });
+  return out;
+}
+
+std::string begun_text(const fs::path& directory) {
+  const std::time_t seconds = begun(directory).first;
+  std::tm local{};
+  std::array<char, 32> text{};
+  if (seconds == 0 || ::localtime_r(&seconds, &local) == nullptr) return {};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &local)};
+}
+
+Row read_settings(const fs::path& directory) {
+  Row out;
+  add_values(read_run_config(directory), "", out);
+  return out;
+}
+
+fs::path find_record(const std::string& words, Wanted wanted, const fs::path& runs) {
+  const bool latest = !is_there(words) && boost::ends_with(words, kLatest);
+  const std::string base = latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
+  const bool is_path = is_there(base);
+  if (is_path && is_record(base)) return base;
+  std::vector<fs::path> records = is_path ? read_catalogue(base).records : records_named(base, runs);
+  if (records.empty()) {
+    if (is_path || base.find('/') != std::string::npos) return base;
+    throw unknown(words, base, runs);
+  }
+  const auto fits = [&](const fs::path& one) { return is_sweep(one) == (wanted == Wanted::sweep); };
+  if (wanted != Wanted::any && std::any_of(records.begin(), records.end(), fits))
+    records.erase(std::stable_partition(records.begin(), records.end(), fits), records.end());
+  if (records.size() > 1 && !latest) throw several(words, base, records);
+  return records.back();
+}
+
+}  // namespace palpate

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/runs_table.hpp"
+
+#include "analysis/readable.hpp"
+#include "config/trouble.hpp"
+#include "launch/conduct.hpp"
+#include "record/catalogue.hpp"
+#include "record/fields.hpp"
+#include "record/files.hpp"
+#include "record/json.hpp"
+#include "record/run_directory.hpp"
+#include "sweep/sweep.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using State = RunStatus::State;
+
+constexpr const char* kOutline = "footprint_iou";
+
+/// Up to three of them, each once, else how many there are.
+std::string in_short(const std::vector<std::string>& names, const char* noun) {
+  constexpr std::size_t kShown = 3;
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    if (!name.empty() && std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
+  }
+  return out.size() <= kShown ? fmt::format("{}", fmt::join(out, ", ")) : fmt::format("{} {}", out.size(), noun);
+}
+
+/// Where the values of a run's config were written, as its manifest tells: by that alone groups are known by name.
+class Origins {
+ public:
+  explicit Origins(const fs::path& directory) {
+    if (!is_there(directory / "manifest.json")) return;
+    trouble_in([&] { manifest_ = read_json(directory / "manifest.json"); });
+  }
+
+  /// The group of this kind ("scene") that the value at `path`, or the first below it, comes from; "" for none.
+  std::string group(const std::string& path, const char* kind) const {
+    const Tree* const origins = manifest_.find("origins");
+    if (origins == nullptr) return {};
+    for (const Tree::Entry& one : origins->entries) {
+      if (one.key.compare(0, path.size(), path) != 0) continue;
+      const fs::path file = one.value.text.substr(0, one.value.text.find(".yaml:"));
+      if (file.parent_path().filename() == kind) return file.filename().string();
+    }
+    return {};
+  }
+
+ private:
+  Tree manifest_;
+};
+
+std::string first_of(const std::vector<std::string>& names) {
+  const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
+  return found != names.end() ? *found : "";
+}
+
+std::string shapes_in(const Row& config) {
+  std::vector<std::string> shapes;
+  for (std::size_t i = 0;; ++i) {
+    const std::string shape = config.text(fmt::format("scene.objects.{}.type", i));
+    if (shape.empty()) return in_short(shapes, "shapes");
+    shapes.push_back(shape);
+  }
+}
+
+/// What a sweep does with a key: its values, where it is swept.
+std::string swept_at(const Sweep& sweep, const char* key) {
+  const auto found = std::find(sweep.keys.begin(), sweep.keys.end(), key);
+  if (found == sweep.keys.end()) return {};
+  std::vector<std::string> values;
+  for (const Job& job : sweep.jobs) values.push_back(job.values[static_cast<std::size_t>(found - sweep.keys.begin())]);
+  return in_short(values, "values");
+}
+
+/// A text, null if there is none.
+Scalar text_or_null(const std::string& text) { return text.empty() ? Scalar() : Scalar(text); }
+
+void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
+  const Origins origins(directory);
+  Row& row = out.row;
+  row.add("name", text_or_null(config.text("name")));
+  row.add("begun", text_or_null(begun_text(directory)));
+  const char* const chosen = "acquisition.type";
+  row.add("strategy", text_or_null(first_of({origins.group(chosen, "strategy"), origins.group(chosen, "acquisition"),
+                                             config.text(chosen)})));
+  row.add("scene", text_or_null(first_of({origins.group("scene.", "scene"), shapes_in(config)})));
+  const std::optional<Row> summary = read_summary(directory);
+  // Only the taps of what has not ended are counted: of the rest the summary tells their number.
+  const RunStatus status = summary ? read_ending(directory) : read_status(directory);
+  row.add("taps", summary ? summary->number("taps").value_or(0.0) : status.taps);
+  for (const std::string& field : {main_error(), std::string(kOutline)})
+    row.add(field, summary ? summary->number(field) : std::nullopt);
+  row.add("state", state_name(status.state));
+  if (summary) out.beside = *summary;
+}
+
+void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) {
+  const Sweep sweep = read_sweep(directory);
+  Row& row = out.row;
+  row.add("name", text_or_null(sweep_name(sweep)));
+  row.add("begun", text_or_null(begun_text(directory)));
+  row.add("strategy", text_or_null(first_of({swept_at(sweep, "strategy"), swept_at(sweep, "acquisition"),
+                                             config.text("acquisition.type")})));
+  row.add("scene", text_or_null(first_of({swept_at(sweep, "scene"), shapes_in(config)})));
+  Standing now = standing_of(sweep, all_jobs(sweep), true);
+  row.add("jobs", static_cast<int>(sweep.jobs.size()));
+  for (const State state : {State::done, State::failed, State::running})
+    row.add(fmt::format("jobs_{}", state_name(state)), now.counts[state]);
+}
+
+/// "done", "7 of 8 jobs done, 1 failed"
+std::string state_words(const Row& row) {
+  if (row.find("jobs") == nullptr) return row.text("state");
+  std::string out = fmt::format("{} of {} jobs done", row.cell("jobs_done"), row.cell("jobs"));
+  for (const State state : {State::failed, State::running}) {
+    const std::string count = row.cell(fmt::format("jobs_{}", state_name(state)));
+    if (count != "0") out += fmt::format(", {} {}", count, state_name(state));
+  }
+  return out;
+}
+
+}  // namespace
+
+ListedRecord list_record(const fs::path& directory) {
+  ListedRecord out;
+  const Row config = read_settings(directory);
+  (is_sweep(directory) ? add_sweep : add_run)(out, directory, config);
+  out.row.add("directory", directory.string());
+  for (const auto& field : config.fields) {
+    if (out.beside.find(field.first) == nullptr) out.beside.fields.push_back(field);
+  }
+  return out;
+}
+
+std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Condition& where) {
+  std::vector<std::string> known;
+  for (const ListedRecord& one : records) {
+    for (const Row* part : {&one.row, &one.beside}) {
+      for (const auto& field : part->fields) known.push_back(field.first);
+    }
+  }
+  // What a run that has not ended will know, it may be asked.
+  for (const RecordField& field : summary_fields()) known.push_back(field.name);
+  std::sort(known.begin(), known.end());
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  std::vector<Row> out;
+  for (const ListedRecord& one : records) {
+    const Condition::Values value_of = [&](const std::string& name) -> std::optional<std::string> {
+      const Scalar* value = one.row.find(name);
+      if (value == nullptr) value = one.beside.find(name);
+      if (value != nullptr) return written_in(name, *value);
+      return std::binary_search(known.begin(), known.end(), name) ? std::optional<std::string>("") : std::nullopt;
+    };
+    if (where.holds(value_of, known)) out.push_back(one.row);
+  }
+  return out;
+}
+
+std::string runs_table(const std::vector<Row>& rows) {
+  if (rows.empty()) return {};
+  std::vector<double> errors;
+  for (const Row& row : rows) {
+    if (const auto error = row.number(main_error())) errors.push_back(*error);
+  }
+  const Scale scale = readable_scale(unit_of_column(main_error()), errors);
+  std::vector<std::vector<std::string>> lines{
+      {"name", "begun", "strategy", "scene", "taps", scale.title(main_error()), "IoU", "state", "directory"}};
+  for (const Row& row : rows) {
+    const auto text = [&](const char* name) { return one_line(row.text(name)); };
+    const std::optional<double> error = row.number(main_error());
+    const std::optional<double> outline = row.number(kOutline);
+    lines.push_back({text("name"), text("begun"), text("strategy"), text("scene"), row.cell("taps"),
+                     error ? scale.number(*error) : "", outline ? fmt::format("{:.2f}", *outline) : "",
+                     state_words(row), text("directory")});
+  }
+  return aligned(lines, "llllrrrll");
+}
+
+}  // namespace palpate

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// What `palpate list` shows of a run: folders written by hand, of which every cell is known.
+#include "analysis/runs_table.hpp"
+
+#include "support/testing.hpp"
+
+#include <cstdlib>
+#include <ctime>
+
+#include <utime.h>
+
+namespace palpate::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class RunsTable : public InFolder {
+ protected:
+  RunsTable() {
+    ::setenv("TZ", "UTC0", 1);
+    ::tzset();
+  }
+
+  /// Writes a run that was begun on 1 March 2026, and so many hours later.
+  fs::path run(const std::string& name, int hours, const std::string& summary = "") const {
+    const fs::path config =
+        folder_.write(name + "/config.yaml", "name: " + name + "\nseed: " + std::to_string(hours) +
+                                                 "\ntaps: 30\nkernel: {type: rbf, length_scale: 0.017 m}\n"
+                                                 "acquisition: {type: mixture}\n"
+                                                 "scene: {objects: [{type: wave}, {type: box}, {type: wave}]}\n");
+    begin(config, hours);
+    if (!summary.empty()) folder_.write(name + "/summary.json", summary);
+    return config.parent_path();
+  }
+  static void begin(const fs::path& config, int hours) {
+    constexpr std::time_t kFirstOfMarch = 1772323200;
+    const std::time_t begun = kFirstOfMarch + std::time_t{3600} * hours;
+    const utimbuf then{begun, begun};
+    ASSERT_EQ(::utime(config.c_str(), &then), 0);
+  }
+  fs::path done(const std::string& name, int hours, const std::string& rmse) const {
+    return run(name, hours,
+               R"({"status": "done", "taps": 30, "rmse_m": )" + rmse + R"(, "footprint_iou": 0.875, "found": true})");
+  }
+  static std::vector<std::string> names_where(const std::vector<ListedRecord>& records, const std::string& where) {
+    std::vector<std::string> names;
+    for (const Row& row : rows_where(records, Condition::of_command_line(where))) names.push_back(row.text("name"));
+    return names;
+  }
+};
+
+TEST_F(RunsTable, IsThisLetterByLetter) {
+  const fs::path killed = run("killed", 26);
+  folder_.write("killed/taps.jsonl",
+                "{\"tap\": 1, \"outcome\": \"contact\"}\n{\"tap\": 2, \"outcome\": \"contact\"}\n{");
+  folder_.write("failed/summary.json", R"({"status": "failed", "taps": 3, "rmse_m": null})");
+  const std::vector<Row> rows{list_record(done("first", 1, "0.0123")).row, list_record(killed).row,
+                              list_record(run("failed", 27)).row};
+  const std::string in = folder_.path().string() + "/";
+  EXPECT_EQ(runs_table(rows),
+            "name    begun                strategy  scene      taps  rmse_m [mm]   IoU  state       "
+            "directory\n"
+            "first   2026-03-01T01:00:00  mixture   wave, box    30         12.3  0.88  done        " +
+                in + "first\n" +
+                "killed  2026-03-02T02:00:00  mixture   wave, box     2                     "
+                "unfinished  " +
+                in + "killed\n" +
+                "failed  2026-03-02T03:00:00  mixture   wave, box     3                     failed"
+                "      " +
+                in + "failed\n");
+  EXPECT_EQ(runs_table({}), "");
+}
+
+TEST_F(RunsTable, CallsStrategyAndSceneAsTheGroupsAreThatTheConfigNamed) {
+  const fs::path one = done("first", 1, "0.01");
+  folder_.write("first/manifest.json", R"({"origins": {"acquisition.type": "configs/acquisition/fill.yaml:3:9",
+                                           "scene.area.width": "default", "scene.desk": "a b/scene/ring.yaml:1:1"}})");
+  EXPECT_EQ(list_record(one).row.text("strategy"), "fill");
+  EXPECT_EQ(list_record(one).row.text("scene"), "ring");
+  folder_.write("first/manifest.json", "{");
+  EXPECT_EQ(list_record(one).row.text("strategy"), "mixture") << "a damaged manifest costs no more than these names";
+}
+
+TEST_F(RunsTable, ConditionsNameColumnsFieldsOfTheSummaryAndKeysOfTheConfigWithTheirUnits) {
+  const std::vector<ListedRecord> all{list_record(done("good", 1, "0.004")), list_record(done("bad", 2, "0.02")),
+                                      list_record(run("killed", 3))};
+  EXPECT_THAT(names_where(all, "rmse_m < 5 mm"), ElementsAre("good"));
+  EXPECT_THAT(names_where(all, "not rmse_m < 5 mm"), ElementsAre("bad", "killed"));
+  EXPECT_THAT(names_where(all, "kernel.length_scale == 1.7 cm and seed >= 2"), ElementsAre("bad", "killed"));
+  EXPECT_THAT(names_where(all, "state == done and found == true"), ElementsAre("good", "bad"));
+  EXPECT_THAT(names_where(all, "taps < 30"), ElementsAre("killed")) << "those that were made, not the budget";
+  EXPECT_THAT(names_where({all.back()}, "nlpd > 0"), ElementsAre()) << "it will be known";
+  EXPECT_EQ(error_of([&] { names_where(all, "rmse < 5 mm"); }),
+            "command line: --where: in the condition 'rmse < 5 mm' the name 'rmse' is not known, did you mean "
+            "'rmse_m'?");
+}
+
+TEST_F(RunsTable, OfADamagedRunIsAnError) {
+  EXPECT_THAT(error_of([&] { list_record(run("first", 1, "{")); }),
+              StartsWith((folder_.path() / "first/summary.json: is not a JSON object").string()));
+  folder_.write("second/summary.json", "{}");
+  EXPECT_THAT(error_of([&] { list_record(folder_.path() / "second"); }), HasSubstr("is not a run directory"));
+  run("third", 3);
+  folder_.write("third/taps.jsonl", "what\n");
+  EXPECT_THAT(error_of([&] { list_record(folder_.path() / "third"); }), HasSubstr("taps.jsonl:1"));
+}
+
+}  // namespace
+}  // namespace palpate::test

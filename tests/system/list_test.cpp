@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// `palpate list` as a user calls it, and names of runs as every command takes them.
+#include "record/json.hpp"
+#include "system/shell.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+class List : public Shell {
+ protected:
+  Ended list(const Words& more = {}) const {
+    Ended ended = palpate(Words{"list"} + more);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return ended;
+  }
+};
+
+TEST_F(List, ShowsRunsAndSweepsInTheOrderInWhichTheyWereBegun) {
+  const fs::path first = ran("taps=3");
+  const fs::path many = swept("name=many taps=3 seed=1,2 acquisition=weighted,uncertainty");
+  const fs::path last = ran("taps=4 name=last scene=ring");
+  const Ended all = list();
+  EXPECT_EQ(all.err, "");
+  EXPECT_THAT(all.out, MatchesRegex("name +begun +strategy +scene +taps +rmse_m \\[mm\\] +IoU +state +directory\n"
+                                    "object_i +[-0-9T:]+ +weighted +object_i +3 .* done +runs/object_i/[0-9a-f]+\n"
+                                    "many +[-0-9T:]+ +weighted, uncertainty +wave +4 of 4 jobs done +runs/many/.*\n"
+                                    "last +[-0-9T:]+ +weighted +ring +4 .* done +runs/last/[0-9a-f]+\n"));
+  EXPECT_EQ(lines(list({"runs/last"}).out), 2);
+  EXPECT_THAT(list({"--where", "jobs_done == 4"}).out, AllOf(HasSubstr("many"), Not(HasSubstr("last"))));
+  const std::string json = list({"--json", "--where", "taps == 4 and seed == 1"}).out;
+  EXPECT_TRUE(is_json(json)) << json;
+  EXPECT_THAT(json, AllOf(HasSubstr("\"scene\": \"ring\""), Not(HasSubstr("object_i\""))));
+}
+
+TEST_F(List, OfWhatIsDamagedSaysSoAndShowsTheRest) {
+  const fs::path whole = ran("taps=3");
+  const fs::path killed = ran("taps=3 seed=2");
+  break_off(killed);
+  const fs::path damaged = ran("taps=3 seed=3");
+  write(damaged / "summary.json", "{");
+  write("runs/notes/text.md", "");
+  const fs::path sweep = swept("name=many taps=3 seed=1,2");
+  replace(sweep / "config.yaml", "taps: ", "taps: 1");
+  const Ended all = list();
+  EXPECT_EQ(lines(all.out), 3) << all.out;
+  EXPECT_THAT(all.out, ContainsRegex("object_i .* 1 +unfinished +runs/object_i/"));
+  EXPECT_EQ(lines(all.err), 3) << all.err;
+  EXPECT_THAT(all.err, HasSubstr("summary.json: is not a JSON object, the file is damaged"));
+  EXPECT_THAT(all.err, HasSubstr("config.yaml or manifest.jsonl was changed since this sweep began"));
+  EXPECT_THAT(all.err, HasSubstr("runs: not listed: 1 folder without a run\n"));
+}
+
+TEST_F(List, OfAFolderWithoutRunsIsOneLine) {
+  EXPECT_EQ(refused("list"), "runs: is no folder, 'palpate run' makes runs/, or name another\n");
+  write("file", "");
+  EXPECT_EQ(refused("list file"), "file: Not a directory, name a folder with runs\n");
+  fs::create_directory(here() / "runs");
+  const Ended empty = list();
+  EXPECT_EQ(empty.out, "");
+  EXPECT_EQ(empty.err, "runs: holds no run and no sweep\n");
+  EXPECT_EQ(list({"--json"}).out, "[]\n");
+  ran("taps=3");
+  EXPECT_EQ(list({"--where", "taps > 3"}).err, "command line: --where: leaves none of 1\n");
+  EXPECT_THAT(refused({"list", "--where", "tapps > 3"}), HasSubstr("'tapps' is not known, did you mean 'taps'?"));
+}
+
+TEST_F(List, NamesStandForARunOrASweepInEveryCommandThatTakesOne) {
+  const fs::path run = ran({"taps=12", "name=a b"});
+  for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
+    for (const char* words : {"a b", "a b@latest", "runs/a-b", "runs"}) {
+      const Ended ended = palpate({command, words});
+      EXPECT_NE(ended.status, 2) << command << " " << words << ": " << ended.err;
+    }
+  }
+  EXPECT_THAT(palpate({"explain", "a b", "6"}).out, StartsWith("Tap 6 of 12, run a b"));
+  EXPECT_TRUE(fs::exists(run / "report.html"));
+  swept("name=many taps=3 seed=1,2 acquisition=weighted,uncertainty");
+  for (const char* command : {"pareto many --cost taps --error rmse_m", "compare runs --by acquisition --metric rmse_m",
+                              "resume many --quiet", "status many@latest", "report many"}) {
+    EXPECT_EQ(palpate(command).status, 0) << command;
+  }
+}
+
+TEST_F(List, ANameThatSeveralRunsHaveIsRefusedWithWhatSetsThemApart) {
+  ran("taps=3");
+  ran("taps=4 seed=2");
+  for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
+    EXPECT_THAT(refused({command, "object_i"}),
+                MatchesRegex("object_i: stands for 2 runs: runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 2, taps 4\\); "
+                             "runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 1, taps 3\\), give the directory of one, or "
+                             "object_i@latest for the last\n"));
+  }
+  EXPECT_EQ(palpate("status object_i@latest").out, "object_i: done after 4 of 4 taps: tap budget\n");
+  EXPECT_EQ(refused("status object_j"),
+            "object_j: is no folder, and in runs nothing has that name, did you mean "
+            "'object_i'?\n");
+}
+
+TEST_F(List, APathThatExistsWinsOverAName) {
+  ran("taps=3");
+  fs::create_directory(here() / "object_i");
+  EXPECT_EQ(refused("status object_i"), "object_i: is not a run directory, it has no config.yaml\n");
+}
+
+}  // namespace
+}  // namespace palpate

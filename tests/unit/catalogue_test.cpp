@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// Which run or sweep is meant by a folder or a name. The folders are written by hand, and with the times that they
+// need.
+#include "record/catalogue.hpp"
+
+#include "support/testing.hpp"
+
+#include <chrono>
+
+namespace palpate::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::StartsWith;
+
+class Records : public InFolder {
+ protected:
+  /// A run that was begun so many minutes after the others, with this seed and whatever else its config says.
+  fs::path run(const std::string& directory, int minute, const std::string& config = "name: first\nseed: 1\n") const {
+    const fs::path file = folder_.write("runs/" + directory + "/config.yaml", config);
+    fs::last_write_time(file, begin_ + std::chrono::minutes(minute));
+    return file.parent_path();
+  }
+  fs::path sweep(const std::string& directory, int minute) const {
+    folder_.write("runs/" + directory + "/manifest.jsonl", "");
+    return run(directory, minute);
+  }
+  fs::path runs() const { return folder_.path() / "runs"; }
+  fs::path found(const std::string& words, Wanted wanted = Wanted::any) const {
+    return find_record(words, wanted, runs());
+  }
+  std::string refusal(const std::string& words, Wanted wanted = Wanted::any) const {
+    return error_of([&] { found(words, wanted); }, Error::Kind::usage);
+  }
+
+ private:
+  fs::file_time_type begin_ = fs::file_time_type::clock::now() - std::chrono::hours(24);
+};
+
+TEST_F(Records, StandInTheOrderInWhichTheyWereBegun) {
+  const fs::path second = run("a/000000000002", 2);
+  const fs::path third = run("a/000000000001", 3);
+  const fs::path first = sweep("b/000000000003", 1);
+  EXPECT_THAT(read_catalogue(runs()).records, ElementsAre(first, second, third));
+}
+
+TEST_F(Records, JobsDraftsLinksAndRunsMovedAsideAreNoneAndFoldersWithoutOneAreCounted) {
+  const fs::path many = sweep("many/000000000001", 1);
+  run("many/000000000001/jobs/000000000002", 2);
+  run("many/.sweep-Xyz123", 3);
+  const fs::path aside = run("first/000000000004.old-1", 4);
+  folder_.write("runs/notes/deep/text.md", "");
+  fs::create_directory_symlink(runs() / "many", runs() / "linked");
+  const Catalogue all = read_catalogue(runs());
+  EXPECT_THAT(all.records, ElementsAre(many));
+  EXPECT_EQ(all.strangers, 1);
+  EXPECT_EQ(all.moved_aside, 1);
+  EXPECT_THAT(read_catalogue(aside).records, ElementsAre(aside)) << "who gives its path means it";
+}
+
+TEST_F(Records, AreFoundFromAnyFolderAboveWhileThereIsOneBelow) {
+  const fs::path only = run("first/000000000001", 1);
+  for (const fs::path& words : {folder_.path(), runs(), runs() / "first", only}) EXPECT_EQ(found(words), only) << words;
+}
+
+TEST_F(Records, AreFoundByNameAlsoWhereAFolderCannotBeCalledSo) {
+  const fs::path plain = run("first/000000000001", 1);
+  const fs::path spaced = run("my-run/000000000002", 2, "name: my run\n");
+  const fs::path dashed = run("my-run/000000000003", 3, "name: my-run\n");
+  EXPECT_EQ(found("first"), plain);
+  EXPECT_EQ(found("my run"), spaced);
+  EXPECT_THAT(refusal("my-run"), HasSubstr("my-run: stands for 2 runs: ")) << "both lie in the folder of that name";
+  EXPECT_THAT(refusal("my  run"), HasSubstr("nothing has that name"));
+}
+
+TEST_F(Records, OfSeveralAreToldApartByWhatTheirConfigsDoNotShare) {
+  const fs::path one = run("first/000000000001", 1, "name: first\nkernel: {type: rbf}\nseed: 1\ntaps: 9\n");
+  const fs::path two = run("first/000000000002", 2, "name: first\nkernel: {type: matern52}\nseed: 7\ntaps: 9\n");
+  EXPECT_EQ(refusal("first"),
+            "first: stands for 2 runs: " + two.string() + " (" + begun_text(two) + ", seed 7, kernel.type matern52); " +
+                one.string() + " (" + begun_text(one) +
+                ", seed 1, kernel.type rbf), give the directory of one, or first@latest for the last");
+  EXPECT_THAT(begun_text(two), MatchesRegex("20..-..-..T..:..:.."));
+}
+
+TEST_F(Records, OfManyTheLastFourAreTold) {
+  for (int i = 0; i < 9; ++i) run("first/00000000000" + std::to_string(i), i, "seed: " + std::to_string(i) + "\n");
+  EXPECT_THAT(refusal("first"),
+              AllOf(HasSubstr("stands for 9 runs: "), HasSubstr(", seed 8); "), HasSubstr("seed 5); "),
+                    HasSubstr("; 5 that were begun before, "), Not(HasSubstr("seed 4"))));
+}
+
+TEST_F(Records, BegunLastAreMeantByLatest) {
+  run("first/00000000000b", 1);
+  const fs::path last = run("first/00000000000a", 2);
+  const fs::path other = sweep("many/000000000003", 3);
+  EXPECT_EQ(found("first@latest"), last);
+  EXPECT_EQ(found((runs() / "first").string() + "@latest"), last);
+  EXPECT_EQ(found(runs().string() + "@latest"), other);
+  EXPECT_EQ(found(runs().string() + "@latest", Wanted::run), last);
+}
+
+TEST_F(Records, OfTheKindThatACommandTakesAreMeantWhereThereAreAny) {
+  const fs::path one = run("first/000000000001", 1);
+  const fs::path many = sweep("first/000000000002", 2);
+  EXPECT_EQ(found("first", Wanted::run), one);
+  EXPECT_EQ(found("first", Wanted::sweep), many);
+  EXPECT_THAT(refusal("first"), HasSubstr("stands for 2 runs and sweeps: "));
+  const fs::path alone = sweep("many/000000000003", 3);
+  EXPECT_EQ(found("many", Wanted::run), alone) << "the command says what it cannot do with a sweep";
+}
+
+TEST_F(Records, ThatAreDamagedAreFoundForTheCommandToSaySo) {
+  run("first/000000000001", 1, "name: [\n");
+  folder_.write("runs/second/000000000002/summary.json", "{");
+  EXPECT_EQ(found("first"), runs() / "first/000000000001");
+  EXPECT_EQ(found("second"), runs() / "second/000000000002");
+  EXPECT_THAT(refusal(runs()), StartsWith(runs().string() + ": stands for 2 runs: "));
+}
+
+TEST_F(Records, ThatAreNotThereAreOneLineAndPathsStayAsTheyAre) {
+  run("first/000000000001", 1);
+  EXPECT_EQ(refusal("frist"),
+            "frist: is no folder, and in " + runs().string() + " nothing has that name, did you mean 'first'?");
+  EXPECT_THAT(refusal("zzz"), HasSubstr("nothing has that name, 'palpate list' shows what there is"));
+  EXPECT_THAT(refusal("first@first"), HasSubstr("nothing has that name, behind a name @latest alone may stand"));
+  EXPECT_THAT(refusal(""), HasSubstr("nothing has that name"));
+  const fs::path empty = folder_.path() / "empty";
+  fs::create_directory(empty);
+  const fs::path file = folder_.write("file.txt", "");
+  for (const fs::path& path : {empty, file, folder_.path() / "missing/run"}) EXPECT_EQ(found(path), path);
+}
+
+TEST_F(Records, TellEveryValueOfTheirConfigsByItsPath) {
+  const fs::path one = run("first/000000000001", 1, "seed: 1\nscene: {objects: [{type: wave, at: [1 cm, 2 cm]}]}\n");
+  const Row settings = read_settings(one);
+  EXPECT_EQ(settings.text("scene.objects.0.at.1"), "2 cm");
+  EXPECT_EQ(settings.text("seed"), "1");
+  EXPECT_EQ(settings.fields.size(), 4U);
+}
+
+}  // namespace
+}  // namespace palpate::test
