@@ -184,7 +184,7 @@ std::vector<Completion> summary_columns(const std::string& behind = "") {
   return out;
 }
 
-/// The columns of results.csv that no summary has: what was swept.
+/// The columns of results.csv between those that name the job and those of its summary.
 std::vector<Completion> swept_keys(const fs::path& sweep) {
   std::vector<Completion> out;
   std::ifstream in(sweep / "results.csv");
@@ -192,9 +192,16 @@ std::vector<Completion> swept_keys(const fs::path& sweep) {
   std::getline(in, header);
   std::istringstream names(header);
   for (std::string name; std::getline(names, name, ',');) {
-    if (find_summary_field(name) != nullptr) break;  // they come first
-    if (name != "job" && name != "id") out.push_back({name, "swept"});
+    if (name == "job" || name == "id") continue;
+    if (find_summary_field(name) != nullptr) break;  // what was swept comes first
+    out.push_back({name, "swept"});
   }
+  return out;
+}
+
+std::vector<Completion> kinds() {
+  std::vector<Completion> out;
+  for (const std::string& one : PluginHost::kinds()) out.push_back({one, ""});
   return out;
 }
 
@@ -245,6 +252,7 @@ std::vector<Completion> values_of(const Typed& typed, Program& program) {
   if (of == "RUN") return records(word, Records::runs);
   if (of == "SWEEP") return records(word, Records::sweeps);
   if (of == "DIR") return records(word, Records::both);
+  if (of == "KIND") return kinds();
   if (of == "KIND[/NAME]") return plugins_of(program, word);
   if (of == "COLUMN") return summary_columns();
   if (of == "COLUMN=VALUE") return summary_columns("=");

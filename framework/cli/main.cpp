@@ -53,6 +53,7 @@ struct CommandLine {
   std::vector<std::string> configs;
   std::vector<std::string> runs;
   std::string plugin;
+  std::string kind;
   bool json = false;
   int tap = 0;
 
@@ -209,6 +210,14 @@ void add_rest(CommandLine& line) {
   sub->add_option("PLUGIN", line.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
   sub->add_flag("--json", line.json, "as JSON");
   show(sub, {"palpate plugins", "palpate plugins kernel/rbf"});
+
+  sub = line.add(
+      "new", "Write a plugin to begin with, and an experiment with it", [](Needs&) {}, new_plugin, line.kind, line.to);
+  sub->add_option("KIND", line.kind, "of the plugin")->type_name("KIND")->required();
+  sub->add_option("NAME", line.to, "of the plugin, and of its folder, which is made here")
+      ->type_name("NAME")
+      ->required();
+  show(sub, {"palpate new kernel my_kernel", "palpate new acquisition curious"});
 
   sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
                  pareto, line.pareto);

@@ -109,6 +109,7 @@ TEST_F(Completion, OfValuesHasChoicesFlagsAndTheItemsOfLists) {
 
 TEST_F(Completion, OfPluginsRunsAndColumns) {
   EXPECT_THAT(offered({"plugins", "ker"}), UnorderedElementsAre(Key("kernel"), Key("kernel/")));
+  EXPECT_THAT(offered({"new", "f"}), UnorderedElementsAre(Key("fitting"), Key("footprint")));
   EXPECT_THAT(offered({"plugins", "kernel/rb"}), UnorderedElementsAre(Key("kernel/rbf")));
   const std::string run = ran("taps=3").lexically_relative(here()).string();
   write("runs/many/0123456789ab/manifest.jsonl", "");
