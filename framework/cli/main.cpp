@@ -213,7 +213,9 @@ void add_rest(CommandLine& line) {
 
   sub = line.add(
       "new", "Write a plugin to begin with, and an experiment with it", [](Needs&) {}, new_plugin, line.kind, line.to);
-  sub->add_option("KIND", line.kind, "of the plugin")->type_name("KIND")->required();
+  sub->add_option("KIND", line.kind, fmt::format("of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
+      ->type_name("KIND")
+      ->required();
   sub->add_option("NAME", line.to, "of the plugin, and of its folder, which is made here")
       ->type_name("NAME")
       ->required();

@@ -30,10 +30,13 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-std::string title(std::string name, const std::string& summary) {
-  std::string upper = name;
-  std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
-  return fmt::format(".TH {} 1 \"\" \"palpate {}\" \"palpate\"\n.SH NAME\n{} \\- {}\n", roff(upper), kVersion,
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
+
+std::string title(const std::string& name, const std::string& summary) {
+  return fmt::format(".TH {} 1 \"\" \"palpate {}\" \"palpate\"\n.SH NAME\n{} \\- {}\n", roff(upper(name)), kVersion,
                      roff(name), roff(summary));
 }
 
@@ -41,12 +44,7 @@ std::string arguments_part(const Command& command) {
   std::string out;
   std::string heading;
   for (const Argument& one : command.arguments) {
-    if (one.heading != heading) {
-      heading = one.heading;
-      std::string upper = heading;
-      std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
-      out += fmt::format(".SH {}\n", roff(upper));
-    }
+    if (one.heading != heading) out += fmt::format(".SH {}\n", roff(upper(heading = one.heading)));
     out += fmt::format(".TP\n.B {}\n{}\n", roff(head_of(one)), roff(words_of(one)));
   }
   return out;
