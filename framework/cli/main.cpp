@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The command line: which commands there are, what they are called with, and what becomes of errors.
 #include "cli/commands.hpp"
+#include "cli/completion.hpp"
 #include "cli/display.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/manual.hpp"
 #include "cli/needs.hpp"
+#include "cli/usage.hpp"
 #include "config/tree.hpp"
 #include "config/trouble.hpp"
 #include "record/catalogue.hpp"
@@ -15,8 +18,10 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -54,6 +59,7 @@ struct CommandLine {
   std::vector<std::string> configs;
   std::vector<std::string> runs;
   std::string plugin;
+  std::string kind;
   bool json = false;
   int tap = 0;
 
@@ -67,7 +73,8 @@ struct CommandLine {
       if (trouble && !only_asked) throw *trouble;
       return {};
     };
-    sub->add_option(name, texts, help + kMeantBy)->required()->transform(CLI::Validator(find, ""));
+    const char* of = wanted == Wanted::run ? "RUN" : wanted == Wanted::sweep ? "SWEEP" : "DIR";
+    sub->add_option(name, texts, help + kMeantBy)->type_name(of)->required()->transform(CLI::Validator(find, ""));
   }
 
   /// The arguments are read when the command is performed.
@@ -89,16 +96,28 @@ constexpr const char* kStepHelp =
 constexpr const char* kRunsHelp = "where run directories are made";
 constexpr const char* kJunitHelp = "write what held and what failed as JUnit XML to this file";
 constexpr int kMany = 1000000;
+constexpr int kManyWorkers = 1024;
+
+/// A range that says so in words.
+CLI::Validator from(int least, int most) {
+  return CLI::Range(least, most)
+      .description(most == kMany ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most));
+}
+
+/// Whole lines, as typed; the help shows them.
+void show(CLI::App* command, const std::vector<std::string>& examples) {
+  command->footer(fmt::format("{}", fmt::join(examples, "\n")));
+}
 
 void add_run(CommandLine& line) {
   CLI::App* sub = line.add(
       "run", "Run one experiment", [&line](Needs& needs) { needs.config(line.run.config, line.run.overrides, false); },
       run, line.run);
-  sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->required();
+  sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->type_name("CONFIG")->required();
   sub->add_option("OVERRIDE", line.run.overrides,
                   "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
       ->type_name("KEY=VALUE");
-  sub->add_option("--runs", line.run.runs, kRunsHelp)->capture_default_str();
+  sub->add_option("--runs", line.run.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
   sub->add_flag("--json", line.run.json, "print summary.json and nothing else");
   CLI::Option* quiet = sub->add_flag("--quiet", line.run.quiet, "print nothing");
   sub->add_flag("--dry-run", line.run.dry_run, "say what would be run and where; move nothing");
@@ -106,31 +125,42 @@ void add_run(CommandLine& line) {
   sub->add_flag("--step", line.run.step, kStepHelp)->excludes(quiet);
   CLI::Option* print = sub->add_flag("--print-config", line.run.print_config, "print the resolved config and stop");
   sub->add_flag("--origins", line.run.origins, "with it, where each value came from")->needs(print);
-  sub->add_option("--junit", line.run.junit, kJunitHelp);
+  sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
+  show(sub, {"palpate run configs/paper/object_i.yaml",
+             "palpate run configs/default.yaml scene=ring kernel.length_scale=3cm seed=7"});
 }
 
 /// What `sweep` and `resume` say alike.
 void add_launch(CLI::App* sub, LaunchArguments& launch) {
   sub->add_option("-j", launch.workers,
                   "jobs of a sweep at a time; if not given, the number of cores, in a task of Slurm 1")
-      ->check(CLI::Range(1, 1024));
+      ->type_name("N")
+      ->check(from(1, kManyWorkers));
   sub->add_option("--attempts", launch.attempts, "how often a job may be begun before it stays failed")
-      ->check(CLI::Range(1, kMany))
+      ->type_name("N")
+      ->check(from(1, kMany))
       ->capture_default_str();
   sub->add_flag("--quiet", launch.quiet, "show no progress");
-  sub->add_option("--junit", launch.junit, kJunitHelp);
+  sub->add_option("--junit", launch.junit, kJunitHelp)->type_name("FILE");
   sub->add_option("--launcher", launch.launcher, "who runs the jobs: this machine, or a cluster under Slurm")
+      ->type_name("NAME")
       ->check(CLI::IsMember(std::vector<std::string>(kLaunchers.begin(), kLaunchers.end())))
       ->capture_default_str();
   const char* group = "With --launcher slurm";
-  sub->add_option("--partition", launch.partition, "of the cluster; its default one if not given")->group(group);
-  sub->add_option("--time", launch.time, "a task may take: as sbatch takes it, 1:30:00")->group(group);
-  sub->add_option("--account", launch.account, "that pays for it")->group(group);
+  sub->add_option("--partition", launch.partition, "of the cluster; its default one if not given")
+      ->type_name("NAME")
+      ->group(group);
+  sub->add_option("--time", launch.time, "a task may take: as sbatch takes it, 1:30:00")
+      ->type_name("TIME")
+      ->group(group);
+  sub->add_option("--account", launch.account, "that pays for it")->type_name("NAME")->group(group);
   sub->add_option("--sbatch", launch.sbatch, "any other option of sbatch, with its dashes: --sbatch=--mem=4G")
+      ->type_name("OPTION")
       ->allow_extra_args(false)
       ->group(group);
   sub->add_option("--jobs-per-task", launch.jobs_per_task, "jobs that a task runs, -j at a time; 1 if not given")
-      ->check(CLI::Range(1, kMany))
+      ->type_name("N")
+      ->check(from(1, kMany))
       ->group(group);
   sub->add_flag("--wait", launch.wait, "stay until all have ended; Ctrl-C cancels them")->group(group);
 }
@@ -138,14 +168,18 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
 void add_sweep(CommandLine& line) {
   CLI::App* sub = line.add("sweep", "Run many experiments: every combination of some values", &Needs::everything, sweep,
                            line.sweep);
-  sub->add_option("CONFIG", line.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")->required();
+  sub->add_option("CONFIG", line.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")
+      ->type_name("CONFIG")
+      ->required();
   sub->add_option("AXIS", line.sweep.axes,
                   "what to vary: seed=range(0,10), acquisition=weighted,random, "
                   "kernel.length_scale=log(1cm,5cm,8)")
       ->type_name("KEY=VALUES");
-  sub->add_option("--runs", line.sweep.runs, kRunsHelp)->capture_default_str();
+  sub->add_option("--runs", line.sweep.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
   sub->add_flag("--list", line.sweep.list, "list the jobs and stop");
   add_launch(sub, line.sweep.launch);
+  show(sub, {"palpate sweep configs/paper/object_i.yaml acquisition=weighted,uncertainty \"seed=range(0,10)\"",
+             "palpate sweep configs/sweep/kernels.yaml --list"});
 }
 
 void add_resume(CommandLine& line) {
@@ -156,20 +190,25 @@ void add_resume(CommandLine& line) {
   sub->add_flag("--retry-failed", line.resume.options.retry_failed, "carry on what failed, too");
   sub->add_flag("--force", line.resume.options.force, "carry on what another build began");
   sub->add_option("--jobs", line.resume.jobs,
-                  "only these jobs of a sweep: 0-7,12; those that others hold are left to them");
+                  "only these jobs of a sweep: 0-7,12; those that others hold are left to them")
+      ->type_name("NUMBERS");
   add_launch(sub, line.resume.launch);
   sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
+  show(sub, {"palpate resume runs/object_i/174c331b0e7d", "palpate resume runs/many/5b0c4e1d77aa --retry-failed -j 2"});
 }
 
 void add_list(CommandLine& line) {
   CLI::App* sub = line.add("list", "The runs and sweeps in a folder, in the order in which they were begun",
                            &Needs::whole, list_runs, line.list);
   sub->add_option("FOLDER", line.list.folder, "three folders deep: runs, runs/NAME, or what holds runs")
+      ->type_name("FOLDER")
       ->capture_default_str();
   sub->add_option("--where", line.list.where,
                   "list only those of which this holds, on columns, fields of the summary and keys of the config: "
-                  "\"rmse_m < 8 mm and kernel.type == rbf\"");
+                  "\"rmse_m < 8 mm and kernel.type == rbf\"")
+      ->type_name("CONDITION");
   sub->add_flag("--json", line.list.json, "as JSON");
+  show(sub, {"palpate list", "palpate list runs/first --where \"rmse_m < 8 mm and seed > 3\""});
 }
 
 void add_rest(CommandLine& line) {
@@ -180,11 +219,13 @@ void add_rest(CommandLine& line) {
       },
       status, line.directory);
   line.add_record(sub, "DIR", line.directory, Wanted::any, "the run or the sweep");
+  show(sub, {"palpate status runs/object_i/174c331b0e7d", "palpate status runs/first/*"});
 
   sub = line.add(
       "replay", "Send recorded taps through the same models and compare every number",
       [&line](Needs& needs) { needs.record(line.directory); }, replay, line.directory);
   line.add_record(sub, "DIR", line.directory, Wanted::run, "the run");
+  show(sub, {"palpate replay runs/object_i/174c331b0e7d", "palpate replay runs/first/*"});
 
   sub = line.add(
       "validate", "Check configs, run nothing",
@@ -192,24 +233,41 @@ void add_rest(CommandLine& line) {
         for (const std::string& config : line.configs) needs.config(config, {}, true);
       },
       validate, line.configs);
-  sub->add_option("CONFIG", line.configs, "YAML files")->required();
+  sub->add_option("CONFIG", line.configs, "YAML files")->type_name("CONFIG")->required();
+  show(sub, {"palpate validate configs/default.yaml", "palpate validate configs/paper/*.yaml"});
 
   sub = line.add(
       "plugins", "List plugins, or the options of one", [&line](Needs& needs) { needs.listing(line.plugin); }, plugins,
       line.plugin, line.json);
   sub->add_option("PLUGIN", line.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
   sub->add_flag("--json", line.json, "as JSON");
+  show(sub, {"palpate plugins", "palpate plugins kernel/rbf"});
+
+  sub = line.add(
+      "new", "Write a plugin to begin with, and an experiment with it", [](Needs&) {}, new_plugin, line.kind, line.to);
+  sub->add_option("KIND", line.kind, fmt::format("of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
+      ->type_name("KIND")
+      ->required();
+  sub->add_option("NAME", line.to, "of the plugin, and of its folder, which is made here")
+      ->type_name("NAME")
+      ->required();
+  show(sub, {"palpate new kernel my_kernel", "palpate new acquisition curious"});
 
   sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
                  pareto, line.pareto);
   line.add_record(sub, "DIR", line.pareto.directory, Wanted::sweep, "the sweep");
   sub->add_option("--cost", line.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")
+      ->type_name("COLUMN")
       ->required();
-  sub->add_option("--error", line.pareto.error, "another, an error: footprint_iou")->required();
+  sub->add_option("--error", line.pareto.error, "another, an error: footprint_iou")->type_name("COLUMN")->required();
   sub->add_option("--within", line.pareto.within,
-                  "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm");
+                  "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm")
+      ->type_name("VALUE");
+  show(sub, {"palpate pareto runs/many/* --cost robot_seconds --error rmse_m",
+             "palpate pareto runs/many/* --cost taps --error rmse_m --within 5mm"});
 
-  line.add("schema", "Print the JSON Schema of config files, for editors", &Needs::every_plugin, schema);
+  sub = line.add("schema", "Print the JSON Schema of config files, for editors", &Needs::every_plugin, schema);
+  show(sub, {"palpate schema > palpate.schema.json", "palpate schema | grep length_scale"});
 }
 
 void add_compare(CommandLine& line) {
@@ -218,29 +276,37 @@ void add_compare(CommandLine& line) {
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
   line.add_record(sub, "DIR", line.compare.directory, Wanted::sweep, "the sweep");
-  const auto list = [&](const char* name, auto& values, const char* help) {
-    return sub->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+  const auto list = [&](const char* name, auto& values, const char* of, const char* help) {
+    return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
   };
-  list("--by", line.compare.by, "the swept keys that make the groups: acquisition or acquisition,kernel")->required();
-  list("--metric", line.compare.metrics, "the columns of results.csv to compare: on_surface_taps,footprint_iou")
+  list("--by", line.compare.by, "KEYS", "the swept keys that make the groups: acquisition or acquisition,kernel")
       ->required();
-  sub->add_option("--where", line.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"");
+  list("--metric", line.compare.metrics, "COLUMNS",
+       "the columns of results.csv to compare: on_surface_taps,footprint_iou")
+      ->required();
+  sub->add_option("--where", line.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"")
+      ->type_name("CONDITION");
   CLI::Option* baseline =
-      sub->add_option("--baseline", line.compare.baseline, "compare all groups with this one only: uncertainty");
-  CLI::Option* at = list("--at", line.compare.at,
+      sub->add_option("--baseline", line.compare.baseline, "compare all groups with this one only: uncertainty")
+          ->type_name("GROUP");
+  CLI::Option* at = list("--at", line.compare.at, "NUMBERS",
                          "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, "
                          "and kept")
-                        ->check(CLI::Range(1, kMany));
+                        ->check(from(1, kMany));
   sub->add_option("--until", line.compare.until,
                   "the jobs as they were once a field of the summary was as good as that: rmse_m=8mm; one that never "
                   "was counts as it ended")
+      ->type_name("COLUMN=VALUE")
       ->excludes(at);
   CLI::Option* ratio = sub->add_flag("--ratio", line.compare.ratio, "of every pair also the ratio of the means");
   sub->add_flag("--table", line.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
       ->excludes(baseline)
       ->excludes(ratio);
   sub->add_option("-j", line.compare.workers, "with --at or --until, jobs at a time; if not given, the number of cores")
-      ->check(CLI::Range(1, 1024));
+      ->type_name("N")
+      ->check(from(1, kManyWorkers));
+  show(sub, {"palpate compare runs/many/* --by acquisition --metric on_surface_taps",
+             "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --table"});
 }
 
 void add_about_one(CommandLine& line) {
@@ -249,29 +315,34 @@ void add_about_one(CommandLine& line) {
   line.add_record(sub, "DIR", line.report.directory, Wanted::any, "the run or the sweep");
   sub->add_flag("--figures", line.report.figures, "PNG of the same panels, too, by gnuplot");
   sub->add_flag("--paper", line.report.paper, "laid out as the figures of the paper");
+  show(sub, {"palpate report runs/object_i/174c331b0e7d", "palpate report runs/many/* --figures"});
 
   sub = line.add("explain", "Why a run made a tap where it made it, in words", all_about(line.directory), explain,
                  line.directory, line.tap);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
-  sub->add_option("TAP", line.tap, "the number of the tap, from 1")->required();
+  sub->add_option("TAP", line.tap, "the number of the tap, from 1")->type_name("N")->required();
+  show(sub, {"palpate explain runs/object_i/174c331b0e7d 9", "palpate explain runs/first/* 9"});
 
   sub = line.add("calibrate", "Effects with which the simulator errs as the arm of recorded taps, as a file",
                  &Needs::everything, calibrate, line.runs);
   line.add_record(sub, "RUN", line.runs, Wanted::run,
                   "runs whose scenes stood as their configs say, a bare desk, a block; each");
+  show(sub, {"palpate calibrate runs/bare_desk/*", "palpate calibrate runs/bare_desk/* runs/block/*"});
 
   sub = line.add("export", "Write the surface and the taps of a run for other programs", all_about(line.directory),
                  export_run, line.directory, line.to);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
   sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
+      ->type_name("NAME")
       ->check(CLI::Validator(
           [](const std::string& format) -> std::string {
             if (format == "ply") return {};
             return format == "csv" ? "the tables are surface.csv (log.surface=true) and taps.csv of the run itself"
                                    : fmt::format("{} is not known, write ply", format);
           },
-          "ply"));
-  sub->add_option("--to", line.to, "the folder to write into; if not given, export/ of the run");
+          "{ply}"));
+  sub->add_option("--to", line.to, "the folder to write into; if not given, export/ of the run")->type_name("FOLDER");
+  show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces"});
 }
 
 /// CLI11's own words, on one line, but of a command that there is not, and of many directories where one belongs, which
@@ -297,16 +368,88 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
   throw Error("", trouble.what(), "see palpate --help");
 }
 
-int perform(const CommandLine& line, bool asked, int argc, char** argv) {
+/// What is known of an option by itself.
+Argument argument_of(const CLI::Option& option) {
+  Argument out;
+  out.by_place = option.get_positional();
+  if (out.by_place) out.names.push_back(option.get_name());
+  for (const std::string& name : option.get_snames()) out.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) out.names.push_back("--" + name);
+  // "N:1 to 1024", "NAME:{local,slurm}": behind the colon, what a check takes.
+  const std::string type = option.get_type_size() == 0 ? "" : option.get_type_name();
+  const auto colon = std::min(type.find(':'), type.size());
+  out.value = type.substr(0, colon);
+  const std::string taken = type.substr(std::min(colon + 1, type.size()));
+  if (!taken.empty() && taken.front() == '{') {
+    std::istringstream choices(taken.substr(1, taken.size() - 2));
+    for (std::string one; std::getline(choices, one, ',');) out.choices.push_back(one);
+  } else {
+    out.limits = taken;
+  }
+  out.default_value = option.get_default_str();
+  out.meaning = option.get_description();
+  out.heading = out.by_place ? "Arguments" : option.get_group();
+  out.required = option.get_required();
+  out.repeated = option.get_items_expected_max() > 1;
+  for (const CLI::Option* other : option.get_needs()) out.only_with.push_back(other->get_name());
+  for (const CLI::Option* other : option.get_excludes()) out.never_with.push_back(other->get_name());
+  return out;
+}
+
+Command command_of(const CLI::App& app) {
+  Command out;
+  if (app.get_parent() != nullptr) out.name = app.get_name();
+  out.summary = app.get_description();
+  for (const CLI::Option* option : app.get_options()) out.arguments.push_back(argument_of(*option));
+  const auto rank = [](const Argument& one) { return one.by_place ? 0 : one.heading == "Options" ? 1 : 2; };
+  std::stable_sort(out.arguments.begin(), out.arguments.end(),
+                   [&](const Argument& a, const Argument& b) { return rank(a) < rank(b); });
+  std::istringstream lines(app.get_footer());
+  for (std::string line; std::getline(lines, line);) out.examples.push_back(line);
+  return out;
+}
+
+Usage usage_of(const CLI::App& app) {
+  Usage out{command_of(app), {}};
+  for (const CLI::App* command : app.get_subcommands({})) out.commands.push_back(command_of(*command));
+  return out;
+}
+
+/// Help in our words instead of those of CLI11.
+class Help final : public CLI::FormatterBase {
+ public:
+  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
+    return app->get_parent() == nullptr ? help_text(usage_of(*app)) : help_text(command_of(*app));
+  }
+};
+
+/// Has `act` do something with all that the program is made of.
+template <class Act>
+int with_program(int argc, char** argv, const Act& act) {
   const Installation installation = find_installation();
   const PluginHost host(PluginHost::search_path(installation.plugins));
   Composer composer(installation.configs, config_keys());
   Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
-  if (!asked) return line.perform(program);
-  Needs needs(program);
-  line.need(needs);
-  needs.print();
-  return kDone;
+  return act(program);
+}
+
+int perform(const CommandLine& line, bool asked, int argc, char** argv) {
+  return with_program(argc, argv, [&](Program& program) {
+    if (!asked) return line.perform(program);
+    Needs needs(program);
+    line.need(needs);
+    needs.print();
+    return kDone;
+  });
+}
+
+/// `--complete SHELL WORD ...`. Whatever may be wrong, the user who types is not told of it here.
+int complete(const CLI::App& app, int argc, char** argv) {
+  if (argc < 3) return kDone;
+  return with_program(argc, argv, [&](Program& program) {
+    fmt::print("{}", completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
+    return kDone;
+  });
 }
 
 int run_main(int argc, char** argv) {
@@ -315,18 +458,29 @@ int run_main(int argc, char** argv) {
       "processes say where to tap next.",
       "palpate"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", kVersion);
+  app.formatter(std::make_shared<Help>());  // before there are commands, which take it over
+  app.set_help_flag("-h,--help", "print this and stop");
+  app.set_version_flag("--version", kVersion, "print the version and stop");
+  show(&app, {"palpate run configs/default.yaml scene=ring", "palpate plugins kernel"});
   // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
   CommandLine line(app, asked);
   for (const auto add : {add_run, add_sweep, add_resume, add_list, add_rest, add_compare, add_about_one}) add(line);
+  // Questions of shells and of the build, as --needs is one of ./palpate.
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first == "--complete") return complete(app, argc, argv);
+  if (first == "--manual" && argc == 3) return write_manual(usage_of(app), argv[2]), kDone;
+  if (argc == 1 && !asked) {
+    mention(help_text(usage_of(app)));
+    return kUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {
     return asked ? kDone : app.exit(wish);
   } catch (const CLI::Error& trouble) {
-    return usage_error(app, trouble, argc > 1 ? argv[1] : "");
+    return usage_error(app, trouble, first);
   }
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
   return perform(line, asked, argc, argv);

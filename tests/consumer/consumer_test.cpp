@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The outside project in this folder, built against the installed program: what the tutorial of plugins/README.md
 // promises to plugin authors.
+#include "support/sanitizers.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
@@ -30,17 +31,18 @@ class Consumer : public testing::Test {
     ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
   }
 
-  void build_with(const std::string& more_flags) {
+  void build_with(const std::string& more_flags) { build_project(project(), more_flags); }
+
+  void build_project(const fs::path& sources, const std::string& more_flags = "") {
     const std::string flags = std::string("-DCMAKE_CXX_FLAGS=" PALPATE_CXX_FLAGS) + more_flags;
     const Ended configured =
-        run_program({PALPATE_CMAKE, "-S", project().string(), "-B", build().string(), "-G", PALPATE_GENERATOR,
+        run_program({PALPATE_CMAKE, "-S", sources.string(), "-B", build().string(), "-G", PALPATE_GENERATOR,
                      "-DCMAKE_PREFIX_PATH=" + prefix().string(), "-DCMAKE_CXX_COMPILER=" PALPATE_CXX_COMPILER,
                      "-DCMAKE_BUILD_TYPE=" PALPATE_BUILD_TYPE, flags},
                     here());
     ASSERT_EQ(configured.status, 0) << configured.out << configured.err;
     const Ended built = run_program({PALPATE_CMAKE, "--build", build().string()}, here());
     ASSERT_EQ(built.status, 0) << built.out << built.err;
-    ASSERT_TRUE(fs::is_regular_file(build() / "lib" / "palpate" / "kernel" / "rational.so"));
   }
 
   /// Runs the installed program with the outside plugin on its search path.
@@ -62,7 +64,10 @@ TEST_F(Consumer, InstallationIsComplete) {
   for (const char* file : {"bin/palpate", "lib/palpate/kernel/rbf.so", "lib/palpate/acquisition/weighted.so",
                            "lib/palpate/fitting/fixed.so", "lib/palpate/backend/simulator.so", "lib/palpate/build.json",
                            "share/palpate/configs/paper/object_i.yaml", "include/palpate/plugin.hpp",
-                           "lib/cmake/palpate/palpateConfig.cmake", "lib/cmake/palpate/palpateConfigVersion.cmake"}) {
+                           "lib/cmake/palpate/palpateConfig.cmake", "lib/cmake/palpate/palpateConfigVersion.cmake",
+                           "share/palpate/plugins/starters/kernel/starter.cpp", "share/man/man1/palpate.1",
+                           "share/man/man1/palpate-sweep.1", "share/bash-completion/completions/palpate",
+                           "share/zsh/site-functions/_palpate", "share/fish/vendor_completions.d/palpate.fish"}) {
     EXPECT_TRUE(fs::is_regular_file(prefix() / file)) << file;
   }
   // The program finds its own plugins and configs wherever it was put.
@@ -95,6 +100,33 @@ TEST_F(Consumer, PluginIsFoundDescribedRunAndSound) {
   EXPECT_THAT(contract.out, HasSubstr("[  PASSED  ]"));
   EXPECT_THAT(contract.out, HasSubstr("KernelContract.IsSymmetric/rational"));
   EXPECT_THAT(contract.out, HasSubstr("kernel/rational is not differentiable: no fit may change it"));
+}
+
+TEST_F(Consumer, EachKindHasAPluginToBeginWithThatBuildsRunsAndKeepsTheLaws) {
+  const std::string refused = installed({"new", "kernel", "rbf"}).err;
+  EXPECT_EQ(refused, "there is a plugin kernel/rbf already, take another name\n");
+  EXPECT_THAT(installed({"new", "kernel", "a/b"}).err, HasSubstr("'a/b' is not the name of a plugin, "));
+  EXPECT_THAT(installed({"new", "kernels", "mine"}).err, HasSubstr("no plugin kind 'kernels', did you mean 'kernel'?"));
+  for (const std::string& kind : PluginHost::kinds()) {
+    const Ended made = installed({"new", kind, "my_" + kind});
+    ASSERT_EQ(made.status, 0) << made.err;
+    EXPECT_THAT(made.out, HasSubstr("-DCMAKE_PREFIX_PATH="));
+    EXPECT_THAT(text_of(here() / ("my_" + kind) / ("my_" + kind + ".cpp")), testing::Not(HasSubstr("starter")));
+  }
+  EXPECT_THAT(installed({"new", "kernel", "my_kernel"}).err, HasSubstr("my_kernel: is there already, "));
+  // Each is compiled and asked for all laws of its kind.
+  for (const std::string& kind : brief() ? std::vector<std::string>{"acquisition", "shape"} : PluginHost::kinds()) {
+    const std::string name = "my_" + kind;
+    build_project(here() / name);
+    const Ended ended = installed({"run", name + "/" + name + ".yaml", "--json"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("\"status\": \"done\""));
+    const Ended contract =
+        run_program({PALPATE_CONTRACT_TESTS, "--gtest_filter=Every/*/" + name}, here(), {search_path()});
+    EXPECT_EQ(contract.status, 0) << contract.out;
+    EXPECT_THAT(contract.out, HasSubstr("[       OK ] Every/")) << name;
+    fs::remove_all(build());
+  }
 }
 
 TEST_F(Consumer, PluginOfOtherAlignmentIsRefusedByItsName) {

@@ -109,6 +109,17 @@ TEST_F(SetUp, BuildsWhatTheCommandTakesAndThenWhatThatNames) {
             "palpate_kernel_sum \n");
 }
 
+TEST_F(SetUp, ACompletionNeitherWaitsNorBuilds) {
+  const Ended before = script_ended("palpate", {"--complete", "bash", ""});
+  EXPECT_EQ(before.status, 0);
+  EXPECT_EQ(before.out + before.err, "");
+  EXPECT_FALSE(fs::exists(here() / "build"));
+  call();
+  program("ninja", ": >'" + here().string() + "/built'");
+  EXPECT_EQ(script_ended("palpate", {"--complete", "bash", "ru"}).out, "handed over to --complete bash ru\n");
+  EXPECT_FALSE(fs::exists(here() / "built"));
+}
+
 TEST_F(SetUp, SaysWhatIsMissingAndGoesOnAlsoWhereThereIsNoDpkg) {
   installed("three");
   EXPECT_THAT(call().err, HasSubstr("missing packages: one \n"));

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 
 namespace palpate {
 
@@ -180,19 +179,25 @@ fs::path Composer::find_group(const std::string& group, const std::string& name,
   return found_.emplace(key, std::move(file)).first->second;
 }
 
-Error Composer::no_file(const std::string& group, const std::string& name, const Place& place,
-                        const fs::path& beside) const {
-  std::set<std::string> names;
+std::map<std::string, fs::path> Composer::files_of(const std::string& group, const fs::path& beside) const {
+  std::map<std::string, fs::path> out;
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots(beside).safe) {
       std::error_code none;
       for (const auto& entry : fs::directory_iterator(root / folder, none)) {
-        if (entry.path().extension() == ".yaml") names.insert(entry.path().stem().string());
+        if (entry.path().extension() == ".yaml") out.emplace(entry.path().stem().string(), entry.path());
       }
     }
   }
+  return out;
+}
+
+Error Composer::no_file(const std::string& group, const std::string& name, const Place& place,
+                        const fs::path& beside) const {
+  std::vector<std::string> names;
+  for (const auto& [known, file] : files_of(group, beside)) names.push_back(known);
   return {place.text(), fmt::format("no file {}/{}.yaml", group, name),
-          !names.empty() ? suggestion(name, {names.begin(), names.end()})
+          !names.empty() ? suggestion(name, names)
                          : "looked beside the config, in 'configs' above it, ./configs and the program's configs"};
 }
 

@@ -66,6 +66,10 @@ class Composer {
   /// Those of the last composition, in the order in which they were laid.
   const std::vector<Group>& groups() const { return groups_; }
 
+  /// The files that a name may choose at a group, by that name, for a config in the folder `beside`.
+  std::map<std::string, std::filesystem::path> files_of(const std::string& group,
+                                                        const std::filesystem::path& beside) const;
+
  private:
   /// Of a group by its name, which is the value: the type that the group brings has the layer of that.
   using Choice = Override;

@@ -248,6 +248,17 @@ std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::strin
   return out;
 }
 
+std::vector<std::string> PluginHost::names(const std::string& kind) const {
+  std::set<std::string> out;
+  for (const auto& [name, file] : files(kind)) out.insert(name);
+  for (const fs::path& folder : folders_) {
+    for (const auto& [of, name] : plugins_of_build(folder)) {
+      if (of == kind) out.insert(name);
+    }
+  }
+  return {out.begin(), out.end()};
+}
+
 std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string& kind, const std::string& name) const {
   const std::lock_guard lock(mutex_);
   auto& slot = libraries_[{kind, name}];
@@ -260,12 +271,8 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
     if (fs::exists(fs::symlink_status(file, none))) found.push_back(std::move(file));
   }
   if (found.empty()) {
-    std::set<std::string> names;
     for (const fs::path& folder : folders_) {
-      for (const auto& [of, one] : plugins_of_build(folder)) {
-        if (of == kind) names.insert(one);
-      }
-      if (names.count(name) != 0) {
+      if (plugins_of_build(folder).count({kind, name}) != 0) {
         throw Error("", fmt::format("plugin {}/{} is not built", kind, name),
                     fmt::format("./palpate builds it, or 'cmake --build {} --target palpate_{}_{}'",
                                 (folder / ".." / "..").lexically_normal().string(), kind, name));
@@ -276,8 +283,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
                     fmt::format("the folder {} {}, see PALPATE_PLUGIN_PATH", folder.string(), trouble));
       }
     }
-    for (const auto& [other, file] : files(kind)) names.insert(other);
-    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, {names.begin(), names.end()}));
+    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, names(kind)));
   }
   if (found.size() > 1) {
     throw Error("",

@@ -64,6 +64,9 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Every library found, sorted, each name once; broken ones too. `kind` and `name` may be empty for all.
   std::vector<PluginListing> list(const std::string& kind, const std::string& name) const;
 
+  /// Every name of a kind, sorted, those that are not built yet too; no library is opened.
+  std::vector<std::string> names(const std::string& kind) const;
+
   /// File and hash of the given plugins (kind, name), in their order; loads them if need be. Throws Error.
   std::vector<LoadedPlugin> loaded(const PluginNames& plugins) const;
 

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "cli/key_completion.hpp"
+
+#include "config/describe.hpp"
+#include "config/trouble.hpp"
+#include "experiment/experiment_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace palpate::cli {
+namespace {
+
+using Type = FieldDescription::Type;
+using Descriptions = std::vector<FieldDescription>;
+
+/// The config as far as it is typed. Overrides that cannot be read, as a sweep's lists for a group, are left out; a
+/// config that cannot is empty.
+Tree config_so_far(Composer& composer, const std::string& config, const std::vector<std::string>& before) {
+  Tree out = Tree::map();
+  std::vector<Override> overrides;
+  const auto trouble = trouble_in([&] {
+    for (const std::string& text : before) overrides.push_back(parse_override(text));
+    out = composer.compose(config, overrides);
+  });
+  if (trouble) trouble_in([&] { out = composer.compose(config, {}); });
+  return out;
+}
+
+/// The keys of a config, level by level, with the values that the config has.
+class Keys {
+ public:
+  Keys(const PluginHost& host, const Tree& config) : host_(host), config_(config) {}
+
+  Descriptions top() const {
+    ExperimentOptions options;
+    Descriptions out = beside(describe_fields([&](Fields& fields) { options.list(fields); }), "");
+    for (const Field& field : keys_beside_options()) {
+      if (field.is_group) out.push_back(describe_key(field));
+    }
+    return out;
+  }
+
+  /// What stands within the field at `path`.
+  Descriptions within(const FieldDescription& field, const std::string& path) const {
+    if (field.type == Type::section) return beside(field.fields, path + ".");
+    if (field.type == Type::plugin && !field.adopted) return of_plugin(field, path);
+    const Tree* list = config_.find_path(path);
+    Descriptions out;
+    for (std::size_t i = 0; list != nullptr && i < list->items.size(); ++i) {
+      FieldDescription item;
+      item.name = std::to_string(i);
+      item.meaning = fmt::format("number {} of {}, from 0", i, list->items.size());
+      item.type = field.type == Type::plugins ? Type::plugin : Type::section;
+      item.kind = field.kind;
+      item.fields = field.fields;
+      out.push_back(std::move(item));
+    }
+    return out;
+  }
+
+  /// As the config has it, or the default; "" for what has no value that could be typed again.
+  std::string value(const FieldDescription& field, const std::string& path) const {
+    const Tree* own = config_.find_path(path);
+    if (own != nullptr) return own->is_scalar() ? own->text : "";
+    return field.default_value;
+  }
+
+ private:
+  std::string chosen_plugin(const FieldDescription& field, const std::string& path) const {
+    const Tree* own = config_.find_path(path);
+    if (own == nullptr && !field.heir_of.empty()) own = config_.find_path(field.heir_of);
+    if (own != nullptr && own->is_map()) own = own->find("type");
+    return own != nullptr && own->is_scalar() ? own->text : field.default_value;
+  }
+
+  Descriptions options_of(const std::string& kind, const std::string& name) const {
+    Descriptions out;
+    trouble_in([&] { out = describe_fields([&](Fields& fields) { host_.describe(kind, name, fields); }); });
+    return out;
+  }
+
+  Descriptions of_plugin(const FieldDescription& field, const std::string& path) const {
+    FieldDescription type;
+    type.name = "type";
+    type.kind = field.kind;
+    type.type = Type::plugin;
+    type.adopted = true;
+    type.meaning = fmt::format("the plugin, of kind {}", field.kind);
+    type.default_value = chosen_plugin(field, path);
+    Descriptions out{std::move(type)};
+    for (FieldDescription& one : beside(options_of(field.kind, out.front().default_value), path + ".")) {
+      out.push_back(std::move(one));
+    }
+    return out;
+  }
+
+  /// The fields, and those that the values of choices among them bring along.
+  Descriptions beside(const Descriptions& fields, const std::string& prefix) const {
+    Descriptions out = fields;
+    for (const FieldDescription& field : fields) {
+      const std::string chosen = value(field, prefix + field.name);
+      Descriptions more;
+      if (field.adopted) more = options_of(field.kind, chosen);
+      for (const auto& one : field.cases) {
+        if (one.name == chosen) more = beside(one.fields, prefix);
+      }
+      out.insert(out.end(), more.begin(), more.end());
+    }
+    return out;
+  }
+
+  const PluginHost& host_;
+  const Tree& config_;
+};
+
+/// Whether keys stand within it.
+bool goes_on(const FieldDescription& field, const Tree& config, const std::string& path) {
+  if (field.type == Type::section || (field.type == Type::plugin && !field.adopted)) return true;
+  if (field.type != Type::sections && field.type != Type::plugins) return false;
+  const Tree* list = config.find_path(path);
+  return list != nullptr && !list->items.empty();
+}
+
+std::string meaning_of(const FieldDescription& field) {
+  if (field.adopted || field.type == Type::section || field.type == Type::plugin) return field.meaning;
+  return fmt::format("{} ({}{}{})", field.meaning, field.type_name(), field.range.empty() ? "" : " ", field.range);
+}
+
+std::vector<Completion> values(const Program& program, const std::filesystem::path& beside, const Keys& keys,
+                               const FieldDescription& field, const std::string& path) {
+  std::vector<Completion> out;
+  if (field.type == Type::plugin && field.adopted) return plugin_names(program, field.kind);
+  if (config_keys().is_group(path)) {
+    for (const auto& [name, file] : program.composer.files_of(last_key(path), beside)) {
+      out.push_back({name, purpose_of(file)});
+    }
+  }
+  if (field.type == Type::plugin) {
+    for (Completion& one : plugin_names(program, field.kind)) {
+      const auto same = [&](const Completion& other) { return other.word == one.word; };
+      if (std::none_of(out.begin(), out.end(), same)) out.push_back(std::move(one));
+    }
+  }
+  for (const auto& one : field.cases) out.push_back({one.name, one.meaning});
+  if (field.type == Type::flag) out.insert(out.end(), {{"true", ""}, {"false", ""}});
+  if (field.type == Type::real || field.type == Type::integer) {
+    std::string value = keys.value(field, path);
+    value.erase(std::remove(value.begin(), value.end(), ' '), value.end());
+    if (!value.empty()) out.push_back({value, "as it is: " + meaning_of(field)});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string purpose_of(const std::filesystem::path& config) {
+  std::ifstream in(config);
+  std::string out;
+  for (std::string line; std::getline(in, line) && line.rfind("# ", 0) == 0;) {
+    out += (out.empty() ? "" : " ") + line.substr(2);
+    if (const auto end = out.find(". "); end != std::string::npos) return out.substr(0, end);
+  }
+  return !out.empty() && out.back() == '.' ? out.substr(0, out.size() - 1) : out;
+}
+
+std::vector<Completion> plugin_names(const Program& program, const std::string& kind) {
+  std::vector<Completion> out;
+  for (const std::string& name : program.host.names(kind)) {
+    out.push_back({name, purpose_of(program.installation.configs / kind / (name + ".yaml"))});
+  }
+  return out;
+}
+
+std::vector<Completion> complete_key(Program& program, const std::string& config,
+                                     const std::vector<std::string>& before, const std::string& typed) {
+  const Tree tree = config_so_far(program.composer, config, before);
+  const Keys keys(program.host, tree);
+  const auto equals = typed.find('=');
+  const std::string path = typed.substr(0, equals);
+  std::string prefix;
+  Descriptions level = keys.top();
+  const auto named = [&](const std::string& name) {
+    return std::find_if(level.begin(), level.end(), [&](const auto& field) { return field.name == name; });
+  };
+  for (std::string rest = path; rest.find('.') != std::string::npos; rest = rest.substr(rest.find('.') + 1)) {
+    const auto field = named(first_key(rest));
+    if (field == level.end()) return {};
+    const std::string here = prefix + field->name;
+    level = keys.within(FieldDescription(*field), here);
+    prefix = here + ".";
+  }
+  std::vector<Completion> out;
+  if (equals != std::string::npos) {
+    const auto field = named(last_key(path));
+    if (field == level.end()) return {};
+    for (Completion& one : values(program, std::filesystem::path(config).parent_path(), keys, *field, path)) {
+      out.push_back({path + "=" + one.word, std::move(one.meaning)});
+    }
+    return out;
+  }
+  for (const FieldDescription& field : level) {
+    const std::string key = prefix + field.name;
+    const bool inner = goes_on(field, tree, key);
+    if (!inner || config_keys().is_group(key)) out.push_back({key + "=", meaning_of(field)});
+    if (inner) out.push_back({key + ".", meaning_of(field)});
+  }
+  return out;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// A plugin to begin with: the one of its kind in plugins/starters, under the name that is asked for.
+#include "cli/commands.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void replace_all(std::string& text, const std::string& what, const std::string& with) {
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+}
+
+/// How it is built against this program, which a build folder has to install first.
+std::string next_steps(const Installation& installation, const std::string& name) {
+  const bool installed = installation.whole == installation.program;
+  const fs::path folder = installation.program.parent_path();
+  const std::string prefix = installed ? folder.parent_path().string() : "$HOME/opt/palpate";
+  std::string out = fmt::format("Build and run it:\n  cd {}\n", name);
+  if (!installed) out += fmt::format("  cmake --install {} --prefix {}\n", folder.string(), prefix);
+  return out + fmt::format(
+                   "  cmake -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH={0}\n"
+                   "  cmake --build build\n"
+                   "  export PALPATE_PLUGIN_PATH=$PWD/build/lib/palpate\n"
+                   "  {0}/bin/palpate run {1}.yaml\n",
+                   prefix, name);
+}
+
+}  // namespace
+
+int new_plugin(Program& program, const std::string& kind, const std::string& name) {
+  const std::vector<std::string> kinds = PluginHost::kinds();
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+    throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
+  }
+  if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
+  const std::vector<std::string> taken = program.host.names(kind);
+  if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+    throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "take another name");
+  }
+  const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
+  std::error_code trouble;
+  if (!fs::create_directory(name, trouble)) {
+    throw Error(name, trouble ? "cannot be made: " + trouble.message() : "is there already", "take another name");
+  }
+  const auto write = [&](const fs::path& from, const std::string& to) {
+    std::ostringstream read;
+    read << std::ifstream(from).rdbuf();
+    std::string text = read.str();
+    if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
+    replace_all(text, "KIND", kind);
+    replace_all(text, "starter", name);
+    std::ofstream out(fs::path(name) / to);
+    if (!(out << text).flush()) throw Error(name + "/" + to, "cannot be written", "check the space that is left");
+  };
+  write(starters / "CMakeLists.txt", "CMakeLists.txt");
+  write(starters / kind / "starter.cpp", name + ".cpp");
+  write(starters / kind / "starter.yaml", name + ".yaml");
+  fmt::print("{0}/{0}.cpp is the plugin {1}/{0}, and {0}/{0}.yaml an experiment with it. {2}", name, kind,
+             next_steps(program.installation, name));
+  return kDone;
+}
+
+}  // namespace palpate::cli

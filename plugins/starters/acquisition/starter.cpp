@@ -1,0 +1,33 @@
+// How much one wants to tap each candidate: where the height is unknown (u) and an object is probable (p), the more so
+// the larger `trust`. score = u p^trust.
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+using namespace palpate;
+
+struct MyAcquisitionOptions : Options {
+  double trust = 0.5;
+
+  void list(Fields& fields) override {
+    fields.real(trust, Field("trust", "in the outline: 0 taps wherever the height is unknown").at_least(0).at_most(10));
+  }
+};
+
+class MyAcquisition final : public Acquisition {
+ public:
+  using Options = MyAcquisitionOptions;
+  MyAcquisition(const Options& options, const Context&) : options_(options) {}
+
+  Quantities reads() const override { return Quantity::uncertainty | Quantity::probability; }
+
+  void score(const Belief& belief, VectorOut out) const override {
+    out = belief.uncertainty().array() * belief.probability().array().pow(options_.trust);
+  }
+
+  double prior_scale() const override { return 1.0; }
+
+ private:
+  Options options_;
+};
+
+PALPATE_PLUGIN(Acquisition, MyAcquisition, "starter", "an acquisition of my own: unknown height, probable object")

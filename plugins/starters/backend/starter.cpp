@@ -1,0 +1,44 @@
+// What a tap is: here a world of arithmetic, a dome in the middle of the desk. A robot would be told to tap there.
+#include <palpate/backend.hpp>
+#include <palpate/plugin.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace palpate;
+
+struct MyBackendOptions : Options {
+  double radius = 0.06;
+  double height = 0.05;
+
+  void list(Fields& fields) override {
+    fields.real(radius, Field("radius", "of the dome").in(Unit::metre).above(0));
+    fields.real(height, Field("height", "of its top above the desk").in(Unit::metre).at_least(0));
+  }
+};
+
+class MyBackend final : public Backend {
+ public:
+  using Options = MyBackendOptions;
+  MyBackend(const Options& options, const Context& context) : options_(options), scene_(context.scene) {}
+
+  Contact tap(const TapRequest& request) override {
+    const double r = std::hypot(request.target.x - scene_.area().width / 2, request.target.y - scene_.area().depth / 2);
+    const double rise = std::sqrt(std::max(0.0, 1 - r * r / (options_.radius * options_.radius)));
+    Contact contact;
+    contact.outcome = Outcome::contact;
+    contact.height = scene_.desk() + options_.height * rise;
+    contact.force = 1.0;
+    contact.seconds = 5.0;
+    return contact;
+  }
+
+  bool repeatable() const override { return true; }
+  bool scene_is_truth() const override { return false; }
+
+ private:
+  Options options_;
+  const Scene& scene_;
+};
+
+PALPATE_PLUGIN(Backend, MyBackend, "starter", "a backend of my own: a dome")

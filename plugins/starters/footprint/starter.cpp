@@ -1,0 +1,46 @@
+// Where objects are, as a probability: the labels of the touches near a place, the nearer the weightier, beside a prior
+// that counts as much as one touch right there.
+#include <palpate/footprint.hpp>
+#include <palpate/plugin.hpp>
+
+#include <cmath>
+
+using namespace palpate;
+
+struct MyFootprintOptions : Options {
+  double reach = 0.015;
+  double prior = 0.2;
+
+  void list(Fields& fields) override {
+    fields.real(reach, Field("reach", "distance over which a touch tells of its neighbours").in(Unit::metre).above(0));
+    fields.real(prior, Field("prior", "probability of an object where nobody touched").at_least(0).at_most(1));
+  }
+};
+
+class MyFootprint final : public Footprint {
+ public:
+  using Options = MyFootprintOptions;
+  MyFootprint(const Options& options, const Context&) : options_(options) {}
+
+  void add(const Touch& touch) override { touches_.push_back(touch); }
+
+  void probability(const PointsView& places, VectorOut out) override {
+    for (Eigen::Index i = 0; i < places.rows(); ++i) {
+      double on = options_.prior;
+      double all = 1.0;
+      for (const Touch& touch : touches_) {
+        const double r = std::hypot(places(i, 0) - touch.place.x, places(i, 1) - touch.place.y) / options_.reach;
+        const double weight = std::exp(-0.5 * r * r);
+        all += weight;
+        if (touch.on) on += weight;
+      }
+      out(i) = on / all;
+    }
+  }
+
+ private:
+  Options options_;
+  std::vector<Touch> touches_;
+};
+
+PALPATE_PLUGIN(Footprint, MyFootprint, "starter", "a footprint of my own: labels of the touches near by")

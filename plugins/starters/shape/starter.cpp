@@ -1,0 +1,45 @@
+// The form of an object: here an ellipsoid that rests on the desk. What lies between is found in the frame in which it
+// is the unit ball.
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace palpate;
+
+struct MyShapeOptions : Options {
+  double length = 0.12;
+  double width = 0.08;
+  double height = 0.05;
+
+  void list(Fields& fields) override {
+    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
+    fields.real(height, Field("height", "of its top above the desk").in(Unit::metre).above(0));
+  }
+};
+
+class MyShape final : public Shape {
+ public:
+  using Options = MyShapeOptions;
+  MyShape(const Options& options, const Context&) : half_(options.length / 2, options.width / 2, options.height / 2) {}
+
+  double first_hit(const Line& line) const override {
+    const Eigen::Vector3d origin = (line.origin - Eigen::Vector3d(0, 0, half_.z())).cwiseQuotient(half_);
+    const Eigen::Vector3d direction = line.direction.cwiseQuotient(half_);
+    const double nearest = -origin.dot(direction) / direction.squaredNorm();
+    const double inside = 1 - (origin + nearest * direction).squaredNorm();
+    if (inside < 0) return std::numeric_limits<double>::infinity();
+    return nearest - std::sqrt(inside / direction.squaredNorm());
+  }
+
+  double support(const Eigen::Vector3d& direction) const override {
+    return direction.z() * half_.z() + direction.cwiseProduct(half_).norm();
+  }
+
+ private:
+  Eigen::Vector3d half_;
+};
+
+PALPATE_PLUGIN(Shape, MyShape, "starter", "a shape of my own: an ellipsoid")
