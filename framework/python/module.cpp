@@ -3,6 +3,7 @@
 // for people are in palpate/__init__.py, which is all that sees this module.
 #include "config/compose.hpp"
 #include "config/quantity.hpp"
+#include "experiment/experiment.hpp"
 #include "experiment/experiment_options.hpp"
 #include "experiment/metrics.hpp"
 #include "record/fields.hpp"

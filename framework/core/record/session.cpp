@@ -2,6 +2,7 @@
 #include "record/session.hpp"
 
 #include "config/yaml.hpp"
+#include "experiment/experiment.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"

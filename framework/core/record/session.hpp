@@ -2,7 +2,7 @@
 // One run from its config to its summary, with the directory in between: started, carried on, or played again.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "experiment/tap_record.hpp"
 #include "plugin/host.hpp"
 #include "record/build_info.hpp"
 #include "record/resolved.hpp"
@@ -19,6 +19,8 @@
 #include <vector>
 
 namespace palpate {
+
+class Experiment;
 
 /// What every run of this process shares.
 struct Workshop {
