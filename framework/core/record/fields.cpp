@@ -157,7 +157,8 @@ FieldList<TapRecord> make_tap_list() {
   using Tap = TapRecord;
   FieldList<Tap> list;
   list.add("tap", "number, from 1", &Tap::number);
-  list.add("source", "`initial`, `acquisition`, `fallback`, or `caller` where scores came from outside", [](const Tap& t) { return source_name(t.source); });
+  list.add("source", "`initial`, `acquisition`, `fallback`, or `caller` where scores came from outside",
+           [](const Tap& t) { return source_name(t.source); });
   list.add("why", "of a fallback, why", [](const Tap& t) { return if_any(t.why); });
   list.add("x", "where", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
   list.add("y", "where", [](const Tap& t) { return t.target.y; }).in(Unit::metre);
