@@ -3,6 +3,7 @@
 // labels, heights and errors as the belief expects them, and tapped where it is least sure.
 #include "outline_bench.hpp"
 #include "shape/particles.hpp"
+#include "shape/steps.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -61,11 +62,6 @@ bool something_left(const Outline& desk, const std::vector<Touch>& touches) {
   });
 }
 
-/// The standard normal distribution.
-double gauss(Random& random) {
-  return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(2.0 * kPi * random.uniform());
-}
-
 class Desk {
  public:
   Desk(const OutlinePrior& prior, const ParticleSettings& how, std::uint64_t seed)
@@ -76,14 +72,14 @@ class Desk {
 
   Touch tap(const Target& place) {
     const double blur = blurred_ ? how_.blur : 0.0;
-    const double x = place.x + blur * gauss(random_);
-    const double y = place.y + blur * gauss(random_);
+    const double x = place.x + blur * normal(random_);
+    const double y = place.y + blur * normal(random_);
     const Piece* top =
         std::find_if(outline_.begin(), outline_.end(), [&](const Piece& one) { return one.contains(x, y); });
     bool on = top != outline_.end();
     const double height = on ? tops_[static_cast<std::size_t>(top - outline_.begin())] : 0.0;
     if (random_.uniform() < (on ? how_.mistaken : how_.lies)) on = !on;
-    return {place, height + 0.001 * gauss(random_), on};
+    return {place, height + 0.001 * normal(random_), on};
   }
 
  private:

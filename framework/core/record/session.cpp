@@ -436,7 +436,7 @@ class Held final : public CallersRun {
   std::optional<RunReport> report_;
 };
 
-/// Throws Error for a run that is there already.
+/// What is said of a run that is there already.
 Error finished_error(const fs::path& directory) {
   return Error(directory.string(), "this run is finished", "force moves it aside and runs again");
 }
