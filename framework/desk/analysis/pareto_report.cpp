@@ -12,12 +12,12 @@
 namespace palpate {
 namespace {
 
-using Pick = MeanEstimate Setting::*;
+using Field = MeanEstimate Setting::*;
 
-Scale scale_of(const Pareto& pareto, const Column& key, Pick pick) {
+Scale scale_of(const Pareto& pareto, const Column& key, Field field) {
   std::vector<double> means;
   for (const Setting& setting : pareto.settings) {
-    if ((setting.*pick).count > 0) means.push_back((setting.*pick).mean);
+    if ((setting.*field).count > 0) means.push_back((setting.*field).mean);
   }
   return readable_scale(key.unit, means);
 }
@@ -104,14 +104,14 @@ struct PlotAxis {
   }
 };
 
-PlotAxis plot_axis(const Pareto& pareto, const Column& key, Pick pick, const std::optional<double>& line) {
+PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const std::optional<double>& line) {
   constexpr double kLogarithmicFrom = 20.0;
   PlotAxis axis;
-  axis.scale = scale_of(pareto, key, pick);
+  axis.scale = scale_of(pareto, key, field);
   std::vector<double> means;
   std::vector<double> ends;
   for (const Setting& one : pareto.settings) {
-    const MeanEstimate& estimate = one.*pick;
+    const MeanEstimate& estimate = one.*field;
     if (estimate.count == 0) continue;
     means.push_back(estimate.mean / axis.scale.factor);
     for (const double end : {PlotAxis::interval_or_mean(estimate).low, PlotAxis::interval_or_mean(estimate).high})
