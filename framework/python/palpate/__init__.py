@@ -21,13 +21,19 @@ from __future__ import annotations
 
 import json as _json
 import os as _os
+import pty as _pty
+import re as _re
+import select as _select
+import signal as _signal
+import subprocess as _subprocess
+import tempfile as _tempfile
 
 import numpy as _np
 
 from . import _palpate
 from ._palpate import Error, Tap
 
-__all__ = ["Belief", "Error", "Experiment", "Maps", "Run", "Tap", "describe", "load", "run"]
+__all__ = ["Belief", "Error", "Experiment", "Maps", "Run", "Sweep", "Tap", "describe", "load", "load_sweep", "run", "sweep"]
 __version__ = _palpate.version
 
 Error.__doc__ = """Input that can be mended: `place`, `reason` and `remedy` (perhaps "") say where, what and how."""
@@ -52,6 +58,26 @@ def _json_file(path):
             return _json.load(file)
     except FileNotFoundError:
         return None
+
+
+def _table(columns):
+    """A structured array of columns: (name, array or list)."""
+    columns = [(name, _np.asarray(values, dtype=object) if isinstance(values, list) else values)
+               for name, values in columns]
+    out = _np.empty(len(columns[0][1]), dtype=[(name, values.dtype) for name, values in columns])
+    for name, values in columns:
+        out[name] = values
+    return out
+
+
+def _numbers(texts):
+    """An array of numbers where all texts are numbers, else the texts."""
+    for kind in (int, float):
+        try:
+            return _np.array([kind(text) for text in texts])
+        except ValueError:
+            pass
+    return texts
 
 
 class Maps:
@@ -102,12 +128,7 @@ class Run:
     @property
     def taps(self) -> _np.ndarray:
         """A structured array of a row a tap; describe() says what its fields mean. Numbers that a tap lacks are NaN."""
-        columns = [(name, _np.asarray(values, dtype=object) if isinstance(values, list) else values)
-                   for name, values in self._record.taps()]
-        out = _np.empty(len(self), dtype=[(name, values.dtype) for name, values in columns])
-        for name, values in columns:
-            out[name] = values
-        return out
+        return _table(self._record.taps())
 
     def after(self, taps: int) -> Maps:
         """The models after the first `taps` taps, computed again from the record; cheapest in ascending order."""
@@ -134,9 +155,50 @@ class Run:
         return self._record.axes()[1]
 
 
-def load(directory) -> Run:
-    """The run in a directory. Raises Error for what is none, or damaged."""
-    return Run(directory)
+class Sweep:
+    """A recorded sweep: load_sweep() opens one. sweep[3] is the run of its job 3, opened when it is asked for.
+
+    It iterates over the runs of the jobs that are done.
+    """
+
+    def __init__(self, directory):
+        self._record = _palpate.SweepRecord(_os.fspath(directory))
+        self.directory = self._record.directory()
+        self.keys = self._record.keys()
+
+    def __repr__(self):
+        return f"<palpate.Sweep {self.directory}: {len(self)} jobs>"
+
+    def __len__(self):
+        return self._record.size()
+
+    def __getitem__(self, job: int) -> Run:
+        index = range(len(self))[job]  # as lists take it, -1 for the last
+        return Run(self._record.job(index))
+
+    def __iter__(self):
+        table = self.table
+        for job in table["job"][table["status"] == "done"]:
+            yield self[job]
+
+    @property
+    def table(self) -> _np.ndarray:
+        """A structured array of a row a job, which `pandas.DataFrame` takes: `job`, `id`, the swept keys, the fields of
+        the summary by their dotted names. A job that has not ended has the status None and no numbers (NaN)."""
+        columns = self._record.table()
+        if "status" not in dict(columns):  # before the first job has ended
+            columns.append(("status", [None] * len(self)))
+        return _table((name, _numbers(values) if name in self.keys else values) for name, values in columns)
+
+
+def load(directory, runs="runs") -> Run:
+    """The run in a directory, or in `runs` by its name: "NAME", "NAME@latest". Raises Error for what is none, or damaged."""
+    return Run(_palpate.found(_os.fspath(directory), False, _os.fspath(runs)))
+
+
+def load_sweep(directory, runs="runs") -> Sweep:
+    """The sweep in a directory, or in `runs` by its name. Raises Error for what is none, or damaged."""
+    return Sweep(_palpate.found(_os.fspath(directory), True, _os.fspath(runs)))
 
 
 def describe() -> dict[str, tuple[str, str]]:
@@ -152,6 +214,67 @@ def run(config, *overrides, runs="runs", force=False, progress=None, **settings)
     on by `palpate resume`.
     """
     return Run(_palpate.run(_os.fspath(config), _overrides(overrides, settings), _os.fspath(runs), force, progress))
+
+
+def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -> Sweep:
+    """Runs all jobs of a sweep, as `palpate sweep CONFIG KEY=V1,V2 ...` does, and loads it: `sweep(config, "seed=range(0,10)")`.
+
+    `settings` are axes of keys that are Python names: a list is swept, another value is set. The jobs run in the program,
+    `workers` at a time (else as many as there are cores), and not in this process. A sweep that exists is carried on.
+    `progress(done, jobs)` is called as jobs end. Ctrl-C ends it after the taps under way; the same call carries it on.
+    Failed jobs are in the table. Raises Error.
+    """
+    words = [*axes, *(f"{key}={','.join(map(_value, value)) if isinstance(value, (list, tuple, range)) else _value(value)}"
+                      for key, value in settings.items())]
+    if workers is not None and workers < 1:
+        raise _error("sweep", f"workers is {workers}", "give at least 1")
+    directory, _ = _palpate.plan(_os.fspath(config), words, _os.fspath(runs))
+    command = [_palpate.program, "sweep", _os.fspath(config), *words, "--runs", _os.fspath(runs)]
+    if workers is not None:
+        command += ["-j", str(workers)]
+    status, said = _conducted(command, progress)
+    if status not in (0, 1):  # 1: jobs failed, or what the config expects does not hold
+        raise _error(directory, f"the sweep ended with status {status}: {said}", "see what it says")
+    return Sweep(directory)
+
+
+def _conducted(command, progress):
+    """Runs a sweep; its exit status and its last line. Its errors come by a terminal: to one it tells of every job."""
+    terminal, its = _pty.openpty()
+    with _tempfile.TemporaryFile() as out:
+        # A session of its own: Ctrl-C in a terminal would reach it twice.
+        child = _subprocess.Popen(command, stdin=_subprocess.DEVNULL, stdout=out, stderr=its, start_new_session=True)
+        _os.close(its)
+        said, told, interrupted = b"", None, None
+        try:
+            while True:
+                try:
+                    if not _select.select([terminal], [], [], 0.2)[0]:
+                        continue
+                    some = _os.read(terminal, 65536)
+                except OSError:  # nobody has the other end any more
+                    break
+                except KeyboardInterrupt as interrupt:
+                    interrupted = interrupt
+                    child.send_signal(_signal.SIGINT)
+                    continue
+                said = (said + some)[-4096:]
+                counts = _re.findall(rb"(\d+) of (\d+) jobs done, \d+ running, (\d+) failed", said)
+                if progress is not None and counts and interrupted is None:
+                    now = int(counts[-1][0]) + int(counts[-1][2]), int(counts[-1][1])
+                    if now != told:
+                        told = now
+                        progress(*now)
+        except BaseException:
+            child.send_signal(_signal.SIGINT)
+            raise
+        finally:
+            _os.close(terminal)
+            child.wait()
+        if interrupted is not None:
+            raise interrupted
+        lines = said.decode(errors="replace").strip().splitlines()
+        return child.returncode, lines[-1] if lines else ""
 
 
 class Belief:

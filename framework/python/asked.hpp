@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// A run whose taps the caller makes, for Python.
+#pragma once
+
+#include "experiment/experiment.hpp"
+#include "record/session.hpp"
+#include "record/tap_row.hpp"
+#include "shop.hpp"
+#include "values.hpp"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+/// A run whose taps the caller makes.
+class Asked {
+ public:
+  Asked(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs, bool force) {
+    const ResolvedConfig resolved = resolve(config, overrides);
+    run_ = CallersRun::start(shop_.workshop, resolved, directory_of(resolved, runs), force);
+  }
+  Asked(const std::string& directory, bool retry_failed, bool force) {
+    run_ = CallersRun::resume(shop_.workshop, directory, {retry_failed, force});
+  }
+
+  std::optional<TapRecord> ask(const std::optional<Array>& scores) {
+    std::optional<Eigen::VectorXd> values;
+    if (scores) values = checked(*scores);
+    const py::gil_scoped_release free;
+    const TapRecord* tap = open().begin(values ? &*values : nullptr);
+    return tap != nullptr ? std::optional(*tap) : std::nullopt;
+  }
+
+  void tell(Contact contact) {
+    const py::gil_scoped_release free;
+    open().end(std::move(contact));
+  }
+
+  std::string finish() {
+    const py::gil_scoped_release free;
+    return to_json_text(open().finish().summary);
+  }
+  /// Lets go of the directory; what is not finished can be carried on.
+  void close() { run_.reset(); }
+
+  bool finished() { return open().finished(); }
+  std::string directory() { return open().directory().string(); }
+  int taps() { return open().experiment().counts().taps; }
+  std::pair<int, int> shape() {
+    const Candidates& candidates = open().experiment().candidates();
+    return {candidates.rows, candidates.columns};
+  }
+  Experiment& experiment() { return open().experiment(); }
+
+ private:
+  CallersRun& open() {
+    if (!run_) throw Error("experiment", "is closed", "palpate.Experiment.resume(DIR) carries it on");
+    return *run_;
+  }
+  Eigen::VectorXd checked(const Array& scores) {
+    const auto wanted = static_cast<py::ssize_t>(open().experiment().candidates().size());
+    if (scores.size() != wanted) {
+      throw Error("scores", "has " + std::to_string(scores.size()) + " values",
+                  "give one a candidate, " + std::to_string(wanted));
+    }
+    const py::array_t<double, py::array::c_style | py::array::forcecast> dense(scores);
+    const Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
+    if (!out.allFinite()) throw Error("scores", "has a value that is not a finite number", "0 is worth nothing");
+    return out;
+  }
+
+  Shop shop_;
+  std::unique_ptr<CallersRun> run_;
+};
+
+/// What was told of a tap, as a backend would have said it. Throws Error.
+inline Contact contact_of(const std::string& outcome, double height, double force, double seconds,
+                          const std::string& reason, bool ends_run) {
+  for (const Outcome one : {Outcome::contact, Outcome::no_contact, Outcome::unreachable, Outcome::timeout,
+                            Outcome::aborted, Outcome::unknown}) {
+    if (outcome != outcome_name(one)) continue;
+    if (one == Outcome::contact && !std::isfinite(height))
+      throw Error("tell", "the height of a contact is not a finite number",
+                  "tell outcome=\"no_contact\" if there was none");
+    return {one, height, force, seconds, reason, ends_run};
+  }
+  throw Error("tell", "there is no outcome '" + outcome + "'",
+              "it is contact, no_contact, unreachable, timeout, aborted or unknown");
+}
+
+}  // namespace palpate

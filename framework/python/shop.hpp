@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Where this module lies, and what all runs of its process share.
+#pragma once
+
+#include "config/compose.hpp"
+#include "experiment/experiment_options.hpp"
+#include "record/session.hpp"
+
+#include <palpate/error.hpp>
+
+#include <dlfcn.h>
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// What belongs together with this module: it lies somewhere below the folder that has lib/palpate.
+inline Installation find_own_installation() {
+  Dl_info self{};
+  if (::dladdr(reinterpret_cast<const void*>(&find_own_installation), &self) == 0 || self.dli_fname == nullptr)
+    throw Error("palpate", "the module does not know where it lies", {}, Error::Kind::run);
+  const std::filesystem::path file = std::filesystem::weakly_canonical(self.dli_fname);
+  for (std::filesystem::path folder = file.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
+    const std::filesystem::path plugins = folder / "lib" / "palpate";
+    if (!std::filesystem::exists(plugins)) continue;
+    const bool installed = std::filesystem::exists(folder / "share" / "palpate" / "configs");
+    const std::filesystem::path program = installed ? folder / "bin" / "palpate" : folder / "palpate";
+    const std::filesystem::path whole = installed ? program : folder / "palpate-whole";
+    return {program, whole, plugins,
+            installed ? folder / "share" / "palpate" / "configs" : folder / ".." / ".." / "configs"};
+  }
+  throw Error(file.string(), "is not part of an installation: there is no lib/palpate above it",
+              "install the package as a whole");
+}
+
+/// What all runs of this process share. Never destroyed: Python lets go of objects in an order of its own.
+struct Home {
+  Installation installation = find_own_installation();
+  PluginHost host{PluginHost::search_path(installation.plugins)};
+  Composer composer{installation.configs, config_keys()};
+};
+inline Home& home() {
+  static Home* const one = new Home;
+  return *one;
+}
+
+/// A wish to stop that a run may be given, and all that the run shares with others.
+struct Shop {
+  std::atomic<bool> interrupted{false};
+  Workshop workshop{home().host, home().installation, {"python"}, &interrupted};
+};
+
+inline std::vector<Override> parsed_overrides(const std::vector<std::string>& overrides) {
+  std::vector<Override> parsed;
+  for (const std::string& text : overrides) parsed.push_back(parse_override(text));
+  return parsed;
+}
+
+inline ResolvedConfig resolve(const std::string& config, const std::vector<std::string>& overrides) {
+  return resolve_experiment(home().composer.compose(config, parsed_overrides(overrides)), home().host);
+}
+
+}  // namespace palpate
