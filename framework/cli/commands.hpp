@@ -133,7 +133,8 @@ struct CompareArguments {
 int compare(Program& program, const CompareArguments& arguments);
 
 struct ReportArguments {
-  std::string directory;
+  std::vector<std::string> directories;  ///< one, or runs to be set side by side
+  std::string to;                        ///< the folder of what is written; "" for the record's own
   bool figures = false;
   bool paper = false;
 };

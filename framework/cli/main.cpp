@@ -310,12 +310,20 @@ void add_compare(CommandLine& line) {
 }
 
 void add_about_one(CommandLine& line) {
-  CLI::App* sub = line.add("report", "A run or a sweep as one HTML page, and as pictures",
-                           all_about(line.report.directory), report, line.report);
-  line.add_record(sub, "DIR", line.report.directory, Wanted::any, "the run or the sweep");
+  const auto all_of_them = [&line](Needs& needs) {
+    needs.whole();
+    for (const std::string& directory : line.report.directories) needs.record(directory);
+  };
+  CLI::App* sub = line.add("report", "A run or a sweep as one HTML page, and as pictures; several runs side by side",
+                           all_of_them, report, line.report);
+  line.add_record(sub, "DIR", line.report.directories, Wanted::any, "the run or the sweep, or several runs; each");
   sub->add_flag("--figures", line.report.figures, "PNG of the same panels, too, by gnuplot");
   sub->add_flag("--paper", line.report.paper, "laid out as the figures of the paper");
-  show(sub, {"palpate report runs/object_i/174c331b0e7d", "palpate report runs/many/* --figures"});
+  sub->add_option("--to", line.report.to,
+                  "write into this folder; if not given, into the record, and what is of several runs into the folder "
+                  "that has them all")
+      ->type_name("FOLDER");
+  show(sub, {"palpate report runs/object_i/174c331b0e7d --figures", "palpate report runs/first/* runs/second/*"});
 
   sub = line.add("explain", "Why a run made a tap where it made it, in words", all_about(line.directory), explain,
                  line.directory, line.tap);

@@ -4,14 +4,21 @@
 #include "record/files.hpp"
 #include "report/figures/figures.hpp"
 #include "report/page/run_page.hpp"
+#include "report/page/runs_page.hpp"
 #include "report/page/sweep_page.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate::cli {
 namespace {
@@ -35,8 +42,7 @@ class Patience {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-void write_page(const fs::path& directory, const std::string& page) {
-  const fs::path file = directory / "report.html";
+void write_page(const fs::path& file, const std::string& page) {
   write_file(file, page);
   fmt::print("{}\n", file.string());
 }
@@ -46,20 +52,57 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) fmt::print("{}\n", picture.string());
 }
 
-void report_run(const Workshop& workshop, const ReportArguments& arguments) {
-  const Recording recording = read_recording(workshop, arguments.directory);
+void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
+  const Recording recording = read_recording(workshop, arguments.directories.front());
   Patience patience("taps");
   const History history = make_history(workshop, recording, std::ref(patience));
-  write_page(recording.directory, run_page(recording, history, std::ref(patience)));
-  if (arguments.figures) show(write_run_figures(workshop, recording, history));
-  if (arguments.paper) show(write_paper_figures(workshop, recording));
+  write_page(to / "report.html", run_page(recording, history, std::ref(patience)));
+  if (arguments.figures) show(write_run_figures(workshop, recording, history, to / "figures"));
+  if (arguments.paper) show(write_paper_figures(workshop, recording, to / "figures"));
 }
 
-void report_sweep(const Workshop& workshop, const ReportArguments& arguments) {
-  const Sweep sweep = read_sweep(arguments.directory);
-  write_page(sweep.directory, sweep_page(sweep, Patience("jobs")));
-  if (arguments.figures) show(write_sweep_figures(sweep));
-  if (arguments.paper) show(write_paper_figures(workshop, sweep));
+void report_sweep(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
+  const Sweep sweep = read_sweep(arguments.directories.front());
+  write_page(to / "report.html", sweep_page(sweep, Patience("jobs")));
+  if (arguments.figures) show(write_sweep_figures(sweep, to / "figures"));
+  if (arguments.paper) show(write_paper_figures(workshop, sweep, to / "figures"));
+}
+
+/// The folder that has all of them.
+fs::path common_folder(const std::vector<std::string>& directories) {
+  const auto parent = [](const std::string& one) { return fs::weakly_canonical(one).parent_path(); };
+  fs::path out = parent(directories.front());
+  for (const std::string& one : directories) {
+    const fs::path other = parent(one);
+    fs::path both;
+    for (auto a = out.begin(), b = other.begin(); a != out.end() && b != other.end() && *a == *b; ++a, ++b) both /= *a;
+    out = both;
+  }
+  return fs::proximate(out);
+}
+
+void report_several(const Workshop& workshop, const ReportArguments& arguments) {
+  const std::vector<std::string>& directories = arguments.directories;
+  const auto refuse = [](const std::string& reason, const std::string& hint) {
+    throw Error("command line", reason, hint);
+  };
+  if (directories.size() > kMostRunsOnAPage)
+    refuse(fmt::format("{} runs are too many side by side", directories.size()),
+           fmt::format("give up to {}, or compare a sweep of them with 'palpate compare'", kMostRunsOnAPage));
+  if (arguments.figures || arguments.paper)
+    refuse("--figures and --paper draw one run or sweep", "give one, or leave them out");
+  std::vector<RunBeside> runs;
+  std::string name = "side_by_side";
+  for (const std::string& directory : directories) {
+    if (is_sweep(directory))
+      refuse(directory + " is a sweep, and several runs stand side by side", "give its jobs: SWEEP/jobs/ID");
+    Recording recording = read_recording(workshop, directory);
+    History history = make_history(workshop, recording, Patience("taps"));
+    name += "_" + recording.config.id;
+    runs.push_back({std::move(recording), std::move(history)});
+  }
+  const fs::path to = arguments.to.empty() ? common_folder(directories) : fs::path(arguments.to);
+  write_page(to / (name + ".html"), runs_page(runs, Patience("taps")));
 }
 
 }  // namespace
@@ -67,7 +110,14 @@ void report_sweep(const Workshop& workshop, const ReportArguments& arguments) {
 int report(Program& program, const ReportArguments& arguments) {
   // Here is no tap to be ended first, and files appear whole: what interrupts may do so at once.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-  (is_sweep(arguments.directory) ? report_sweep : report_run)(program, arguments);
+  if (!arguments.to.empty()) make_folder(arguments.to);
+  if (arguments.directories.size() > 1) {
+    report_several(program, arguments);
+    return kDone;
+  }
+  const std::string& directory = arguments.directories.front();
+  const fs::path to = arguments.to.empty() ? fs::path(directory) : fs::path(arguments.to);
+  (is_sweep(directory) ? report_sweep : report_run)(program, arguments, to);
   return kDone;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "record/session.hpp"
+#include "record/callers_run.hpp"
 #include "record/tap_row.hpp"
 #include "shop.hpp"
 #include "values.hpp"

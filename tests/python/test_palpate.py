@@ -215,6 +215,24 @@ class Module(unittest.TestCase):
         self.assertIn("already done", program("resume", directory))
         self.refuses(directory, "is finished", "force", lambda: palpate.Experiment.resume(directory))
 
+    def test_a_resumed_run_of_a_callers_scores_reads_what_the_unbroken_one_reads(self):
+        def taps(runs, broken_off):
+            settings = ("taps=6", "name=mine")
+            experiment = palpate.Experiment(CONFIGS / "paper/object_i.yaml", *settings, runs=self.folder / runs)
+            for number in range(1, 7):
+                scores = np.zeros(len(experiment.belief.x) * len(experiment.belief.y))
+                if number != 2:  # at the second nothing is worth anything
+                    scores[10 * number] = 1.0
+                self.assertEqual(experiment.ask(scores).source, "fallback" if number == 2 else "caller")
+                experiment.tell(0.01 * number)
+                if number == broken_off:
+                    experiment.close()
+                    experiment = palpate.Experiment.resume(experiment.directory)
+            experiment.finish()
+            experiment.close()
+            return (pathlib.Path(experiment.directory) / "taps.jsonl").read_bytes()
+        self.assertEqual(taps("broken", broken_off=3), taps("whole", broken_off=None))
+
     def test_who_ends_a_run_carries_it_on_only_when_told_to(self):
         experiment = self.begun("taps=4")
         experiment.ask()

@@ -20,12 +20,16 @@ class WrittenBelief final : public Belief {
   Points places;
   Eigen::VectorXd u, w, p, mean, variance;
   OutlineSample sample;
+  std::vector<Target> aims;
+  std::vector<Touch> contacts;
   mutable Quantities read;
 
   const Points& candidates() const override { return places; }
   Area area() const override { return {0.23, 0.23}; }
   int taps() const override { return count; }
   int initial_taps() const override { return std::min(count, 3); }
+  const std::vector<Target>& targets() const override { return aims; }
+  const std::vector<Touch>& touches() const override { return contacts; }
   const Eigen::VectorXd& uncertainty() const override { return seen(Quantity::uncertainty, u); }
   const Eigen::VectorXd& weight() const override { return seen(Quantity::weight, w); }
   const Eigen::VectorXd& probability() const override { return seen(Quantity::probability, p); }

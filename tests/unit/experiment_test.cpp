@@ -7,6 +7,7 @@
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
+#include <cmath>
 #include <set>
 
 namespace palpate::test {
@@ -80,6 +81,42 @@ TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
   Prepared prepared("paper/object_i.yaml", {}, nullptr, broken);
   EXPECT_EQ(error_of([&] { prepared.run(); }), "acquisition/weighted: gave a score that is not a finite number");
   EXPECT_EQ(prepared.taps.size(), 3U) << "the taps before stay recorded";
+}
+
+TEST(Experiment, GivesAnAcquisitionTheTapsSoFarAndWhereTheArmIs) {
+  // Taps what lies nearest to the arm, and takes down what it was given.
+  struct Nearest final : Acquisition {
+    mutable std::vector<Target> targets;
+    mutable std::vector<Touch> touches;
+    Quantities reads() const override { return {}; }
+    void score(const Belief& belief, VectorOut out) const override {
+      targets = belief.targets();
+      touches = belief.touches();
+      const Target arm = belief.arm().value();
+      out = 1.0 / (1.0 + (belief.candidates().rowwise() - Eigen::RowVector2d(arm.x, arm.y)).rowwise().norm().array());
+    }
+    double prior_scale() const override { return 1.0; }
+  };
+  const auto nearest = std::make_shared<Nearest>();
+  const Instead<Acquisition> plugins(nearest);
+  const Contact missed{Outcome::no_contact, 0.0, 0.0, 1.0, "nothing there"};
+  const auto backend = scripted({contact_at(0.05), contact_at(0.0), contact_at(0.0), missed, contact_at(0.05)});
+  const Finished run("paper/object_i.yaml", {"taps=6"}, backend, plugins);
+  ASSERT_EQ(run.taps.size(), 6U);
+  const Points& places = run.experiment.candidates().points;
+  const double step = (places.row(1) - places.row(0)).norm();
+  for (std::size_t i = 3; i < 6; ++i) {
+    const Target& here = run.taps[i - 1].target;
+    const Target& next = run.taps[i].target;
+    EXPECT_NEAR(std::hypot(next.x - here.x, next.y - here.y), step, 1e-9) << "tap " << i + 1;
+  }
+  ASSERT_EQ(nearest->targets.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(nearest->targets[i].x, run.taps[i].target.x);
+  ASSERT_EQ(nearest->touches.size(), 4U) << "the one that met nothing is no contact";
+  EXPECT_TRUE(nearest->touches.front().on);
+  EXPECT_FALSE(nearest->touches[1].on);
+  EXPECT_EQ(nearest->touches.back().height, 0.05);
+  EXPECT_EQ(nearest->touches.back().place.x, run.taps[4].target.x);
 }
 
 TEST(Experiment, StopsWhenTheRobotHasBeenBusyLongEnough) {

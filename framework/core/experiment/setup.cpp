@@ -22,7 +22,8 @@ void Experiment::resume(const std::vector<PastTap>& past) {
   Quantities read;
   for (const PastTap& tap : past) {
     observe(tap);
-    read = read | reads_for(tap.source);
+    read = read | reads_for(tap.of_caller() ? Source::caller : tap.source);
+    if (tap.source == Source::fallback) read = read | Chooser::kFallbackReads;
     // Who is doubted depends on who was, once there are many; a fit on what was taken off the heights at its tap.
     if (options_.height.lies || options_.height.systematic) belief_.ask(read);
   }

@@ -125,14 +125,14 @@ bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
 }
 
 void TapBelief::observe(const Target& place, const Contact& contact, const Manner& manner) {
-  ++taps_;
+  targets_.push_back(place);
   initial_taps_ += manner.initial ? 1 : 0;
   const double began = seconds_;
   const Reading reading = read(contact, manner.motion);
   seconds_ += contact.seconds;
   if (contact.outcome != Outcome::contact) return;
   touches_.push_back({place, reading.height - desk_, reading.on});
-  numbers_.push_back(taps_);
+  numbers_.push_back(taps());
   const double noise = height_noise();
   const double share =
       manner.roughness > 0.0 ? noise * noise / (noise * noise + manner.roughness * manner.roughness) : 1.0;

@@ -54,9 +54,8 @@ class TapBelief final : public Belief {
   /// config has learnt what is added to all heights, every contact so far is read again by what is thought of it now.
   void observe(const Target& place, const Contact& contact, const Manner& manner = {});
 
-  /// The contacts so far, in the order of their taps: heights above the desk and labels as they read now; the motions
-  /// that they were made by; those with an object; the number of the first tap that made one.
-  const std::vector<Touch>& touches() const { return touches_; }
+  /// Of the contacts so far: the motions that they were made by; those with an object; the number of the first tap that
+  /// made one.
   const std::vector<int>& motions() const { return motions_; }
   const std::vector<Touch>& hits() const { return hits_; }
   std::optional<int> first_hit_tap() const;
@@ -83,8 +82,10 @@ class TapBelief final : public Belief {
   // Belief, for acquisitions.
   const Points& candidates() const override { return candidates_.points; }
   Area area() const override { return context_.scene.area(); }
-  int taps() const override { return taps_; }
+  int taps() const override { return static_cast<int>(targets_.size()); }
   int initial_taps() const override { return initial_taps_; }
+  const std::vector<Target>& targets() const override { return targets_; }
+  const std::vector<Touch>& touches() const override { return touches_; }
   const Eigen::VectorXd& uncertainty() const override { return kept(uncertainty_); }
   const Eigen::VectorXd& weight() const override { return kept(clip_ ? weight_ : weight_mean_); }
   const Eigen::VectorXd& probability() const override { return kept(probability_); }
@@ -212,8 +213,8 @@ class TapBelief final : public Belief {
   double desk_;
   bool clip_;
   bool two_part_;
-  bool joined_ = false;  ///< heights and labels are two outputs of one process
-  int taps_ = 0;
+  bool joined_ = false;          ///< heights and labels are two outputs of one process
+  std::vector<Target> targets_;  ///< of all taps
   int initial_taps_ = 0;
   Quantities asked_;
   bool current_ = true;   ///< update() has seen all taps

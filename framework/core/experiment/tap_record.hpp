@@ -62,13 +62,18 @@ struct PastTap {
   Source source = Source::initial;
   int motion = 0;                                      ///< of the backend's, where it has several
   std::optional<Prediction> predicted = std::nullopt;  ///< of the height at the target, for a backend that wants it
+  std::string why{};                                   ///< of a fallback
+
+  /// Whether scores from outside were asked for, and not the strategy.
+  bool of_caller() const {
+    return source == Source::caller || (source == Source::fallback && why.rfind(kOfCaller, 0) == 0);
+  }
 };
 
 /// One tap: the choice, the state it was made from, and what came of it. Everything about the models is absent where
 /// the loop had not built them.
 struct TapRecord : PastTap, ModelState {
   int number = 1;
-  std::string why;  ///< of a fallback
   int candidate = 0;
 
   // At the choice.

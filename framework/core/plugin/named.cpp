@@ -31,6 +31,8 @@ class Declared final : public Belief {
   Area area() const override { return belief_.area(); }
   int taps() const override { return belief_.taps(); }
   int initial_taps() const override { return belief_.initial_taps(); }
+  const std::vector<Target>& targets() const override { return belief_.targets(); }
+  const std::vector<Touch>& touches() const override { return belief_.touches(); }
   const Eigen::VectorXd& uncertainty() const override {
     return declared(Quantity::uncertainty, "the uncertainty u").uncertainty();
   }

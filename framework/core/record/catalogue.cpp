@@ -90,23 +90,6 @@ std::vector<fs::path> records_named(const std::string& name, const fs::path& run
   return out;
 }
 
-/// The keys at which the configs differ: the seed first, as it is what most runs of a name differ by.
-std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
-  std::vector<std::string> out;
-  for (const Row& config : configs) {
-    for (const auto& [key, value] : config.fields) {
-      const auto same = [&, at = &key, there = &value](const Row& other) {
-        const Scalar* found = other.find(*at);
-        return found != nullptr && *found == *there;
-      };
-      const bool known = std::find(out.begin(), out.end(), key) != out.end();
-      if (!known && !std::all_of(configs.begin(), configs.end(), same)) out.push_back(key);
-    }
-  }
-  std::stable_partition(out.begin(), out.end(), [](const std::string& key) { return key == "seed"; });
-  return out;
-}
-
 /// "a and 3 more, 'palpate list' shows them": of many the last ones, each with what sets it apart from those.
 Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
   constexpr std::size_t kShown = 4;
@@ -151,6 +134,22 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
 }
 
 }  // namespace
+
+std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
+  std::vector<std::string> out;
+  for (const Row& config : configs) {
+    for (const auto& [key, value] : config.fields) {
+      const auto same = [&, at = &key, there = &value](const Row& other) {
+        const Scalar* found = other.find(*at);
+        return found != nullptr && *found == *there;
+      };
+      const bool known = std::find(out.begin(), out.end(), key) != out.end();
+      if (!known && !std::all_of(configs.begin(), configs.end(), same)) out.push_back(key);
+    }
+  }
+  std::stable_partition(out.begin(), out.end(), [](const std::string& key) { return key == "seed"; });
+  return out;
+}
 
 Catalogue read_catalogue(const fs::path& folder) {
   Catalogue out;

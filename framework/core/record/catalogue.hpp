@@ -30,6 +30,10 @@ std::string begun_text(const std::filesystem::path& directory);
 /// Every value in the config.yaml of a record, as it is written there, by its dotted path. Throws Error.
 Row read_settings(const std::filesystem::path& directory);
 
+/// The keys at which configs, as of read_settings(), differ: the seed first, as it is what most runs of a name differ
+/// by.
+std::vector<std::string> differing_keys(const std::vector<Row>& configs);
+
 /// What a command can do something with; where that is there, the other is not meant.
 enum class Wanted { run, sweep, any };
 

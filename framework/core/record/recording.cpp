@@ -61,14 +61,13 @@ class Collector final : public Journal {
 
 /// What somebody had chosen by scores of their own; none where the strategy chose.
 std::optional<Wish> wish_of(const Row& row, const Experiment& experiment) {
-  const std::string source = row.text("source");
-  const std::string why = row.text("why");
-  const bool fell_back = source == source_name(Source::fallback) && why.rfind(kOfCaller, 0) == 0;
-  if (source != source_name(Source::caller) && !fell_back) return std::nullopt;
-  const Candidates& candidates = experiment.candidates();
   TapRecord tap;
-  tap.source = fell_back ? Source::fallback : Source::caller;
-  tap.why = why;
+  for (const Source source : {Source::caller, Source::fallback}) {
+    if (row.text("source") == source_name(source)) tap.source = source;
+  }
+  tap.why = row.text("why");
+  if (!tap.of_caller()) return std::nullopt;
+  const Candidates& candidates = experiment.candidates();
   tap.candidate =
       candidates.nearest(row.number("x").value_or(0.0), row.number("y").value_or(0.0), experiment.scene().area());
   tap.score = row.number("score");

@@ -78,37 +78,6 @@ RunReport resume_run(const Workshop& workshop, const std::filesystem::path& dire
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                       const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
 
-/// The backend of a run whose taps are made by whoever holds it.
-inline constexpr const char* kCaller = "caller";
-
-/// A run whose taps are made outside, one by one: by a program that has an arm of its own, or a strategy. It is
-/// recorded as any other, and what is not finished can be carried on. Its backend is `caller`; others are refused by an
-/// Error.
-class CallersRun {
- public:
-  /// As start_run(); a finished run is refused.
-  static std::unique_ptr<CallersRun> start(const Workshop& workshop, const ResolvedConfig& config,
-                                           const std::filesystem::path& directory, bool force);
-  /// As resume_run(); a finished run is refused.
-  static std::unique_ptr<CallersRun> resume(const Workshop& workshop, const std::filesystem::path& directory,
-                                            const ResumeOptions& options);
-  /// What is not finished then can be carried on.
-  virtual ~CallersRun() = default;
-
-  /// The tap to make, announced in the record: the same until end() has its result. `scores` (may be null; finite, one
-  /// a candidate) choose it in the place of the strategy. None when the run is over; it is finished then.
-  virtual const TapRecord* begin(const Eigen::VectorXd* scores) = 0;
-  /// What came of it. Throws Error of kind `run`, and finishes the run, when it cannot go on.
-  virtual void end(Contact contact) = 0;
-  /// Writes what ends a run, its budget reached or not, and reports it. Later calls report the same.
-  virtual const RunReport& finish() = 0;
-  virtual bool finished() const = 0;
-
-  virtual Experiment& experiment() = 0;
-  virtual const ResolvedConfig& config() const = 0;
-  virtual const std::filesystem::path& directory() const = 0;
-};
-
 /// Why the run in `directory` is not to be carried on: it has taps of another build than this one. None if it has not.
 /// Throws Error for a damaged one.
 std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,

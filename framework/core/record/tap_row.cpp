@@ -41,6 +41,7 @@ PastTap past_tap(const Row& row, const std::string& where) {
   out.contact.seconds = number_at(row, "robot_seconds", 0.0, where);
   out.contact.reason = row.text("reason");
   out.contact.peak = row.number("peak_force");
+  out.why = row.text("why");
   out.motion = static_cast<int>(row.number("motion").value_or(0.0));
   if (const std::optional<double> height = row.number("predicted.height")) {
     out.predicted = Prediction{*height, number_at(row, "predicted.standard_deviation", 0.0, where),

@@ -5,6 +5,9 @@
 #include <palpate/scene.hpp>
 #include <palpate/types.hpp>
 
+#include <optional>
+#include <vector>
+
 namespace palpate {
 
 /// What there is to read of a belief beside places and counts.
@@ -49,6 +52,15 @@ class Belief {
   /// Taps made so far, failed ones included, and how many of them the initial design chose.
   virtual int taps() const = 0;
   virtual int initial_taps() const = 0;
+
+  /// Where all taps so far were sent, failed ones included, in their order.
+  virtual const std::vector<Target>& targets() const = 0;
+  /// Those that made contact, in their order, as they read now: a height may be corrected by what later taps tell.
+  virtual const std::vector<Touch>& touches() const = 0;
+  /// Over which place the arm stands; none before the first tap.
+  std::optional<Target> arm() const {
+    return targets().empty() ? std::nullopt : std::optional<Target>(targets().back());
+  }
 
   /// u: variance of the height process relative to its prior, noise excluded; M values in [0, 1].
   virtual const Eigen::VectorXd& uncertainty() const = 0;

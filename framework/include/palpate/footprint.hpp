@@ -10,13 +10,6 @@
 
 namespace palpate {
 
-/// A contact as the models see it.
-struct Touch {
-  Target place;
-  double height = 0.0;  ///< above the desk, metres
-  bool on = false;      ///< on an object, by the scene's rule (`on_surface_above`)
-};
-
 /// A number that a footprint tells of itself, for the record.
 struct FootprintNumber {
   std::string name;  ///< "mistakes", "acceptance", ...

@@ -25,7 +25,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 14;
+constexpr std::uint32_t kPluginAbi = 15;
 
 struct Context;
 

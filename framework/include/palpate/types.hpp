@@ -26,6 +26,13 @@ struct Target {
   double y = 0.0;
 };
 
+/// A contact as the models see it.
+struct Touch {
+  Target place;
+  double height = 0.0;  ///< above the desk, metres
+  bool on = false;      ///< on an object, by the scene's rule (`on_surface_above`)
+};
+
 /// Some outlines, drawn as probably as they are believed in, over M places: of each place, a column, which of them hold
 /// it. Outline k is bit k % 64 of row k / 64.
 struct OutlineSample {

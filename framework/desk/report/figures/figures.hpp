@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of runs and sweeps: DIR/figures/NAME.png, each with the script that draws it, and all its data, beside it as
-// NAME.gnuplot.
+// Pictures of runs and sweeps: NAME.png in a folder, which is made, each with the script that draws it, and all its
+// data, beside it as NAME.gnuplot.
 #pragma once
 
 #include "record/recording.hpp"
@@ -21,17 +21,18 @@ struct Figures {
 
 /// Of a run: `surface`, `maps` and `curves`. Throws Error, of kind `run` and with the scripts left, if gnuplot draws
 /// none.
-Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history);
+Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history,
+                          const std::filesystem::path& folder);
 
 /// Of a sweep: `distributions` and, where two keys but the seed are swept, `heat_map`. Throws Error as above, and where
 /// no job ended well.
-Figures write_sweep_figures(const Sweep& sweep);
+Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& folder);
 
 /// Of a run: `paper_progress`, in the layout of the paper's figure 2. Throws Error as above.
-Figures write_paper_figures(const Workshop& workshop, const Recording& recording);
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder);
 
 /// Of a sweep: the paper's `figure_2` to `figure_5`, of the jobs that they need. Throws Error as above, and where not
 /// one can be drawn.
-Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep);
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const std::filesystem::path& folder);
 
 }  // namespace palpate

@@ -183,14 +183,12 @@ std::string titled(const std::string& title, const Sweep& sweep, const Job& job)
 
 }  // namespace
 
-Figures write_paper_figures(const Workshop& workshop, const Recording& recording) {
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder) {
   const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
-  return {write_gallery(recording.directory / "figures",
-                        {progress_figure("paper_progress", recording.config.options.name, progress)}),
-          {}};
+  return {write_gallery(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
 }
 
-Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const std::filesystem::path& folder) {
   std::vector<Figure> figures;
   std::vector<std::string> notes;  // which job is missing for which
   const auto progress = [&](const Job& job, const std::vector<int>& iterations) {
@@ -243,7 +241,7 @@ Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep) {
                 "paper's figures",
                 kAllOfThem);
   }
-  return {write_gallery(sweep.directory / "figures", figures), notes};
+  return {write_gallery(folder, figures), notes};
 }
 
 }  // namespace palpate

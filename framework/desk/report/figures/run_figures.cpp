@@ -164,14 +164,14 @@ Figure curves_figure(const Recording& recording, const History& history) {
 
 }  // namespace
 
-Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history) {
+Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history,
+                          const std::filesystem::path& folder) {
   Playback playback(workshop, recording);
   const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
   const Ground ground = ground_of(playback.experiment());
   const ExperimentOptions& options = recording.config.options;
-  return {write_gallery(recording.directory / "figures",
-                        {surface_figure(options, ground, last), maps_figure(options, ground, last),
-                         curves_figure(recording, history)}),
+  return {write_gallery(folder, {surface_figure(options, ground, last), maps_figure(options, ground, last),
+                                 curves_figure(recording, history)}),
           {}};
 }
 

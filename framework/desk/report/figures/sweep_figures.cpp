@@ -250,13 +250,13 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
 
 }  // namespace
 
-Figures write_sweep_figures(const Sweep& sweep) {
+Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& folder) {
   const std::vector<Row> results = sweep_results(sweep);
   if (std::none_of(results.begin(), results.end(), is_done))
     throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
   std::vector<Figure> figures{distributions_figure(sweep, results)};
   if (auto map = heat_map(sweep, results)) figures.push_back(std::move(*map));
-  return {write_gallery(sweep.directory / "figures", figures), {}};
+  return {write_gallery(folder, figures), {}};
 }
 
 }  // namespace palpate

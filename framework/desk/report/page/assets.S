@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The files that a page is made of, byte for byte within the program: see page.hpp. The build passes their folder.
         .globl palpate_asset_plotly, palpate_asset_plotly_end
-        .globl palpate_asset_style, palpate_asset_common, palpate_asset_run, palpate_asset_sweep
+        .globl palpate_asset_style, palpate_asset_common, palpate_asset_run, palpate_asset_runs, palpate_asset_sweep
 
         .section .rodata
 palpate_asset_plotly:
@@ -17,6 +17,10 @@ palpate_asset_common:
 palpate_asset_run:
         .incbin "web/run_maps.js"
         .incbin "web/run.js"
+        .byte 0
+palpate_asset_runs:
+        .incbin "web/run_maps.js"
+        .incbin "web/runs.js"
         .byte 0
 palpate_asset_sweep:
         .incbin "web/sweep_numbers.js"

@@ -12,6 +12,7 @@
 /// The scripts of web/, embedded in the program by assets.S, so that a report needs neither an installation nor a
 /// network.
 extern "C" const char palpate_asset_run[];
+extern "C" const char palpate_asset_runs[];
 extern "C" const char palpate_asset_sweep[];
 
 namespace palpate {

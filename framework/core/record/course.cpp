@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "record/course.hpp"
+
+#include "config/yaml.hpp"
+#include "record/callers_run.hpp"
+#include "record/fields.hpp"
+#include "record/json.hpp"
+#include "record/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config, const Experiment& experiment) {
+  Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
+  const auto places = [](const std::vector<ResolveNotes::Origin>& of) {
+    Tree all = Tree::map();
+    for (const ResolveNotes::Origin& one : of) all.entries.push_back({one.path, {}, Tree::quote(one.place)});
+    return all;
+  };
+  Tree& line = out.at("command_line") = Tree::list();
+  for (const std::string& word : workshop.command_line) line.items.push_back(Tree::quote(word));
+  out.at("origins") = places(config.notes.origins);
+  out.at("dropped") = places(config.notes.dropped);
+  Tree& models = out.at("models") = Tree::map();
+  for (const ModelReader& one : experiment.readers()) {
+    Tree& who = models.at(one.model);
+    who.kind = Tree::Kind::list;
+    who.items.push_back(Tree::quote(one.who));
+  }
+  out.at("resumed") = Tree::list();
+  return to_json(out);
+}
+
+/// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
+void note_resume(const Workshop& workshop, const ResolvedConfig& config, const RunDirectory& directory, int from) {
+  Tree manifest = read_json(directory.path() / "manifest.json");
+  manifest.at("resumed").kind = Tree::Kind::list;
+  manifest.at("resumed").items.push_back(
+      Tree::map({{"after_tap", Tree::scalar(std::to_string(from))},
+                 {"build", Tree::quote(build_hash(workshop.host, config.notes.plugins))}}));
+  directory.write("manifest.json", to_json(manifest));
+}
+
+/// Notes in the manifest what the taps have shown of the robot.
+void note_learnt(const RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
+  if (learnt.empty()) return;
+  Tree manifest = read_json(directory.path() / "manifest.json");
+  Tree& notes = manifest.at("learnt") = Tree::map();
+  for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, Tree::quote(one.value)});
+  directory.write("manifest.json", to_json(manifest));
+}
+
+void move_away(const fs::path& directory) {
+  for (int n = 1;; ++n) {
+    const fs::path old = directory.string() + fmt::format(".old-{}", n);
+    if (fs::exists(old)) continue;
+    fs::rename(directory, old);
+    return;
+  }
+}
+
+/// Builds the experiment. What only building finds out names an option; the config knows where that was written.
+std::unique_ptr<Experiment> build_experiment(const Workshop& workshop, const ResolvedConfig& config,
+                                             const fs::path& directory) {
+  try {
+    return std::make_unique<Experiment>(config.options, workshop.host, workshop.interrupted, nullptr,
+                                        directory.string());
+  } catch (const Error& trouble) {  // thrown on, with the place that only the config knows
+    const std::string place = config.tree.place_of(trouble.where()).text();
+    if (place.empty()) throw;
+    throw Error(place, trouble.where() + ": " + trouble.reason(), trouble.hint(), trouble.kind());
+  }
+}
+
+/// Throws Error where a person would be asked of taps that put nothing at risk.
+void check_worth_asking(const ResolvedConfig& config, const Experiment& experiment) {
+  if (!experiment.backend().repeatable()) return;
+  throw Error("command line",
+              fmt::format("--step: the taps of backend {} can be repeated, there is nothing to confirm",
+                          config.options.backend.type),
+              "leave it out");
+}
+
+}  // namespace
+
+std::string recorded_build(const fs::path& directory) {
+  if (!is_there(directory / "manifest.json")) return {};
+  const Tree manifest = read_json(directory / "manifest.json");
+  const Tree* build = manifest.find("build");
+  return build != nullptr ? build->text : std::string();
+}
+
+bool Relay::permits(const TapRecord& tap) {
+  return company_.supervisor == nullptr || company_.supervisor->permits(tap, experiment_.preview(tap));
+}
+
+void Relay::announce(const TapRecord& tap) {
+  if (company_.observer != nullptr) look_at_errors();
+  {
+    const PhaseClock::Scope log(experiment_.clock(), Phase::log);
+    if (maps_) write_maps(tap.number);
+    directory_.announce(tap);
+  }
+  if (company_.observer != nullptr) company_.observer->announce(tap);
+}
+
+void Relay::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
+  {
+    const PhaseClock::Scope log(experiment_.clock(), Phase::log);
+    directory_.record(tap, seconds);
+  }
+  if (company_.observer == nullptr) return;
+  TapRecord told = tap;
+  told.errors = errors_;
+  company_.observer->record(told, seconds);
+}
+
+/// Before the tap is announced, and without a say in the run: a model that fails here fails nobody who reads it.
+void Relay::look_at_errors() {
+  try {
+    errors_ = experiment_.errors();
+  } catch (const std::exception&) {  // see above
+    errors_ = {};
+  }
+}
+
+void Relay::write_maps(int number) const {
+  const std::string text = maps_csv(experiment_);
+  if (text.empty()) return;
+  make_inner_folder(directory_.path() / "maps");
+  directory_.write(fmt::format("maps/tap_{:03}.csv", number), text);
+}
+
+Course::Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Company& company,
+               const Stopwatch& watch)
+    : config_(config),
+      directory_(directory),
+      experiment_(experiment),
+      watch_(watch),
+      relay_(config.options, experiment, directory, company) {
+  const LogOptions& log = config.options.log;
+  const bool once = !experiment.backend().repeatable();  // then a tap of which nobody saw the end must leave a trace
+  directory.open(once, log.sync == LogOptions::Sync::tap || (once && log.sync != LogOptions::Sync::none));
+}
+
+RunReport Course::finish(std::string failure) {
+  RunResult result;
+  if (failure.empty()) failure = failure_in([&] { result = experiment_.result(); });
+  directory_.check_in_place();
+  // A model that failed once is not asked again.
+  if (!failure.empty()) result = experiment_.counts();
+  note_learnt(directory_, experiment_.backend().learnt());
+  RunReport report;
+  report.directory = directory_.path();
+  report.interrupted = result.interrupted;
+  const Summary summary{
+      result,          config_, failure, watch_.wall_seconds(), watch_.cpu_seconds(), directory_.total_seconds(),
+      peak_rss_bytes()};
+  report.summary = summary_list().row(summary);
+  directory_.write("taps.csv", to_csv(directory_.rows()));
+  if (result.interrupted) return report;
+  if (config_.options.log.surface && failure.empty()) directory_.write("surface.csv", surface_csv(experiment_));
+  if (const std::string objects = objects_csv(summary); !objects.empty()) directory_.write("objects.csv", objects);
+  directory_.write("summary.json", to_json_text(report.summary));
+  if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
+  return report;
+}
+
+Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
+                bool supervised) {
+  const RunStatus status = read_status(directory);
+  if (status.state == RunStatus::State::running) FileLock{directory / "lock"};  // throws: busy
+  if (status.state != RunStatus::State::absent && !force) {
+    const std::string where = directory.string();
+    switch (status.state) {
+      case RunStatus::State::done:
+        if (recorded_build(directory) == build_hash(workshop.host, config.notes.plugins)) return {};
+        throw Error(where, "this run was finished by another build of palpate or its plugins",
+                    "--force moves it aside and runs again");
+      case RunStatus::State::failed:
+        throw Error(where, fmt::format("this run failed: {}", status.stop_reason),
+                    "'palpate resume --retry-failed' carries on, --force starts again");
+      default:
+        throw Error(where, fmt::format("this run was broken off after {} taps", status.taps),
+                    "'palpate resume' carries on, --force starts again");
+    }
+  }
+  // Built before the directory is touched: what only building finds out leaves no trace.
+  std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
+  if (supervised) check_worth_asking(config, *experiment);
+  if (status.state != RunStatus::State::absent) move_away(directory);
+  auto held = std::make_unique<RunDirectory>(directory);
+  // Another process may have run it, whole or in part, while this one was still building.
+  if (read_record(directory).state != RunStatus::State::absent) {
+    throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
+                Error::Kind::busy);
+  }
+  held->write("config.yaml", to_yaml(config.tree));
+  held->write("manifest.json", manifest_text(workshop, config, *experiment));
+  return {std::move(held), std::move(experiment)};
+}
+
+/// The experiment as it was after the recorded taps of a directory that this process holds; none where the run is done.
+std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                                  const ResumeOptions& options, Taps taps, bool supervised) {
+  const fs::path& directory = held.path();
+  const RunStatus status = read_record(directory);
+  if (status.state == RunStatus::State::done) return nullptr;
+  check_who_taps(config, taps, "resume");
+  if (status.state == RunStatus::State::failed && !options.retry_failed) {
+    throw Error(directory.string(), fmt::format("this run failed: {}", status.stop_reason),
+                "--retry-failed carries on all the same", Error::Kind::run);
+  }
+  const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, directory);
+  if (objection) throw *objection;
+  const std::vector<PastTap> past = held.recover();
+  std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
+  if (supervised) check_worth_asking(config, *experiment);
+  experiment->resume(past);
+  if (recorded_build(directory).empty()) {
+    held.write("manifest.json", manifest_text(workshop, config, *experiment));
+  } else {
+    note_resume(workshop, config, held, static_cast<int>(past.size()));
+  }
+  std::error_code none;
+  fs::remove(directory / "summary.json", none);
+  return experiment;
+}
+
+void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& command) {
+  const std::string& backend = config.options.backend.type;
+  const bool by_caller = backend == kCaller;
+  if (by_caller == (taps == Taps::by_caller)) return;
+  if (by_caller) {
+    throw Error("backend", "the taps of this run are made by a program of somebody's own, not by palpate",
+                command == "run" ? "palpate.Experiment(...) in Python asks for them, or choose another backend"
+                                 : "palpate.Experiment.resume(DIR) in Python carries it on");
+  }
+  throw Error("backend", fmt::format("the taps of this run are made by backend {}, not by a caller", backend),
+              command == "run" ? "choose the backend caller" : "'palpate resume' carries it on");
+}
+
+}  // namespace palpate

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// How a run begins, goes on and ends in its directory, whoever makes its taps: what session.hpp and callers_run.hpp
+// have in common, and nobody else uses.
+#pragma once
+
+#include "experiment/experiment.hpp"
+#include "record/run_directory.hpp"
+#include "record/session.hpp"
+#include "record/summary.hpp"
+
+#include <array>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Who follows a run while it goes on; each may be null.
+struct Company {
+  Journal* observer;
+  Supervisor* supervisor;
+};
+
+/// Asks the supervisor, passes taps to the record first and to the observer after it, and writes maps where the config
+/// asks for them.
+class Relay final : public Journal {
+ public:
+  Relay(const ExperimentOptions& options, Experiment& experiment, RunDirectory& directory, const Company& company)
+      : maps_(options.log.maps), experiment_(experiment), directory_(directory), company_(company) {}
+
+  bool permits(const TapRecord& tap) override;
+  void announce(const TapRecord& tap) override;
+  void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
+
+ private:
+  void look_at_errors();
+  void write_maps(int number) const;
+
+  bool maps_;
+  Experiment& experiment_;
+  RunDirectory& directory_;
+  Company company_;
+  Errors errors_;  ///< of the state that the tap under way was chosen from, for the observer
+};
+
+/// A run in a directory that this process holds, from its first tap here to what ends it.
+class Course {
+ public:
+  /// Opens the record. All but `company` must outlive it.
+  Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Company& company,
+         const Stopwatch& watch);
+
+  /// Goes on with the run by `part`, and says of an exception why the run ends with it; "" if there was none.
+  template <class Part>
+  static std::string failure_in(const Part& part) {
+    try {
+      part();
+      return {};
+    } catch (const std::exception& trouble) {
+      return trouble.what();
+    } catch (...) {
+      return "a plugin threw something that is no exception";
+    }
+  }
+
+  /// Writes what ends a run. `failure`: why it did not end well, else ""; then it is thrown, once all is written.
+  RunReport finish(std::string failure);
+
+  /// Who hears of its taps.
+  Journal& journal() { return relay_; }
+
+ private:
+  const ResolvedConfig& config_;
+  RunDirectory& directory_;
+  Experiment& experiment_;
+  const Stopwatch& watch_;
+  Relay relay_;
+};
+
+/// The build that began the run in `directory`, "" if that is not known.
+std::string recorded_build(const std::filesystem::path& directory);
+
+enum class Taps { by_backend, by_caller };
+
+/// An experiment, and the directory for its record; neither where the directory has the finished run.
+struct Begun {
+  std::unique_ptr<RunDirectory> directory;
+  std::unique_ptr<Experiment> experiment;
+};
+
+/// A run begun in `directory`, as start_run() says. Throws Error, too, where `supervised` taps put nothing at risk.
+Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const std::filesystem::path& directory,
+                bool force, bool supervised);
+
+/// The experiment as it was after the recorded taps of a directory that this process holds; none where the run is done.
+/// Throws Error as resume_run() does.
+std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
+                                  const ResumeOptions& options, Taps taps, bool supervised);
+
+/// Throws Error where the taps of a run are made by somebody else. `command`: of the program, that was to make them.
+void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& command);
+
+}  // namespace palpate

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// The page of several runs side by side: their errors over taps and over robot time, and their surfaces after as many
+// taps as a slider says.
+
+/// What a run is called on this page: a letter, which its plots have, and the name of its config.
+const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
+const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
+
+/// The latest moment of a run with at most so many taps.
+const momentAt = (run, taps) => run.moments[Math.min(taps, run.moments.length - 1)];
+
+/// The latest map of a run with at most so many taps, and the first where there are none yet.
+const frameAt = (run, taps) => Math.max(0, run.shown.findLastIndex((moment) => moment <= taps));
+
+/// The plots of one error over two costs: all runs in each.
+class ErrorPlots {
+  constructor(data) {
+    this.data = data;
+    this.errors = data.errors.filter(([name]) => data.runs.some((run) => run.moments.some((moment) => typeof moment[name] === "number")));
+    const options = this.errors.map(([name, label]) => element("option", { value: name }, label));
+    this.choice = element("select", { id: "error", "aria-label": "error" }, ...options);
+    this.choice.addEventListener("change", () => inTurn(() => this.draw()));
+  }
+
+  elements() {
+    if (this.errors.length === 0) return [element("p", { class: "sub" }, "No run has a known truth: there is no error to show.")];
+    const plots = [figure("over_taps", "over taps"), figure("over_seconds", "over robot time")];
+    return [element("div", { class: "choices" }, element("label", {}, "error ", this.choice)), element("div", { class: "row wide" }, ...plots)];
+  }
+
+  async draw() {
+    if (this.errors.length === 0) return;
+    const [name, label, unit] = this.errors.find(([one]) => one === this.choice.value);
+    const factor = unit === "m" ? kCentimetres : 1;
+    const title = unit === "m" ? `${label} [cm]` : label;
+    const over = (cost) => this.data.runs.map((run, index) => {
+      const moments = run.moments.filter((moment) => typeof moment[name] === "number");
+      const words = plain(wordsOf(run, index));
+      return {
+        ...points(letterOf(index), moments.map((moment) => moment[cost]), moments.map((moment) => factor * moment[name]), [], { size: 4 }),
+        mode: "lines+markers",
+        line: { color: lineColour(index), width: 1.8 },
+        hovertemplate: `%{y:.4g}<extra>${words}</extra>`,
+      };
+    });
+    const axes = (cost) => ({ xaxis: axis(cost, { rangemode: "tozero" }), yaxis: axis(plain(title), { rangemode: "tozero", automargin: true }), showlegend: true, hovermode: "x unified" });
+    await plot("over_taps", over("taps"), axes("taps"));
+    await plot("over_seconds", over("robot_seconds"), { ...axes("robot time [s]"), hovermode: "closest" });
+  }
+}
+
+/// The surfaces after as many taps as the slider says, and each less the first.
+class Surfaces {
+  constructor(data, bytes) {
+    this.data = data;
+    let at = 0;
+    this.maps = data.runs.map((run) => {
+      const length = 2 * run.x.length * run.y.length * run.maps.reduce((sum, one) => sum + one.frames, 0);
+      const maps = unpackMaps(bytes.subarray(at, at + length), run.maps, run.x.length, run.y.length);
+      at += length;
+      return Object.fromEntries(Object.entries(maps).map(([name, frames]) => [name, frames.map((lines) => scaled(lines, kCentimetres))]));
+    });
+    this.range = extent(this.maps.flatMap((one) => extent(one.height.flat(2))));
+    const [first] = data.runs;
+    const same = (run) => String(run.x) === String(first.x) && String(run.y) === String(first.y);
+    this.like = data.runs.map((run, index) => index > 0 && same(run));
+    this.most = Math.max(...data.runs.map((run) => run.moments.length - 1));
+    this.input = element("input", { type: "range", id: "slider", min: 0, max: this.most, step: 1, value: this.most, "aria-label": "taps" });
+    this.output = element("output", { id: "at", for: "slider" });
+    this.input.addEventListener("input", () => this.show());
+  }
+
+  controls() {
+    return element("div", { class: "controls" }, this.output, this.input);
+  }
+
+  figures() {
+    return this.data.runs.map((run, index) => figure(`surface_${index}`, foreign(`${wordsOf(run, index)}, height [cm]`)));
+  }
+
+  differences() {
+    const those = this.data.runs.flatMap((_, index) => (this.like[index] ? [figure(`difference_${index}`, `${letterOf(index)} less A, height [cm]`)] : []));
+    const others = this.data.runs.flatMap((_, index) => (index > 0 && !this.like[index] ? [letterOf(index)] : []));
+    const note = others.length > 0 ? [element("p", { class: "sub" }, `Of other candidates than A, so without a difference: ${others.join(", ")}.`)] : [];
+    return [element("div", { class: "row" }, ...those), ...note];
+  }
+
+  show() {
+    const wanted = this.input.value;
+    return inTurn(() => (wanted === this.input.value ? this.draw(Number(wanted)) : undefined));
+  }
+
+  async draw(taps) {
+    this.output.textContent = `after tap ${taps} of ${this.most}`;
+    const frames = this.data.runs.map((run, index) => this.maps[index].height[frameAt(run, taps)]);
+    const drawn = this.data.runs.map((run, index) => {
+      const [on, off, failed] = tapsUntil(run.taps, Math.min(taps, run.taps.length));
+      const traces = [
+        heatMap(run, frames[index], this.range, kWhere, "cm"),
+        markTrace(on, "on the object", { symbol: "circle", size: 8, color: "#ffffff", line: edge("#000000", 1.4) }),
+        markTrace(off, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }),
+        markTrace(failed, "failed", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
+      ];
+      return plot(`surface_${index}`, traces, { ...planeAxes(run), showlegend: false });
+    });
+    const less = frames.map((lines, index) => (this.like[index] ? lines.map((line, row) => line.map((value, column) => value - frames[0][row][column])) : null));
+    const most = Math.max(1e-3, ...less.flatMap((lines) => (lines ? extent(lines.flat()).map(Math.abs) : [])));
+    const compared = less.flatMap((lines, index) =>
+      lines ? [plot(`difference_${index}`, [heatMap(this.data.runs[index], lines, [-most, most], "RdBu", "cm")], { ...planeAxes(this.data.runs[index]), showlegend: false })] : [],
+    );
+    await Promise.all([...drawn, ...compared]);
+    tellDrawn(taps);
+  }
+}
+
+/// A line for each run: how it ended and how good it was.
+function standings(data) {
+  const errors = data.errors.filter(([name]) => data.runs.some((run) => typeof momentAt(run, Infinity)[name] === "number"));
+  const header = ["run", "seed", "state", "taps", "robot time [s]", ...errors.map(([, label, unit]) => (unit === "m" ? `${label} [cm]` : label))];
+  const rows = data.runs.map((run, index) => {
+    const last = momentAt(run, Infinity);
+    const state = run.state === "done" ? run.stop_reason : run.state;
+    const numbers = errors.map(([name, , unit]) => shown(typeof last[name] === "number" && unit === "m" ? last[name] * kCentimetres : last[name], 3));
+    return [foreign(wordsOf(run, index)), String(run.seed), foreign(state), String(last.taps), shown(last.robot_seconds, 4), ...numbers];
+  });
+  return table(header, rows, 3);
+}
+
+function drawRuns(data, bytes) {
+  const errors = new ErrorPlots(data);
+  const surfaces = new Surfaces(data, bytes);
+  const letters = data.runs.map((_, index) => letterOf(index));
+  const differences = data.differences.length > 0
+    ? table(["key", ...letters], data.differences.map((line) => line.map((cell) => foreign(cell))), 1 + letters.length)
+    : element("p", { class: "sub" }, "Nothing: the same config.");
+  document.body.append(
+    standings(data),
+    section("Error", ...errors.elements()),
+    element("h2", {}, "Surfaces"),
+    surfaces.controls(),
+    element("div", { class: "row" }, ...surfaces.figures()),
+    section("Differences", ...surfaces.differences()),
+    section("What differs in their configs", differences),
+    element("p", { class: "sub" }, "Directories: ", foreign(data.runs.map((run, index) => `${letterOf(index)} ${run.directory}`).join("; ")), "."),
+    footer(data),
+  );
+  return () => {
+    inTurn(() => errors.draw());
+    return surfaces.show();
+  };
+}
+
+openPage(drawRuns);
