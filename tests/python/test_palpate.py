@@ -275,7 +275,7 @@ class Module(unittest.TestCase):
     def test_the_examples_of_the_page_about_python_run(self):
         page = (CONFIGS.parent / "framework" / "docs" / "python.md").read_text(encoding="utf-8")
         examples = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-        self.assertEqual(len(examples), 2)
+        self.assertEqual(len(examples), 3)
         (self.folder / "configs").symlink_to(CONFIGS)
         for example in examples:
             done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
