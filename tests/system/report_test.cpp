@@ -114,5 +114,41 @@ TEST_F(Report, OfWhatIsNoRunOrHasNoTapIsRefusedInOneLine) {
   EXPECT_FALSE(fs::exists(here() / "nowhere"));
 }
 
+TEST_F(Report, OfSeveralRunsLiesInTheFolderThatHasThemAllOrWhereItIsWanted) {
+  const fs::path one = ran("taps=4 name=one");
+  const fs::path two = ran("taps=5 name=two");
+  const std::string name = "side_by_side_" + one.filename().string() + "_" + two.filename().string() + ".html";
+  const Ended beside = palpate({"report", one, two});
+  EXPECT_EQ(beside.status, 0) << beside.err;
+  EXPECT_EQ(beside.out, "runs/" + name + "\n");
+  EXPECT_TRUE(fs::exists(here() / "runs" / name));
+  EXPECT_FALSE(fs::exists(one / "report.html"));
+  EXPECT_EQ(palpate({"report", one, two, "--to", "pages/mine"}).out, "pages/mine/" + name + "\n");
+}
+
+TEST_F(Report, IsWrittenElsewhereWhereTheRecordMayNotBeTouched) {
+  const fs::path directory = ran("taps=4");
+  const auto listing = [&] {
+    std::vector<std::string> out;
+    for (const auto& entry : fs::recursive_directory_iterator(directory)) out.push_back(entry.path().string());
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  const std::vector<std::string> before = listing();
+  const Ended ended = palpate({"report", directory, "--to", "elsewhere"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, "elsewhere/report.html\n");
+  EXPECT_EQ(listing(), before);
+}
+
+TEST_F(Report, OfSeveralRefusesWhatCannotStandSideBySide) {
+  const fs::path run = ran("taps=4");
+  const fs::path sweep = swept("taps=4 seed=1,2");
+  EXPECT_THAT(refused({"report", run, sweep}), HasSubstr("is a sweep, and several runs stand side by side"));
+  EXPECT_THAT(refused({"report", run, run, "--figures"}), HasSubstr("--figures and --paper draw one run or sweep"));
+  const std::vector<std::string> nine{"report", run, run, run, run, run, run, run, run, run};
+  EXPECT_THAT(refused(nine), HasSubstr("9 runs are too many side by side"));
+}
+
 }  // namespace
 }  // namespace palpate
