@@ -153,12 +153,13 @@ Figure curves_figure(const Recording& recording, const History& history) {
     tops.push_back(bottom + 42 + kNameHeight * static_cast<double>(lines));
     bottom = tops.back() + kHeight + 60;
   }
-  // What never changes is no panel, but a few words below them.
+  // What never changes is no panel, but a line below them.
   const int width = 70 + columns * 365;
-  const std::vector<std::string> words =
-      constants.empty() ? std::vector<std::string>{}
-                        : wrapped(fmt::format("The same after every tap: {}", fmt::join(constants, "; ")),
-                                  static_cast<std::size_t>(width - 90) / 8);
+  std::vector<std::string> words;
+  if (!constants.empty()) words.emplace_back("The same after every tap:");
+  for (const std::string& one : constants) {
+    for (std::string& line : wrapped(one, static_cast<std::size_t>(width - 90) / 8)) words.push_back(std::move(line));
+  }
   Sheet sheet(width, static_cast<int>(bottom + 18 * static_cast<double>(words.size())));
   sheet.text(fmt::format("{}", fmt::join(words, "\n")), 60, bottom - 8, 11);
   sheet.text(recording.config.options.name, 60, 14, 15);
