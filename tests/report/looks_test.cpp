@@ -212,7 +212,7 @@ TEST_P(Looks, WhatNeverChangesIsALineAndNoPanel) {
   const Browsed seen = browse(fixed, {drawn(8), kPanels});
   const auto titles = seen.values.at(0).at(0).get<std::vector<std::string>>();
   const auto words = seen.values.at(0).at(1).get<std::string>();
-  EXPECT_THAT(titles, Contains("Error of the surface (root mean square)"));
+  EXPECT_THAT(titles, Contains("Error of the surface (rms)"));
   EXPECT_THAT(titles, Not(Contains(HasSubstr("Hyperparameters"))));
   EXPECT_THAT(words, HasSubstr("Hyperparameters of the height process: signal 1, noise 0.0001, length_scale 0.017 SI"));
 

@@ -151,7 +151,7 @@ Curves curves_of(const Recording& recording, const History& history) {
       shares.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
     }
   }
-  add("Error of the surface (root mean square)", "cm", CurveAxis::from_zero, std::move(lengths));
+  add("Error of the surface (rms)", "cm", CurveAxis::from_zero, std::move(lengths));
   std::move(shares.begin(), shares.end(), std::back_inserter(panels));
   add("Largest standard deviation of a height", "cm", CurveAxis::from_zero,
       one([](const Moment& moment) { return 100.0 * moment.largest_deviation; }));

@@ -48,7 +48,7 @@ function markTrace(taps, name, marker, more = {}) {
   return points(name, along("x"), along("y"), taps.map((tap) => tap.word ?? hover(tap)), marker, more);
 }
 
-const kNextColour = "#e8112d";
+const kNextColour = "#e6007e";
 const edge = (color, width) => ({ color, width });
 
 /// The taps that are doubted at this moment; their hover says how much, and why.
