@@ -79,10 +79,20 @@ missing() {
   [ $# -eq 0 ] || printf '%s\n' "$@" | grep -vxF -e "$installed" || true
 }
 
+# refresh: asks which packages there are, as root by `as_root`.
+refresh() { $as_root apt-get update -q; }
+
+# room: what apt says that the packages of `list` take: ", 147 MB to fetch, 708 MB of disk"; nothing where it does not
+# say. Told not to go on, and to fetch and no more: where apt has nothing to ask it goes on.
+room() {
+  $as_root env LC_ALL=C apt-get install -q -d --assume-no --no-install-recommends $list 2>/dev/null | sed -n '
+    s|^Need to get \([0-9.,]* [kMG]*B\).*|, \1 to fetch|p
+    s|^After this operation, \([0-9.,]* [kMG]*B\) of additional disk space.*|, \1 of disk|p' | tr -d '\n'
+}
+
 # fetch: installs the packages of `list`, as root by `as_root`.
 fetch() {
-  $as_root apt-get update -q &&
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $list
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $list
 }
 
 # install HEADING...: installs what is missing, if it may.
@@ -112,11 +122,16 @@ install() {
     say "  apt-get update && apt-get install --no-install-recommends $list"
     return 0
   fi
-  say "installing $list"
-  if ! told "installing packages" "$root/build/install.log" fetch; then
-    tail -n 5 "$root/build/install.log" >&2
-    say "installing failed, the whole story is in build/install.log; going on with what is there"
-  fi
+  log=update
+  told "asking which packages there are" "$root/build/$log.log" refresh && {
+    log=install
+    say "installing $list"
+    say "installing packages: a minute or two$(room)"
+    told "installing packages" "$root/build/$log.log" fetch
+  } || {
+    tail -n 5 "$root/build/$log.log" >&2
+    say "installing failed, the whole story is in build/$log.log; going on with what is there"
+  }
   look
 }
 
@@ -136,13 +151,15 @@ build() {
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
-    # Minutes of one core that everything takes, what ./check builds, and what the first ./palpate run asks for.
-    case "$*" in
-      '') whole=25 ;;
-      palpate_*) whole=14 ;;
-      *) whole=3 ;;
+    # Minutes of one core, and room, that everything takes, what ./check builds, and what the first ./palpate run asks
+    # for with the plugins of configs/default.yaml.
+    case "$preset $*" in
+      'release ') whole=25 disk='900 MB' ;;
+      *' ') whole=25 disk='1.9 GB' ;;
+      *' palpate_everyday' | *' palpate_hostile') whole=14 disk='800 MB' ;;
+      *) whole=8 disk='200 MB' ;;
     esac
-    say "building preset $preset, about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time"
+    say "building preset $preset: about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time, $disk of disk"
   fi
   if ! NINJA_STATUS='[%f/%t] ' told "building preset $preset" "$log" ninja -C "$root/build/$preset" "$@"; then
     grep -v '^\[' "$log" | grep -m 10 -E 'error|FAILED' >&2 || true

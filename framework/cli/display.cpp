@@ -43,7 +43,7 @@ void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
     mention(
         fmt::format("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm",
-                    "y cm", "height cm", "contact", "max sd cm", "rmse cm", "IoU", "(the last three before the tap)"),
+                    "y cm", "height cm", "contact", "max sd cm", "error cm", "IoU", "(the last three before the tap)"),
         stdout);
     header_ = true;
   }
@@ -85,7 +85,7 @@ void print_summary(const RunReport& report) {
                       row.cell("off_surface_taps"), row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   if (const Errors errors = errors_in(row); errors.rmse) {
-    text += fmt::format("error: {} cm over the scene, {} cm on the object; outline IoU {}\n",
+    text += fmt::format("error: {} cm over the scene, {} cm on the object; footprint IoU {}\n",
                         scaled(errors.rmse, 100, "{:.2f}"), scaled(errors.rmse_on_surface, 100, "{:.2f}"),
                         scaled(errors.footprint_iou, 1, "{:.2f}"));
   }

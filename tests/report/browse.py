@@ -6,7 +6,8 @@
 
 A step is `return ...` or other JavaScript, whose value is printed as a line of JSON; `await CONDITION`, which waits until that
 JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of all of the page, and `view FILE`,
-of what the window shows; `size W H`, of the window. The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
+of what the window shows; `size W H`, of the window; `reload`; `devtools METHOD ARGUMENTS`, JSON, what Chromium's own tools can: a turn
+of the wheel, another screen, another wish of the system's. The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
 """
 
 import json
@@ -60,6 +61,11 @@ def perform(browser, step):
         pathlib.Path(rest).write_bytes(browser.get_screenshot_as_png())
     elif word == "size":
         browser.set_window_size(*map(int, rest.split()))
+    elif step == "reload":
+        browser.refresh()
+    elif word == "devtools":
+        method, _, arguments = rest.partition(" ")
+        browser.execute_cdp_cmd(method, json.loads(arguments))
     else:
         print(json.dumps(browser.execute_script(step)))
 

@@ -99,7 +99,8 @@ TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
   const std::string good = "<b onmouseover=alert(3)>good\u202E.py";
   const std::string bad = "</script><script>alert(4)</script>.py";
   folder_.write(good, test::python("for ask in asks(): contact(ask)"));
-  folder_.write(bad, test::python("for ask in asks(): contact(ask)"));
+  // On the desk: where all jobs came to the same there would be no panels to look at.
+  folder_.write(bad, test::python("for ask in asks(): tell(ask, outcome='contact', height=0.0, force=1, seconds=5.5)"));
   const std::vector<std::string> commands{"python3 '" + good + "'", "python3 '" + good + "' \"<i>&lt;\n %{y}</i>\"",
                                           "python3 '" + bad + "'"};
   std::string text = text_of(test::source_folder() / "configs/process.yaml");

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <sstream>
 
 namespace palpate {
@@ -180,11 +181,41 @@ TEST(Documents, LinkToFilesThatAreThere) {
   EXPECT_GT(links, 40);
 }
 
-TEST(Readme, TheCaptureIsWhatTheFirstCommandPrints) {
+/// The first command that README shows: what stands before the comment in the first line of its first block.
+std::string first_command(const std::string& readme) {
+  const auto begin = readme.find("```\n") + 4;
+  const std::string line = readme.substr(begin, readme.find('\n', begin) - begin);
+  return line.substr(0, line.find_last_not_of(' ', line.find('#') - 1) + 1);
+}
+
+TEST(Readme, TheCaptureIsWhatTheFirstCommandPrintsAndItsErrorFalls) {
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
+  const std::string readme = text_of(test::source_folder() / "README.md");
+  ASSERT_EQ(first_command(readme), "./palpate run configs/default.yaml");
+  const test::Ended ended = test::run_program({"sh", "-c", first_command(readme)}, folder.path());
+  EXPECT_THAT(readme, HasSubstr("```\n" + ended.out + "```\n"));
+  // "4 cm while nothing is known, 5 mm after 30 taps"
+  std::vector<double> errors;  // behind tap, source, x, y, height, contact and deviation, centimetres
+  for (const std::string& line : lines_of(ended.out)) {
+    std::istringstream cells(line);
+    const std::vector<std::string> words{std::istream_iterator<std::string>(cells), {}};
+    if (words.size() == 9 && std::isdigit(static_cast<unsigned char>(words[0][0])) != 0)
+      errors.push_back(std::stod(words[7]));
+  }
+  ASSERT_EQ(errors.size(), 30U);
+  EXPECT_NEAR(errors.front(), 4.0, 0.05);
+  EXPECT_NEAR(errors.back(), 0.5, 0.05);
+}
+
+TEST(Readme, SaysOfThePapersExperimentWhatComesOutOfIt) {
+  const TemporaryFolder folder;
+  imitate_checkout(folder.path());
+  const std::string readme = text_of(test::source_folder() / "README.md");
+  EXPECT_THAT(readme, HasSubstr("finds it at tap 8, and the rule takes over; its 17 taps leave an error of 3.2 cm."));
   const test::Ended ended = test::run_program({"sh", "-c", "./palpate run configs/paper/object_i.yaml"}, folder.path());
-  EXPECT_THAT(text_of(test::source_folder() / "README.md"), HasSubstr("```\n" + ended.out + "```\n"));
+  EXPECT_THAT(ended.out, HasSubstr("first hit at tap 8\nerror: 3.20 cm over the scene"));
+  EXPECT_THAT(ended.out, HasSubstr("\ndone: tap budget after 17 taps"));
 }
 
 using Reference = Shell;

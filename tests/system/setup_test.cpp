@@ -29,7 +29,7 @@ class SetUp : public Shell {
     write("tests/habits.sh", "exit 0\n");
     write("packages.txt", "# a list\n\n[core]\none   # a word on it\n\n[ros]\ntwo\nthree\n");
     for (const char* tool : {"sh", "sed", "grep", "tr", "cat", "mkdir", "flock", "readlink", "dirname", "id", "tail",
-                             "chmod", "sleep", "awk"}) {
+                             "chmod", "sleep", "awk", "env"}) {
       for (const char* place : {"/usr/bin", "/bin"}) {
         if (fs::exists(fs::path(place) / tool) && !fs::exists(here() / "bin" / tool)) {
           fs::create_symlink(fs::path(place) / tool, here() / "bin" / tool);
@@ -223,6 +223,36 @@ TEST_F(SetUp, WithoutSudoItSaysWhatToPaste) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.err, HasSubstr("  apt-get update && apt-get install --no-install-recommends one \n"));
   EXPECT_FALSE(fs::exists(here() / "apt")) << "it may not";
+}
+
+TEST_F(SetUp, SaysBeforehandHowLongItWillBeAndWhatRoomItTakes) {
+  installed("three");
+  program("id", "echo 0");
+  // Asked what it would take, apt tells; what is fetched already it counts apart.
+  program("apt-get", "echo \"$*\" >>'" + here().string() + "/apt'\ncase \"$*\" in\n*--assume-no*)\n" +
+                         "echo 'Need to get 12.3 MB/147 MB of archives.'\n"
+                         "echo 'After this operation, 1,708 MB of additional disk space will be used.'; exit 1 ;;\n" +
+                         "*' -y '*) echo 'one three' >'" + here().string() + "/installed' ;;\nesac");
+  const Ended ended = script_ended("palpate", "status");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.err,
+            "installing one \ninstalling packages: a minute or two, 12.3 MB to fetch, 1,708 MB of disk\n"
+            "building preset release: about 5 minutes the first time, 200 MB of disk\n");
+  const std::string apt = text_of(here() / "apt");
+  EXPECT_EQ(lines(apt), 3) << apt;
+  EXPECT_THAT(apt, HasSubstr("update -q\ninstall -q -d --assume-no --no-install-recommends one\n")) << "no more";
+  // What is there already takes nothing, and so nothing is said of it.
+  EXPECT_EQ(script_ended("palpate", "status").err, "");
+}
+
+TEST_F(SetUp, GoesOnWhereNothingCanBeFetched) {
+  installed("three");
+  program("id", "echo 0");
+  program("apt-get", "echo 'no such host'; exit 100");
+  const Ended ended = script_ended("palpate", "status");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err,
+              HasSubstr("no such host\ninstalling failed, the whole story is in build/update.log; going on"));
 }
 
 TEST_F(SetUp, AFileThatIsNamedAfterErrorsIsNoErrorOfTheBuild) {

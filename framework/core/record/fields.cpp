@@ -43,13 +43,13 @@ const std::vector<ErrorField>& error_list() {
       {RecordField("rmse_height_m", "the height mean itself over those cells, whatever the footprint")
            .in(Unit::metre)
            .less()
-           .called("height mean on the object"),
+           .called("of the height mean on the object"),
        &Errors::rmse_height},
       {RecordField("footprint_iou",
                    "cells with a probability >= 1/2, by the config's footprint, against cells truly on an object: "
                    "intersection over union")
            .more()
-           .called("outline IoU")
+           .called("footprint IoU")
            .headline(),
        &Errors::footprint_iou},
   };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -37,9 +38,9 @@ struct NamedState {
   const char* name;
   std::optional<ProcessState> RunResult::*state;
 };
-constexpr std::array<NamedState, 3> kStates{{{"heights", &RunResult::height_process},
-                                             {"labels", &RunResult::weight_process},
-                                             {"object", &RunResult::surface_process}}};
+constexpr std::array<NamedState, 3> kStates{{{"height process", &RunResult::height_process},
+                                             {"weight process", &RunResult::weight_process},
+                                             {"surface process", &RunResult::surface_process}}};
 
 Row likelihoods_of(const Moment& moment) {
   Row out;
@@ -100,9 +101,34 @@ void fit_axis(CurvePanel& panel) {
   panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(), empty), panel.curves.end());
 }
 
+/// The value that a curve has wherever it has one; none if one sees it change. On an axis from 0, or with ratios, that
+/// is a thousandth of its largest value; a free one shows any change.
+std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const std::optional<double>& value : curve.values) {
+    least = std::min(least, value.value_or(least));
+    most = std::max(most, value.value_or(most));
+  }
+  const double visible = axis == CurveAxis::free ? 0.0 : 1e-3 * std::max(std::abs(least), std::abs(most));
+  return most - least <= visible ? std::optional(most) : std::nullopt;
+}
+
+/// The panel as words if none of its curves ever changes, else "".
+std::string constant_words(const CurvePanel& panel) {
+  std::string out = panel.title + ":";
+  for (const Curve& curve : panel.curves) {
+    const std::optional<double> value = constant_value(curve, panel.axis);
+    if (!value) return {};
+    out += fmt::format("{} {}{:.4g}", &curve == &panel.curves.front() ? "" : ",",
+                       curve.name.empty() ? "" : curve.name + " ", *value);
+  }
+  return out + (panel.unit.empty() ? "" : " " + panel.unit);
+}
+
 }  // namespace
 
-std::vector<CurvePanel> curves_of(const Recording& recording, const History& history) {
+Curves curves_of(const Recording& recording, const History& history) {
   std::vector<CurvePanel> panels;
   const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});
@@ -125,7 +151,7 @@ std::vector<CurvePanel> curves_of(const Recording& recording, const History& his
       shares.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
     }
   }
-  add("Error of the reconstruction, rms", "cm", CurveAxis::from_zero, std::move(lengths));
+  add("Error of the surface (rms)", "cm", CurveAxis::from_zero, std::move(lengths));
   std::move(shares.begin(), shares.end(), std::back_inserter(panels));
   add("Largest standard deviation of a height", "cm", CurveAxis::from_zero,
       one([](const Moment& moment) { return 100.0 * moment.largest_deviation; }));
@@ -136,7 +162,7 @@ std::vector<CurvePanel> curves_of(const Recording& recording, const History& his
       }));
   add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
   for (const NamedState& state : kStates) {
-    add(fmt::format("Hyperparameters, {} (SI units)", state.name), "", CurveAxis::logarithmic,
+    add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
         named_curves(history, [&](const Moment& moment) { return parameters_of(moment.result.*state.state); }));
   }
   add(fmt::format("What footprint/{} tells", recording.config.options.footprint.type), "", CurveAxis::free,
@@ -145,10 +171,18 @@ std::vector<CurvePanel> curves_of(const Recording& recording, const History& his
   if (history.moments.back().result.robot_seconds > 0.0)
     add("Robot time so far", "s", CurveAxis::from_zero,
         one([](const Moment& moment) { return moment.result.robot_seconds; }));
-  for (CurvePanel& panel : panels) fit_axis(panel);
-  const auto is_empty = [](const CurvePanel& panel) { return panel.curves.empty(); };
-  panels.erase(std::remove_if(panels.begin(), panels.end(), is_empty), panels.end());
-  return panels;
+  Curves out;
+  for (CurvePanel& panel : panels) {
+    fit_axis(panel);
+    if (panel.curves.empty()) continue;
+    std::string words = constant_words(panel);
+    if (words.empty()) {
+      out.panels.push_back(std::move(panel));
+    } else {
+      out.constants.push_back(std::move(words));
+    }
+  }
+  return out;
 }
 
 }  // namespace palpate

@@ -34,8 +34,16 @@ struct CurvePanel {
   std::string full_title() const { return unit.empty() ? title : title + " [" + unit + "]"; }
 };
 
-/// Errors, what is not known, shares, likelihoods, hyperparameters, what the footprint tells, times; what the run has
-/// not is left out. Of a damaged timings.csv it takes the lines before the damage.
-std::vector<CurvePanel> curves_of(const Recording& recording, const History& history);
+/// The curves of a run.
+struct Curves {
+  std::vector<CurvePanel> panels;
+  /// What would be a panel of level lines, as words: "Largest standard deviation of a height: 10 cm".
+  std::vector<std::string> constants;
+};
+
+/// Errors, what is not known, shares, likelihoods, hyperparameters, what the footprint tells, times. What the run has
+/// not is left out, and so is every panel none of whose curves ever changes. Of a damaged timings.csv it takes the lines
+/// before the damage.
+Curves curves_of(const Recording& recording, const History& history);
 
 }  // namespace palpate

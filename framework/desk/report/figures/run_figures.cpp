@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
+#include "analysis/readable.hpp"
 #include "record/fields.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figures.hpp"
 #include "report/figures/sheet.hpp"
+#include "report/words/titles.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -26,8 +29,9 @@ Figure surface_figure(const ExperimentOptions& options, const Ground& ground, co
   sheet.taps("last", seen);
   sheet.text(options.name, 30, 16, 15);
   const auto behind = last.marks.size() - seen.marks.size();
-  sheet.text("surface " + after_words(last) + (behind > 0 ? fmt::format("; {} of them behind it", behind) : ""), 30, 44,
-             11);
+  sheet.text(map_titles(options).at("height") + " " + after_words(last) +
+                 (behind > 0 ? fmt::format("; {} of them behind it", behind) : ""),
+             30, 44, 11);
   const Colours colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
   sheet.surface({90, 80, 740, 510}, ground, "surface", "last", colours, relief_of({last}, ground));
   sheet.bar({880, 160, 18, 380}, colours);
@@ -46,8 +50,8 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
     const char* name;
     const Eigen::VectorXd& values;
     Palette palette;
-    double high;  ///< from 0
-    std::string words;
+    double high;          ///< from 0
+    std::string outside;  ///< what is to be said of values beyond that
   };
   const auto outside = [](const Eigen::VectorXd& values, double high) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
@@ -56,17 +60,15 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
   // The strategy's score is u w only where there is a w.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
-  std::vector<Panel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, "u: what is not known of the height"}};
+  std::vector<Panel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, ""}};
   if (last.has_weight()) {
-    panels.push_back(
-        {"w", last.weight, Palette::viridis, 1.0, "w: whether there is an object" + outside(last.weight, 1)});
-    panels.push_back({"e", e, Palette::viridis, most, "e = u w: the exploration function" + outside(e, most)});
+    panels.push_back({"w", last.weight, Palette::viridis, 1.0, outside(last.weight, 1)});
+    panels.push_back({"e", e, Palette::viridis, most, outside(e, most)});
   } else {
-    const std::string by = fmt::format("by footprint/{}", options.footprint.type);
-    const std::string of = fmt::format("score of acquisition/{}", options.acquisition.type);
-    panels.push_back({"p", last.probability, Palette::viridis, 1.0, "p: the probability of an object,\n" + by});
-    panels.push_back({"score", e, Palette::viridis, most, of + outside(e, most)});
+    panels.push_back({"p", last.probability, Palette::viridis, 1.0, ""});
+    panels.push_back({"score", e, Palette::viridis, most, outside(e, most)});
   }
+  const std::map<std::string, std::string> titles = map_titles(options);
   sheet.text(options.name, kMargin, 14, 15);
   sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kMargin, 42, 11);
   for (const Panel& panel : panels) sheet.data(panel.name, matrix_of(ground, panel.values));
@@ -74,7 +76,7 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
   double left = first.left;
   for (const Panel& panel : panels) {
     const Colours colours{panel.palette, 0.0, panel.high, ""};
-    sheet.text(panel.words, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
+    sheet.text(titles.at(panel.name) + panel.outside, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
     sheet.map({left, kTop, first.width, first.height}, ground, panel.name, "last", colours);
     sheet.bar({left + first.width + 14, kTop, 14, first.height}, colours);
     left += kPitch;
@@ -137,7 +139,7 @@ Figure curves_figure(const Recording& recording, const History& history) {
   constexpr double kHeight = 200;
   if (const std::optional<Error> trouble = read_timings(recording.directory).trouble) throw Error(*trouble);
   const RunResult& last = history.moments.back().result;
-  const std::vector<CurvePanel> panels = curves_of(recording, history);
+  const auto [panels, constants] = curves_of(recording, history);
   const int count = static_cast<int>(panels.size());
   const int columns = std::clamp(count, 1, kColumns);
   std::vector<double> title_tops;  // of each row of panels
@@ -151,7 +153,15 @@ Figure curves_figure(const Recording& recording, const History& history) {
     tops.push_back(bottom + 42 + kNameHeight * static_cast<double>(lines));
     bottom = tops.back() + kHeight + 60;
   }
-  Sheet sheet(70 + columns * 365, static_cast<int>(bottom));
+  // What never changes is no panel, but a line below them.
+  const int width = 70 + columns * 365;
+  std::vector<std::string> words;
+  if (!constants.empty()) words.emplace_back("The same after every tap:");
+  for (const std::string& one : constants) {
+    for (std::string& line : wrapped(one, static_cast<std::size_t>(width - 90) / 8)) words.push_back(std::move(line));
+  }
+  Sheet sheet(width, static_cast<int>(bottom + 18 * static_cast<double>(words.size())));
+  sheet.text(fmt::format("{}", fmt::join(words, "\n")), 60, bottom - 8, 11);
   sheet.text(recording.config.options.name, 60, 14, 15);
   sheet.text(fmt::format("{} taps: {}", last.taps, count_words(last)), 60, 42, 11);
   for (int i = 0; i < count; ++i) {

@@ -12,6 +12,7 @@ palpate_asset_style:
         .incbin "web/style.css"
         .byte 0
 palpate_asset_common:
+        .incbin "web/theme.js"
         .incbin "web/common.js"
         .byte 0
 palpate_asset_run:

@@ -12,6 +12,7 @@
 #include "report/page/json.hpp"
 #include "report/page/page.hpp"
 #include "report/page/warnings.hpp"
+#include "report/words/titles.hpp"
 #include "report/words/words.hpp"
 
 #include <fmt/format.h>
@@ -143,13 +144,16 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
   const fs::path& directory = recording.directory;
   const Tree manifest = is_there(directory / "manifest.json") ? read_json(directory / "manifest.json") : Tree::map();
+  const Curves curves = curves_of(recording, history);
   Json data = json_of_run(recording);
   data.update({{"version", kVersion},
                {"summary", recording.summary},
                {"taps", recording.rows},
                {"moments", history.moments},
                {"errors", error_fields()},
-               {"curves", curves_of(recording, history)},
+               {"curves", curves.panels},
+               {"constants", curves.constants},
+               {"titles", map_titles(recording.config.options)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
                {"config", json_of_config(recording, manifest)},

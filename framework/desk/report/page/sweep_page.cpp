@@ -123,6 +123,7 @@ std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
   const Json data{{"version", kVersion},
                   {"name", sweep_name(sweep)},
                   {"id", directory.filename().string()},
+                  {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
                   {"keys", keys},
                   {"jobs", json_of_jobs(sweep, jobs, progress)},
                   {"columns", json_of_columns(results, jobs)},

@@ -74,9 +74,13 @@ function section(title, ...children) {
   return element("section", {}, element("h2", {}, title), ...children);
 }
 
-/// A place for a plot, under its caption.
+/// A place for a plot, under its caption. The wheel scrolls the page, over plots as elsewhere: a plot, which may zoom by
+/// it, hears of it only while Ctrl is pressed.
 function figure(id, caption) {
-  return element("figure", {}, element("figcaption", {}, caption), element("div", { id, class: "plot" }));
+  const place = element("div", { id, class: "plot" });
+  const scrolls = (event) => !event.ctrlKey && !event.metaKey;
+  place.addEventListener("wheel", (event) => scrolls(event) && event.stopPropagation(), { capture: true, passive: true });
+  return element("figure", {}, element("figcaption", {}, caption), place);
 }
 
 /// What stands where there is no value.
@@ -111,26 +115,34 @@ function withUnit(name) {
   return unit ? `${name} [${unit}]` : name;
 }
 
-/// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008).
-const kColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"];
 const kGrey = "#9a9a9a";
+
+/// Whether the page is as narrow as on a phone: so it is in style.css.
+const kNarrow = matchMedia("(max-width: 640px)");
+/// Whether it is moved by fingers, which then do not draw frames on plots.
+const kFingers = matchMedia("(pointer: coarse)");
 
 /// What all plots have in common.
 function layout(more = {}) {
   return {
     margin: { l: 54, r: 12, t: 8, b: 42 },
-    font: { family: "system-ui, sans-serif", size: 12 },
+    font: { family: "system-ui, sans-serif", size: 12, color: themed("ink") },
     paper_bgcolor: "rgba(0,0,0,0)",
-    plot_bgcolor: "#ffffff",
-    hoverlabel: { align: "left" },
+    plot_bgcolor: themed("card"),
+    hoverlabel: { align: "left", bgcolor: themed("card"), bordercolor: themed("line"), font: { color: themed("ink") } },
+    dragmode: kFingers.matches ? false : "zoom",
     ...more,
   };
 }
 
-const axis = (title, more = {}) => ({ title: { text: title }, zeroline: false, ...more });
+/// An axis of a plot, or of its scene.
+function axis(title, more = {}) {
+  const [lines, grid] = ["soft", "grid"].map(themed);
+  return { title: { text: title }, zeroline: false, gridcolor: grid, linecolor: lines, tickcolor: lines, ...more };
+}
 
 /// The scale beside a plot whose colours are values.
-const colourBar = (title, more = {}) => ({ title: { text: title, side: "right" }, thickness: 12, ...more });
+const colourBar = (title, more = {}) => ({ title: { text: title, side: "right" }, thickness: 12, outlinecolor: themed("line"), ...more });
 
 /// Points that say `text` to the pointer.
 function points(name, x, y, text, marker, more = {}) {
@@ -159,13 +171,18 @@ function tellDrawn(what) {
   document.body.dataset.drawn = String(what);
 }
 
-/// Unpacks the page's data and lets `draw` fill it; what goes wrong is said on the page.
+/// Unpacks the page's data and lets `draw` fill it, which returns what draws all plots again, in other colours; what goes
+/// wrong is said on the page.
 async function openPage(draw) {
   try {
     const [data, maps] = await Promise.all([unpack("data").json(), unpack("maps").arrayBuffer(), loadPlotly()]);
     document.title = `${data.name} ${data.id} – palpate`;
-    document.body.append(element("h1", {}, foreign(data.name)));
-    await draw(data, new Uint8Array(maps));
+    const head = element("div", { class: "head" }, element("h1", {}, foreign(data.name)));
+    document.body.append(head);
+    const redraw = draw(data, new Uint8Array(maps));
+    head.append(themeSwitch(redraw));
+    kNarrow.addEventListener("change", redraw);
+    await redraw();
   } catch (trouble) {
     complain(trouble);
   }

@@ -14,7 +14,7 @@ function drawCurves(id, panel, taps) {
   const traces = panel.curves.map(({ name, values }, i) => ({
     ...points(plain(name), taps, values, [], { size: 4, symbol: ["circle", "square", "diamond", "triangle-up", "x"][i % 5] }),
     mode: "lines+markers",
-    line: { color: kColours[i % kColours.length], width: 1.8 },
+    line: { color: lineColour(i), width: 1.8 },
     hovertemplate: `%{y:.4g}<extra>${plain(name)}</extra>`,
   }));
   return plot(id, traces, {
@@ -29,13 +29,13 @@ function drawCurves(id, panel, taps) {
 function facts(data) {
   const last = data.moments[data.moments.length - 1];
   const errors = data.errors.map(([name, label, unit]) =>
-    unit === "m" ? [shown(last[name] && last[name] * kCentimetres, 3), " cm", `rmse ${label}`] : [shown(last[name], 3), "", label],
+    unit === "m" ? [shown(last[name] && last[name] * kCentimetres, 3), " cm", `error ${label}`] : [shown(last[name], 3), "", label],
   );
   const items = [
     [last.taps, ` of ${data.budget}`, "taps"],
     [last.on_surface_taps, "", "on the object"],
-    [last.off_surface_taps, "", "off"],
-    [last.failed_taps || kNothing, "", "no contact"],
+    [last.off_surface_taps, "", "on the desk"],
+    [last.failed_taps || kNothing, "", "failed"],
     [shown(data.summary?.first_hit_tap), "", "first hit at tap"],
     ...errors,
     [shown(data.summary?.coverage_95, 3), "", "95 % coverage"],
@@ -59,7 +59,7 @@ function story(data, moment, drawn) {
   } else {
     out.push("Before the first tap.");
   }
-  out.push(`So far ${moment.on_surface_taps} on the object, ${moment.off_surface_taps} off.`);
+  out.push(`So far ${moment.on_surface_taps} on the object, ${moment.off_surface_taps} on the desk.`);
   if (moment.next) {
     const score = moment.next.score === null ? "" : `, score ${shown(moment.next.score)}`;
     const ties = moment.next.ties > 1 ? `, one of ${moment.next.ties} that are tied` : "";
@@ -81,7 +81,7 @@ class Slider {
   constructor(data, maps) {
     this.data = data;
     this.surface = new SurfaceView(data, maps);
-    this.panels = mapPanels(data, maps);
+    [this.panels, this.constant] = mapPanels(data, maps);
     // The surface shows it by its colours, where there is one.
     if (!this.surface.spatial) this.panels.unshift(this.surface.deviationPanel());
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
@@ -118,6 +118,13 @@ class Slider {
     return inTurn(() => (wanted === this.input.value ? this.draw(Number(wanted)) : undefined));
   }
 
+  /// Draws all plots, as the page does at first and when its colours have changed.
+  redraw() {
+    const taps = this.data.moments.map((moment) => moment.taps);
+    inTurn(() => Promise.all(this.data.curves.map((one, i) => drawCurves(`curve_${i}`, one, taps))));
+    return this.show();
+  }
+
   async draw(at) {
     const moment = this.data.moments[at];
     // The latest maps that there are, and the first where there are none yet.
@@ -136,6 +143,9 @@ class Slider {
   }
 }
 
+/// A line about what is no plot because it never changes.
+const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "The same after every tap: ", foreign(texts.join("; ")), ".")] : []);
+
 function drawRun(data, bytes) {
   const maps = unpackMaps(bytes, data.maps, data.x.length, data.y.length);
   const slider = new Slider(data, maps);
@@ -152,16 +162,17 @@ function drawRun(data, bytes) {
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),
     element("h2", {}, "Maps"),
     element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, foreign(title)))),
-    element("p", { class: "sub" }, `Dots: taps on the object, crosses: off it, squares: no contact; the star would be tapped next. Arrow keys move the slider.${thinned}`),
+    ...constants(slider.constant.map(({ title, value }) => `${title}: ${shown(value)} everywhere`)),
+    element("p", { class: "sub" }, `Discs: taps on the object, crosses: taps on the desk, squares: failed taps, star: the next tap. Arrow keys move the slider.${thinned}`),
     element("h2", {}, "By tap"),
     element("div", { class: "row small" }, ...data.curves.map(({ title }, i) => figure(`curve_${i}`, title))),
+    ...constants(data.constants),
     section("Config", foreignTable(["key", "value", "where it was said"], data.config)),
     section("Made by", foreignTable(["", ""], data.build.filter(([, value]) => value !== ""))),
     footer(data),
   );
-  data.curves.forEach((one, i) => drawCurves(`curve_${i}`, one, data.moments.map((moment) => moment.taps)));
   slider.listen();
-  return slider.show();
+  return () => slider.redraw();
 }
 
 openPage(drawRun);

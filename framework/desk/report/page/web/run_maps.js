@@ -29,7 +29,7 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
-/// The taps up to `taps`: those on the object, those off it, and those that touched nothing.
+/// The taps up to `taps`: those on the object, those on the desk, and those that failed.
 const tapsUntil = (rows, taps) => [true, false, null].map((touched) => rows.slice(0, taps).filter((tap) => tap.on_surface === touched));
 
 const place = (tap) => `(${shown(tap.x * kCentimetres, 3)}, ${shown(tap.y * kCentimetres, 3)}) cm`;
@@ -48,13 +48,14 @@ function markTrace(taps, name, marker, more = {}) {
   return points(name, along("x"), along("y"), taps.map((tap) => tap.word ?? hover(tap)), marker, more);
 }
 
+const kNextColour = "#e6007e";
 const edge = (color, width) => ({ color, width });
 
 /// The taps that are doubted at this moment; their hover says how much, and why.
 const doubtedOf = (data, moment) =>
   (moment.doubted ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may lie: ${one.words}` }));
 
-/// Taps as marks in the plane: dots on the object, crosses off it, squares where nothing was felt, a ring around what is
+/// Taps as marks in the plane: discs on the object, crosses on the desk, squares where a tap failed, a ring around what is
 /// doubted; a star is next.
 function marks(data, moment) {
   const [on, off, failed] = tapsUntil(data.taps, moment.taps);
@@ -63,27 +64,31 @@ function marks(data, moment) {
   return [
     ...(doubted.length > 0 ? [ring] : []),
     markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
-    markTrace(off, "off the object", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
-    markTrace(off, "off the object", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
-    markTrace(failed, "no contact", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
-    markTrace(nextOf(moment), "next", { symbol: "star", size: 15, color: "#e8112d", line: edge("#ffffff", 1.2) }),
+    markTrace(off, "on the desk", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
+    markTrace(off, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
+    markTrace(failed, "failed", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
+    markTrace(nextOf(moment), "next", { symbol: "star", size: 15, color: kNextColour, line: edge("#ffffff", 1.2) }),
   ];
 }
 
-/// The panels over the plane: what each shows, in which colours and range.
+/// The panels over the plane: what each shows, in which colours and range; and beside them those that would show one
+/// value everywhere at every moment, {title, value}.
 function mapPanels(data, maps) {
-  const panel = (id, title, frames, range = [0, 1], colours = kWhere) => ({ id, title, bar: id, frames, range, colours });
-  const panels = [panel("u", "Uncertainty u", maps.u, [0, 1], kUnknown)];
+  const panel = (id, frames, range = [0, 1], colours = kWhere) => ({ id, title: data.titles[id], bar: id, frames, range, colours });
+  const panels = [panel("u", maps.u, [0, 1], kUnknown)];
   if (maps.p) {
-    panels.push(panel("p", `Probability p of an object, by footprint/${data.footprint}`, maps.p));
+    panels.push(panel("p", maps.p));
   } else {
     const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
-    const largest = extent(exploration.flat(2))[1];
-    const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
-    panels.push(panel("w", "Weight w", maps.w), panel("e", "Exploration e = u w", exploration, [0, most]));
+    panels.push(panel("w", maps.w), panel("e", exploration, [0, extent(exploration.flat(2))[1]]));
   }
-  if (maps.score) panels.push(panel("score", `Score of the acquisition, ${data.acquisition}`, maps.score, extent(maps.score.flat(2))));
-  return panels;
+  if (maps.score) panels.push(panel("score", maps.score, extent(maps.score.flat(2))));
+  const varied = ({ frames }) => {
+    const [least, most] = extent(frames.flat(2));
+    return most - least > 1e-6;  // what differs by rounding alone needs no colours
+  };
+  const constant = panels.filter((one) => !varied(one)).map(({ title, frames }) => ({ title, value: frames[0][0][0] }));
+  return [panels.filter(varied), constant];
 }
 
 /// Colours for standard deviations of the height, centimetres, as in the figures: by ratios if the largest is more than
@@ -91,7 +96,9 @@ function mapPanels(data, maps) {
 function deviationColours(lines) {
   const floor = 1e-4;
   const [low, high] = extent(lines.flat()).map((end) => Math.max(end, floor));
-  const bar = colourBar("standard deviation [cm]", { len: 0.8 });
+  const title = "standard deviation [cm]";
+  const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
+  const bar = colourBar(title, kNarrow.matches ? below : { len: 0.8 });
   if (high <= 5 * low) return { surfacecolor: lines, cmin: 0, cmax: high, colorbar: bar };
   const powers = [-4, -3, -2, -1, 0, 1, 2, 3, 4, 5].map((power) => 10 ** power);
   const ticks = powers.flatMap((power) => [power, 2 * power, 5 * power]).filter((value) => value >= low && value <= high);
@@ -152,7 +159,7 @@ class SurfaceView {
   caption() {
     if (this.flat) return "Reconstructed height.";
     return this.spatial
-      ? "Reconstructed surface, coloured by the standard deviation of its height; on pins, discs: taps on the object, crosses: taps off it, red diamond: the next. Drag to turn."
+      ? "Reconstructed surface, coloured by the standard deviation of its height; on pins, discs: taps on the object, crosses: taps on the desk, star: the next tap. Drag to turn" + (kFingers.matches ? "." : ", Ctrl and wheel to zoom.")
       : "Reconstructed height. (This browser has no WebGL: the surface is a map instead of a picture in three dimensions.)";
   }
 
@@ -172,14 +179,25 @@ class SurfaceView {
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{customdata:.2f} cm<extra></extra>",
     };
     const [on, off] = tapsUntil(this.data.taps, moment.taps);
-    const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres }));
+    // Above everything, from where the arm comes down: in sight however the surface is turned.
+    const above = this.range[1] / kCentimetres;
+    const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres, above }));
     const raised = (taps, name, marker) => markTrace(taps, name, marker, { type: "scatter3d", z: taps.map((tap) => this.pin(tap)[1]) });
     const out = [
       surface,
       this.pins([...on, ...off, ...next]),
-      raised(on, "on the object", { symbol: "circle", size: 6, color: "#ffffff", line: edge("#000000", 2) }),
-      raised(off, "off the object", { symbol: "cross", size: 5, color: "#000000" }),
-      raised(next, "next", { symbol: "diamond", size: 6, color: "#e8112d", line: edge("#ffffff", 1) }),
+      raised(on, "on the object", { symbol: "circle", size: kNarrow.matches ? 4 : 6, color: "#ffffff", line: edge("#000000", 2) }),
+      raised(off, "on the desk", { symbol: "cross", size: 5, color: themed("ink") }),
+      // plotly has no star in three dimensions, but letters, which face whoever looks, however the surface is turned.
+      {
+        ...raised(next, "next", {}),
+        mode: "text",
+        text: next.map(() => "★"),
+        textposition: "middle center",
+        textfont: { size: 26, color: kNextColour, family: "DejaVu Sans, sans-serif" },
+        customdata: next.map((one) => one.word),
+        hovertemplate: "%{customdata}<extra></extra>",
+      },
     ];
     if (this.withTruth && this.truth) out.push(this.wireframe());
     return out;
@@ -187,8 +205,8 @@ class SurfaceView {
 
   /// The ends of a line from the place of a tap up to its mark.
   pin(tap) {
-    const foot = tap.height * kCentimetres;
-    return [foot, foot + this.lift];
+    const [foot, above] = [tap.height, tap.above ?? tap.height].map((height) => height * kCentimetres);
+    return [foot, above + this.lift];
   }
 
   pins(taps) {
@@ -201,7 +219,7 @@ class SurfaceView {
       x: twice("x"),
       y: twice("y"),
       z: along((tap) => this.pin(tap)),
-      line: { color: "#000000", width: 2 },
+      line: { color: themed("ink"), width: 2 },
       hoverinfo: "skip",
     };
   }
@@ -215,11 +233,11 @@ class SurfaceView {
   /// What the colours of the surface say, as a map over the plane.
   deviationPanel() {
     const range = [0, extent(this.deviations.flat(2))[1]];
-    return { id: "deviation", title: "Standard deviation of the height", bar: "cm", frames: this.deviations, range, colours: kUnknown };
+    return { id: "deviation", title: this.data.titles.deviation, bar: "cm", frames: this.deviations, range, colours: kUnknown };
   }
 
   wireframe() {
-    const lines = (values) => ({ show: true, color: "#000000", width: 1, start: values[0], end: values[values.length - 1], size: 2 * (values[1] - values[0]) });
+    const lines = (values) => ({ show: true, color: themed("ink"), width: 1, start: values[0], end: values[values.length - 1], size: 2 * (values[1] - values[0]) });
     return {
       type: "surface",
       name: "truth",
@@ -238,16 +256,18 @@ class SurfaceView {
     const low = Math.min(this.range[0], this.data.desk * kCentimetres);
     const range = [low, this.range[1] + this.lift + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
-    const side = Math.max(width, depth) / 1.3;  // fills the room as the camera stands
+    // Fills the room as the camera stands; what is as high as wide has the scale of the colours below it.
+    const side = Math.max(width, depth) / (kNarrow.matches ? 1.05 : 1.3);
     return {
-      margin: { l: 0, r: 0, t: 0, b: 0 },
+      margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
       showlegend: false,
       uirevision: "keep the view",
       scene: {
+        dragmode: "turntable",
         // By the axes, not by what is drawn on them: else a flat surface would fill the room.
         aspectmode: "manual",
         aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },
-        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: -0.22 } },
+        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: kNarrow.matches ? -0.1 : -0.22 } },
         xaxis: axis("x [cm]", { range: [0, width] }),
         yaxis: axis("y [cm]", { range: [0, depth] }),
         zaxis: axis("height [cm]", { range }),

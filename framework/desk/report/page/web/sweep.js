@@ -28,6 +28,9 @@ function drawFront(sweep, choice) {
   listFront(choice, settings.filter((one) => one.front > 0));
   sayOfFront(sweep, choice, settings, failed);
   if (done.length + failed.length === 0) return plotNothing("front");
+  if (failed.length === 0 && ![choice.cost, choice.error].some((name) => differs(sweep, name))) {
+    return plotNothing("front", [choice.cost, choice.error].map((name) => constantWords(sweep, name)).join(" "));
+  }
   const ends = (kind) => {
     const values = [...done, ...failed].map((run) => run[kind]).filter((value) => value !== null);
     const intervals = settings.flatMap(({ [kind]: { mean, half } }) => [mean - (half ?? 0), mean + (half ?? 0)]);
@@ -58,7 +61,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
       arrayminus: list.map((one) => Math.min(one[kind].half ?? 0, type === "log" ? one[kind].mean - low / 2 : Infinity)),
       thickness: 1,
       width: 2,
-      color: "rgba(80,80,80,0.35)",
+      color: themed("bars"),
     });
     const text = list.map((one) => `${plain(brief(one.words, 120))}<br>${sweep.ended(one.jobs)}`);
     const hovertemplate = "%{text}<br>%{x:.4g}, %{y:.4g}<extra></extra>";
@@ -68,15 +71,15 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
   const step = Math.max(1, Math.ceil(done.length / 5000));
   const complete = settings.filter((one) => one.complete);
   const front = complete.filter((one) => one.front > 0);
-  const white = { color: "#ffffff", width: 1 };
+  const white = { color: themed("card"), width: 1 };
   return [
-    runs(done.filter((_, i) => i % step === 0), "runs", { size: 5, color: "#56b4e9", opacity: done.length > 600 ? 0.2 : 0.5 }, about),
-    runs(failed, "failed runs", { size: 9, symbol: "x", color: kGrey, line: { color: "#ffffff", width: 0.5 } }, why),
+    runs(done.filter((_, i) => i % step === 0), "runs", { size: 5, color: themed("runs"), opacity: done.length > 600 ? 0.2 : 0.5 }, about),
+    runs(failed, "failed runs", { size: 9, symbol: "x", color: kGrey, line: { color: themed("card"), width: 0.5 } }, why),
     means(settings.filter((one) => !one.complete), "settings not compared", { size: 9, symbol: "circle-open", color: kGrey, line: { width: 2 } }),
-    means(complete.filter((one) => one.front === 0), "settings", { size: 9, color: kColours[0], line: white }),
-    means(front, "front", { size: 12, symbol: "diamond", color: kColours[1], line: white }, {
+    means(complete.filter((one) => one.front === 0), "settings", { size: 9, color: lineColour(0), line: white }),
+    means(front, "front", { size: 12, symbol: "diamond", color: lineColour(1), line: white }, {
       mode: "lines+markers+text",
-      line: { color: kColours[1], width: 1.5, shape: "hv" },
+      line: { color: lineColour(1), width: 1.5, shape: "hv" },
       texttemplate: front.map((one) => String(one.front)),
       textposition: "top right",
     }),
@@ -125,7 +128,7 @@ class JobTable {
   }
 
   place() {
-    return section("Jobs", element("p", {}, this.filter), element("div", { class: "scroll" }, this.table), this.note, this.more);
+    return section("Jobs", element("p", {}, this.filter), element("div", { class: "scroll" }, this.table), this.note, this.more, ...this.howToReport());
   }
 
   /// The columns: a header, by what it is sorted, what is shown of a job; numbers are the last ones.
@@ -150,12 +153,20 @@ class JobTable {
     return job.reason && job.state === "failed" ? `failed: ${job.reason}` : job.state;
   }
 
+  /// The number of a job: a link where the job has a page of its own.
   link(job) {
-    if (job.state === "missing") return String(job.index);
-    const place = `jobs/${encodeURIComponent(job.id)}/`;
-    const out = element("span", {}, element("a", { href: place }, String(job.index)));
-    if (job.reported) out.append(" ", element("a", { href: `${place}report.html` }, "report"));
-    return out;
+    if (!job.reported) return String(job.index);
+    return element("a", { href: `jobs/${encodeURIComponent(job.id)}/report.html` }, String(job.index));
+  }
+
+  /// How a job that has no page gets one; nothing where all have one that can.
+  howToReport() {
+    const bare = this.sweep.jobs.find((job) => !job.reported && job.state !== "missing");
+    if (!bare) return [];
+    const folder = `${this.sweep.folder}/jobs/${bare.id}`;
+    const word = /^[\w./+:@=-]+$/.test(folder) ? folder : `'${folder.replace(/'/g, "'\\''")}'`;
+    const command = element("code", {}, foreign(`palpate report ${word}`));
+    return [element("p", { class: "sub", id: "how_to_report" }, `A job's number links to its own page, where it has one. Job ${bare.index} has none yet: `, command, " makes it, and this page, made again, links to it.")];
   }
 
   /// The jobs that the filter leaves, in the chosen order.
@@ -231,9 +242,9 @@ function drawSweep(data) {
     factList([[sweep.jobs.length, "jobs"], ...counts]),
     ...warningList(troubles(sweep)),
   );
-  const drawing = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
+  const redraw = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
   document.body.append(section("Config", element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
-  return drawing;
+  return redraw;
 }
 
 /// A sweep of which no job has ended.
@@ -241,7 +252,7 @@ function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has come to a result yet: there is nothing to draw."), jobs.place());
   jobs.choose({});
-  tellDrawn(1);
+  return () => tellDrawn(1);
 }
 
 function drawPanels(sweep) {
@@ -292,7 +303,7 @@ function drawPanels(sweep) {
     jobs.place(),
   );
   jobs.choose(choice);
-  return drawAll([drawCells, drawGroups, drawParallel, drawFront]);
+  return () => drawAll([drawCells, drawGroups, drawParallel, drawFront]);
 }
 
 openPage(drawSweep);

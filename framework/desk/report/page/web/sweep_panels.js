@@ -26,17 +26,31 @@ const titleOf = (name) => plain(brief(withUnit(name), 60));
 
 function judged(sweep, column) {
   const way = sweep.columns.get(column).better;
-  return way ? `${titleOf(column)}, ${way}` : titleOf(column);
+  return way ? `${titleOf(column)},${kNarrow.matches ? "<br>" : " "}${way}` : titleOf(column);
 }
 
 /// Draws into a figure of that height.
 function plotOfHeight(id, height, traces, more) {
   const place = document.getElementById(id);
+  place.hidden = false;
   place.style.height = `${height}px`;
   return plot(place, traces, { height, ...more });
 }
 
-const plotNothing = (id) => plotOfHeight(id, 120, [], { xaxis: { visible: false }, yaxis: { visible: false } });
+/// No plot, where there is nothing to see in it; `words` in place of its caption say why.
+function plotNothing(id, words) {
+  if (words) say(id, foreign(words));
+  const place = document.getElementById(id);
+  Plotly.purge(place);
+  place.hidden = true;
+}
+
+/// What a column says where it says the same of every job.
+function constantWords(sweep, column) {
+  const values = sweep.numbers(column, sweep.done);
+  if (values.length === 0) return `No job that is done has a value of ${column}.`;
+  return `${withUnit(column)}: ${shown(values[0])} ${values.length === 1 ? "in the one job that has it" : `in each of ${values.length} jobs`}.`;
+}
 
 function say(id, ...text) {
   document.getElementById(id).closest("figure").querySelector("figcaption").replaceChildren(...text);
@@ -58,14 +72,18 @@ function drawCells(sweep, { across, up, metric }) {
   // All other keys are taken together.
   const rest = sweep.all.filter((key) => !keys.includes(key)).map((key) => brief(key.name));
   const over = foreign(rest.length > 0 ? `over ${rest.join(", ")} of the jobs that are done` : "of the job that is done");
-  document.getElementById("cells_spread").closest("figure").hidden = keys.length < 2;
+  document.getElementById("cells_spread").closest("figure").hidden = keys.length < 2 || !differs(sweep, metric) || !hasSpread(cells);
+  if (!differs(sweep, metric)) return plotNothing("cells_mean", constantWords(sweep, metric));
   return keys.length < 2 ? drawPoints(sweep, keys[0], metric, cells, over) : drawMaps(sweep, keys, metric, cells, over);
 }
 
+/// Whether any cell has two values.
+const hasSpread = (cells) => cells.some((one) => one.deviation !== null);
+
 /// With one key, means as points and their spread as bars.
 function drawPoints(sweep, key, metric, cells, over) {
-  const trace = points("", cells.map((one) => one.column), cells.map((one) => one.mean), cells.map((one) => one.hover), { size: 9, color: kColours[0] }, {
-    error_y: { type: "data", array: cells.map((one) => one.deviation ?? 0), color: "#7fb2d6", thickness: 2 },
+  const trace = points("", cells.map((one) => one.column), cells.map((one) => one.mean), cells.map((one) => one.hover), { size: 9, color: lineColour(0) }, {
+    error_y: { type: "data", array: cells.map((one) => one.deviation ?? 0), color: themed("bars"), thickness: 2 },
   });
   say("cells_mean", "Mean ", over, "; bars: standard deviation.");
   return plotOfHeight("cells_mean", 380, [trace], { xaxis: keyAxis(key), yaxis: roomyAxis(judged(sweep, metric)) });
@@ -100,12 +118,14 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
       ygap: 1,
     };
   };
-  const more = { xaxis: keyAxis(across), yaxis: keyAxis(up), plot_bgcolor: "#dcdcdc", margin: { l: 60, r: 12, t: 12, b: 50 } };
+  const more = { xaxis: keyAxis(across), yaxis: keyAxis(up), plot_bgcolor: themed("empty"), margin: { l: 60, r: 12, t: 12, b: 50 } };
   const height = Math.min(sparse ? 520 : 900, Math.max(340, 130 + 24 * up.values.length));
   say("cells_mean", "Mean ", over, ". Grey: no value.");
   say("cells_spread", "Spread: standard deviation of the same jobs. Grey: fewer than two values.");
+  const means = plotOfHeight("cells_mean", height, [trace((one) => one.mean, judged(sweep, metric), "Viridis")], more);
+  if (!hasSpread(cells)) return means;
   return Promise.all([
-    plotOfHeight("cells_mean", height, [trace((one) => one.mean, judged(sweep, metric), "Viridis")], more),
+    means,
     plotOfHeight("cells_spread", height, [trace((one) => one.deviation, `standard deviation of ${titleOf(metric)}`, "Cividis")], more),
   ]);
 }
@@ -114,13 +134,14 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
 function drawGroups(sweep, { group, then, metric }) {
   const kMostGroups = 40;
   const kMostPoints = 4000;
+  if (!differs(sweep, metric)) return plotNothing("groups", constantWords(sweep, metric));
   const names = [group, then].filter((name, i, all) => name && all.indexOf(name) === i);
   const keys = group === kEachSetting ? sweep.settings : names.map((name) => sweep.key(name)).filter(Boolean);
   const all = sweep.groups(keys);
   const groups = all.slice(0, kMostGroups);
   const named = keys.filter((key) => key.values.length > 1);
   const nameOf = ({ jobs }) => (keys.length === 1 ? sweep.text(keys[0], jobs[0]) : sweep.words(jobs[0], named));
-  const colourOf = ({ jobs }) => kColours[keys.length > 1 && named.length > 0 ? named[0].of_job[jobs[0].index] % kColours.length : 0];
+  const colourOf = ({ jobs }) => lineColour(keys.length > 1 && named.length > 0 ? named[0].of_job[jobs[0].index] : 0);
   const few = groups.reduce((sum, { jobs }) => sum + jobs.length, 0) <= kMostPoints;
   const traces = groups.map((one, i) => {
     const valued = one.jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
@@ -138,7 +159,7 @@ function drawGroups(sweep, { group, then, metric }) {
       quartilemethod: "linear",
       marker: { size: 3, color: colour, opacity: 0.45 },
       line: { color: colour, width: 1.5 },
-      fillcolor: "rgba(0,0,0,0.04)",
+      fillcolor: "rgba(128,128,128,0.08)",
       text: valued.map((job) => `job ${job.index}`),
       hoveron: "boxes+points",
     };
@@ -153,7 +174,7 @@ function drawGroups(sweep, { group, then, metric }) {
   );
   return plotOfHeight("groups", Math.max(260, 90 + 30 * groups.length), traces, {
     xaxis: roomyAxis(judged(sweep, metric)),
-    yaxis: placesAxis("", groups.map(nameOf), { range: [groups.length - 0.5, -0.5] }, 60, kMostGroups),
+    yaxis: placesAxis("", groups.map(nameOf), { range: [groups.length - 0.5, -0.5] }, kNarrow.matches ? 18 : 60, kMostGroups),
     showlegend: false,
   });
 }
@@ -194,6 +215,7 @@ function drawParallel(sweep, { metric }) {
   );
   document.getElementById("parallel").style.minWidth = `${90 * axes.length}px`; // on a narrow page it scrolls
   if (jobs.length === 0) return plotNothing("parallel");
+  if (axes.every((one) => one.least === one.most)) return plotNothing("parallel", "Nothing tells the jobs that are done apart.");
   const { least, most, title } = axes[axes.length - 1];
   const scale = { colorscale: "Viridis", cmin: least, cmax: most, showscale: true, colorbar: colourBar(plain(brief(title))) };
   return (spatial ? plotDimensions : plotLines)(axes, jobs, scale);
@@ -234,12 +256,12 @@ function plotLines(axes, jobs, scale) {
   const label = (x, y, text, more) => ({ x, y, text: plain(text), showarrow: false, font: { size: 11 }, ...more });
   const annotations = axes.flatMap((one, at) => [
     label(at, at % 2 === 0 ? 1.03 : 1.09, brief(one.title, 24), { yanchor: "bottom" }),
-    ...one.ticks.map((tick) => label(at, share(one, tick.at), tick.text, { xanchor: "right", xshift: -3, bgcolor: "rgba(255,255,255,0.7)" })),
+    ...one.ticks.map((tick) => label(at, share(one, tick.at), tick.text, { xanchor: "right", xshift: -3, bgcolor: themed("card") })),
   ]);
   const hidden = { visible: false, fixedrange: true };
   return plotOfHeight("parallel", 440, traces, {
     annotations,
-    shapes: axes.map((_, at) => ({ type: "line", x0: at, x1: at, y0: 0, y1: 1, line: { color: "#555555", width: 1 } })),
+    shapes: axes.map((_, at) => ({ type: "line", x0: at, x1: at, y0: 0, y1: 1, line: { color: themed("soft"), width: 1 } })),
     showlegend: false,
     hovermode: false,
     xaxis: { ...hidden, range: [-0.5, axes.length - 0.8] },

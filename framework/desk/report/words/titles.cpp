@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "report/words/titles.hpp"
+
+namespace palpate {
+
+std::map<std::string, std::string> map_titles(const ExperimentOptions& options) {
+  return {{"height", "Reconstructed surface"},
+          {"deviation", "Standard deviation of the height"},
+          {"u", "Uncertainty u: what is not known of the height"},
+          {"w", "Weight w: whether there is an object"},
+          {"p", "Probability p of an object, by footprint/" + options.footprint.type},
+          {"e", "Exploration e = u w: where to tap"},
+          {"score", "Score of acquisition/" + options.acquisition.type + ": where to tap"}};
+}
+
+}  // namespace palpate

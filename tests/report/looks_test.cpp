@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: MIT
+// How pages look and behave before anybody reads them: light and dark, on a phone, under the wheel; and what they do
+// not draw because it says nothing.
+#include "report/sweep_pages.hpp"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+class Looks : public test::SweepPages {
+ protected:
+  /// A run of the paper's experiment with its page. Returns its directory.
+  fs::path run_with_page(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"run", paper_, "--quiet", "--runs", "runs"});
+    const test::Ended ran = test::palpate(words, folder_.path());
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    fs::path directory = test::only_run(folder_.path() / "runs");
+    report(directory);
+    return directory;
+  }
+};
+
+/// The lightness, 0 to 255, of the page, of its text, of the map's frame, of the text in it, and of its axes' lines.
+const std::string kLightness =
+    "const light = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map(Number); return (r + g + b) / 3; };"
+    "const e = document.getElementById(document.getElementById('map_u') ? 'map_u' : 'front'); const l = e.layout;"
+    "const seen = [...e.querySelectorAll('.xtick text')].map((t) => light(getComputedStyle(t).fill));"
+    "const style = getComputedStyle(document.body);"
+    "return [light(style.backgroundColor), light(style.color), light(l.plot_bgcolor), Math.max(...seen), "
+    "light(l.xaxis.gridcolor)]";
+
+std::string system_is(const std::string& theme) {
+  return R"(devtools Emulation.setEmulatedMedia {"features": [{"name": "prefers-color-scheme", "value": ")" + theme +
+         "\"}]}";
+}
+const std::string kClickTheme = "document.getElementById('theme').click()";
+std::string plots_are(const std::string& theme) {
+  return "await light_of_plots() " + std::string(theme == "dark" ? "< 80" : "> 200");
+}
+/// Lets the page itself tell how light its plots are, so that one can wait for it.
+const std::string kWatchPlots =
+    "window.light_of_plots = () => document.getElementById(document.getElementById('map_u') ? 'map_u' : 'front')"
+    ".layout.plot_bgcolor.match(/[\\d.]+/g).map(Number)[0]";
+
+void expect_light(const json& seen) {
+  EXPECT_GT(seen.at(0), 230) << "page";
+  EXPECT_LT(seen.at(1), 80) << "its text";
+  EXPECT_GT(seen.at(2), 230) << "plot";
+  EXPECT_LT(seen.at(3), 80) << "its text";
+  EXPECT_GT(seen.at(4), 200) << "its grid";
+}
+
+void expect_dark(const json& seen) {
+  EXPECT_LT(seen.at(0), 50) << "page";
+  EXPECT_GT(seen.at(1), 200) << "its text";
+  EXPECT_LT(seen.at(2), 50) << "plot";
+  EXPECT_GT(seen.at(3), 200) << "its text";
+  EXPECT_LT(seen.at(4), 90) << "its grid";
+}
+
+TEST_P(Looks, OfARunAreDarkWithTheSystemUntilSomebodySwitchesAndThePageRemembersIt) {
+  const fs::path directory = run_with_page({"taps=4", "candidates.count=12"});
+  const Browsed seen = browse(directory, {drawn(4), kWatchPlots, kLightness,                     // light
+                                          system_is("dark"), plots_are("dark"), kLightness,      // goes along
+                                          kClickTheme, plots_are("light"), kLightness,           // says no
+                                          "reload", drawn(4), kWatchPlots, kLightness,           // remembers
+                                          kClickTheme, plots_are("dark"), kLightness,            // says yes
+                                          system_is("light"), plots_are("light"), kLightness});  // goes along
+  std::vector<json> shown;
+  std::copy_if(seen.values.begin(), seen.values.end(), std::back_inserter(shown),
+               [](const json& one) { return one.is_array(); });
+  ASSERT_EQ(shown.size(), 6U);
+  expect_light(shown.at(0));
+  expect_dark(shown.at(1));
+  expect_light(shown.at(2));
+  expect_light(shown.at(3));
+  expect_dark(shown.at(4));
+  expect_light(shown.at(5));
+}
+
+TEST_P(Looks, SwitchAlsoWhereNothingMayBeKept) {
+  const fs::path directory = run_with_page({"taps=4", "candidates.count=12"});
+  const std::string forbid = "devtools Page.addScriptToEvaluateOnNewDocument " +
+                             json{{"source",
+                                   "Object.defineProperty(window, 'localStorage', {get() { throw new "
+                                   "DOMException('no', 'SecurityError'); }})"}}
+                                 .dump();
+  const Browsed seen = browse(directory, {forbid, "reload", drawn(4), kWatchPlots,
+                                          "try { localStorage; return 'kept' } catch { return 'forbidden' }",
+                                          kClickTheme, plots_are("dark"), kLightness, "reload", drawn(4), kLightness});
+  std::vector<json> shown;
+  std::copy_if(seen.values.begin(), seen.values.end(), std::back_inserter(shown),
+               [](const json& one) { return !one.is_null(); });
+  ASSERT_EQ(shown.size(), 3U);
+  EXPECT_EQ(shown.at(0), "forbidden");
+  expect_dark(shown.at(1));
+  expect_light(shown.at(2));
+}
+
+const char* const kPhone =
+    R"(devtools Emulation.setDeviceMetricsOverride {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": true})";
+/// The width of the page, and of the widest plot that does not scroll within a frame of its own.
+const std::string kWidths =
+    "return [innerWidth, document.documentElement.scrollWidth, Math.max(...[...document.querySelectorAll('.plot')]"
+    ".filter((p) => getComputedStyle(p.closest('figure')).overflowX !== 'auto' && p.offsetParent)"
+    ".map((p) => p.getBoundingClientRect().right))]";
+
+TEST_P(Looks, OfARunOnAPhoneAreOneColumnWithTheSurfaceFirst) {
+  const fs::path directory = run_with_page({"taps=6", "candidates.count=16", "name=" + std::string(90, 'x')});
+  const Browsed seen = browse(
+      directory, {kPhone, "reload", drawn(6), kWidths,
+                  "const top = (s) => document.querySelector(s).getBoundingClientRect().top; return {surface: "
+                  "top('#surface'), bottom: document.querySelector('#surface').getBoundingClientRect().bottom, slider: "
+                  "top('#slider'), facts: top('.facts'), maps: top('#map_u')}",
+                  "return [...document.querySelectorAll('#maps_row figure')].map((f) => "
+                  "Math.round(f.getBoundingClientRect().left))"});
+  const json& widths = seen.values.at(0);
+  EXPECT_EQ(widths.at(0), 360);
+  EXPECT_LE(widths.at(1), 360) << "nothing to scroll sideways";
+  EXPECT_LE(widths.at(2), 360);
+  const json& tops = seen.values.at(1);
+  EXPECT_LT(tops.at("surface"), tops.at("slider"));
+  EXPECT_LT(tops.at("slider"), tops.at("facts"));
+  EXPECT_LT(tops.at("facts"), tops.at("maps"));
+  EXPECT_LT(tops.at("bottom"), 740) << "on the first screen";
+  for (const json& left : seen.values.at(2)) EXPECT_EQ(left, seen.values.at(2).at(0)) << "one column";
+}
+
+TEST_P(Looks, OfASweepOnAPhoneFitItsWidth) {
+  const fs::path directory = swept({paper_, "acquisition=weighted,uncertainty", "kernel.length_scale=1.7cm,3cm",
+                                    "seed=range(0,2)", "taps=5", "candidates.count=12"});
+  report(directory);
+  const Browsed seen = browse(directory, {kPhone, "reload", drawn(1), kWidths});
+  EXPECT_EQ(seen.values.at(0).at(0), 360);
+  EXPECT_LE(seen.values.at(0).at(1), 360);
+  EXPECT_LE(seen.values.at(0).at(2), 360);
+}
+
+TEST_P(Looks, OfASweepAreDarkAndItsJobsLinkToNothingButPagesThatAreThere) {
+  const fs::path directory =
+      swept({paper_, "acquisition=weighted,uncertainty", "seed=range(0,3)", "taps=5", "candidates.count=12"});
+  const std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
+  report(directory / "jobs" / rows.at(4).at("id"));
+  fs::remove_all(directory / "jobs" / rows.at(5).at("id"));
+  report(directory);
+  const std::string links = "return [...document.querySelectorAll('a')].map((a) => a.getAttribute('href'))";
+  const std::string how = "return document.getElementById('how_to_report')?.textContent ?? ''";
+  const Browsed seen =
+      browse(directory, {system_is("dark"), drawn(1), kWatchPlots, plots_are("dark"), kLightness, links, how});
+  const std::size_t at = seen.values.size() - 3;
+  expect_dark(seen.values.at(at));
+  EXPECT_EQ(seen.values.at(at + 1), json({"jobs/" + rows.at(4).at("id") + "/report.html"}));
+  // What the page tells to do works, and then there is nothing more to tell.
+  auto told = seen.values.at(at + 2).get<std::string>();
+  for (int job = 0; job < 4; ++job) {
+    const auto begin = told.find("palpate report ");
+    ASSERT_NE(begin, std::string::npos) << told;
+    const std::string place = told.substr(begin + 15, told.find(" makes it") - begin - 15);
+    EXPECT_EQ(place, (directory / "jobs" / rows.at(static_cast<std::size_t>(job)).at("id")).string());
+    report(place);
+    report(directory);
+    if (job == 1 || job == 2) continue;  // two looks in a browser are enough
+    const Browsed again = browse(directory, {drawn(1), links, how});
+    for (const json& link : again.values.at(0)) EXPECT_TRUE(fs::exists(directory / link.get<std::string>())) << link;
+    EXPECT_EQ(again.values.at(0).size(), static_cast<std::size_t>(job) + 2);
+    told = again.values.at(1).get<std::string>();
+    if (job == 0) told = "palpate report " + (directory / "jobs" / rows.at(1).at("id")).string() + " makes it";
+    if (job == 3) EXPECT_EQ(told, "");
+  }
+}
+
+/// Turns the wheel in the middle of the surface; `keys` are 0, or 2 for Ctrl.
+std::string wheel(int keys) {
+  return fmt::format(
+      R"(devtools Input.dispatchMouseEvent {{"type": "mouseWheel", "x": 600, "y": 300, "deltaX": 0, "deltaY": 240, "modifiers": {}}})",
+      keys);
+}
+
+TEST_P(Looks, TheWheelScrollsThePageOverEveryPlotAndWithCtrlItZoomsTheSurface) {
+  const fs::path directory = run_with_page({"taps=6", "candidates.count=16"});
+  const auto under = [](const std::string& id) {
+    return "document.getElementById('" + id +
+           "').scrollIntoView({block: 'start'}); window.scrollBy(0, -100); window.before = scrollY; const e = "
+           "document.elementFromPoint(600, 300); return e.closest('.plot')?.id ?? e.tagName";
+  };
+  std::vector<std::string> steps{drawn(6), under("surface"), wheel(0), "await scrollY > window.before + 100"};
+  if (GetParam()) {
+    const std::string eye = "document.getElementById('surface')._fullLayout.scene._scene.getCamera().eye";
+    steps.insert(steps.end(), {under("surface"), "window.eye = Math.hypot(...Object.values(" + eye + "))", wheel(2),
+                               "await Math.abs(Math.hypot(...Object.values(" + eye + ")) - window.eye) > 1e-3",
+                               "return scrollY - window.before"});
+  }
+  steps.insert(steps.end(), {under("map_w"), wheel(0), "await scrollY > window.before + 100"});
+  const Browsed seen = browse(directory, steps);
+  EXPECT_EQ(seen.values.at(0), "surface");
+  if (GetParam()) EXPECT_EQ(seen.values.at(3), 0) << "with Ctrl the page stays";
+  EXPECT_THAT(seen.values.back().get<std::string>(), testing::StartsWith("map_"));
+}
+
+/// The titles of all panels, and the lines about what is none.
+const std::string kPanels =
+    "const text = (s) => [...document.querySelectorAll(s)].map((e) => e.textContent); return [text('figcaption'), "
+    "text('.constants').join(' ')]";
+
+TEST_P(Looks, WhatNeverChangesIsALineAndNoPanel) {
+  const fs::path fixed = run_with_page({"seed=4", "taps=8", "candidates.count=16"});
+  const Browsed seen = browse(fixed, {drawn(8), kPanels});
+  const auto titles = seen.values.at(0).at(0).get<std::vector<std::string>>();
+  const auto words = seen.values.at(0).at(1).get<std::string>();
+  EXPECT_THAT(titles, Contains("Error of the surface (rms)"));
+  EXPECT_THAT(titles, Not(Contains(HasSubstr("Hyperparameters"))));
+  EXPECT_THAT(words, HasSubstr("Hyperparameters of the height process: signal 1, noise 0.0001, length_scale 0.017 SI"));
+
+  fs::remove_all(folder_.path() / "runs");
+  const fs::path fitted = run_with_page({"seed=4", "taps=8", "candidates.count=16", "fitting=ceres"});
+  const Browsed moving = browse(fitted, {drawn(8), kPanels});
+  EXPECT_THAT(moving.values.at(0).at(0).get<std::vector<std::string>>(),
+              Contains("Hyperparameters of the height process"));
+}
+
+TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
+  const fs::path missed = run_with_page({"taps=3", "candidates.count=12"});  // nothing is hit
+  const Browsed seen = browse(missed, {drawn(3), kPanels, "return document.getElementById('map_w') === null"});
+  EXPECT_THAT(seen.values.at(0).at(1).get<std::string>(),
+              HasSubstr("Weight w: whether there is an object: 0 everywhere"));
+  EXPECT_EQ(seen.values.at(1), true);
+
+  const std::string process = (test::source_folder() / "configs/process.yaml").string();
+  const test::Ended ran = test::palpate({"run", process, "--quiet", "--runs", "others", "taps=4"}, folder_.path());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const fs::path robot = test::only_run(folder_.path() / "others");
+  report(robot);
+  const Browsed other = browse(robot, {drawn(4), kPanels});
+  for (const json& title : other.values.at(0).at(0)) {
+    EXPECT_THAT(title.get<std::string>(), Not(HasSubstr("Error")));
+    EXPECT_THAT(title.get<std::string>(), Not(HasSubstr("IoU")));
+  }
+}
+
+TEST_P(Looks, PicturesCallMapsAndCurvesAsThePageDoes) {
+  for (const char* footprint : {"footprint=regression", "footprint=classifier"}) {
+    const fs::path directory = run_with_page({"seed=4", "taps=5", "candidates.count=12", footprint});
+    const test::Ended drawn_too = test::palpate({"report", directory.string(), "--figures"}, folder_.path());
+    ASSERT_EQ(drawn_too.status, 0) << drawn_too.err;
+    const Browsed seen = browse(directory, {drawn(5),
+                                            "const of = (s) => [...document.querySelectorAll(s)].map((e) => "
+                                            "e.textContent); return [of('#maps_row figcaption'), "
+                                            "of('.row.small figcaption')]"});
+    const std::string maps = text_of(directory / "figures/maps.gnuplot");
+    const std::string curves = text_of(directory / "figures/curves.gnuplot");
+    ASSERT_GE(seen.values.at(0).at(0).size(), 2U);
+    for (const json& title : seen.values.at(0).at(0)) {
+      if (title == "Standard deviation of the height") continue;  // colours of surface.png, as of the page's surface
+      EXPECT_THAT(maps, HasSubstr("set label '" + title.get<std::string>()));
+    }
+    for (const json& title : seen.values.at(0).at(1))
+      EXPECT_THAT(curves, HasSubstr("set label '" + title.get<std::string>()));
+    EXPECT_THAT(curves, HasSubstr("The same after every tap:"));
+    fs::remove_all(folder_.path() / "runs");
+  }
+}
+
+TEST_P(Looks, AColumnThatIsTheSameInEveryJobIsALineAndNoPanel) {
+  const fs::path directory =
+      swept({paper_, "acquisition=weighted,uncertainty", "seed=range(0,3)", "taps=5", "candidates.count=12"});
+  report(directory);
+  const std::string seen_plots =
+      "return ['cells_mean', 'cells_spread', 'groups'].map((id) => document.getElementById(id).offsetParent !== null)";
+  const std::string caption = "return document.getElementById('groups').closest('figure').textContent";
+  const Browsed seen =
+      browse(directory, {drawn(1), choose("metric", "taps"), drawn(2), seen_plots, caption, choose("metric", "rmse_m"),
+                         drawn(3), choose("up", "seed"), drawn(4), seen_plots});
+  EXPECT_EQ(seen.values.at(1), json({false, false, false}));
+  EXPECT_EQ(seen.values.at(2), "taps: 5 in each of 6 jobs.");
+  EXPECT_EQ(seen.values.at(5), json({true, false, true})) << "a cell with one job has no spread";
+}
+
+INSTANTIATE_TEST_SUITE_P(InABrowser, Looks, ::testing::Bool(), test::webgl_name);
+
+}  // namespace
+}  // namespace palpate
