@@ -95,7 +95,7 @@ class Relay final : public Journal {
   }
 
   void announce(const TapRecord& tap) override {
-    if (company_.observer != nullptr) look_at_errors();
+    if (company_.observer != nullptr && company_.observer->wants_errors()) look_at_errors();
     {
       const PhaseClock::Scope log(experiment_.clock(), Phase::log);
       if (maps_) write_maps(tap.number);

@@ -13,9 +13,11 @@ palpate_asset_style:
         .byte 0
 palpate_asset_common:
         .incbin "web/common.js"
+        .incbin "web/live.js"
         .byte 0
 palpate_asset_run:
         .incbin "web/run_maps.js"
+        .incbin "web/play.js"
         .incbin "web/run.js"
         .byte 0
 palpate_asset_sweep:

@@ -70,19 +70,24 @@ function marks(data, moment) {
   ];
 }
 
-/// The panels over the plane: what each shows, in which colours and range.
+/// The panels over the plane: what each shows of some maps, in which colours and range.
 function mapPanels(data, maps) {
-  const panel = (id, title, frames, range = [0, 1], colours = kWhere) => ({ id, title, bar: id, frames, range, colours });
-  const panels = [panel("u", "Uncertainty u", maps.u, [0, 1], kUnknown)];
+  const panel = (id, title, of, rangeOf = () => [0, 1], colours = kWhere) => {
+    const frames = of(maps);
+    return { id, title, bar: id, of, frames, rangeOf, range: rangeOf(frames), colours };
+  };
+  const panels = [panel("u", "Uncertainty u", ({ u }) => u, () => [0, 1], kUnknown)];
   if (maps.p) {
-    panels.push(panel("p", `Probability p of an object, by footprint/${data.footprint}`, maps.p));
+    panels.push(panel("p", `Probability p of an object, by footprint/${data.footprint}`, ({ p }) => p));
   } else {
-    const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
-    const largest = extent(exploration.flat(2))[1];
-    const most = largest > 1e-6 ? largest : 1;  // nothing but rounding needs no colours
-    panels.push(panel("w", "Weight w", maps.w), panel("e", "Exploration e = u w", exploration, [0, most]));
+    const exploration = ({ u, w }) => u.map((lines, frame) => product(lines, w[frame]));
+    const upTo = (frames) => {
+      const largest = extent(frames.flat(2))[1];
+      return [0, largest > 1e-6 ? largest : 1];  // nothing but rounding needs no colours
+    };
+    panels.push(panel("w", "Weight w", ({ w }) => w), panel("e", "Exploration e = u w", exploration, upTo));
   }
-  if (maps.score) panels.push(panel("score", `Score of the acquisition, ${data.acquisition}`, maps.score, extent(maps.score.flat(2))));
+  if (maps.score) panels.push(panel("score", `Score of the acquisition, ${data.acquisition}`, ({ score }) => score, (frames) => extent(frames.flat(2))));
   return panels;
 }
 
@@ -138,15 +143,22 @@ class SurfaceView {
     this.data = data;
     this.flat = data.x.length < 2 || data.y.length < 2;  // a single line of cells has no surface
     this.spatial = hasWebGL() && !this.flat;
-    this.heights = maps.height.map((lines) => scaled(lines, kCentimetres));
-    this.deviations = maps.deviation.map((lines) => scaled(lines, kCentimetres));
+    this.heights = [];
+    this.deviations = [];
+    this.grow(maps);
+    this.withTruth = false;
+    this.x = data.x.map((value) => value * kCentimetres);
+    this.y = data.y.map((value) => value * kCentimetres);
+  }
+
+  /// Takes in the maps of further moments, and the truth as it is now.
+  grow(maps) {
+    this.heights.push(...maps.height.map((lines) => scaled(lines, kCentimetres)));
+    this.deviations.push(...maps.deviation.map((lines) => scaled(lines, kCentimetres)));
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent([...this.heights, this.truth ?? []].flat(2));
     // How far above their places the marks of taps are, or half of every mark would be inside of the surface.
     this.lift = 0.06 * (this.range[1] - this.range[0]);
-    this.withTruth = false;
-    this.x = data.x.map((value) => value * kCentimetres);
-    this.y = data.y.map((value) => value * kCentimetres);
   }
 
   caption() {
@@ -214,8 +226,9 @@ class SurfaceView {
 
   /// What the colours of the surface say, as a map over the plane.
   deviationPanel() {
-    const range = [0, extent(this.deviations.flat(2))[1]];
-    return { id: "deviation", title: "Standard deviation of the height", bar: "cm", frames: this.deviations, range, colours: kUnknown };
+    const rangeOf = (frames) => [0, extent(frames.flat(2))[1]];
+    const frames = this.deviations;  // which the surface makes more
+    return { id: "deviation", title: "Standard deviation of the height", bar: "cm", of: () => [], frames, rangeOf, range: rangeOf(frames), colours: kUnknown };
   }
 
   wireframe() {

@@ -154,7 +154,7 @@ class JobTable {
     if (job.state === "missing") return String(job.index);
     const place = `jobs/${encodeURIComponent(job.id)}/`;
     const out = element("span", {}, element("a", { href: place }, String(job.index)));
-    if (job.reported) out.append(" ", element("a", { href: `${place}report.html` }, "report"));
+    if (job.reported && this.sweep.live === undefined) out.append(" ", element("a", { href: `${place}report.html` }, "report"));
     return out;
   }
 
@@ -216,23 +216,29 @@ function troubles(sweep) {
   if (open > 0) {
     const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
     const states = some.map((count) => count.join(" ")).join(", ");
-    out.push([`${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states}): this page shows the sweep as it stood; 'palpate resume' carries on what nobody runs.`]);
+    out.push([`${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows the sweep as it stood" : ""}; 'palpate resume' carries on what nobody runs.`]);
   }
   return out;
 }
 
-function drawSweep(data) {
-  const sweep = new SweepData(data);
+/// What became of the jobs so far.
+function standingOfSweep(sweep) {
   const counts = sweep.counts();
   if (sweep.done.length === 0) counts.unshift([0, "done"]);
+  return [factList([[sweep.jobs.length, "jobs"], ...counts]), ...warningList(troubles(sweep))];
+}
+
+function drawSweep(data) {
+  if (data.waiting !== undefined) return drawWaiting(data);
+  const sweep = new SweepData(data);
   const swept = sweep.all.flatMap((key, i) => [i > 0 ? ", " : " over ", foreign(key.name), ` (${key.values.length})`]);
   document.body.append(
-    element("p", { class: "sub" }, "sweep ", foreign(data.id), ...swept, "."),
-    factList([[sweep.jobs.length, "jobs"], ...counts]),
-    ...warningList(troubles(sweep)),
+    element("p", { class: "sub" }, "sweep ", foreign(data.id), ...swept, ". ", liveNote(data)),
+    element("div", { id: "standing" }, ...standingOfSweep(sweep)),
   );
   const drawing = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
   document.body.append(section("Config", element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
+  follow(data, (news) => growSweep(sweep, news));
   return drawing;
 }
 
@@ -241,6 +247,7 @@ function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has come to a result yet: there is nothing to draw."), jobs.place());
   jobs.choose({});
+  sweep.refresh = () => jobs.show();
   tellDrawn(1);
 }
 
@@ -292,7 +299,12 @@ function drawPanels(sweep) {
     jobs.place(),
   );
   jobs.choose(choice);
-  return drawAll([drawCells, drawGroups, drawParallel, drawFront]);
+  const all = [drawCells, drawGroups, drawParallel, drawFront];
+  sweep.refresh = () => {
+    jobs.show();
+    drawAll(all);
+  };
+  return drawAll(all);
 }
 
 openPage(drawSweep);
