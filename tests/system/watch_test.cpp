@@ -111,12 +111,18 @@ TEST_F(WatchedRun, IsShownToWhoHasTheAddressAndNothingElseIsToAnybody) {
   EXPECT_EQ(get(root, own), 200);
   EXPECT_EQ(get(root, host("localhost:8000")), 200) << "a tunnel has a port of its own";
   EXPECT_EQ(get(root, host("[::1]:8000")), 200);
-  for (const std::string& target :
-       {std::string("/"), std::string("//"), other, other + "news?at=1.0.0", "/" + address.token().substr(1) + "/",
-        "/x" + root, "/" + address.token() + "0/", "/favicon.ico"}) {
+  const Words strangers{"/",
+                        "//",
+                        other,
+                        other + "news?at=1.0.0",
+                        "/" + address.token().substr(1) + "/",
+                        "/x" + root,
+                        "/" + address.token() + "0/",
+                        "/favicon.ico"};
+  for (const std::string& target : strangers) {
     EXPECT_EQ(get(target, own), 403) << target;
   }
-  for (const std::string name :
+  for (const char* name :
        {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "localhost.evil.example", "8.8.8.8", ""}) {
     EXPECT_EQ(get(root, host(name)), 403) << name;
   }
@@ -285,8 +291,14 @@ TEST_F(WatchedRun, OfASweepFillsUpAndHasAPageForEachJobAndForNothingElse) {
   EXPECT_EQ(job.at("id"), id);
   EXPECT_EQ(job.at("moments").size(), 5U);
   EXPECT_EQ(address.get("jobs/" + id + "/news?at=" + job.at("live").get<std::string>() + "&now").status, 204);
-  for (const std::string& place : {"jobs/000000000000/", "jobs/../", "jobs/" + id, "jobs/" + id + "/taps.jsonl",
-                                   "jobs/" + id + "/../../config.yaml", "jobs//", "jobs/" + id + "/jobs/" + id + "/"}) {
+  const Words nowhere{"jobs/000000000000/",
+                      "jobs/../",
+                      "jobs/" + id,
+                      "jobs/" + id + "/taps.jsonl",
+                      "jobs/" + id + "/../../config.yaml",
+                      "jobs//",
+                      "jobs/" + id + "/jobs/" + id + "/"};
+  for (const std::string& place : nowhere) {
     EXPECT_EQ(address.get(place).status, 404) << place;
   }
 }

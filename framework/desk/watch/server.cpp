@@ -208,7 +208,6 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
     response_.set("X-Frame-Options", "DENY");
     response_.set("Content-Security-Policy", "frame-ancestors 'none'");
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
-    response_.set("Cross-Origin-Opener-Policy", "same-origin");
     if (status == http::status::method_not_allowed) response_.set(http::field::allow, "GET");
     if (*type != '\0') response_.set(http::field::content_type, type);
     response_.body() = std::move(body);
