@@ -88,10 +88,11 @@ TEST_F(AGrowingLog, GoesOnWhereACopyWithMoreTakesItsPlace) {
   EXPECT_FALSE(anew_);
 }
 
-TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceItIsForgotten) {
+TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {
   append("{\"tap\": 1}\nnonsense\n");
   EXPECT_THROW(read(), Error);
   folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n");
+  EXPECT_THAT(read(), ElementsAre(1, 2));
   log_.forget();
   EXPECT_THAT(read(), ElementsAre(1, 2));
 }

@@ -26,7 +26,10 @@ std::vector<Row> GrowingLog::read(bool& anew) {
   for (std::size_t begin = anew ? 0 : known_.size(), end = 0; begin < text.size(); begin = end + 1) {
     end = text.find('\n', begin);
     std::optional<Row> row = parse_json_row(text.substr(begin, end - begin));
-    if (!row) throw Error(file_.string(), "has a line that is no JSON object", "the file is damaged");
+    if (!row) {
+      known_.clear();
+      throw Error(file_.string(), "has a line that is no JSON object", "the file is damaged");
+    }
     if (!is_intent(*row)) rows.push_back(std::move(*row));
   }
   known_ = std::move(text);

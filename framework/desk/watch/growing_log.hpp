@@ -20,7 +20,7 @@ class GrowingLog {
 
   /// The taps that were recorded since the last call; announcements are left out. `anew` becomes true where the file no
   /// longer begins with what was read before, or is gone: then the taps are all that it has now. Throws Error for a
-  /// line that is none.
+  /// line that is none; once the file has changed, the next call begins at the beginning.
   std::vector<Row> read(bool& anew);
 
   /// Has the next read() begin at the beginning.

@@ -54,8 +54,10 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
       kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
       // Or the browser would ask for one.
       of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
-  out += packed("plotly", "gzip",
-                {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});
+  static const std::string plotly =
+      packed("plotly", "gzip",
+             {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});
+  out += plotly;
   out += packed("data", "deflate", deflated(line_of(data)));
   out += packed("maps", "deflate", deflated(maps));
   out += fmt::format("<script>\n\"use strict\";\n{}{}</script>\n</body>\n</html>\n", palpate_asset_common, script);
