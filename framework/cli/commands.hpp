@@ -37,6 +37,7 @@ struct RunArguments {
   bool step = false;
   bool print_config = false;
   bool origins = false;
+  bool watch = false;
   std::string junit;
 };
 int run(Program& program, const RunArguments& arguments);
@@ -47,6 +48,8 @@ struct RunOutput {
   bool json = false;   ///< summary.json on stdout
   std::string junit;   ///< a file, "" for none
   bool step = false;   ///< every tap is asked for
+  /// Where its page is served while it goes on, by a process of its own; "" for nowhere.
+  std::filesystem::path watched{};
 };
 /// Has `action` run it, with who shows each tap and who is asked before, shows its report and judges it by the config.
 /// Returns the exit status.
@@ -59,6 +62,7 @@ struct LaunchArguments {
   std::optional<int> workers;  ///< jobs at a time, of one task where there are several
   int attempts = 3;            ///< a job is begun at most so often before it stays failed
   bool quiet = false;
+  bool watch = false;
   std::string junit;
   // Only for a cluster:
   std::string partition, time, account;
@@ -86,6 +90,15 @@ struct ResumeArguments {
   LaunchArguments launch;
 };
 int resume(Program& program, const ResumeArguments& arguments);
+
+struct WatchArguments {
+  std::string directory;
+  std::string bind = "127.0.0.1";
+  int port = 0;
+  bool until_left = false;
+};
+/// Serves the page of a run or a sweep until a signal ends it.
+int watch(Program& program, const WatchArguments& arguments);
 
 struct ListArguments {
   std::string folder = "runs";

@@ -32,6 +32,7 @@ namespace {
 
 int sweep(Program& program, const SweepArguments&) { return hand_over(program); }
 int list_runs(Program& program, const ListArguments&) { return hand_over(program); }
+int watch(Program& program, const WatchArguments&) { return hand_over(program); }
 int pareto(Program& program, const ParetoArguments&) { return hand_over(program); }
 int compare(Program& program, const CompareArguments&) { return hand_over(program); }
 int report(Program& program, const ReportArguments&) { return hand_over(program); }

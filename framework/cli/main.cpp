@@ -53,6 +53,7 @@ struct CommandLine {
   ParetoArguments pareto;
   CompareArguments compare;
   ReportArguments report;
+  WatchArguments watch;
   ListArguments list;
   std::string directory;  ///< of a command that has no arguments of its own
   std::string to;
@@ -93,6 +94,8 @@ struct CommandLine {
 constexpr const char* kStepHelp =
     "of a robot: show place, way and force limits of every tap before it is made; Enter taps, q ends, "
     "'palpate resume' carries on";
+constexpr const char* kWatchHelp =
+    "serve a page that follows it, as 'palpate watch --until-left' does, and print its address";
 constexpr const char* kRunsHelp = "where run directories are made";
 constexpr const char* kJunitHelp = "write what held and what failed as JUnit XML to this file";
 constexpr int kMany = 1000000;
@@ -110,9 +113,11 @@ void show(CLI::App* command, const std::vector<std::string>& examples) {
 }
 
 void add_run(CommandLine& line) {
-  CLI::App* sub = line.add(
-      "run", "Run one experiment", [&line](Needs& needs) { needs.config(line.run.config, line.run.overrides, false); },
-      run, line.run);
+  const Need takes = [&line](Needs& needs) {
+    if (line.run.watch) needs.whole();
+    needs.config(line.run.config, line.run.overrides, false);
+  };
+  CLI::App* sub = line.add("run", "Run one experiment", takes, run, line.run);
   sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->type_name("CONFIG")->required();
   sub->add_option("OVERRIDE", line.run.overrides,
                   "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
@@ -123,6 +128,7 @@ void add_run(CommandLine& line) {
   sub->add_flag("--dry-run", line.run.dry_run, "say what would be run and where; move nothing");
   sub->add_flag("--force", line.run.force, "move an earlier run of this id aside and run again");
   sub->add_flag("--step", line.run.step, kStepHelp)->excludes(quiet);
+  sub->add_flag("--watch", line.run.watch, kWatchHelp);
   CLI::Option* print = sub->add_flag("--print-config", line.run.print_config, "print the resolved config and stop");
   sub->add_flag("--origins", line.run.origins, "with it, where each value came from")->needs(print);
   sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
@@ -141,6 +147,7 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
       ->check(from(1, kMany))
       ->capture_default_str();
   sub->add_flag("--quiet", launch.quiet, "show no progress");
+  sub->add_flag("--watch", launch.watch, kWatchHelp);
   sub->add_option("--junit", launch.junit, kJunitHelp)->type_name("FILE");
   sub->add_option("--launcher", launch.launcher, "who runs the jobs: this machine, or a cluster under Slurm")
       ->type_name("NAME")
@@ -183,9 +190,11 @@ void add_sweep(CommandLine& line) {
 }
 
 void add_resume(CommandLine& line) {
-  CLI::App* sub = line.add(
-      "resume", "Carry on a broken run or sweep", [&line](Needs& needs) { needs.record(line.resume.directory); },
-      resume, line.resume);
+  const Need takes = [&line](Needs& needs) {
+    if (line.resume.launch.watch) needs.whole();
+    needs.record(line.resume.directory);
+  };
+  CLI::App* sub = line.add("resume", "Carry on a broken run or sweep", takes, resume, line.resume);
   line.add_record(sub, "DIR", line.resume.directory, Wanted::any, "the run or the sweep");
   sub->add_flag("--retry-failed", line.resume.options.retry_failed, "carry on what failed, too");
   sub->add_flag("--force", line.resume.options.force, "carry on what another build began");
@@ -307,6 +316,22 @@ void add_compare(CommandLine& line) {
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate compare runs/many/* --by acquisition --metric on_surface_taps",
              "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --table"});
+}
+
+void add_watch(CommandLine& line) {
+  CLI::App* sub = line.add("watch", "Serve a page that follows a run or a sweep while it goes on",
+                           all_about(line.watch.directory), watch, line.watch);
+  line.add_record(sub, "DIR", line.watch.directory, Wanted::any, "the run or the sweep");
+  constexpr int kMostPort = 65535;
+  sub->add_option("--port", line.watch.port, "of the address; if not given, any that is free")
+      ->type_name("N")
+      ->check(from(1, kMostPort));
+  sub->add_option("--bind", line.watch.bind, "a number; others than this machine may look with one that they reach")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  sub->add_flag("--until-left", line.watch.until_left,
+                "end two minutes after the run has ended and the last page was closed, not by Ctrl-C alone");
+  show(sub, {"palpate watch runs/object_i/174c331b0e7d", "palpate watch many@latest --port 8000"});
 }
 
 void add_about_one(CommandLine& line) {
@@ -474,7 +499,8 @@ int run_main(int argc, char** argv) {
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
   CommandLine line(app, asked);
-  for (const auto add : {add_run, add_sweep, add_resume, add_list, add_rest, add_compare, add_about_one}) add(line);
+  for (const auto add : {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_about_one})
+    add(line);
   // Questions of shells and of the build, as --needs is one of ./palpate.
   const std::string first = argc > 1 ? argv[1] : "";
   if (first == "--complete") return complete(app, argc, argv);

@@ -43,7 +43,8 @@ int resume(Program& program, const ResumeArguments& arguments) {
                 "leave it out");
   }
   const ResolvedConfig config = load_run(program.host, arguments.directory);
-  const RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
+  RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
+  if (arguments.launch.watch) output.watched = arguments.directory;
   return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
     return resume_run(program, arguments.directory, arguments.options, display, step);
   });

@@ -4,6 +4,7 @@
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/step.hpp"
+#include "cli/watcher.hpp"
 #include "config/expand.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
@@ -108,7 +109,8 @@ int run(Program& program, const RunArguments& arguments) {
     return kDone;
   }
   check_junit(arguments.junit);
-  const RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
+  RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
+  if (arguments.watch) output.watched = directory;
   return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
     return start_run(program, config, directory, arguments.force, display, step);
   });
@@ -120,9 +122,14 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
   std::unique_ptr<Journal> display;
   if (output.table) display = std::make_unique<TapTable>(config.options.taps);
+  std::optional<Watcher> watcher;
+  if (!output.watched.empty()) watcher.emplace(program, output.watched, display.get());
   const GateOutput gate{config.options.name, output.junit, output.table};
   RunReport report;
-  const std::optional<Error> trouble = trouble_in([&] { report = action(display.get(), step.get()); });
+  const std::optional<Error> trouble = trouble_in([&] {
+    report = action(watcher ? &*watcher : display.get(), step.get());
+    if (watcher) watcher->start();  // of a run that had no tap left to make
+  });
   std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
   // A run that failed is a result, too: continuous integration shall see it as one.
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);

@@ -6,6 +6,7 @@
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/sweep_display.hpp"
+#include "cli/watcher.hpp"
 #include "config/trouble.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
@@ -183,6 +184,7 @@ int run_campaign(const Campaign& campaign) {
   if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
     mention("one job at a time: the backend has but one thing to move\n");
   }
+  if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
   if (!launch_open(campaign, begun)) return kDone;
   const Standing end = standing_of(sweep, jobs);
   const bool interrupted = campaign.program.interrupted->load();

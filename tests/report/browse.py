@@ -2,17 +2,19 @@
 # SPDX-License-Identifier: MIT
 """Opens a page in headless Chromium and does there what it is told.
 
-    browse.py FILE [--no-webgl] STEP...
+    browse.py FILE|URL [--no-webgl] STEP...
 
 A step is `return ...` or other JavaScript, whose value is printed as a line of JSON; `await CONDITION`, which waits until that
 JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of all of the page, and `view FILE`,
-of what the window shows; `size W H`, of the window; `reload`; `devtools METHOD ARGUMENTS`, JSON, what Chromium's own tools can: a turn
-of the wheel, another screen, another wish of the system's. The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
+of what the window shows; `size W H`, of the window; `reload`; `open URL`; `shell COMMAND`, which does something outside of it;
+`devtools METHOD ARGUMENTS`, JSON, what Chromium's own tools can: a turn of the wheel, another screen, another wish of the system's.
+The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
 """
 
 import json
 import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 
@@ -59,6 +61,10 @@ def perform(browser, step):
         picture(browser, rest)
     elif word == "view":
         pathlib.Path(rest).write_bytes(browser.get_screenshot_as_png())
+    elif word == "shell":
+        subprocess.run(rest, shell=True, check=True, stdout=subprocess.DEVNULL)
+    elif word == "open":
+        browser.get(rest)
     elif word == "size":
         browser.set_window_size(*map(int, rest.split()))
     elif step == "reload":
@@ -79,7 +85,7 @@ def main():
         browser = open_browser(profile, webgl)
         browser.set_script_timeout(PATIENCE)  # a step may draw in software, and answers with what it drew
         try:
-            browser.get(pathlib.Path(page).absolute().as_uri())
+            browser.get(page if page.startswith("http://") else pathlib.Path(page).absolute().as_uri())
             for step in steps:
                 perform(browser, step)
             print(json.dumps([entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]))

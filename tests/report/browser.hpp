@@ -21,7 +21,7 @@ struct Browsed {
   std::string trouble;                 ///< why the browser or a step failed, "" if none did
 };
 
-/// Opens `page` and does the steps, each as browse.py describes it.
+/// Opens `page`, a file or an address, and does the steps, each as browse.py describes it.
 Browsed browse(const std::filesystem::path& page, const std::vector<std::string>& steps, bool webgl);
 
 /// Waits until the page says that it has drawn this: the tap of a run, or how often for a sweep.

@@ -141,6 +141,8 @@ class Journal {
   /// The tap is chosen; nothing has moved and nothing is announced. If it may not be made, the run ends there,
   /// interrupted.
   virtual bool permits(const TapRecord& /*tap*/) { return true; }
+  /// Whether it shows the errors of the state that a tap is chosen from, which are then computed, whoever reads them.
+  virtual bool wants_errors() const { return true; }
   /// The tap is chosen; nothing has moved.
   virtual void announce(const TapRecord& tap) = 0;
   /// The tap is over. `seconds` is the time since the last tap, by phase.

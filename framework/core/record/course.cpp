@@ -102,7 +102,7 @@ bool Relay::permits(const TapRecord& tap) {
 }
 
 void Relay::announce(const TapRecord& tap) {
-  if (company_.observer != nullptr) look_at_errors();
+  if (company_.observer != nullptr && company_.observer->wants_errors()) look_at_errors();
   {
     const PhaseClock::Scope log(experiment_.clock(), Phase::log);
     if (maps_) write_maps(tap.number);

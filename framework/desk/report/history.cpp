@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace palpate {
@@ -71,43 +72,79 @@ std::string count_words(const RunResult& result) {
   return out;
 }
 
-History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
-  Playback playback(workshop, recording);
-  Experiment& experiment = playback.experiment();
-  const Candidates& all = experiment.candidates();
-  const auto some =
-      Eigen::seq(0, Eigen::last, (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross);
-  const auto shown = [&](const Eigen::VectorXd& map) -> Eigen::VectorXf {
-    const Eigen::MatrixXd cells = map.reshaped<Eigen::RowMajor>(all.rows, all.columns)(some, some);
-    return cells.reshaped<Eigen::RowMajor>().cast<float>();
+HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recording)
+    : recording_(recording), playback_(workshop, recording) {
+  const Candidates& all = playback_.experiment().candidates();
+  stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
+  grown_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
+  grown_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
+  const bool weight = playback_.experiment().belief().footprint_is_weight();
+  for (const char* name : {"height", "deviation", "u", weight ? "w" : "p", "score"}) grown_.maps.push_back({name, {}});
+  add();
+}
+
+void HistoryGrower::advance() {
+  playback_.advance_to(playback_.taps() + 1);
+  add();
+}
+
+void HistoryGrower::add() {
+  const Snapshot now = snapshot_of(playback_, recording_);
+  const Eigen::VectorXd* const maps[]{&now.surface, &now.deviation, &now.uncertainty,
+                                      now.has_weight() ? &now.weight : &now.probability, &now.scores};
+  for (std::size_t i = 0; i < std::size(maps); ++i) grown_.maps[i].frames.push_back(shown(*maps[i]));
+  own_scores_ = own_scores_ || own_scores(now);
+  largest_ = std::max(largest_, now.largest_deviation);
+  if (const Truth* truth = playback_.experiment().truth()) truth_ = shown(truth->height);
+  grown_.shown.push_back(now.taps);
+  grown_.moments.push_back(now);
+}
+
+Eigen::VectorXf HistoryGrower::shown(const Eigen::VectorXd& map) {
+  const Candidates& all = playback_.experiment().candidates();
+  const auto some = Eigen::seq(0, Eigen::last, stride_);
+  const Eigen::MatrixXd cells = map.reshaped<Eigen::RowMajor>(all.rows, all.columns)(some, some);
+  return cells.reshaped<Eigen::RowMajor>().cast<float>();
+}
+
+void HistoryGrower::thin(std::size_t most) {
+  const auto drop = [last = grown_.shown.size() - 1](auto& list) {
+    std::size_t kept = 0;
+    for (std::size_t i = last % 2; i <= last; i += 2) list[kept++] = std::move(list[i]);
+    list.resize(kept);
   };
-  const bool weight = experiment.belief().footprint_is_weight();
-  const std::vector<std::pair<const char*, Eigen::VectorXd Snapshot::*>> maps{
-      {"height", &Snapshot::surface},
-      {"deviation", &Snapshot::deviation},
-      {"u", &Snapshot::uncertainty},
-      {weight ? "w" : "p", weight ? &Snapshot::weight : &Snapshot::probability},
-      {"score", &Snapshot::scores}};
-  History out;
-  out.x = all.xs(some);
-  out.y = all.ys(some);
-  for (const auto& [name, map] : maps) out.maps.push_back({name, {}});
-  bool scores = false;
-  double largest = 0.0;
+  const auto cells = static_cast<std::size_t>(grown_.maps.front().frames.front().size());
+  if (grown_.shown.size() < 2 || grown_.shown.size() * grown_.maps.size() * cells <= most) return;
+  for (MapSeries& map : grown_.maps) drop(map.frames);
+  drop(grown_.shown);
+}
+
+History HistoryGrower::since(int moment) const {
+  const auto first = std::lower_bound(grown_.shown.begin(), grown_.shown.end(), moment);
+  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y};
+  for (const MapSeries& map : grown_.maps)
+    out.maps.push_back({map.name, {map.frames.end() - (grown_.shown.end() - first), map.frames.end()}});
+  return finished(std::move(out));
+}
+
+History HistoryGrower::take() { return finished(std::move(grown_)); }
+
+History HistoryGrower::finished(History history) const {
+  for (Eigen::VectorXf& frame : history.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
+  if (!own_scores_) history.maps.pop_back();
+  if (truth_) history.maps.push_back({"truth", {*truth_}});
+  return history;
+}
+
+History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
   const auto last = static_cast<int>(recording.taps.size());
-  for (int taps = 0; taps <= last; ++taps) {
-    playback.advance_to(taps);
-    const Snapshot now = snapshot_of(playback, recording);
-    for (std::size_t i = 0; i < maps.size(); ++i) out.maps[i].frames.push_back(shown(now.*maps[i].second));
-    scores = scores || own_scores(now);
-    largest = std::max(largest, now.largest_deviation);
-    out.moments.push_back(now);
-    progress(taps, last);
+  HistoryGrower grower(workshop, recording);
+  progress(0, last);
+  while (grower.taps() < last) {
+    grower.advance();
+    progress(grower.taps(), last);
   }
-  for (Eigen::VectorXf& frame : out.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest));
-  if (!scores) out.maps.pop_back();
-  if (const Truth* truth = experiment.truth()) out.maps.push_back({"truth", {shown(truth->height)}});
-  return out;
+  return grower.take();
 }
 
 }  // namespace palpate

@@ -63,10 +63,11 @@ struct MapSeries {
 
 struct History {
   std::vector<Moment> moments;  ///< before the first tap, and after each
+  std::vector<int> shown;       ///< the moments of which there are maps, ascending
   /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres, at most
   /// the largest that the height process has at any moment: that of an object's level before it is touched means
   /// nothing), "u", "w" or, where the footprint is not the weight, "p", and "score" where the acquisition's is none of
-  /// these nor u w: a frame for each moment.
+  /// these nor u w: a frame for each moment that is shown.
   /// Last, where truth is known, "truth" in one frame, metres.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row
@@ -77,6 +78,40 @@ using OnProgress = std::function<void(int done, int all)>;
 
 /// Maps of more columns or rows than this have only every second, third, ... of them.
 inline constexpr int kMostCellsAcross = 128;
+
+/// A history that is lived through tap by tap, and may be looked at in between: of a run that goes on.
+class HistoryGrower {
+ public:
+  /// At the moment before the first tap. `workshop` and `recording` must outlive it; `recording`, which has a tap, may
+  /// get more of them. Throws Error as Playback does.
+  HistoryGrower(const Workshop& workshop, const Recording& recording);
+
+  /// As many as there are moments so far, less one.
+  int taps() const { return playback_.taps(); }
+  bool has_own_scores() const { return own_scores_; }
+  /// Takes in the next recorded tap, which must be there.
+  void advance();
+  /// Where its maps hold more numbers than that, drops every second moment's but never the last one's.
+  void thin(std::size_t most);
+
+  /// The history so far, with the maps of the moments from `moment` on; equal to that of a run that ends here.
+  History since(int moment) const;
+  /// All of it. Nothing may be asked afterwards.
+  History take();
+
+ private:
+  void add();
+  History finished(History history) const;
+  Eigen::VectorXf shown(const Eigen::VectorXd& map);
+
+  const Recording& recording_;
+  Playback playback_;
+  int stride_;  ///< shown is every so-many-th column and row
+  bool own_scores_ = false;
+  std::optional<Eigen::VectorXf> truth_;  ///< as of now: what is pushed moves it
+  double largest_ = 0.0;                  ///< standard deviation of the height process, of all moments
+  History grown_;                         ///< maps as they are: finished() has the last word on them
+};
 
 /// Lives through the taps of a recorded run again. Throws Error as Playback does.
 History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress);

@@ -14,9 +14,11 @@ palpate_asset_style:
 palpate_asset_common:
         .incbin "web/theme.js"
         .incbin "web/common.js"
+        .incbin "web/live.js"
         .byte 0
 palpate_asset_run:
         .incbin "web/run_maps.js"
+        .incbin "web/play.js"
         .incbin "web/run.js"
         .byte 0
 palpate_asset_runs:

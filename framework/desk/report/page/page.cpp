@@ -40,19 +40,25 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-std::string make_page(std::string_view script, const Json& data, const std::string& maps) {
+std::string line_of(const Json& data) { return data.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOf of) {
   // plotly makes functions from texts of its own where it draws with WebGL: unsafe-eval.
   constexpr const char* kPolicy =
       "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}{}\">\n{}"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n"
       "<body>\n<noscript>This page draws itself by a script, which your browser does not run.</noscript>\n",
-      kPolicy, palpate_asset_style);
-  out += packed("plotly", "gzip",
-                {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});
-  out += packed("data", "deflate", deflated(data.dump(-1, ' ', false, Json::error_handler_t::replace)));
+      kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
+      // Or the browser would ask for one.
+      of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
+  static const std::string plotly =
+      packed("plotly", "gzip",
+             {palpate_asset_plotly, static_cast<std::size_t>(palpate_asset_plotly_end - palpate_asset_plotly)});
+  out += plotly;
+  out += packed("data", "deflate", deflated(line_of(data)));
   out += packed("maps", "deflate", deflated(maps));
   out += fmt::format("<script>\n\"use strict\";\n{}{}</script>\n</body>\n</html>\n", palpate_asset_common, script);
   return out;

@@ -31,12 +31,9 @@ namespace fs = std::filesystem;
 
 Json json_of_run(const Recording& recording) {
   const ExperimentOptions& options = recording.config.options;
-  const RunStatus status = read_status(recording.directory);
   return {{"name", options.name},
           {"id", recording.config.id},
           {"seed", options.seed},
-          {"state", state_name(status.state)},
-          {"stop_reason", status.stop_reason},
           {"budget", options.taps},
           {"acquisition", options.acquisition.type},
           {"footprint", options.footprint.type},
@@ -141,51 +138,96 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   return out;
 }
 
-std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
+/// What may change with every tap; `history` has at least one moment.
+static Json json_of_standing(const Recording& recording, const History& history) {
+  // As read_status(), which counts the taps again.
+  const bool held = is_running(recording.directory);
+  RunStatus status = read_ending(recording.directory);
+  if (held && status.state != RunStatus::State::done) status.state = RunStatus::State::running;
+  const Curves curves = curves_of(recording, history);
+  return {{"state", state_name(status.state)}, {"stop_reason", status.stop_reason},
+          {"summary", recording.summary},      {"curves", curves.panels},
+          {"constants", curves.constants},     {"warnings", warnings_of(recording, history)}};
+}
+
+/// All that a page has of a run, but for its maps.
+static Json json_of_page(const Recording& recording, const History& history) {
   const fs::path& directory = recording.directory;
   const Tree manifest = is_there(directory / "manifest.json") ? read_json(directory / "manifest.json") : Tree::map();
-  const Curves curves = curves_of(recording, history);
   Json data = json_of_run(recording);
+  data.update(json_of_standing(recording, history));
   data.update({{"version", kVersion},
-               {"summary", recording.summary},
                {"taps", recording.rows},
                {"moments", history.moments},
                {"errors", error_fields()},
-               {"curves", curves.panels},
-               {"constants", curves.constants},
                {"titles", map_titles(recording.config.options)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
                {"config", json_of_config(recording, manifest)},
-               {"build", json_of_build(manifest)},
-               {"warnings", warnings_of(recording, history)}});
+               {"build", json_of_build(manifest)}});
+  return data;
+}
+
+/// Packs the maps of every `stride`-th of the moments that are shown, counted from the last, and describes them.
+static std::string add_maps(Json& data, const History& history, std::size_t stride) {
+  std::vector<int> shown;
+  std::string bytes;
+  Json described = Json::array();
+  const std::size_t last = history.shown.size() - 1;
+  for (std::size_t i = last % stride; i <= last; i += stride) shown.push_back(history.shown[i]);
+  for (const MapSeries& one : history.maps) {
+    std::vector<Eigen::VectorXf> frames;
+    if (one.name == "truth") frames = one.frames;  // of all moments
+    for (std::size_t i = last % stride; i <= last && one.name != "truth"; i += stride) frames.push_back(one.frames[i]);
+    const PackedMaps packed = pack_maps(frames);
+    described.push_back(
+        {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
+    bytes += packed.bytes;
+  }
+  data["maps"] = described;
+  data["shown"] = shown;
+  return bytes;
+}
+
+std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
+  Json data = json_of_page(recording, history);
   const int last = history.moments.back().taps;
   // Maps never pack to a tenth of their bytes: with more than these the page would surely be too large.
   constexpr double kMostRaw = 8e6;
   double raw = 0.0;
   for (const MapSeries& one : history.maps)
     raw += 2.0 * static_cast<double>(one.frames.size()) * static_cast<double>(one.frames.front().size());
-  for (int stride = std::max(1, static_cast<int>(raw / kMostRaw));; stride += 1 + stride / 4) {
+  for (std::size_t stride = std::max<std::size_t>(1, static_cast<std::size_t>(raw / kMostRaw));;
+       stride += 1 + stride / 4) {
     progress(last, last);
-    std::vector<int> shown;  // every stride-th moment, counted from the last
-    for (int moment = last % stride; moment <= last; moment += stride) shown.push_back(moment);
-    Json described;
-    std::string bytes;
-    for (const MapSeries& one : history.maps) {
-      std::vector<Eigen::VectorXf> frames;
-      if (one.frames.size() == 1) frames = one.frames;  // of all moments
-      for (std::size_t i = 0; i < shown.size() && one.frames.size() > 1; ++i)
-        frames.push_back(one.frames[static_cast<std::size_t>(shown[i])]);
-      const PackedMaps packed = pack_maps(frames);
-      described.push_back(
-          {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
-      bytes += packed.bytes;
-    }
-    data["maps"] = described;
-    data["shown"] = shown;
+    const std::string bytes = add_maps(data, history, stride);
     std::string page = make_page(palpate_asset_run, data, bytes);
-    if (page.size() <= kMostPageBytes || shown.size() == 1) return page;
+    if (page.size() <= kMostPageBytes || data["shown"].size() == 1) return page;
   }
+}
+
+std::string live_run_page(const Recording& recording, const History& history, const std::string& at) {
+  Json data = json_of_page(recording, history);
+  const std::string bytes = add_maps(data, history, 1);
+  data["live"] = at;
+  return make_page(palpate_asset_run, data, bytes, PageOf::server);
+}
+
+std::string waiting_page(const std::string& name, const std::string& id, const std::string& why,
+                         const std::string& at) {
+  return make_page(palpate_asset_run, {{"name", name}, {"id", id}, {"waiting", why}, {"live", at}}, "", PageOf::server);
+}
+
+std::string run_news(const Recording& recording, const History& history, int moments, const std::string& at) {
+  Json news = json_of_standing(recording, history);
+  const auto made = history.moments.size();
+  const auto known = static_cast<std::size_t>(moments);
+  const auto row = [&](std::size_t moment) { return recording.rows.begin() + static_cast<std::ptrdiff_t>(moment) - 1; };
+  news["at"] = at;
+  news["moments"] = std::vector<Moment>(history.moments.begin() + moments, history.moments.end());
+  news["taps"] = known < made ? std::vector<Row>(row(known), row(made)) : std::vector<Row>{};
+  if (!history.shown.empty()) news["bytes"] = base64(deflated(add_maps(news, history, 1)));
+  return line_of(news);
 }
 
 }  // namespace palpate

@@ -16,6 +16,17 @@ inline constexpr std::size_t kMostPageBytes = 2'900'000;
 /// `progress` hears of it, too.
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress);
 
+/// The page of a run that goes on, to be served. It asks the server that it came from for what comes after the moments
+/// of `history`, which has as many taps as `recording`, and says by `at` how far it is.
+std::string live_run_page(const Recording& recording, const History& history, const std::string& at);
+
+/// The page of a run of which there is nothing to be shown yet, `why` in words. It asks as live_run_page() does.
+std::string waiting_page(const std::string& name, const std::string& id, const std::string& why, const std::string& at);
+
+/// What a page takes that has the first `moments` moments: JSON on one line, of the rest of `history`, which has maps
+/// of those moments alone, and of what may change with every tap. The page is then at `at`.
+std::string run_news(const Recording& recording, const History& history, int moments, const std::string& at);
+
 /// Maps in a few bytes a cell. Smooth maps have small steps from cell to cell: steps of 16-bit numbers, their low and
 /// their high bytes apart, are what zlib makes least of.
 struct PackedMaps {

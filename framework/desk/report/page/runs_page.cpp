@@ -34,14 +34,15 @@ const MapSeries* series(const History& history, const std::string& name) {
   return one != history.maps.end() ? &*one : nullptr;
 }
 
-/// Adds the surface at every stride-th moment, counted from the last, and the truth; `out` learns which these are.
-void pack_surfaces(const History& history, int stride, Json& out, std::string& bytes) {
-  const int last = history.moments.back().taps;
+/// Adds the surface at every stride-th moment that has maps, counted from the last, and the truth; `out` learns which
+/// these are.
+void pack_surfaces(const History& history, std::size_t stride, Json& out, std::string& bytes) {
+  const std::size_t last = history.shown.size() - 1;
   std::vector<int> shown;
   std::vector<Eigen::VectorXf> heights;
-  for (int moment = last % stride; moment <= last; moment += stride) {
-    shown.push_back(moment);
-    heights.push_back(series(history, "height")->frames[static_cast<std::size_t>(moment)]);
+  for (std::size_t i = last % stride; i <= last; i += stride) {
+    shown.push_back(history.shown[i]);
+    heights.push_back(series(history, "height")->frames[i]);
   }
   Json maps;
   const auto add = [&](const char* name, const std::vector<Eigen::VectorXf>& frames) {
@@ -112,13 +113,13 @@ std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& prog
             {"id", "side by side"},
             {"errors", errors},
             {"differences", json_of_differences(runs)}};
-  for (int stride = 1;; stride += 1 + stride / 4) {
+  for (std::size_t stride = 1;; stride += 1 + stride / 4) {
     progress(most_taps, most_taps);
     std::string bytes;
     for (std::size_t i = 0; i < runs.size(); ++i) pack_surfaces(runs[i].history, stride, described[i], bytes);
     data["runs"] = described;
     std::string page = make_page(palpate_asset_runs, data, bytes);
-    if (page.size() <= kMostPageBytes || stride > most_taps) return page;
+    if (page.size() <= kMostPageBytes || stride > static_cast<std::size_t>(most_taps)) return page;
   }
 }
 

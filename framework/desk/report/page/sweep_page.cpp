@@ -8,7 +8,6 @@
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
 #include "record/run_directory.hpp"
-#include "report/page/json.hpp"
 #include "report/page/page.hpp"
 
 #include <algorithm>
@@ -115,22 +114,25 @@ std::vector<std::string> first_looks() {
 }  // namespace
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
+  return make_page(palpate_asset_sweep, sweep_data(sweep, progress), "");
+}
+
+Json sweep_data(const Sweep& sweep, const OnProgress& progress) {
   const std::vector<Row> results = sweep_results(sweep);
   const std::vector<JobResult> jobs = group_jobs(sweep, results, {}).front().jobs;
   const fs::path directory = fs::absolute(sweep.directory / "").lexically_normal().parent_path();
   Json keys = Json::array();
   for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, key));
-  const Json data{{"version", kVersion},
-                  {"name", sweep_name(sweep)},
-                  {"id", directory.filename().string()},
-                  {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
-                  {"keys", keys},
-                  {"jobs", json_of_jobs(sweep, jobs, progress)},
-                  {"columns", json_of_columns(results, jobs)},
-                  {"first_looks", first_looks()},
-                  {"factors", interval_factors(sweep.jobs.size())},
-                  {"config", to_yaml(read_run_config(sweep.directory))}};
-  return make_page(palpate_asset_sweep, data, "");
+  return {{"version", kVersion},
+          {"name", sweep_name(sweep)},
+          {"id", directory.filename().string()},
+          {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
+          {"keys", keys},
+          {"jobs", json_of_jobs(sweep, jobs, progress)},
+          {"columns", json_of_columns(results, jobs)},
+          {"first_looks", first_looks()},
+          {"factors", interval_factors(sweep.jobs.size())},
+          {"config", to_yaml(read_run_config(sweep.directory))}};
 }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "report/history.hpp"
+#include "report/page/json.hpp"
 #include "sweep/sweep.hpp"
 
 #include <string>
@@ -14,5 +15,8 @@ namespace palpate {
 /// The page of a sweep as it stands, under way or not: HTML, complete in itself but for the links to its jobs, which
 /// hold where the page lies in the sweep's directory. `progress` counts jobs. Throws Error for a damaged record.
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress);
+
+/// What that page is drawn from.
+Json sweep_data(const Sweep& sweep, const OnProgress& progress);
 
 }  // namespace palpate

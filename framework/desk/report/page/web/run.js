@@ -44,6 +44,23 @@ function facts(data) {
   return factList(items.filter(([value]) => value !== kNothing).map(([value, unit, name]) => [`${value}${unit}`, name]));
 }
 
+/// How the run stands: what changes with every tap of one that goes on.
+function standing(data) {
+  const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.state;
+  const strategy = element("p", { class: "sub" }, "id ", data.id, `, seed ${data.seed}, acquisition `, foreign(data.acquisition), ", footprint ", foreign(data.footprint), ", ", foreign(state), ".");
+  return [strategy, facts(data), ...warningList(data.warnings.map((text) => [foreign(text)]))];
+}
+
+/// All curves; figures are made anew where there are others than before.
+function drawAllCurves(data) {
+  const row = document.getElementById("curves");
+  const titles = JSON.stringify(data.curves.map(({ title }) => title));
+  if (row.dataset.titles !== titles) row.replaceChildren(...data.curves.map(({ title }, i) => figure(`curve_${i}`, title)));
+  row.dataset.titles = titles;
+  document.getElementById("curve_constants").replaceChildren(...constants(data.constants));
+  return Promise.all(data.curves.map((one, i) => drawCurves(`curve_${i}`, one, data.moments.map((moment) => moment.taps))));
+}
+
 const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback" };
 
 /// The moment in words.
@@ -87,10 +104,26 @@ class Slider {
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });
     this.truth = element("input", { type: "checkbox", id: "truth" });
+    this.player = new Player(this);
+    this.stale = true;  // whether there are curves to be drawn
+  }
+
+  /// Takes in the maps of further moments.
+  grow(further) {
+    this.surface.grow(further);
+    for (const panel of this.panels) {
+      panel.frames.push(...panel.of(further));
+      panel.range = panel.rangeOf(panel.frames);
+    }
+  }
+
+  /// All lists that have an element for each moment that is shown.
+  frameLists() {
+    return [this.surface.heights, this.surface.deviations, ...this.panels.map((panel) => panel.frames)];
   }
 
   controls() {
-    const out = element("div", { class: "controls" }, this.output, this.input);
+    const out = element("div", { class: "controls" }, this.output, this.player.button, this.input, liveNote(this.data));
     if (this.data.truth) out.append(element("label", {}, this.truth, this.surface.spatial ? " truth as wireframe" : " truth instead"));
     return out;
   }
@@ -107,6 +140,7 @@ class Slider {
       const busy = event.target !== this.input && event.target.closest?.("input:not([type=checkbox]), select, textarea");
       if (!step || busy || event.altKey || event.ctrlKey || event.metaKey) return;
       event.preventDefault();
+      this.player.stop();
       this.input.value = Number(this.input.value) + step;
       this.show();
     });
@@ -120,8 +154,7 @@ class Slider {
 
   /// Draws all plots, as the page does at first and when its colours have changed.
   redraw() {
-    const taps = this.data.moments.map((moment) => moment.taps);
-    inTurn(() => Promise.all(this.data.curves.map((one, i) => drawCurves(`curve_${i}`, one, taps))));
+    this.stale = true;
     return this.show();
   }
 
@@ -137,6 +170,8 @@ class Slider {
       const traces = [heatMap(this.data, frames[frame], range, colours, bar), ...marks(this.data, moment)];
       await plot(`map_${id}`, traces, { ...planeAxes(this.data), margin: { l: 44, r: 4, t: 6, b: 40 }, showlegend: false });
     }
+    if (this.stale) await drawAllCurves(this.data);
+    this.stale = false;
     const here = { type: "line", x0: moment.taps, x1: moment.taps, yref: "paper", y0: 0, y1: 1, line: { color: "#999999", width: 1, dash: "dot" } };
     await Promise.all(this.data.curves.map((one, i) => Plotly.relayout(`curve_${i}`, { shapes: [here] })));
     tellDrawn(moment.taps);
@@ -147,16 +182,13 @@ class Slider {
 const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "The same after every tap: ", foreign(texts.join("; ")), ".")] : []);
 
 function drawRun(data, bytes) {
+  if (data.waiting !== undefined) return drawWaiting(data);
   const maps = unpackMaps(bytes, data.maps, data.x.length, data.y.length);
   const slider = new Slider(data, maps);
-  const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.state;
   const thinned = data.shown.length < data.moments.length ? ` There are maps of ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
-  const strategy = element("p", { class: "sub" }, "id ", data.id, `, seed ${data.seed}, acquisition `, foreign(data.acquisition), ", footprint ", foreign(data.footprint), ", ", foreign(state), ".");
   const foreignTable = (header, rows) => table(header, rows.map((line) => line.map(foreign)));
   document.body.append(
-    strategy,
-    facts(data),
-    ...warningList(data.warnings.map((text) => [foreign(text)])),
+    element("div", { id: "standing" }, ...standing(data)),
     slider.controls(),
     element("p", { class: "story", id: "story" }),
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),
@@ -165,13 +197,14 @@ function drawRun(data, bytes) {
     ...constants(slider.constant.map(({ title, value }) => `${title}: ${shown(value)} everywhere`)),
     element("p", { class: "sub" }, `Discs: taps on the object, crosses: taps on the desk, squares: failed taps, star: the next tap. Arrow keys move the slider.${thinned}`),
     element("h2", {}, "By tap"),
-    element("div", { class: "row small" }, ...data.curves.map(({ title }, i) => figure(`curve_${i}`, title))),
-    ...constants(data.constants),
+    element("div", { class: "row small", id: "curves" }),
+    element("div", { id: "curve_constants" }),
     section("Config", foreignTable(["key", "value", "where it was said"], data.config)),
     section("Made by", foreignTable(["", ""], data.build.filter(([, value]) => value !== ""))),
     footer(data),
   );
   slider.listen();
+  follow(data, (news) => growRun(slider, news));
   return () => slider.redraw();
 }
 

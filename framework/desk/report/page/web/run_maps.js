@@ -71,21 +71,28 @@ function marks(data, moment) {
   ];
 }
 
-/// The panels over the plane: what each shows, in which colours and range; and beside them those that would show one
-/// value everywhere at every moment, {title, value}.
+/// The panels over the plane: what each shows of some maps, in which colours and range; and beside them those that would
+/// show one value everywhere at every moment, {title, value}. Of a run that goes on nobody knows that yet.
 function mapPanels(data, maps) {
-  const panel = (id, frames, range = [0, 1], colours = kWhere) => ({ id, title: data.titles[id], bar: id, frames, range, colours });
-  const panels = [panel("u", maps.u, [0, 1], kUnknown)];
+  const panel = (id, of, rangeOf = () => [0, 1], colours = kWhere) => {
+    const frames = of(maps);
+    return { id, title: data.titles[id], bar: id, of, frames, rangeOf, range: rangeOf(frames), colours };
+  };
+  const panels = [panel("u", ({ u }) => u, () => [0, 1], kUnknown)];
   if (maps.p) {
-    panels.push(panel("p", maps.p));
+    panels.push(panel("p", ({ p }) => p));
   } else {
-    const exploration = maps.u.map((lines, frame) => product(lines, maps.w[frame]));
-    panels.push(panel("w", maps.w), panel("e", exploration, [0, extent(exploration.flat(2))[1]]));
+    const exploration = ({ u, w }) => u.map((lines, frame) => product(lines, w[frame]));
+    const upTo = (frames) => {
+      const largest = extent(frames.flat(2))[1];
+      return [0, largest > 1e-6 ? largest : 1];  // nothing but rounding needs no colours
+    };
+    panels.push(panel("w", ({ w }) => w), panel("e", exploration, upTo));
   }
-  if (maps.score) panels.push(panel("score", maps.score, extent(maps.score.flat(2))));
+  if (maps.score) panels.push(panel("score", ({ score }) => score, (frames) => extent(frames.flat(2))));
   const varied = ({ frames }) => {
     const [least, most] = extent(frames.flat(2));
-    return most - least > 1e-6;  // what differs by rounding alone needs no colours
+    return data.live !== undefined || most - least > 1e-6;  // what differs by rounding alone needs no colours
   };
   const constant = panels.filter((one) => !varied(one)).map(({ title, frames }) => ({ title, value: frames[0][0][0] }));
   return [panels.filter(varied), constant];
@@ -145,15 +152,22 @@ class SurfaceView {
     this.data = data;
     this.flat = data.x.length < 2 || data.y.length < 2;  // a single line of cells has no surface
     this.spatial = hasWebGL() && !this.flat;
-    this.heights = maps.height.map((lines) => scaled(lines, kCentimetres));
-    this.deviations = maps.deviation.map((lines) => scaled(lines, kCentimetres));
+    this.heights = [];
+    this.deviations = [];
+    this.grow(maps);
+    this.withTruth = false;
+    this.x = data.x.map((value) => value * kCentimetres);
+    this.y = data.y.map((value) => value * kCentimetres);
+  }
+
+  /// Takes in the maps of further moments, and the truth as it is now.
+  grow(maps) {
+    this.heights.push(...maps.height.map((lines) => scaled(lines, kCentimetres)));
+    this.deviations.push(...maps.deviation.map((lines) => scaled(lines, kCentimetres)));
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent([...this.heights, this.truth ?? []].flat(2));
     // How far above their places the marks of taps are, or half of every mark would be inside of the surface.
     this.lift = 0.06 * (this.range[1] - this.range[0]);
-    this.withTruth = false;
-    this.x = data.x.map((value) => value * kCentimetres);
-    this.y = data.y.map((value) => value * kCentimetres);
   }
 
   caption() {
@@ -232,8 +246,9 @@ class SurfaceView {
 
   /// What the colours of the surface say, as a map over the plane.
   deviationPanel() {
-    const range = [0, extent(this.deviations.flat(2))[1]];
-    return { id: "deviation", title: this.data.titles.deviation, bar: "cm", frames: this.deviations, range, colours: kUnknown };
+    const rangeOf = (frames) => [0, extent(frames.flat(2))[1]];
+    const frames = this.deviations;  // which the surface makes more
+    return { id: "deviation", title: this.data.titles.deviation, bar: "cm", of: () => [], frames, rangeOf, range: rangeOf(frames), colours: kUnknown };
   }
 
   wireframe() {

@@ -155,14 +155,15 @@ class JobTable {
 
   /// The number of a job: a link where the job has a page of its own.
   link(job) {
-    if (!job.reported) return String(job.index);
-    return element("a", { href: `jobs/${encodeURIComponent(job.id)}/report.html` }, String(job.index));
+    const live = this.sweep.live !== undefined;  // then whoever serves this page makes theirs
+    if (job.state === "missing" || !(live || job.reported)) return String(job.index);
+    return element("a", { href: `jobs/${encodeURIComponent(job.id)}/${live ? "" : "report.html"}` }, String(job.index));
   }
 
   /// How a job that has no page gets one; nothing where all have one that can.
   howToReport() {
     const bare = this.sweep.jobs.find((job) => !job.reported && job.state !== "missing");
-    if (!bare) return [];
+    if (!bare || this.sweep.live !== undefined) return [];
     const folder = `${this.sweep.folder}/jobs/${bare.id}`;
     const word = /^[\w./+:@=-]+$/.test(folder) ? folder : `'${folder.replace(/'/g, "'\\''")}'`;
     const command = element("code", {}, foreign(`palpate report ${word}`));
@@ -227,23 +228,29 @@ function troubles(sweep) {
   if (open > 0) {
     const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
     const states = some.map((count) => count.join(" ")).join(", ");
-    out.push([`${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states}): this page shows the sweep as it stood; 'palpate resume' carries on what nobody runs.`]);
+    out.push([`${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows the sweep as it stood" : ""}; 'palpate resume' carries on what nobody runs.`]);
   }
   return out;
 }
 
-function drawSweep(data) {
-  const sweep = new SweepData(data);
+/// What became of the jobs so far.
+function standingOfSweep(sweep) {
   const counts = sweep.counts();
   if (sweep.done.length === 0) counts.unshift([0, "done"]);
+  return [factList([[sweep.jobs.length, "jobs"], ...counts]), ...warningList(troubles(sweep))];
+}
+
+function drawSweep(data) {
+  if (data.waiting !== undefined) return drawWaiting(data);
+  const sweep = new SweepData(data);
   const swept = sweep.all.flatMap((key, i) => [i > 0 ? ", " : " over ", foreign(key.name), ` (${key.values.length})`]);
   document.body.append(
-    element("p", { class: "sub" }, "sweep ", foreign(data.id), ...swept, "."),
-    factList([[sweep.jobs.length, "jobs"], ...counts]),
-    ...warningList(troubles(sweep)),
+    element("p", { class: "sub" }, "sweep ", foreign(data.id), ...swept, ". ", liveNote(data)),
+    element("div", { id: "standing" }, ...standingOfSweep(sweep)),
   );
   const redraw = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
   document.body.append(section("Config", element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
+  follow(data, (news) => growSweep(sweep, news));
   return redraw;
 }
 
@@ -252,6 +259,7 @@ function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has come to a result yet: there is nothing to draw."), jobs.place());
   jobs.choose({});
+  sweep.refresh = () => jobs.show();
   return () => tellDrawn(1);
 }
 
@@ -303,7 +311,12 @@ function drawPanels(sweep) {
     jobs.place(),
   );
   jobs.choose(choice);
-  return () => drawAll([drawCells, drawGroups, drawParallel, drawFront]);
+  const all = [drawCells, drawGroups, drawParallel, drawFront];
+  sweep.refresh = () => {
+    jobs.show();
+    drawAll(all);
+  };
+  return () => drawAll(all);
 }
 
 openPage(drawSweep);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "record/run_directory.hpp"
+#include "watch/server.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include <sys/resource.h>
+
+namespace palpate::cli {
+
+int watch(Program& program, const WatchArguments& arguments) {
+  constexpr int kPatience = 120;
+  // What is watched goes first wherever there is not enough for both: a run above all, which is computed again here.
+  // The page of a sweep that has all cores busy takes little, and is to come all the same.
+  ::setpriority(PRIO_PROCESS, 0, is_sweep(arguments.directory) ? 10 : 19);
+  Site site(program, arguments.directory);
+  Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kPatience : 0});
+  if (server.is_open_to_others()) {
+    mention(fmt::format("watch: whoever reaches {} and knows this address sees the run, and it travels in the clear\n",
+                        arguments.bind));
+  }
+  mention(server.url() + "\n", stdout);
+  std::fflush(stdout);
+  server.run();
+  return kDone;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "cli/watcher.hpp"
+
+#include "children/child_process.hpp"
+#include "cli/display.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+namespace palpate::cli {
+namespace {
+
+/// The first line that comes, within half a minute; as much of it as there is where it has no end.
+std::string first_line(const Descriptor& from) {
+  constexpr int kMostWait = 30'000;
+  std::string out;
+  std::array<char, 256> some{};
+  pollfd ready{from.number(), POLLIN, 0};
+  while (out.find('\n') == std::string::npos) {
+    if (::poll(&ready, 1, kMostWait) <= 0) break;  // a signal asks the run to stop, too
+    const ssize_t got = ::read(from.number(), some.data(), some.size());
+    if (got <= 0) break;
+    out.append(some.data(), static_cast<std::size_t>(got));
+  }
+  return out.substr(0, out.find('\n'));
+}
+
+}  // namespace
+
+void start_watcher(const palpate::cli::Program& program, const std::filesystem::path& directory) {
+  const std::string whole = program.installation.whole.string();
+  std::string said;
+  std::optional<Pipe> pipe = open_pipe();
+  const Descriptor nothing = above_standard(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  palpate::Program watch{{whole, "watch", directory.string(), "--until-left"}, whole};
+  // Of this process it keeps nothing open: who reads what a run prints is not to wait for the watcher's end.
+  const bool started =
+      pipe && nothing && spawn(watch, {nothing.number(), pipe->to_write.number(), pipe->to_write.number()}) > 0;
+  if (!started) said = fmt::format("{}: {}", whole, errno == ENOENT ? "is not built" : std::strerror(errno));
+  if (started) {
+    pipe->to_write.close();
+    said = first_line(pipe->to_read);
+  }
+  mention(fmt::format("watch: {}\n", said.empty() ? "the page is not there yet" : said));
+}
+
+void Watcher::start() {
+  if (started_) return;
+  started_ = true;
+  start_watcher(program_, directory_);
+}
+
+void Watcher::announce(const TapRecord& tap) {
+  start();
+  if (display_ != nullptr) display_->announce(tap);
+}
+
+void Watcher::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
+  if (display_ != nullptr) display_->record(tap, seconds);
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "watch/run_follower.hpp"
+
+#include "config/trouble.hpp"
+#include "record/run_directory.hpp"
+#include "record/session.hpp"
+#include "record/tap_row.hpp"
+#include "report/page/page.hpp"
+#include "report/page/run_page.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Numbers in all maps that are kept: what a browser can hold several times over, and a page carries in some 10 MB.
+constexpr std::size_t kMostNumbers = 4'000'000;
+
+struct Position {
+  int generation = 0;
+  int moments = 0;
+  int revision = 0;
+};
+
+/// Zeros for what is none.
+Position parse_position(const std::string& at) {
+  Position out;
+  int read = 0;
+  const int count = std::sscanf(at.c_str(), "%9d.%9d.%9d%n", &out.generation, &out.moments, &out.revision, &read);
+  return count == 3 && static_cast<std::size_t>(read) == at.size() ? out : Position{};
+}
+
+}  // namespace
+
+RunFollower::RunFollower(const Workshop& workshop, fs::path directory)
+    : workshop_(workshop), directory_(std::move(directory)), log_(directory_ / "taps.jsonl") {}
+
+bool RunFollower::goes_on() const { return is_running(directory_); }
+
+void RunFollower::begin_anew() {
+  grower_.reset();
+  recording_.reset();
+  pending_.clear();
+  trouble_.clear();
+  ++generation_;
+}
+
+bool RunFollower::look(double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  const std::optional<Error> trouble = trouble_in([&] {
+    read_record();
+    while (!pending_.empty() && trouble_.empty()) {
+      take_in();
+      if (std::chrono::steady_clock::now() >= end) break;
+    }
+  });
+  if (trouble && trouble_ != trouble->what()) {
+    trouble_ = trouble->what();
+    ++revision_;
+  }
+  return !pending_.empty() && trouble_.empty();
+}
+
+void RunFollower::read_record() {
+  // How it stands is looked at first: who ends in between has recorded all taps by then.
+  const bool held = is_running(directory_);
+  const std::optional<Row> summary = read_outcome(directory_);
+  const std::string standing = (held ? "held " : "") + (summary ? to_json_text(*summary) : "");
+  bool anew = false;
+  std::vector<Row> rows = log_.read(anew);
+  if (!rows.empty() && !trouble_.empty()) {  // what could not be lived through may be another record by now
+    log_.forget();
+    rows = log_.read(anew);
+    anew = true;
+  }
+  if (anew) begin_anew();
+  std::move(rows.begin(), rows.end(), std::back_inserter(pending_));
+  if (standing != standing_) {
+    standing_ = standing;
+    ++revision_;
+  }
+  if (recording_ && pending_.empty()) recording_->summary = summary;
+}
+
+void RunFollower::take_in() {
+  if (!recording_) {
+    recording_ = std::make_unique<Recording>(Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}});
+  }
+  recording_->taps.push_back(past_taps({pending_.front()}, directory_ / "taps.jsonl").front());
+  recording_->rows.push_back(std::move(pending_.front()));
+  pending_.pop_front();
+  if (!grower_) grower_ = std::make_unique<HistoryGrower>(workshop_, *recording_);
+  const bool own_scores = grower_->has_own_scores();
+  grower_->advance();
+  grower_->thin(kMostNumbers);
+  // There is one map more, which pages lack.
+  if (grower_->has_own_scores() != own_scores) ++generation_;
+  if (pending_.empty()) recording_->summary = read_outcome(directory_);
+}
+
+std::string RunFollower::at() const {
+  return fmt::format("{}.{}.{}", generation_, grower_ ? grower_->taps() + 1 : 0, revision_);
+}
+
+std::string RunFollower::why_waiting() const {
+  if (!trouble_.empty()) return trouble_;
+  return "No tap is recorded yet. This page draws the first one as soon as it is.";
+}
+
+std::string RunFollower::page() {
+  std::string out;
+  if (grower_) {
+    if (const auto trouble = trouble_in([&] { out = live_run_page(*recording_, grower_->since(0), at()); }))
+      trouble_ = trouble->what();
+  }
+  if (!out.empty()) return out;
+  std::string name = "run";
+  trouble_in([&] {
+    const Tree config = read_run_config(directory_);
+    if (const Tree* said = config.find("name")) name = said->text;
+  });
+  return waiting_page(name, directory_.filename().string(), why_waiting(), at());
+}
+
+std::optional<std::string> RunFollower::news(const std::string& at) {
+  const Position page = parse_position(at);
+  const std::string now = this->at();
+  if (now == at) return std::nullopt;
+  const int moments = grower_ ? grower_->taps() + 1 : 0;
+  const bool other = page.generation != generation_ || page.moments > moments || (page.moments == 0 && moments > 0);
+  if (other) return line_of({{"at", now}, {"anew", true}});
+  if (!trouble_.empty() || !grower_) return line_of({{"at", now}, {"trouble", why_waiting()}});
+  std::string out;
+  const auto trouble =
+      trouble_in([&] { out = run_news(*recording_, grower_->since(page.moments), page.moments, now); });
+  return trouble ? line_of({{"at", now}, {"trouble", trouble->what()}}) : out;
+}
+
+}  // namespace palpate

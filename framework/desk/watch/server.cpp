@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: MIT
+// The only door to Boost.Beast and Boost.Asio.
+#include "watch/server.hpp"
+
+#include "record/build_info.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <sys/random.h>
+
+namespace palpate {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::ip::tcp;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kLookEvery(100);  ///< a tap is to be seen within half a second
+constexpr double kLookFor = 0.05;        ///< seconds; who asks meanwhile waits as long
+constexpr double kFirstLook = 1.0;       ///< before a page is made: most then begin with all there is
+constexpr seconds kAnswerWithin(25);     ///< a question for news, where there are none
+constexpr seconds kMostSilence(10);      ///< of a caller who is to ask or to read
+constexpr std::size_t kMostCallers = 64;
+constexpr std::uint32_t kMostHeader = 16 * 1024;
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const ssize_t got = ::getrandom(bytes.data() + filled, bytes.size() - filled, 0);
+    if (got < 0 && errno != EINTR) throw Error("watch", std::string("no random numbers: ") + std::strerror(errno));
+    filled += got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
+  std::string out;
+  for (const unsigned char byte : bytes) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+/// Takes as long wherever they differ, so that nobody finds a token digit by digit.
+bool same_in_constant_time(std::string_view said, std::string_view token) {
+  if (said.size() != token.size()) return false;
+  volatile unsigned char differ = 0;
+  for (std::size_t i = 0; i < token.size(); ++i)
+    differ = static_cast<unsigned char>(differ | static_cast<unsigned char>(said[i] ^ token[i]));
+  return differ == 0;
+}
+
+/// A Host without its port: that of a tunnel is another one. "" for what is none.
+std::string host_of(std::string_view text) {
+  const auto end = text.rfind(':');
+  const bool bare = end == std::string_view::npos || text.find(']', end) != std::string_view::npos;
+  std::string_view host = bare ? text : text.substr(0, end);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  std::string out(host);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+struct Question {
+  std::string place;              ///< as Site::find() has it
+  std::optional<std::string> at;  ///< of a page that asks for news
+  bool now = false;
+};
+
+/// What stands behind the token.
+Question question_of(std::string_view rest) {
+  Question out;
+  std::string_view query;
+  if (const auto mark = rest.find('?'); mark != std::string_view::npos) {
+    query = rest.substr(mark + 1);
+    rest = rest.substr(0, mark);
+  }
+  constexpr std::string_view kNews = "news";
+  const auto name = rest.rfind('/') + 1;
+  if (rest.substr(name) == kNews) {
+    out.at.emplace();
+    while (!query.empty()) {
+      const std::string_view part = query.substr(0, query.find('&'));
+      if (part.substr(0, 3) == "at=") out.at = std::string(part.substr(3));
+      out.now = out.now || part == "now";
+      query.remove_prefix(std::min(query.size(), part.size() + 1));
+    }
+    rest = rest.substr(0, name);
+  }
+  out.place = std::string(rest);
+  return out;
+}
+
+}  // namespace
+
+/// All that is there while the server is.
+struct Server::Room {
+  class Caller;
+
+  Room(Site& pages, const ServerOptions& wishes) : site(pages), options(wishes) {}
+
+  void accept();
+  bool is_own_name(const std::string& host) const;
+  void look();
+  void look_again_after(Clock::duration wait);
+  void check_patience();
+
+  Site& site;
+  ServerOptions options;
+  std::string token = random_token();
+  asio::io_context context{1};
+  tcp::acceptor door{context};
+  asio::signal_set signals{context};
+  asio::steady_timer opening{context};
+  asio::steady_timer looking{context};
+  asio::steady_timer leaving{context};
+  std::set<std::shared_ptr<Caller>> callers;
+  Clock::time_point last_asked = Clock::now();
+};
+
+/// One connection: it asks once, is answered, and goes.
+class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
+ public:
+  Caller(Room& room, tcp::socket socket) : room_(room), stream_(std::move(socket)) {}
+
+  void begin() {
+    parser_.header_limit(kMostHeader);
+    stream_.expires_after(kMostSilence);
+    // The header alone: nothing that somebody sends is of interest.
+    http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](beast::error_code trouble, auto) {
+      if (trouble) return self->leave();
+      self->answer(self->parser_.get());
+    });
+  }
+
+  /// What it waits for news of; null if it does not.
+  const std::shared_ptr<Watched>& waits_for() const { return waits_for_; }
+
+  /// Tells the news, if there are any, or that there are none, if that takes too long.
+  void tell_news() {
+    if (std::optional<std::string> news = waits_for_->news(at_)) {
+      reply(http::status::ok, "application/json", std::move(*news));
+    } else if (Clock::now() >= until_) {
+      reply(http::status::no_content, "", "");
+    }
+  }
+
+ private:
+  void answer(const http::request<http::empty_body>& request) {
+    const auto text = [](auto view) { return std::string_view(view.data(), view.size()); };
+    if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed);
+    if (request.count(http::field::host) != 1 || !room_.is_own_name(host_of(text(request[http::field::host]))))
+      return refuse(http::status::forbidden);
+    std::string_view target = text(request.target());
+    target.remove_prefix(!target.empty() && target.front() == '/' ? 1 : 0);
+    const std::string_view said = target.substr(0, target.find_first_of("/?"));
+    if (!same_in_constant_time(said, room_.token)) return refuse(http::status::forbidden);
+    target.remove_prefix(said.size());
+    if (target.empty() || target.front() != '/') return refuse(http::status::not_found);
+    const Question question = question_of(target.substr(1));
+    const std::shared_ptr<Watched> watched = room_.site.find(question.place);
+    if (!watched) return refuse(http::status::not_found);
+    room_.last_asked = Clock::now();
+    if (!question.at) {
+      watched->look(kFirstLook);
+      return reply(http::status::ok, "text/html; charset=utf-8", watched->page());
+    }
+    at_ = *question.at;
+    waits_for_ = watched;
+    until_ = question.now ? Clock::time_point() : Clock::now() + kAnswerWithin;
+    stream_.expires_never();
+    hear();
+    room_.look_again_after({});
+  }
+
+  void refuse(http::status status) { reply(status, "", ""); }
+
+  void reply(http::status status, const char* type, std::string body) {
+    waits_for_.reset();
+    response_ = http::response<http::string_body>(status, 11);
+    response_.keep_alive(false);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("X-Frame-Options", "DENY");
+    response_.set("Content-Security-Policy", "frame-ancestors 'none'");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    if (status == http::status::method_not_allowed) response_.set(http::field::allow, "GET");
+    if (*type != '\0') response_.set(http::field::content_type, type);
+    response_.body() = std::move(body);
+    if (status != http::status::no_content) response_.prepare_payload();
+    stream_.expires_after(kMostSilence);
+    http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code trouble, auto) {
+      if (trouble || self->hears_) return self->leave();
+      // What was sent and not read, as of a POST, would have the answer lost with the connection.
+      beast::error_code none;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, none);
+      self->stream_.expires_after(kMostSilence);
+      self->hear();
+    });
+  }
+
+  /// Waits for the end of the connection, whatever is said before. One that waits for news is given up then.
+  void hear() {
+    if (hears_) return;
+    hears_ = true;
+    stream_.async_read_some(asio::buffer(ignored_), [self = shared_from_this()](beast::error_code trouble, auto) {
+      self->hears_ = false;
+      if (trouble) return self->leave();
+      self->hear();
+    });
+  }
+
+  void leave() {
+    waits_for_.reset();
+    stream_.close();
+    room_.callers.erase(shared_from_this());
+  }
+
+  Room& room_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kMostHeader};
+  http::request_parser<http::empty_body> parser_;
+  http::response<http::string_body> response_;
+  std::array<char, 1024> ignored_{};
+  bool hears_ = false;
+  std::string at_;
+  std::shared_ptr<Watched> waits_for_;
+  Clock::time_point until_;
+};
+
+void Server::Room::accept() {
+  door.async_accept([this](beast::error_code trouble, tcp::socket socket) {
+    if (trouble) {  // too many open files, above all, which pass
+      opening.expires_after(kLookEvery);
+      opening.async_wait([this](beast::error_code ended) {
+        if (!ended) accept();
+      });
+      return;
+    }
+    if (callers.size() < kMostCallers) {
+      const auto caller = std::make_shared<Caller>(*this, std::move(socket));
+      callers.insert(caller);
+      caller->begin();
+    }
+    accept();
+  });
+}
+
+bool Server::Room::is_own_name(const std::string& host) const {
+  beast::error_code none;
+  const auto number = asio::ip::make_address(host, none);
+  if (none) return host == "localhost" || (!door.local_endpoint().address().is_loopback() && host == host_name());
+  // A name that points here is no number, whoever had it point here.
+  return number.is_loopback() || !door.local_endpoint().address().is_loopback();
+}
+
+void Server::Room::look() {
+  std::set<std::shared_ptr<Watched>> watched;
+  for (const auto& caller : callers) {
+    if (caller->waits_for()) watched.insert(caller->waits_for());
+  }
+  if (watched.empty()) return;
+  last_asked = Clock::now();
+  bool more = false;
+  for (const auto& one : watched) more = one->look(kLookFor) || more;
+  for (const auto& caller : std::set<std::shared_ptr<Caller>>(callers)) {
+    if (caller->waits_for()) caller->tell_news();
+  }
+  look_again_after(more ? Clock::duration() : kLookEvery);
+}
+
+void Server::Room::look_again_after(Clock::duration wait) {
+  looking.expires_after(wait);
+  looking.async_wait([this](beast::error_code trouble) {
+    if (!trouble) look();
+  });
+}
+
+void Server::Room::check_patience() {
+  leaving.expires_after(std::min(seconds(5), seconds(options.patience)));
+  leaving.async_wait([this](beast::error_code trouble) {
+    if (trouble) return;
+    if (site.goes_on()) last_asked = Clock::now();
+    if (Clock::now() - last_asked >= seconds(options.patience)) return context.stop();
+    check_patience();
+  });
+}
+
+Server::Server(Site& site, const ServerOptions& options) : room_(std::make_unique<Room>(site, options)) {
+  beast::error_code trouble;
+  const auto address = asio::ip::make_address(options.address, trouble);
+  if (trouble)
+    throw Error("--bind", fmt::format("'{}' is no address", options.address), "write a number, as 127.0.0.1 or ::1");
+  const tcp::endpoint place(address, static_cast<std::uint16_t>(options.port));
+  room_->door.open(place.protocol(), trouble);
+  if (!trouble) room_->door.set_option(tcp::acceptor::reuse_address(true), trouble);
+  if (!trouble) room_->door.bind(place, trouble);
+  if (!trouble) room_->door.listen(tcp::acceptor::max_listen_connections, trouble);
+  if (trouble)
+    throw Error(fmt::format("{} port {}", options.address, options.port), "cannot be listened on: " + trouble.message(),
+                "take another --port, or none for any that is free", Error::Kind::run);
+}
+
+Server::~Server() = default;
+
+std::string Server::url() const {
+  const tcp::endpoint place = room_->door.local_endpoint();
+  const std::string name = place.address().is_unspecified() && !host_name().empty() ? host_name()
+                           : place.address().is_v6() ? "[" + place.address().to_string() + "]"
+                                                     : place.address().to_string();
+  return fmt::format("http://{}:{}/{}/", name, place.port(), room_->token);
+}
+
+bool Server::is_open_to_others() const { return !room_->door.local_endpoint().address().is_loopback(); }
+
+void Server::run() {
+  Room& room = *room_;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (signal == SIGHUP && std::signal(SIGHUP, SIG_DFL) == SIG_IGN) {
+      std::signal(SIGHUP, SIG_IGN);  // nohup
+    } else {
+      room.signals.add(signal);
+    }
+  }
+  room.signals.async_wait([&room](beast::error_code trouble, int) {
+    if (!trouble) room.context.stop();
+  });
+  room.accept();
+  if (room.options.patience > 0) room.check_patience();
+  room.context.run();
+}
+
+}  // namespace palpate

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// What is watched, without a browser and without another process: the log as it grows, a history that is looked at in
+// between, and a server that is left alone.
+#include "record/session.hpp"
+#include "report/history.hpp"
+#include "support/runs.hpp"
+#include "watch/growing_log.hpp"
+#include "watch/server.hpp"
+
+#include <palpate/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class AGrowingLog : public ::testing::Test {
+ protected:
+  void append(const std::string& text) const {
+    std::ofstream(file_, std::ios::app | std::ios::binary) << text << std::flush;
+  }
+  /// The numbers of the taps that are new.
+  std::vector<int> read() {
+    anew_ = false;
+    std::vector<int> out;
+    for (const Row& row : log_.read(anew_)) out.push_back(static_cast<int>(row.number("tap").value()));
+    return out;
+  }
+
+  const test::TemporaryFolder folder_;
+  const fs::path file_ = folder_.path() / "taps.jsonl";
+  GrowingLog log_{file_};
+  bool anew_ = false;
+};
+
+TEST_F(AGrowingLog, HasEachTapOnceWhenItsLineIsWhole) {
+  EXPECT_THAT(read(), IsEmpty()) << "before there is a file";
+  append("{\"tap\": 1}\n{\"tap\": 2}\n{\"ta");
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+  EXPECT_FALSE(anew_);
+  append("p\": 3}");
+  EXPECT_THAT(read(), IsEmpty());
+  append("\n");
+  EXPECT_THAT(read(), ElementsAre(3));
+  EXPECT_THAT(read(), IsEmpty());
+  EXPECT_FALSE(anew_);
+}
+
+TEST_F(AGrowingLog, LosesNothingWhenHalfALineIsCutOffAndMadeAnew) {
+  append("{\"tap\": 1}\n{\"tap\": 2, \"x\": 0.1");
+  EXPECT_THAT(read(), ElementsAre(1));
+  fs::resize_file(file_, 11);
+  EXPECT_THAT(read(), IsEmpty());
+  append("{\"tap\": 2}\n");
+  EXPECT_THAT(read(), ElementsAre(2));
+  EXPECT_FALSE(anew_);
+}
+
+TEST_F(AGrowingLog, BeginsAnewWhereItIsAnotherOne) {
+  append("{\"tap\": 1}\n{\"tap\": 2}\n");
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+  folder_.write("taps.jsonl", "{\"tap\": 7}\n{\"tap\": 8}\n{\"tap\": 9}\n");  // in the same file
+  EXPECT_THAT(read(), ElementsAre(7, 8, 9));
+  EXPECT_TRUE(anew_);
+  folder_.write("taps.jsonl", "{\"tap\": 7}\n");  // shorter
+  EXPECT_THAT(read(), ElementsAre(7));
+  EXPECT_TRUE(anew_);
+  fs::remove(file_);
+  EXPECT_THAT(read(), IsEmpty());
+  EXPECT_TRUE(anew_);
+}
+
+TEST_F(AGrowingLog, GoesOnWhereACopyWithMoreTakesItsPlace) {
+  append("{\"tap\": 1}\n");
+  EXPECT_THAT(read(), ElementsAre(1));
+  folder_.write("copy", "{\"tap\": 1}\n{\"tap\": 2}\n");  // as rsync brings it
+  fs::rename(folder_.path() / "copy", file_);
+  EXPECT_THAT(read(), ElementsAre(2));
+  EXPECT_FALSE(anew_);
+}
+
+TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {
+  append("{\"tap\": 1}\nnonsense\n");
+  EXPECT_THROW(read(), Error);
+  folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n");
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+  log_.forget();
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+}
+
+/// A run that was made in this process.
+class Watching : public ::testing::Test {
+ protected:
+  fs::path made(const std::string& base, const std::vector<std::string>& words = {}) const {
+    const ResolvedConfig config = test::shipped_config(base, words);
+    return start_run(workshop_, config, folder_.path() / "run", false, nullptr).directory;
+  }
+
+  const test::TemporaryFolder folder_;
+  const Installation installation_;
+  const Workshop workshop_{test::shared_host(), installation_, {}, nullptr};
+};
+
+TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
+  const Recording whole = read_recording(workshop_, made("paper/object_i.yaml", {"taps=9"}));
+  Recording growing{whole.directory, whole.config, {whole.rows.front()}, {whole.taps.front()}, {}};
+  HistoryGrower grower(workshop_, growing);
+  grower.advance();
+  for (std::size_t taps = 1;; ++taps) {
+    Recording until{whole.directory, whole.config, {}, {}, {}};
+    until.rows.assign(whole.rows.begin(), whole.rows.begin() + static_cast<std::ptrdiff_t>(taps));
+    until.taps.assign(whole.taps.begin(), whole.taps.begin() + static_cast<std::ptrdiff_t>(taps));
+    const History expected = make_history(workshop_, until, [](int, int) {});
+    const History now = grower.since(0);
+    ASSERT_EQ(now.moments.size(), taps + 1);
+    ASSERT_EQ(now.maps.size(), expected.maps.size());
+    for (std::size_t map = 0; map < now.maps.size(); ++map) {
+      EXPECT_EQ(now.maps[map].name, expected.maps[map].name);
+      EXPECT_EQ(now.maps[map].frames, expected.maps[map].frames) << taps;
+    }
+    EXPECT_EQ(now.moments.back().result.errors.rmse, expected.moments.back().result.errors.rmse);
+    if (taps == whole.taps.size()) break;
+    growing.rows.push_back(whole.rows[taps]);
+    growing.taps.push_back(whole.taps[taps]);
+    grower.advance();
+  }
+  const History last = grower.since(8);
+  EXPECT_EQ(last.shown, (std::vector<int>{8, 9}));
+  EXPECT_EQ(last.maps.front().frames.size(), 2U);
+  EXPECT_EQ(last.moments.size(), 10U);
+}
+
+TEST_F(Watching, AHistoryThatIsThinnedKeepsTheLastMomentAndEverySecondOfTheOthers) {
+  const Recording recording = read_recording(workshop_, made("paper/object_i.yaml", {"taps=7"}));
+  const History whole = make_history(workshop_, recording, [](int, int) {});
+  HistoryGrower grower(workshop_, recording);
+  while (grower.taps() < 7) grower.advance();
+  grower.thin(1000U << 20U);
+  EXPECT_EQ(grower.since(0).shown.size(), 8U) << "few enough";
+  grower.thin(1);
+  const History now = grower.since(0);
+  EXPECT_EQ(now.shown, (std::vector<int>{1, 3, 5, 7}));
+  EXPECT_EQ(now.moments.size(), 8U);
+  for (std::size_t i = 0; i < now.shown.size(); ++i)
+    EXPECT_EQ(now.maps.front().frames.at(i), whole.maps.front().frames.at(static_cast<std::size_t>(now.shown[i])));
+  EXPECT_EQ(now.maps.back().name, "truth");
+  EXPECT_EQ(now.maps.back().frames.size(), 1U);
+}
+
+TEST_F(Watching, AServerThatIsLeftAloneEndsWhenItsPatienceDoes) {
+  const fs::path directory = made("paper/object_i.yaml", {"taps=3"});
+  Site site(workshop_, directory);
+  EXPECT_FALSE(site.goes_on());
+  Server server(site, {"127.0.0.1", 0, 1});
+  server.run();
+  const RunDirectory held(directory);
+  EXPECT_TRUE(site.goes_on()) << "then it would not have ended";
+}
+
+TEST_F(Watching, NoTwoServersHaveTheSameToken) {
+  const fs::path directory = made("paper/object_i.yaml", {"taps=3"});
+  Site site(workshop_, directory);
+  std::set<std::string> tokens;
+  for (int i = 0; i < 20; ++i) {
+    const std::string url = Server(site, {}).url();
+    tokens.insert(url.substr(url.size() - 33));
+  }
+  EXPECT_EQ(tokens.size(), 20U);
+}
+
+}  // namespace
+}  // namespace palpate

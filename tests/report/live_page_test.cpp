@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// The page that `palpate watch` serves, in a browser, while its record grows.
+#include "report/browser.hpp"
+#include "support/programs.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+
+namespace palpate {
+namespace {
+
+using test::eventually;
+using ::testing::IsEmpty;
+
+std::string first_lines(const std::string& text, std::size_t count) {
+  std::size_t end = 0;
+  for (; count > 0; --count) end = text.find('\n', end) + 1;
+  return text.substr(0, end);
+}
+
+class LivePage : public test::Reports {
+ protected:
+  /// A run of 17 taps of which the first `taps` are recorded.
+  fs::path under_way(std::size_t taps) {
+    const test::Ended ran = test::palpate({"run", paper_, "--quiet", "seed=4"}, folder_.path());
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    directory_ = test::only_run(folder_.path() / "runs");
+    whole_ = folder_.path() / "whole";
+    fs::copy(directory_, whole_, fs::copy_options::recursive);
+    fs::remove(directory_ / "summary.json");
+    fs::remove(directory_ / "taps.jsonl");
+    std::ofstream(directory_ / "taps.jsonl") << first_lines(text_of(whole_ / "taps.jsonl"), taps);
+    return directory_;
+  }
+  /// The step that records taps from one number up to another.
+  std::string grow(std::size_t first, std::size_t last) const {
+    return fmt::format("shell sed -n {},{}p {} >> {}", first, last, (whole_ / "taps.jsonl").string(),
+                       (directory_ / "taps.jsonl").string());
+  }
+  std::string serve(const fs::path& directory) {
+    server_ = std::make_unique<test::Child>(
+        std::vector<std::string>{test::program_file().string(), "watch", directory.string()}, folder_.path());
+    EXPECT_TRUE(eventually([&] { return server_->out().find('\n') != std::string::npos || !server_->running(); }));
+    const std::string line = server_->out();
+    return line.substr(0, line.find('\n'));
+  }
+
+  fs::path directory_;
+  fs::path whole_;
+  std::unique_ptr<test::Child> server_;
+};
+
+/// Would be gone after a reload.
+const std::string kMark = "window.mark = 'still here'; return window.mark";
+const std::string kMarked = "return window.mark";
+const std::string kAt = "return [document.getElementById('at').textContent, document.getElementById('slider').max]";
+const std::string kMaps =
+    "return ['map_u', 'map_w', 'map_e'].map((id) => document.getElementById(id).data[0].z.flat())";
+
+std::string slide(int tap) {
+  return fmt::format(
+      "const s = document.getElementById('slider'); s.value = {}; s.dispatchEvent(new Event('input')); return {};", tap,
+      tap);
+}
+const std::string kSame = "await document.getElementById('at').textContent === 'after tap 2 of 16'";
+const std::string kSixteenKnown = "await document.getElementById('slider').max === '16'";
+
+TEST_F(LivePage, ShowsATapThatIsRecordedWithoutBeingLoadedAgainAndStaysWhereItsReaderPutIt) {
+  const std::string url = serve(under_way(5));
+  const Browsed seen =
+      test::browse(url,
+                   {drawn(5), kMark, grow(6, 6), drawn(6), kAt, slide(2), drawn(2), grow(7, 16), kSixteenKnown, kSame,
+                    kAt, "return document.getElementById('curve_0').data[0].x.length", slide(16), drawn(16), kAt,
+                    grow(17, 17), drawn(17), kMarked, "return document.getElementById('live').textContent"},
+                   false);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  EXPECT_EQ(seen.values.at(1), (json{"after tap 6 of 6", "6"}));
+  EXPECT_EQ(seen.values.at(3), (json{"after tap 2 of 16", "16"}));
+  EXPECT_EQ(seen.values.at(6), (json{"after tap 16 of 16", "16"}));
+  EXPECT_EQ(seen.values.at(7), "still here");
+  EXPECT_EQ(seen.values.at(8), "live");
+}
+
+TEST_F(LivePage, HasTheMapsAndCurvesOfTheReportWhenTheRunHasEnded) {
+  const std::string url = serve(under_way(3));
+  const std::string end = fmt::format("shell cp {} {}", (whole_ / "summary.json").string(), directory_.string());
+  const std::string curves =
+      "return [...document.querySelectorAll('#curves .plot')].map((plot) => plot.data.map((trace) => trace.y))";
+  const std::string words = "return document.getElementById('standing').textContent";
+  const std::vector<std::string> looks{
+      kMaps, curves, words, slide(9), drawn(9), kMaps, "return document.getElementById('story').textContent"};
+  std::vector<std::string> steps{drawn(3),
+                                 grow(4, 11),
+                                 drawn(11),
+                                 grow(12, 17),
+                                 drawn(17),
+                                 end,
+                                 "await document.getElementById('standing').textContent.includes('stopped by')"};
+  steps.insert(steps.end(), looks.begin(), looks.end());
+  const Browsed live = test::browse(url, steps, false);
+  ASSERT_EQ(live.trouble, "");
+  EXPECT_THAT(live.severe, IsEmpty());
+  report(directory_);
+  steps = {drawn(17)};
+  steps.insert(steps.end(), looks.begin(), looks.end());
+  const Browsed still = test::browse(directory_ / "report.html", steps, false);
+  ASSERT_EQ(still.trouble, "");
+  ASSERT_EQ(live.values.size(), still.values.size());
+  for (const std::size_t same : {1U, 2U, 5U}) EXPECT_EQ(live.values.at(same), still.values.at(same)) << same;
+  // Maps are rounded to 1 / 131070 of their range, that of the moments that came together.
+  for (const std::size_t maps : {0U, 4U}) {
+    for (std::size_t map = 0; map < 3; ++map) {
+      const auto one = live.values.at(maps).at(map).get<std::vector<double>>();
+      const auto other = still.values.at(maps).at(map).get<std::vector<double>>();
+      ASSERT_EQ(one.size(), other.size());
+      double worst = 0.0;
+      for (std::size_t i = 0; i < one.size(); ++i) worst = std::max(worst, std::abs(one[i] - other[i]));
+      EXPECT_LT(worst, 5.0 / 65535.0) << map;
+    }
+  }
+}
+
+TEST_F(LivePage, GoesOnWhereTheRunWasKilledAndCarriedOnWithoutBeingLoadedAgain) {
+  const fs::path directory = under_way(4);
+  const std::string url = serve(directory);
+  const std::string resume =
+      fmt::format("shell {} resume {} --quiet --force", test::program_file().string(), directory.string());
+  const Browsed seen =
+      test::browse(url,
+                   {drawn(4), kMark, "shell printf '{\"tap\": 5, \"ha' >> " + (directory / "taps.jsonl").string(),
+                    resume, drawn(17), kMarked, kAt},
+                   false);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  EXPECT_EQ(seen.values.at(1), "still here");
+  EXPECT_EQ(seen.values.at(2), (json{"after tap 17 of 17", "17"}));
+}
+
+TEST_F(LivePage, BeginsWithTheFirstTapAndSaysWhenItsServerIsGone) {
+  const std::string url = serve(under_way(0));
+  const Browsed seen = test::browse(
+      url,
+      {"await document.getElementById('waiting') !== null", grow(1, 2), drawn(2), kAt,
+       fmt::format("shell kill {}", server_->pid()),
+       "await document.getElementById('live').textContent === 'not connected'", "key ARROW_LEFT", drawn(1), kAt},
+      true);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_EQ(seen.values.at(0), (json{"after tap 2 of 2", "2"}));
+  EXPECT_EQ(seen.values.at(1), (json{"after tap 1 of 2", "2"})) << "what was shown can be read on";
+  EXPECT_EQ(server_->wait().status, 0);
+}
+
+TEST_F(LivePage, OfASweepFillsUpAndLeadsToThePagesOfItsJobs) {
+  const test::Ended swept = test::palpate({"sweep", paper_, "seed=range(0,4)", "taps=5", "--quiet"}, folder_.path());
+  ASSERT_EQ(swept.status, 0) << swept.err;
+  const fs::path directory = test::only_run(folder_.path() / "runs");
+  const std::vector<Cells> jobs = csv_rows(text_of(directory / "results.csv"));
+  const auto summary = [&](std::size_t job) { return directory / "jobs" / jobs.at(job).at("id") / "summary.json"; };
+  for (std::size_t job = 1; job < 4; ++job) fs::rename(summary(job), folder_.path() / std::to_string(job));
+  const auto ends = [&](std::size_t job) {
+    return fmt::format("shell mv {} {}", (folder_.path() / std::to_string(job)).string(), summary(job).string());
+  };
+  const std::string url = serve(directory);
+  const auto done = [](int count) {
+    return fmt::format("await document.getElementById('standing').textContent.includes('{}done')", count);
+  };
+  const std::string rows = "return [...document.querySelectorAll('#jobs tr.done')].length";
+  const Browsed seen = test::browse(
+      url,
+      {drawn(1), kMark, done(1), rows,
+       "const s = document.getElementById('metric'); s.value = 'taps'; s.dispatchEvent(new Event('change')); return 1",
+       ends(1), done(2), ends(2), ends(3), done(4), rows, kMarked, "return document.getElementById('metric').value",
+       "document.querySelector('#jobs a').click()", "await location.pathname.includes('/jobs/')", drawn(5), kAt},
+      false);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  EXPECT_EQ(seen.values.at(1), 1);
+  EXPECT_EQ(seen.values.at(3), 4);
+  EXPECT_EQ(seen.values.at(4), "still here");
+  EXPECT_EQ(seen.values.at(5), "taps") << "what its reader chose";
+  EXPECT_EQ(seen.values.back(), (json{"after tap 5 of 5", "5"}));
+}
+
+TEST_F(LivePage, OfAFileOrAServerPlaysItsTapsOneByOne) {
+  under_way(17);
+  report(directory_);
+  const std::string watch_it =
+      "window.seen = []; new MutationObserver(() => window.seen.push(Number(document.body.dataset.drawn)))"
+      ".observe(document.body, {attributes: true, attributeFilter: ['data-drawn']})";
+  const std::string press = "document.getElementById('play').click()";
+  const std::string sign = "return document.getElementById('play').getAttribute('aria-label')";
+  for (const std::string& page : {(directory_ / "report.html").string(), serve(directory_)}) {
+    const Browsed seen = test::browse(
+        page,
+        {drawn(17), slide(13), drawn(13), sign, watch_it, press, sign, drawn(17), "return window.seen",
+         "await document.getElementById('play').ariaLabel === 'play'", press, drawn(1), slide(8), drawn(8), sign},
+        false);
+    ASSERT_EQ(seen.trouble, "") << page;
+    EXPECT_THAT(seen.severe, IsEmpty()) << page;
+    const std::vector<json> values(seen.values.begin(), seen.values.end());
+    EXPECT_THAT(values, ::testing::IsSupersetOf({json("play"), json("pause"), json({14, 15, 16, 17})})) << page;
+    EXPECT_EQ(seen.values.back(), "play") << "who moves the slider stops it";
+  }
+}
+
+}  // namespace
+}  // namespace palpate
