@@ -6,6 +6,7 @@
 #include "experiment/experiment.hpp"
 #include "experiment/experiment_options.hpp"
 #include "experiment/metrics.hpp"
+#include "record/build_info.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
@@ -38,23 +39,12 @@ namespace {
 
 using Array = py::array_t<double>;
 
-/// What belongs together with this module: it lies somewhere below the folder that has lib/palpate.
+/// What belongs together with this module.
 Installation find_own_installation() {
   Dl_info self{};
   if (::dladdr(reinterpret_cast<const void*>(&find_own_installation), &self) == 0 || self.dli_fname == nullptr)
     throw Error("palpate", "the module does not know where it lies", {}, Error::Kind::run);
-  const fs::path file = fs::weakly_canonical(self.dli_fname);
-  for (fs::path folder = file.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
-    const fs::path plugins = folder / "lib" / "palpate";
-    if (!fs::exists(plugins)) continue;
-    const bool installed = fs::exists(folder / "share" / "palpate" / "configs");
-    const fs::path program = installed ? folder / "bin" / "palpate" : folder / "palpate";
-    const fs::path whole = installed ? program : folder / "palpate-whole";
-    return {program, whole, plugins,
-            installed ? folder / "share" / "palpate" / "configs" : folder / ".." / ".." / "configs"};
-  }
-  throw Error(file.string(), "is not part of an installation: there is no lib/palpate above it",
-              "install the package as a whole");
+  return find_installation(fs::weakly_canonical(self.dli_fname));
 }
 
 /// What all runs of this process share. Never destroyed: Python lets go of objects in an order of its own.
