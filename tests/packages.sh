@@ -78,7 +78,8 @@ check_files() {
         case $line in palpate-baxter* | python3-*) continue 2 ;; esac # not built here
         fail "there is no package ${line%% *}"
       fi
-      dpkg-deb --contents "$deb" | grep -qF " ${line#* }" || fail "$line: not there"
+      dpkg-deb --contents "$deb" >"$work/contents"
+      grep -qF " ${line#* }" "$work/contents" || fail "$line: not there"
     done
   done
   for deb in "$share"/debs/*.deb; do
@@ -86,7 +87,7 @@ check_files() {
     [ -z "$strange" ] || fail "$deb: $strange"
   done
   # The driver's libraries are for those alone who have a Baxter.
-  ! dpkg-deb -f "$share"/debs/palpate_*.deb Depends | grep -q ros || fail "palpate depends on ROS"
+  ! dpkg-deb -f "$share"/debs/palpate_*.deb Depends | grep ros || fail "palpate depends on ROS"
 }
 
 version_id=$(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null || true)

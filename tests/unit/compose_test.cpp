@@ -33,7 +33,7 @@ TEST_F(Compose, TakesTheProgramsOwnConfigOnlyWhereThereIsNoneOfThatName) {
   fs::current_path(folder_.path());
   EXPECT_EQ(seed("configs/paper/one.yaml"), "7");
   EXPECT_EQ(seed("configs/two.yaml"), "1");
-  for (const char* missing : {"configs/three.yaml", "paper/one.yaml", "configs/../configs.yaml"})
+  for (const char* missing : {"configs/three.yaml", "paper/one.yaml"})
     EXPECT_THAT(error_of([&] { seed(missing); }), testing::StartsWith(std::string(missing) + ": no such file"));
   EXPECT_EQ(composer.found("configs/three.yaml"), "configs/three.yaml");
   fs::current_path(before);

@@ -79,7 +79,7 @@ TEST_F(PluginFolder, TellsTheSameHashOfALibraryWithoutItsSymbolsAndAnotherOfOneW
 
   // A word that it says of itself, which is data and nothing else.
   std::string bytes = text_of(file);
-  const auto at = bytes.find("squared-exponential");
+  const auto at = bytes.find("squared exponential");
   ASSERT_NE(at, std::string::npos);
   bytes[at] = 'S';
   fs::remove(file);  // it may still be mapped
