@@ -493,7 +493,8 @@ int run_main(int argc, char** argv) {
   app.require_subcommand(1);
   app.formatter(std::make_shared<Help>());  // before there are commands, which take it over
   app.set_help_flag("-h,--help", "print this and stop");
-  app.set_version_flag("--version", kVersion, "print the version and stop");
+  app.set_version_flag(
+      "--version", [] { return build_text(find_installation()); }, "print version, commit and build, and stop");
   show(&app, {"palpate run configs/default.yaml scene=ring", "palpate plugins kernel"});
   // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";

@@ -4,6 +4,7 @@
 
 #include "config/compose.hpp"
 #include "experiment/experiment_options.hpp"
+#include "record/build_info.hpp"
 #include "record/session.hpp"
 
 #include <palpate/error.hpp>
@@ -17,23 +18,12 @@
 
 namespace palpate {
 
-/// What belongs together with this module: it lies somewhere below the folder that has lib/palpate.
+/// What belongs together with this module.
 inline Installation find_own_installation() {
   Dl_info self{};
   if (::dladdr(reinterpret_cast<const void*>(&find_own_installation), &self) == 0 || self.dli_fname == nullptr)
     throw Error("palpate", "the module does not know where it lies", {}, Error::Kind::run);
-  const std::filesystem::path file = std::filesystem::weakly_canonical(self.dli_fname);
-  for (std::filesystem::path folder = file.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
-    const std::filesystem::path plugins = folder / "lib" / "palpate";
-    if (!std::filesystem::exists(plugins)) continue;
-    const bool installed = std::filesystem::exists(folder / "share" / "palpate" / "configs");
-    const std::filesystem::path program = installed ? folder / "bin" / "palpate" : folder / "palpate";
-    const std::filesystem::path whole = installed ? program : folder / "palpate-whole";
-    return {program, whole, plugins,
-            installed ? folder / "share" / "palpate" / "configs" : folder / ".." / ".." / "configs"};
-  }
-  throw Error(file.string(), "is not part of an installation: there is no lib/palpate above it",
-              "install the package as a whole");
+  return find_installation(std::filesystem::weakly_canonical(self.dli_fname));
 }
 
 /// What all runs of this process share. Never destroyed: Python lets go of objects in an order of its own.

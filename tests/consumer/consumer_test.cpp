@@ -79,6 +79,25 @@ TEST_F(Consumer, InstallationIsComplete) {
   EXPECT_TRUE(fs::exists(only_run(here() / "runs") / "summary.json"));
 }
 
+TEST_F(Consumer, ProgramTellsVersionCommitAndBuildAndRunsItsOwnConfigsAnywhere) {
+  const Ended told = installed({"--version"});
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out,
+              testing::MatchesRegex("palpate [0-9.]+\ncommit: ([0-9a-f]{40}|unknown)(, with changes that are in no "
+                                    "commit)?\nbuild: [0-9a-f]{32}\ncompiler: .*\n"));
+  const std::string build = told.out.substr(told.out.find("build: ") + 7, 32);
+
+  ASSERT_FALSE(fs::exists(here() / "configs"));
+  const Ended ended = installed({"run", "configs/paper/object_i.yaml", "taps=4", "--quiet"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(text_of(only_run(here() / "runs") / "manifest.json"),
+              HasSubstr("\"build_without_plugins\": \"" + build + "\""));
+  EXPECT_EQ(installed({"sweep", "configs/paper/object_i.yaml", "seed=1,2", "taps=4", "--quiet"}).status, 0);
+  const Ended missing = installed({"run", "configs/paper/object_x.yaml"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, testing::StartsWith("configs/paper/object_x.yaml: no such file"));
+}
+
 TEST_F(Consumer, PluginIsFoundDescribedRunAndSound) {
   build_with("");
   const Ended described = installed({"plugins", "kernel/rational"});

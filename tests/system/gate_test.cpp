@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <stdexcept>
+
 namespace palpate {
 namespace {
 
@@ -225,6 +228,66 @@ TEST_F(Gates, ThatAreShippedCloseWhenAnyOfTheirBoundsIsTightened) {
     EXPECT_EQ(ended.status, 1) << file << "\n" << ended.err;
     EXPECT_EQ(lines(ended.err), static_cast<int>(config.find("expect")->entries.size())) << ended.err;
   }
+}
+
+/// The workflow that gates.md shows, in a repository of somebody's own: its steps in order, but what installs palpate.
+class Workflow : public Shell {
+ protected:
+  Workflow() {
+    const std::string page = text_of(test::source_folder() / "framework/docs/gates.md");
+    const auto begin = page.find("```yaml\n# .github/workflows/");
+    if (begin == std::string::npos) throw std::runtime_error("gates.md shows no workflow");
+    write("workflow.yaml", page.substr(begin + 8, page.find("\n```\n", begin) - begin - 7));
+    const Tree workflow = read_yaml(here() / "workflow.yaml");
+    for (const Tree& step : workflow.find_path("jobs.gate.steps")->items) {
+      const Tree* run = step.find("run");
+      if (run != nullptr && run->text.find("apt-get") == std::string::npos) steps_.push_back(run->text);
+    }
+    fs::create_directories(here() / "bin");
+    fs::create_symlink(test::program_file(), here() / "bin" / "palpate");
+    for (const char* name : {"object_i.yaml", "strategy.yaml"}) write(gate(name), text_of(shipped("ci") / name));
+  }
+  static std::string gate(const std::string& name) { return "gates/" + name; }
+  static fs::path shipped(const std::string& folder) { return test::source_folder() / "configs" / folder; }
+  /// As the service runs a step without a shell of its own: by sh -e.
+  Ended step(std::size_t which) const {
+    const char* path = std::getenv("PATH");
+    return test::run_program({"sh", "-e", "-c", steps_.at(which)}, here(),
+                             {"PATH=" + (here() / "bin").string() + ":" + (path != nullptr ? path : "")});
+  }
+  void replace(const std::string& name, const std::string& what, const std::string& with) const {
+    std::string text = text_of(here() / gate(name));
+    const auto at = text.find(what);
+    ASSERT_NE(at, std::string::npos);
+    write(gate(name), text.replace(at, what.size(), with));
+  }
+
+  std::vector<std::string> steps_;
+};
+
+TEST_F(Workflow, OfThePageHoldsConfigsOfOnesOwnToTheirWord) {
+  ASSERT_EQ(steps_.size(), 3U);
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Ended ended = step(i);
+    EXPECT_EQ(ended.status, 0) << steps_[i] << ended.err;
+    EXPECT_THAT(ended.out, testing::Not(HasSubstr("::error::")));
+  }
+  EXPECT_GT(junit_cases(here() / "object_i.xml").size(), 1U);
+  EXPECT_GT(junit_cases(here() / "strategy.xml").size(), 20U);
+
+  replace("object_i.yaml", "rmse_m: \"<= 3.6 cm\"", "rmse_m: \"<= 1 mm\"");
+  replace("strategy.yaml", "mean(found): \">= 0.85\"", "mean(found): \">= 1\"");
+  EXPECT_EQ(step(0).status, 0) << "what is expected is sound all the same";
+  EXPECT_EQ(step(1).status, 1);
+  const Ended broken = step(2);
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_THAT(broken.out, HasSubstr("::error::an expectation does not hold"));
+
+  replace("strategy.yaml", "taps: 17", "tap: 17");
+  EXPECT_EQ(step(0).status, 2);
+  const Ended wrong = step(2);
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.out, HasSubstr("::error::the config or the call is wrong"));
 }
 
 }  // namespace

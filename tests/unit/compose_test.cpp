@@ -22,6 +22,23 @@ TEST_F(Compose, ReadsTheGroupsThatDefaultsNameAndLeavesNoTraceOfDefaults) {
   EXPECT_EQ(value(text, "defaults"), "-");
 }
 
+TEST_F(Compose, TakesTheProgramsOwnConfigOnlyWhereThereIsNoneOfThatName) {
+  const TemporaryFolder program;
+  program.write("configs/paper/one.yaml", "seed: 7\n");
+  program.write("configs/two.yaml", "seed: 8\n");
+  Composer composer(program.path() / "configs", config_keys());
+  const auto seed = [&](const fs::path& file) { return composer.compose(file, {}).find("seed")->text; };
+  const fs::path before = fs::current_path();
+  folder_.write("configs/two.yaml", "seed: 1\n");
+  fs::current_path(folder_.path());
+  EXPECT_EQ(seed("configs/paper/one.yaml"), "7");
+  EXPECT_EQ(seed("configs/two.yaml"), "1");
+  for (const char* missing : {"configs/three.yaml", "paper/one.yaml"})
+    EXPECT_THAT(error_of([&] { seed(missing); }), testing::StartsWith(std::string(missing) + ": no such file"));
+  EXPECT_EQ(composer.found("configs/three.yaml"), "configs/three.yaml");
+  fs::current_path(before);
+}
+
 TEST_F(Compose, LetsLaterDefaultsWin) {
   EXPECT_EQ(value("defaults:\n  - scene: desk\n  - scene: table\n", "scene.desk"), "70 cm");
   EXPECT_EQ(value("defaults:\n  - scene: table\n  - scene: desk\n", "scene.desk"), "0 cm");

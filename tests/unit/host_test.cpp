@@ -2,6 +2,7 @@
 #include "plugin/host.hpp"
 
 #include "config/describe.hpp"
+#include "support/programs.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/kernel.hpp>
@@ -62,6 +63,28 @@ TEST_F(PluginFolder, OpensTheNamedFileAndNoOther) {
   EXPECT_EQ(options_of(host, "kernel", "rbf").size(), 2U);
   EXPECT_TRUE(mapped(file));
   EXPECT_FALSE(mapped(fs::canonical(folder_.path()) / "kernel" / "matern32.so"));
+}
+
+TEST_F(PluginFolder, TellsTheSameHashOfALibraryWithoutItsSymbolsAndAnotherOfOneWithAnotherByte) {
+  const auto hash = [&] { return PluginHost({folder_.path()}).loaded({{"kernel", "rbf"}}).front().hash; };
+  const fs::path file = copy_of_rbf(folder_);
+  const std::string whole = hash();
+  const auto size = fs::file_size(file);
+  const Ended stripped =
+      run_program({"strip", "--remove-section=.comment", "--remove-section=.note", "--strip-unneeded", file.string()},
+                  folder_.path());
+  ASSERT_EQ(stripped.status, 0) << stripped.err;
+  EXPECT_LT(fs::file_size(file), size);
+  EXPECT_EQ(hash(), whole);
+
+  // A word that it says of itself, which is data and nothing else.
+  std::string bytes = text_of(file);
+  const auto at = bytes.find("squared exponential");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = 'S';
+  fs::remove(file);  // it may still be mapped
+  folder_.write("kernel/rbf.so", bytes);
+  EXPECT_NE(hash(), whole);
 }
 
 TEST(PluginHost, TellsFileAndHashOfThePluginsAskedForAndOfNoOther) {

@@ -350,9 +350,18 @@ void Composer::note_group(const Choice& choice, const fs::path& beside) {
   if (!file.empty()) groups_.push_back({choice.path, choice.value.text, std::move(file)});
 }
 
-Tree Composer::compose(const fs::path& file, const std::vector<Override>& overrides) {
+fs::path Composer::found(const fs::path& file) const {
+  std::error_code none;
+  if (file.empty() || *file.begin() != "configs" || fs::status(file, none).type() != fs::file_type::not_found)
+    return file;
+  const fs::path own = shipped_ / file.lexically_relative("configs");
+  return fs::is_regular_file(own, none) ? own.lexically_normal() : file;
+}
+
+Tree Composer::compose(const fs::path& named, const std::vector<Override>& overrides) {
   groups_.clear();
   brought_.clear();
+  const fs::path file = found(named);
   Tree own = load(file);
   const fs::path beside = fs::absolute(file).parent_path();
   std::vector<Choice> choices = take_defaults(own);

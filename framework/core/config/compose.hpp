@@ -55,7 +55,12 @@ class Composer {
   /// there stays, as far as the new type has that option (see resolve()). A map given for a group is laid over it; any
   /// other value takes the place of what was there. Throws Error for missing files, unknown
   /// groups and cycles.
+  /// `file` is found as found() has it.
   Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
+
+  /// `file`, or where there is none of a relative name configs/..., the program's own of that name: what a checkout has
+  /// beside it is there wherever an installed program is called.
+  std::filesystem::path found(const std::filesystem::path& file) const;
 
   /// A group that was read from a file.
   struct Group {

@@ -2,8 +2,8 @@
 #include "plugin/host.hpp"
 
 #include "config/describe.hpp"
-#include "config/hash.hpp"
 #include "config/tree.hpp"
+#include "plugin/loaded_hash.hpp"
 #include "plugin/named.hpp"
 
 #include <palpate/acquisition.hpp>
@@ -189,7 +189,7 @@ class PluginHost::Library {
       refuse(file, "loading", dlerror_part(failure.what()), "a plugin links all that it uses");
     }
     manifest = &check_manifest(library, file, kind, name);
-    hash = hash_of_file(file);
+    hash = hash_of_loaded(file);
   }
 
   fs::path file;

@@ -32,7 +32,7 @@ struct LoadedPlugin {
   std::string kind;
   std::string name;
   std::filesystem::path file;
-  std::string hash;  ///< of the file
+  std::string hash;  ///< of what is loaded of the file: loaded_hash.hpp
 };
 
 /// Kind and name of the plugins of a build, whether they are built or not: what its plugin folder lists. Empty for any

@@ -33,6 +33,13 @@ Tree libraries() {
                     {"yaml-cpp", Tree::quote(PALPATE_YAML_CPP_VERSION)}});
 }
 
+/// Commit, and whether the tree differed from it. Kept beside the program, not in it: a commit that changes no code
+/// leaves the program's bytes alone.
+Tree read_stamp(const Installation& installation) {
+  const fs::path file = installation.plugins / "build.json";
+  return is_there(file) ? read_json(file) : Tree::map();
+}
+
 Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {
   Tree out = Tree::list();
   for (const LoadedPlugin& one : host.loaded(plugins)) {
@@ -52,13 +59,31 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-Installation find_installation() {
-  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
-  const fs::path program = folder / "palpate";
-  // Installed: bin/palpate, lib/palpate/plugins, share/palpate/configs. Built: build/<preset>/palpate beside lib.
-  if (fs::exists(folder / "lib" / "palpate"))
-    return {program, folder / "palpate-whole", folder / "lib" / "palpate", folder / ".." / ".." / "configs"};
-  return {program, program, folder / ".." / "lib" / "palpate", folder / ".." / "share" / "palpate" / "configs"};
+Installation find_installation() { return find_installation(fs::read_symlink("/proc/self/exe")); }
+
+Installation find_installation(const fs::path& file) {
+  for (fs::path folder = file.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
+    const fs::path plugins = folder / "lib" / "palpate";
+    if (!fs::exists(plugins)) continue;
+    const fs::path configs = folder / "share" / "palpate" / "configs";
+    const fs::path installed = folder / "bin" / "palpate";
+    if (fs::exists(configs)) return {installed, installed, plugins, configs};
+    return {folder / "palpate", folder / "palpate-whole", plugins, folder.parent_path().parent_path() / "configs"};
+  }
+  throw Error(file.string(), "is not part of an installation: there is no lib/palpate above it",
+              "install palpate as a whole");
+}
+
+std::string build_text(const Installation& installation) {
+  const Tree stamp = read_stamp(installation);
+  const auto said = [&](const char* key) {
+    const Tree* value = stamp.find(key);
+    return value != nullptr ? value->text : std::string();
+  };
+  const std::string commit = said("commit");
+  return fmt::format("palpate {}\ncommit: {}{}\nbuild: {}\ncompiler: {}", kVersion, commit.empty() ? "unknown" : commit,
+                     said("dirty") == "true" ? ", with changes that are in no commit" : "", hash_of(kCoreHash),
+                     PALPATE_COMPILER);
 }
 
 std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
@@ -69,13 +94,12 @@ std::string build_hash(const PluginHost& host, const PluginNames& plugins) {
 
 Tree describe_build(const Installation& installation, const PluginHost& host, const PluginNames& plugins,
                     const std::string& instruction_path) {
-  // Kept beside the program, not in it: a commit that changes no code leaves the program's bytes alone.
-  const fs::path commit = installation.plugins / "build.json";
-  Tree stamp = is_there(commit) ? read_json(commit) : Tree::map();
+  Tree stamp = read_stamp(installation);
   return Tree::map({{"version", Tree::quote(kVersion)},
                     {"commit", stamp.at("commit")},
                     {"dirty", stamp.at("dirty")},
                     {"build", Tree::quote(build_hash(host, plugins))},
+                    {"build_without_plugins", Tree::quote(hash_of(kCoreHash))},
                     {"compiler", Tree::quote(PALPATE_COMPILER)},
                     {"instruction_path", Tree::quote(instruction_path)},
                     {"build_stamp", Tree::quote(PALPATE_BUILD_STAMP)},

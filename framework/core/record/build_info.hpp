@@ -18,8 +18,13 @@ struct Installation {
   std::filesystem::path configs;
 };
 
-/// That of this very program.
+/// That of this very program; throws Error as below.
 Installation find_installation();
+
+/// That of a program, or of a library as Python's module is one: the nearest folder above `file` that has lib/palpate,
+/// which is a prefix (bin/palpate, lib/palpate/<kind>/<name>.so, share/palpate/configs) or build/<preset> of a source
+/// tree. `file` has no links in it. Throws Error if there is none.
+Installation find_installation(const std::filesystem::path& file);
 
 /// Of this machine, "" if it has none.
 std::string host_name();
@@ -29,6 +34,9 @@ extern const char* const kVersion;
 /// A hash over all of core as it was compiled, and over what is linked into it: cmake/CoreHash.cmake makes it, for
 /// every program that core is linked to.
 extern const char* const kCoreHash;
+
+/// What `palpate --version` prints, without the last newline: version, commit, build and compiler, a line each.
+std::string build_text(const Installation& installation);
 
 /// One hash over core and the plugins of a run. Equal for equal code: neither a commit alone, nor another plugin, nor a
 /// command or a page that says something else changes it.

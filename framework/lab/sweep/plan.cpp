@@ -269,9 +269,10 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
 
 }  // namespace
 
-SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& file,
+SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path& named,
                      const std::vector<std::string>& words, const fs::path& runs, const JobSink& sink) {
   const SweepWords read = parse_sweep_words(words);
+  const fs::path file = composer.found(named);
   const Tree base = composer.compose(file, read.expectations);
   const SweepDescription description(base.find("sweep"), read);
   if (description.keys().empty()) {

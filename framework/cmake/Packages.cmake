@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+# Packages for Debian: `cpack -B FOLDER` in a build folder makes palpate, palpate-dev and, where they are built,
+# python3-palpate and palpate-baxter, the driver with ROS, which nobody without a Baxter wants. A component of install()
+# is a package; what libraries it depends on, dpkg-shlibdeps says.
+# Not of a build for one machine, or one that is watched.
+set(PALPATE_PACKAGES OFF)
+if(CMAKE_CXX_FLAGS MATCHES "-march=|-mavx|-fsanitize")
+  return()
+endif()
+set(PALPATE_PACKAGES ON)
+set(PALPATE_MAINTAINER "The palpate authors <maintainers@palpate.invalid>" CACHE STRING
+    "who answers for packages, NAME <MAIL>")
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program dev)
+if(TARGET palpate_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
+if(PALPATE_BAXTER)
+  list(APPEND CPACK_COMPONENTS_ALL baxter)
+endif()
+
+# Built on another Debian it depends on other libraries and is another package, of which the later one's is the newer.
+set(distribution "")
+if(EXISTS /etc/os-release)
+  file(STRINGS /etc/os-release distribution REGEX "^(ID|VERSION_ID)=")
+  string(REGEX REPLACE ".*VERSION_ID=\"?([0-9.]+).*" "+deb\\1" distribution "${distribution};")
+  if(NOT distribution MATCHES "^\\+deb[0-9.]+$")
+    set(distribution "")
+  endif()
+endif()
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_DEBIAN_PACKAGE_RELEASE "1${distribution}")
+set(same_version "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
+
+set(CPACK_PACKAGE_NAME palpate)
+set(CPACK_PACKAGE_CONTACT "${PALPATE_MAINTAINER}")
+set(CPACK_PACKAGE_CHECKSUM SHA256)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)  # headers
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+                                                WORLD_EXECUTE)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/PackageDate.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DebianFiles.cmake)
+set(CPACK_PALPATE_SOURCE ${PROJECT_SOURCE_DIR})
+set(CPACK_PALPATE_STRIP ${CMAKE_STRIP})
+
+# debian_package COMPONENT NAME SECTION DESCRIPTION, of which the first line is the short one.
+macro(debian_package component name section description)
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
+  set(CPACK_DEBIAN_${upper}_DESCRIPTION "${description}")
+endmacro()
+debian_package(program palpate science "experiments in active touch
+A robot arm, or a simulated one, taps an unknown object; Gaussian processes
+say where to tap next; after some thirty taps the surface is known. palpate
+runs such experiments from YAML files, logs every tap, carries on what was
+killed, and compares, reports and exports what came out.
+.
+Configs are in /usr/share/palpate/configs; `palpate run
+configs/paper/object_i.yaml` finds them from any folder.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "palpate-dev, python3-palpate, palpate-baxter, slurm-client")
+
+debian_package(dev palpate-dev libdevel "experiments in active touch - to build plugins with
+Headers and the CMake package for plugins of palpate: kernels, acquisitions,
+fittings, footprints, backends and shapes.")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+    "palpate ${same_version}, libeigen3-dev (>= 3.4), cmake (>= 3.25), ninja-build | make")
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS g++)
+
+if(TARGET palpate_python)
+  math(EXPR next_minor "${PALPATE_PYTHON_MINOR} + 1")
+  debian_package(python python3-palpate python "experiments in active touch - Python module
+Reads runs of palpate as arrays, runs experiments, and asks where to tap, so
+that an arm or a strategy can be a few lines of Python.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "palpate ${same_version}, python3 (>= 3.${PALPATE_PYTHON_MINOR}~), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/postinst
+                                                ${CMAKE_CURRENT_LIST_DIR}/debian/prerm)
+endif()
+debian_package(baxter palpate-baxter science "experiments in active touch - driver for Baxter
+Taps with the left arm of a Baxter, a robot of Rethink Robotics, over ROS 1:
+plans the way down, feels the contact in the forces at the endpoint, watches
+the robot meanwhile, and stops where it should.")
+set(CPACK_DEBIAN_BAXTER_PACKAGE_DEPENDS "palpate ${same_version}")
+include(CPack)
