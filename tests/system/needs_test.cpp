@@ -104,6 +104,9 @@ TEST_F(FirstCommand, LookingAtARunTakesItsPluginsAndListingThemThoseThatAreListe
   EXPECT_THAT(kPaper, IsSubsetOf(needs({"replay", "one"})));
   EXPECT_THAT(needs({"replay", "one"}), Not(Contains("palpate_whole")));
   EXPECT_THAT(needs({"explain", "one", "3"}), Contains("palpate_whole"));
+  EXPECT_THAT(needs({"watch", "one"}), Contains("palpate_whole"));
+  EXPECT_THAT(kPaper, IsSubsetOf(needs({"watch", "one"})));
+  EXPECT_THAT(needs({"run", paper(), "--watch"}), Contains("palpate_whole"));
   EXPECT_EQ(needs({"plugins", "kernel/rbf"}), Targets{"palpate_kernel_rbf"});
   EXPECT_THAT(needs({"plugins", "kernel"}), Contains("palpate_kernel_matern52"));
   EXPECT_THAT(needs({"plugins", "kernel"}), Not(Contains("palpate_backend_simulator")));
