@@ -137,8 +137,17 @@ else
   # shellcheck source=/dev/null
   . "$root/.ci/setup.sh"
   git clone -q --no-hardlinks "$root" "$share/palpate"
+  maintainer=$(sed -n 's/^PALPATE_MAINTAINER:STRING=//p' "$root/build/release/CMakeCache.txt")
+  cat >"$share/build" <<END
+set -eu
+cd $share/palpate
+cmake --preset release '-DPALPATE_MAINTAINER=$maintainer'
+cmake --build --preset release --target palpate_complete
+cd build/release
+cpack -B $share/debs
+END
   bare --include="$(packages core python ros | tr '\n' ','),dpkg-dev,file" \
-    --customize-hook="chroot \"\$1\" sh -ec 'cd $share/palpate && cmake --preset release && cmake --build --preset release --target palpate_complete && cd build/release && cpack -B $share/debs' >&2" \
+    --customize-hook="chroot \"\$1\" sh $share/build >&2" \
     --customize-hook="sync-out $share/debs $share/debs"
   rm -rf "$share/palpate"
 fi

@@ -2,6 +2,7 @@
 # Packages for Debian: `cpack -B FOLDER` in a build folder makes palpate, palpate-dev and, where they are built,
 # python3-palpate and palpate-baxter, the driver with ROS, which nobody without a Baxter wants. A component of install()
 # is a package; what libraries it depends on, dpkg-shlibdeps says.
+
 # Not of a build for one machine, or one that is watched.
 set(PALPATE_PACKAGES OFF)
 if(CMAKE_CXX_FLAGS MATCHES "-march=|-mavx|-fsanitize")
@@ -23,8 +24,9 @@ endif()
 set(distribution "")
 if(EXISTS /etc/os-release)
   file(STRINGS /etc/os-release distribution REGEX "^(ID|VERSION_ID)=")
-  string(REGEX REPLACE ".*VERSION_ID=\"?([0-9.]+).*" "+deb\\1" distribution "${distribution};")
-  if(NOT distribution MATCHES "^\\+deb[0-9.]+$")
+  if(distribution MATCHES "(^|;)ID=debian" AND distribution MATCHES "VERSION_ID=\"?([0-9]+)")
+    set(distribution "+deb${CMAKE_MATCH_1}")
+  else()
     set(distribution "")
   endif()
 endif()

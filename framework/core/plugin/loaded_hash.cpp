@@ -6,9 +6,9 @@
 #include <palpate/error.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -17,9 +17,10 @@
 namespace palpate {
 
 std::string hash_of_loaded(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw Error(file.string(), "cannot be read");
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  std::string bytes(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
+  in.seekg(0);
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw Error(file.string(), "cannot be read");
   const auto part = [&](std::uint64_t offset, std::uint64_t size) {
     if (offset > bytes.size() || size > bytes.size() - offset)
       throw Error(file.string(), "is not a complete shared library", "build or copy it again");
@@ -31,6 +32,7 @@ std::string hash_of_loaded(const std::filesystem::path& file) {
   std::memcpy(segments.data(), part(header.e_phoff, segments.size() * sizeof(ElfW(Phdr))).data(),
               segments.size() * sizeof(ElfW(Phdr)));
   std::string loaded;
+  loaded.reserve(bytes.size());
   for (const ElfW(Phdr) & segment : segments) {
     if (segment.p_type != PT_LOAD) continue;
     // The file's header, which the first segment begins with, says where the section table is.

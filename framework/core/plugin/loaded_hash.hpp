@@ -7,9 +7,9 @@
 
 namespace palpate {
 
-/// A hash, 32 hex digits, over what of a shared library gets into memory, code and data with their places. Symbols and
-/// section tables, which a package is stripped of, do not count: the same build is the same before and after. Throws
-/// Error if the file cannot be read or is not a library of this machine's kind.
+/// A hash, 32 hex digits, over what gets into memory of a shared library that this process can load: code and data with
+/// their places. The table of symbols and that of sections, which a package is stripped of, do not count: the same
+/// build is the same before and after. Throws Error if the file cannot be read or was cut short.
 std::string hash_of_loaded(const std::filesystem::path& file);
 
 }  // namespace palpate
