@@ -286,8 +286,7 @@ class Explanation {
       const std::string change = from == to ? "still " + to : fmt::format("from {} to {}", from, to);
       (length ? lengths : others).push_back(fmt::format("{} {}", error.label, change));
     }
-    if (!lengths.empty())
-      page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(lengths, ", ")));
+    if (!lengths.empty()) page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(lengths, ", ")));
     for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
     if (lengths.empty() && others.empty())
       page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
