@@ -239,7 +239,7 @@ TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
 
 TEST_P(Looks, PicturesCallMapsAndCurvesAsThePageDoes) {
   for (const char* footprint : {"footprint=regression", "footprint=classifier"}) {
-    const fs::path directory = run_with_page({"seed=4", "taps=5", "candidates.count=12", footprint});
+    const fs::path directory = run_with_page({"seed=3", "taps=8", footprint});
     const test::Ended drawn_too = test::palpate({"report", directory.string(), "--figures"}, folder_.path());
     ASSERT_EQ(drawn_too.status, 0) << drawn_too.err;
     const Browsed seen = browse(directory, {drawn(5),
