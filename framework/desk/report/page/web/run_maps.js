@@ -55,6 +55,12 @@ const edge = (color, width) => ({ color, width });
 const doubtedOf = (data, moment) =>
   (moment.doubted ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may lie: ${one.words}` }));
 
+/// Crosses that are seen on dark and on light.
+const deskMarks = (taps) => [
+  markTrace(taps, "on the desk", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
+  markTrace(taps, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
+];
+
 /// Taps as marks in the plane: discs on the object, crosses on the desk, squares where a tap failed, a ring around what is
 /// doubted; a star is next.
 function marks(data, moment) {
@@ -64,8 +70,7 @@ function marks(data, moment) {
   return [
     ...(doubted.length > 0 ? [ring] : []),
     markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
-    markTrace(off, "on the desk", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
-    markTrace(off, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
+    ...deskMarks(off),
     markTrace(failed, "failed", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
     markTrace(nextOf(moment), "next", { symbol: "star", size: 15, color: kNextColour, line: edge("#ffffff", 1.2) }),
   ];

@@ -6,6 +6,9 @@
 const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
 const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 
+/// The name of an error with its unit.
+const errorTitle = ([, label, unit]) => (unit === "m" ? `error ${label} [cm]` : label);
+
 /// The latest moment of a run with at most so many taps.
 const momentAt = (run, taps) => run.moments[Math.min(taps, run.moments.length - 1)];
 
@@ -17,7 +20,7 @@ class ErrorPlots {
   constructor(data) {
     this.data = data;
     this.errors = data.errors.filter(([name]) => data.runs.some((run) => run.moments.some((moment) => typeof moment[name] === "number")));
-    const options = this.errors.map(([name, label]) => element("option", { value: name }, label));
+    const options = this.errors.map((error) => element("option", { value: error[0] }, errorTitle(error)));
     this.choice = element("select", { id: "error", "aria-label": "error" }, ...options);
     this.choice.addEventListener("change", () => inTurn(() => this.draw()));
   }
@@ -25,14 +28,15 @@ class ErrorPlots {
   elements() {
     if (this.errors.length === 0) return [element("p", { class: "sub" }, "No run has a known truth: there is no error to show.")];
     const plots = [figure("over_taps", "over taps"), figure("over_seconds", "over robot time")];
-    return [element("div", { class: "choices" }, element("label", {}, "error ", this.choice)), element("div", { class: "row wide" }, ...plots)];
+    return [element("div", { class: "choices" }, this.choice), element("div", { class: "row wide" }, ...plots)];
   }
 
   async draw() {
     if (this.errors.length === 0) return;
-    const [name, label, unit] = this.errors.find(([one]) => one === this.choice.value);
+    const error = this.errors.find(([one]) => one === this.choice.value);
+    const [name, , unit] = error;
     const factor = unit === "m" ? kCentimetres : 1;
-    const title = unit === "m" ? `${label} [cm]` : label;
+    const title = errorTitle(error);
     const over = (cost) => this.data.runs.map((run, index) => {
       const moments = run.moments.filter((moment) => typeof moment[name] === "number");
       const words = plain(wordsOf(run, index));
@@ -98,7 +102,7 @@ class Surfaces {
       const traces = [
         heatMap(run, frames[index], this.range, kWhere, "cm"),
         markTrace(on, "on the object", { symbol: "circle", size: 8, color: "#ffffff", line: edge("#000000", 1.4) }),
-        markTrace(off, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }),
+        ...deskMarks(off),
         markTrace(failed, "failed", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
       ];
       return plot(`surface_${index}`, traces, { ...planeAxes(run), showlegend: false });
@@ -116,7 +120,7 @@ class Surfaces {
 /// A line for each run: how it ended and how good it was.
 function standings(data) {
   const errors = data.errors.filter(([name]) => data.runs.some((run) => typeof momentAt(run, Infinity)[name] === "number"));
-  const header = ["run", "seed", "state", "taps", "robot time [s]", ...errors.map(([, label, unit]) => (unit === "m" ? `${label} [cm]` : label))];
+  const header = ["run", "seed", "state", "taps", "robot time [s]", ...errors.map(errorTitle)];
   const rows = data.runs.map((run, index) => {
     const last = momentAt(run, Infinity);
     const state = run.state === "done" ? run.stop_reason : run.state;
