@@ -242,7 +242,7 @@ TEST_P(Looks, PicturesCallMapsAndCurvesAsThePageDoes) {
     const fs::path directory = run_with_page({"seed=3", "taps=8", footprint});
     const test::Ended drawn_too = test::palpate({"report", directory.string(), "--figures"}, folder_.path());
     ASSERT_EQ(drawn_too.status, 0) << drawn_too.err;
-    const Browsed seen = browse(directory, {drawn(5),
+    const Browsed seen = browse(directory, {drawn(8),
                                             "const of = (s) => [...document.querySelectorAll(s)].map((e) => "
                                             "e.textContent); return [of('#maps_row figcaption'), "
                                             "of('.row.small figcaption')]"});
