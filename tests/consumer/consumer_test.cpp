@@ -93,6 +93,8 @@ TEST_F(Consumer, ProgramTellsVersionCommitAndBuildAndRunsItsOwnConfigsAnywhere) 
   EXPECT_THAT(text_of(only_run(here() / "runs") / "manifest.json"),
               HasSubstr("\"build_without_plugins\": \"" + build + "\""));
   EXPECT_EQ(installed({"sweep", "configs/paper/object_i.yaml", "seed=1,2", "taps=4", "--quiet"}).status, 0);
+  const Ended mesh = installed({"run", "configs/paper/object_i.yaml", "scene=cup", "taps=4", "name=cup", "--quiet"});
+  EXPECT_EQ(mesh.status, 0) << mesh.err;
   const Ended missing = installed({"run", "configs/paper/object_x.yaml"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, testing::StartsWith("configs/paper/object_x.yaml: no such file"));
