@@ -35,11 +35,11 @@ class Consumer : public testing::Test {
 
   void build_project(const fs::path& sources, const std::string& more_flags = "") {
     const std::string flags = std::string("-DCMAKE_CXX_FLAGS=" PALPATE_CXX_FLAGS) + more_flags;
-    const Ended configured =
-        run_program({PALPATE_CMAKE, "-S", sources.string(), "-B", build().string(), "-G", PALPATE_GENERATOR,
-                     "-DCMAKE_PREFIX_PATH=" + prefix().string(), "-DCMAKE_CXX_COMPILER=" PALPATE_CXX_COMPILER,
-                     "-DCMAKE_BUILD_TYPE=" PALPATE_BUILD_TYPE, flags},
-                    here());
+    const Ended configured = run_program(
+        {PALPATE_CMAKE, "-S", sources.string(), "-B", build().string(), "-G", PALPATE_GENERATOR,
+         "-DCMAKE_PREFIX_PATH=" + prefix().string(), std::string("-DCMAKE_CXX_COMPILER=") + PALPATE_CXX_COMPILER,
+         std::string("-DCMAKE_BUILD_TYPE=") + PALPATE_BUILD_TYPE, flags},
+        here());
     ASSERT_EQ(configured.status, 0) << configured.out << configured.err;
     const Ended built = run_program({PALPATE_CMAKE, "--build", build().string()}, here());
     ASSERT_EQ(built.status, 0) << built.out << built.err;
@@ -93,6 +93,8 @@ TEST_F(Consumer, ProgramTellsVersionCommitAndBuildAndRunsItsOwnConfigsAnywhere) 
   EXPECT_THAT(text_of(only_run(here() / "runs") / "manifest.json"),
               HasSubstr("\"build_without_plugins\": \"" + build + "\""));
   EXPECT_EQ(installed({"sweep", "configs/paper/object_i.yaml", "seed=1,2", "taps=4", "--quiet"}).status, 0);
+  const Ended mesh = installed({"run", "configs/paper/object_i.yaml", "scene=cup", "taps=4", "name=cup", "--quiet"});
+  EXPECT_EQ(mesh.status, 0) << mesh.err;
   const Ended missing = installed({"run", "configs/paper/object_x.yaml"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, testing::StartsWith("configs/paper/object_x.yaml: no such file"));
@@ -137,7 +139,7 @@ TEST_F(Consumer, EachKindHasAPluginToBeginWithThatBuildsRunsAndKeepsTheLaws) {
   for (const std::string& kind : brief() ? std::vector<std::string>{"acquisition", "shape"} : PluginHost::kinds()) {
     const std::string name = "my_" + kind;
     build_project(here() / name);
-    const Ended ended = installed({"run", name + "/" + name + ".yaml", "--json"});
+    const Ended ended = installed({"run", (fs::path(name) / (name + ".yaml")).string(), "--json"});
     EXPECT_EQ(ended.status, 0) << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("\"status\": \"done\""));
     const Ended contract =
@@ -184,10 +186,11 @@ TEST(Tutorial, ItsCommandsBuildAndRunThePluginWithWhatTheProjectInstalls) {
   for (const char* make : {"make", "gmake"})
     fs::permissions(home.write(std::string("bin/") + make, refuse), fs::perms::owner_all);
   const char* path = std::getenv("PATH");
-  const Ended ended = run_program({"sh", "-euc", install_block(source_folder() / "plugins/README.md")}, plugins,
-                                  {"HOME=" + home.path().string(), "CMAKE_GENERATOR",
-                                   "PATH=" + (home.path() / "bin").string() + ":" + (path != nullptr ? path : ""),
-                                   "CXX=" PALPATE_CXX_COMPILER, "CXXFLAGS=" PALPATE_CXX_FLAGS});
+  const Ended ended =
+      run_program({"sh", "-euc", install_block(source_folder() / "plugins/README.md")}, plugins,
+                  {"HOME=" + home.path().string(), "CMAKE_GENERATOR",
+                   "PATH=" + (home.path() / "bin").string() + ":" + (path != nullptr ? path : ""),
+                   std::string("CXX=") + PALPATE_CXX_COMPILER, std::string("CXXFLAGS=") + PALPATE_CXX_FLAGS});
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("done: tap budget after 17 taps"));
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #define XXH_INLINE_ALL
@@ -25,12 +26,25 @@ std::string checksum_of(const std::string& bytes) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+/// Where the file lies: a shipped config names its mesh as configs/..., which without a checkout around is beside the
+/// configs that were installed with this library, <prefix>/lib/palpate/shape/mesh.so.
+fs::path place_of(const std::string& file) {
+  std::error_code none;
+  Dl_info self{};
+  if (file.rfind("configs/", 0) != 0 || fs::status(file, none).type() != fs::file_type::not_found) return file;
+  if (::dladdr(reinterpret_cast<const void*>(&place_of), &self) == 0 || self.dli_fname == nullptr) return file;
+  const fs::path prefix = fs::weakly_canonical(self.dli_fname, none) / ".." / ".." / ".." / "..";
+  const fs::path installed = prefix.lexically_normal() / "share" / "palpate" / file;
+  return fs::is_regular_file(installed, none) ? installed : fs::path(file);
+}
+
 }  // namespace
 
 std::string read_file(const std::string& file) {
   constexpr std::uintmax_t kMostBytes = 500'000'000;
   std::error_code trouble;
-  const fs::file_status status = fs::status(file, trouble);
+  const fs::path place = place_of(file);
+  const fs::file_status status = fs::status(place, trouble);
   if (status.type() == fs::file_type::not_found) {
     std::string hint;
     if (fs::path(file).is_relative())
@@ -40,12 +54,12 @@ std::string read_file(const std::string& file) {
   if (status.type() != fs::file_type::regular) {
     throw Error(file, trouble ? trouble.message() : "not a regular file", "name a file in the format STL, OBJ or PLY");
   }
-  const std::uintmax_t size = fs::file_size(file, trouble);
+  const std::uintmax_t size = fs::file_size(place, trouble);
   if (!trouble && size > kMostBytes) {
     throw Error(file, "has " + std::to_string(size / 1'000'000) + " MB, at most 500 are read",
                 "reduce the number of triangles");
   }
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in(place, std::ios::binary);
   std::string bytes(trouble ? 0 : size, '\0');
   if (trouble || !in || !in.read(bytes.data(), static_cast<std::streamsize>(size))) {
     throw Error(file, std::string("cannot be read: ") + std::strerror(errno));
