@@ -71,8 +71,8 @@ TEST_F(RunsPage, SubtractsTheFirstSurfaceAndFollowsTheSlider) {
                                                 "return document.getElementById('surface_1').data[1].x.length + "
                                                 "document.getElementById('surface_1').data[2].x.length"});
   EXPECT_LT(seen.values.at(0).get<double>(), 1e-9);
-  EXPECT_LT(seen.values.at(2).get<double>(), 1e-9);
-  EXPECT_EQ(seen.values.at(3), 0) << "before the first tap there is none to mark";
+  EXPECT_LT(seen.values.at(3).get<double>(), 1e-9);
+  EXPECT_EQ(seen.values.at(4), 0) << "before the first tap there is none to mark";
   // The record of the second has the surface that the page shows behind its last tap.
   const std::vector<Cells> recorded = csv_rows(text_of(second / "surface.csv"));
   const json& shown = seen.values.at(1);
@@ -80,7 +80,7 @@ TEST_F(RunsPage, SubtractsTheFirstSurfaceAndFollowsTheSlider) {
   double most = 0.0;
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     const double there = shown.at(i / shown.at(0).size()).at(i % shown.at(0).size()).get<double>();
-    most = std::max(most, std::abs(there - 100.0 * std::stod(recorded[i].at("height"))));
+    most = std::max(most, std::abs(there - 100.0 * std::stod(recorded[i].at("reconstructed_height"))));
   }
   EXPECT_LT(most, 1e-2) << "centimetres; maps are packed in 65536 steps";
 }
@@ -93,7 +93,7 @@ TEST_F(RunsPage, SaysWhatDiffersInTheirConfigsAndNothingElse) {
                         "return [...document.querySelectorAll('table')].at(-1).innerText.split('\\n').map((line) => "
                         "line.split('\\t').map((cell) => cell.trim()))"});
   EXPECT_EQ(seen.values.at(0), json::parse(R"([["key", "A", "B"], ["seed", "4", "5"],
-                                              ["kernel.length_scale", "1.7 cm", "2 cm"]])"));
+                                              ["kernel.length_scale", "0.017 m", "0.02 m"]])"));
 }
 
 TEST_F(RunsPage, OfOtherCandidatesHasNoDifferenceAndSaysSo) {
