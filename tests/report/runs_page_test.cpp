@@ -26,7 +26,7 @@ class RunsPage : public test::Reports {
     for (const fs::path& run : runs) words.push_back(run.string());
     const test::Ended ended = test::palpate(words, folder_.path());
     EXPECT_EQ(ended.status, 0) << ended.err;
-    const Browsed seen = test::browse(folder_.path() / ended.out.substr(0, ended.out.find('\n')), steps, false);
+    Browsed seen = test::browse(folder_.path() / ended.out.substr(0, ended.out.find('\n')), steps, false);
     EXPECT_EQ(seen.trouble, "");
     EXPECT_THAT(seen.severe, IsEmpty());
     return seen;
@@ -63,13 +63,12 @@ TEST_F(RunsPage, SubtractsTheFirstSurfaceAndFollowsTheSlider) {
       "const z = (id) => document.getElementById(id).data[0].z; const [a, b, d] = ['surface_0', 'surface_1', "
       "'difference_1'].map(z); return Math.max(...d.flatMap((line, i) => line.map((v, k) => Math.abs(v - (b[i][k] - "
       "a[i][k])))))";
+  const std::string back =
+      "const s = document.getElementById('slider'); s.value = 0; s.dispatchEvent(new Event('input'));";
+  const std::string marks =
+      "const [, on, off] = document.getElementById('surface_1').data; return on.x.length + off.x.length";
   const std::string rows = "return document.getElementById('surface_1').data[0].z";
-  const Browsed seen = opened({first, second}, {drawn(17), compare, rows,
-                                                "const s = document.getElementById('slider'); s.value = 0; "
-                                                "s.dispatchEvent(new Event('input'));",
-                                                drawn(0), compare,
-                                                "return document.getElementById('surface_1').data[1].x.length + "
-                                                "document.getElementById('surface_1').data[2].x.length"});
+  const Browsed seen = opened({first, second}, {drawn(17), compare, rows, back, drawn(0), compare, marks});
   EXPECT_LT(seen.values.at(0).get<double>(), 1e-9);
   EXPECT_LT(seen.values.at(3).get<double>(), 1e-9);
   EXPECT_EQ(seen.values.at(4), 0) << "before the first tap there is none to mark";

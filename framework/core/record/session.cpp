@@ -4,7 +4,7 @@
 #include "config/yaml.hpp"
 #include "experiment/experiment.hpp"
 #include "record/course.hpp"
-#include "record/json.hpp"
+#include "record/recording.hpp"
 #include "record/summary.hpp"
 
 #include <fmt/format.h>
