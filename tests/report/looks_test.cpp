@@ -193,7 +193,9 @@ TEST_P(Looks, TheWheelScrollsThePageOverEveryPlotAndWithCtrlItZoomsTheSurface) {
   steps.insert(steps.end(), {under("map_u"), wheel(0), "await scrollY > window.before + 100"});
   const Browsed seen = browse(directory, steps);
   EXPECT_EQ(seen.values.at(0), "surface");
-  if (GetParam()) EXPECT_EQ(seen.values.at(3), 0) << "with Ctrl the page stays";
+  if (GetParam()) {
+    EXPECT_EQ(seen.values.at(3), 0) << "with Ctrl the page stays";
+  }
   EXPECT_THAT(seen.values.back().get<std::string>(), testing::StartsWith("map_"));
 }
 
