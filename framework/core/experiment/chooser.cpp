@@ -21,6 +21,7 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
 
 bool Chooser::starting(const TapBelief& belief) const {
   if (!search_) return taps_ < initial_.size();
+  if (belief.sees_object()) return false;  // what is looked for has been seen
   if (taps_ >= failed_.size()) return false;
   constexpr double kBelieved = 0.5;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {

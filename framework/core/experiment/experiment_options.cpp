@@ -155,6 +155,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes").of_strategy().group());
   fields.section(height, Field("height", "the process of the heights above the desk").of_strategy());
   fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk").of_strategy());
+  fields.section(prior, Field("prior", "what a camera saw before the first tap; not given, nothing").of_run());
   fields.choice(
       surface,
       Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it").of_strategy(),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/scene_options.hpp"
+#include "view/view.hpp"
 
 #include <palpate/options.hpp>
 
@@ -103,6 +104,7 @@ struct ExperimentOptions : Options {
   PluginChoice kernel{"kernel", {}, nullptr};
   HeightOptions height;
   WeightOptions weight;
+  std::optional<PriorOptions> prior;  ///< absent: nothing was seen before the first tap
   Surface surface = Surface::single;
   Posterior posterior = Posterior::automatic;
   LowrankOptions lowrank;

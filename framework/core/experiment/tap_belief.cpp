@@ -20,8 +20,6 @@ namespace palpate {
 constexpr double kFreeLevel = 1000.0;
 // Where taps may lie the level has to be of some size: what may be anything at all makes a lie of the first tap.
 constexpr double kLevelAmongLies = 1.0;
-// How far a tap is trusted comes in steps, so that a process is not made anew after every tap.
-constexpr double kSteps = 10.0;
 
 namespace {
 
@@ -34,14 +32,6 @@ PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   out.machine.loops = &loops_of(options);
   out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.threads));
   return out;
-}
-
-/// Surfaces have steps that no process foresees, so what the heights say against a contact is too sure of itself: above
-/// one half, its logarithmic odds count half. Of 402 contacts that were doubted at 90 % without that, 83 % lied.
-double tempered(double doubt) {
-  if (doubt <= 0.5) return doubt;
-  const double odds = std::sqrt(doubt / (1.0 - doubt));
-  return std::isfinite(odds) ? odds / (1.0 + odds) : 1.0;
 }
 
 bool same(const PluginChoice& a, const PluginChoice& b) {
@@ -85,8 +75,10 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       desk_(context.scene.desk()),
       clip_(options.weight.clip),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),
+      sights_(sights_of(options.prior, context.scene)),
       lies_(two_part_ ? options.height.lies : std::nullopt),
       doubted_(candidates) {
+  posterior_.taps += static_cast<int>(sights_.size());
   const HeightOptions& height = options.height;
   const WeightOptions& weight = options.weight;
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
@@ -112,6 +104,17 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     object_ = make_model("fitting/surface", height_kernel, height_fitting,
                          {height.signal, height.noise, 0.0, lies_ ? kLevelAmongLies : kFreeLevel});
   }
+  for (std::size_t i = 0; i < sights_.size(); ++i) {
+    if (sights_[i].touch.on) hits_seen_.push_back(i);
+  }
+  uneven_ = !sights_.empty();
+}
+
+const Touch& TapBelief::datum(const Model& model, int number) const {
+  const auto at = static_cast<std::size_t>(number);
+  const auto before = static_cast<std::size_t>(seen(model));
+  if (at >= before) return (of_hits(model) ? hits_ : touches_)[at - before];
+  return sights_[of_hits(model) ? hits_seen_[at] : at].touch;
 }
 
 bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
@@ -146,25 +149,6 @@ void TapBelief::observe(const Target& place, const Contact& contact, const Manne
   times_.push_back(began);
   systematic_->add(place, began, excess_.back(), manner.motion);
   read_again();
-}
-
-/// Takes off all heights what is thought now to be added to them, and says anew which were with an object.
-void TapBelief::read_again() {
-  // In steps far below the noise, so that the processes are not made anew after every tap.
-  constexpr double kStep = 2.5e-4;
-  const double noise = systematic_->noise();
-  hits_.clear();
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    Touch& touch = touches_[i];
-    const Systematic::Estimate estimate = systematic_->at(times_[i], motions_[i]);
-    touch.height = excess_[i] - kStep * std::round(estimate.value / kStep);
-    const bool clear =
-        systematic_->above(i) || touch.height > Systematic::kClearly * std::sqrt(estimate.variance + noise * noise);
-    const bool on = clear && context_.scene.on_surface(desk_ + touch.height);
-    if (on != touch.on && i + 1 < touches_.size()) flipped_ = true;
-    touch.on = on;
-    if (on) hits_.push_back(touch);
-  }
 }
 
 std::optional<int> TapBelief::first_hit_tap() const {
@@ -288,51 +272,28 @@ void TapBelief::update() {
   current_ = true;
 }
 
-/// Forgets what the models made of labels that are others now; they take in all taps anew.
-void TapBelief::begin_again() {
-  flipped_ = false;
-  if (joined_) begin_again(heights_);
-  begin_again(labels_);
-  begin_again(object_);
-  doubted_.forget();
-  touches_taken_ = 0;
-  probability_.resize(0);
-  if (footprint_) footprint_ = context_.create<Footprint>(footprint_choice_);
-}
-
-void TapBelief::begin_again(Model& model) {
-  if (!model.process) return;
-  const int shown = model.process->shown();
-  const bool of_labels = model.of_labels;
-  const std::vector<ProcessSettings> outputs = model.outputs;
-  model = make_model(model.name, model.kernel_choice, model.fitting_choice, outputs.front());
-  model.outputs = outputs;
-  model.of_labels = of_labels;
-  show(model, shown - 1);
-}
-
 void TapBelief::take_in(Model& model) {
   // One by one, fits included: a process that is asked for late, or after a resume, goes through the very states that
   // one which was there from the first tap went through.
   Process& process = *model.process;
-  const std::vector<Touch>& data = data_of(model);
-  while (process.size() < static_cast<int>(data.size())) {
-    const Touch& touch = data[static_cast<std::size_t>(process.size())];
+  while (process.size() < data(model)) {
+    const Touch& touch = datum(model, process.size());
     const double label = touch.on ? 1.0 : 0.0;
     const std::array<double, 2> values{model.of_labels ? label : touch.height, label};
     process.add(touch.place,
                 Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(model.outputs.size())));
-    if (model.fitting->due(process.size())) fit(model);
+    const int taps = process.size() - seen(model);
+    if (taps > 0 && model.fitting->due(taps)) fit(model);
     model.stale = true;
   }
 }
 
 void TapBelief::fit(Model& model) {
   const PhaseClock::Scope fit(clock_, Phase::fit);
-  const int taps = model.process->size();
+  const int taps = model.process->size() - seen(model);
   Random random = context_.random(model.name, static_cast<std::uint64_t>(taps));
   model.fit = model.process->fit(*model.fitting, random);
-  model.fit_at = taps;
+  model.fit_at = model.process->size();
   if (model.fit.failed) ++model.failed_fits;
 }
 
@@ -373,95 +334,6 @@ void TapBelief::map_object() {
   object_.stale = false;
 }
 
-/// Gives the processes the heights as they read now.
-void TapBelief::correct() {
-  for (Model* model : {&heights_, &object_}) {
-    if (!model->process) continue;
-    const std::vector<Touch>& data = data_of(*model);
-    Eigen::VectorXd values(static_cast<Eigen::Index>(data.size()));
-    for (std::size_t i = 0; i < data.size(); ++i) values(static_cast<Eigen::Index>(i)) = data[i].height;
-    if (model->process->correct(values)) model->stale = true;
-  }
-}
-
-/// Moves the contacts along with what was pushed since.
-void TapBelief::follow() {
-  // In steps far below what a push can be told by, so that the processes are not made anew after every tap.
-  constexpr double kStep = 1e-3;
-  const auto contacts = static_cast<Eigen::Index>(touches_.size());
-  places_.resize(contacts, 2);
-  for (Eigen::Index i = 0; i < contacts; ++i) {
-    const Target& place = touches_[static_cast<std::size_t>(i)].place;
-    places_.row(i) << place.x, place.y;
-  }
-  places_now_ = places_;
-  footprint_->place_now(places_now_);
-  for (Eigen::Index i = 0; i < contacts; ++i) {
-    for (int k = 0; k < 2; ++k) {
-      const double way = places_now_(i, k) - places_(i, k);
-      places_now_(i, k) = places_(i, k) + kStep * std::round(way / kStep);
-    }
-  }
-  for (Model* model : {&heights_, &labels_}) {
-    if (model->process && model->process->move(places_now_)) model->stale = true;
-  }
-  if (!object_.process) return;
-  Points hits(static_cast<Eigen::Index>(hits_.size()), 2);
-  Eigen::Index hit = 0;
-  for (Eigen::Index i = 0; i < contacts; ++i) {
-    if (touches_[static_cast<std::size_t>(i)].on) hits.row(hit++) = places_now_.row(i);
-  }
-  if (object_.process->move(hits)) object_.stale = true;
-}
-
-/// What is thought of each contact: by its label, which the footprint may take for wrong, and by its height, if it is
-/// one of an object.
-void TapBelief::judge() {
-  // To judge costs the cube of the hits. By so many a surface is known that a lie can do little to: later contacts are
-  // believed, and what was doubted stays so.
-  constexpr std::size_t kMostHits = 100;
-  const auto contacts = static_cast<Eigen::Index>(touches_.size());
-  if (hits_.size() > kMostHits) {
-    const Eigen::Index known = doubt_.size();
-    for (Eigen::VectorXd* values : {&doubt_, &by_label_}) {
-      values->conservativeResize(contacts);
-      values->tail(contacts - known).setZero();
-    }
-    believe();
-    return;
-  }
-  doubt_ = Eigen::VectorXd::Zero(contacts);
-  if (footprint_asked_) footprint_->doubt(doubt_);
-  by_label_ = doubt_;
-  Eigen::VectorXd suspicion(static_cast<Eigen::Index>(hits_.size()));
-  Eigen::Index hit = 0;
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    const double by_label = doubt_(static_cast<Eigen::Index>(i));
-    if (touches_[i].on) suspicion(hit++) = by_label + (1.0 - by_label) * *lies_;
-  }
-  doubted_.judge(*object_.process, suspicion);
-  hit = 0;
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    if (touches_[i].on) doubt_(static_cast<Eigen::Index>(i)) = tempered(doubted_.doubt()(hit++));
-  }
-  object_.stale = true;
-  believe();
-}
-
-/// Has the processes trust each contact as far as it is believed.
-void TapBelief::believe() {
-  constexpr double kLeast = 1e-3;  // never quite nothing
-  const Eigen::Map<const Eigen::ArrayXd> share(share_.data(), static_cast<Eigen::Index>(share_.size()));
-  const Eigen::VectorXd trust = (share * (1.0 - (doubt_.array() * kSteps).round() / kSteps)).max(kLeast);
-  if (heights_.process && heights_.process->trust(trust)) heights_.stale = true;
-  std::vector<double> of_hits;
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    if (touches_[i].on) of_hits.push_back(trust(static_cast<Eigen::Index>(i)));
-  }
-  const Eigen::Map<const Eigen::VectorXd> hits(of_hits.data(), static_cast<Eigen::Index>(of_hits.size()));
-  if (object_.process && object_.process->trust(hits)) object_.stale = true;
-}
-
 void TapBelief::map_surface(const Process& process) {
   process.read_mean(0, height_mean_);
   height_mean_.array() += desk_;
@@ -469,6 +341,8 @@ void TapBelief::map_surface(const Process& process) {
 
 void TapBelief::map_footprint() {
   if (probability_.size() > 0 && touches_taken_ == touches_.size()) return;
+  for (std::size_t i = 0; i < sights_.size() && !sights_taken_; ++i) footprint_->add(sights_[i].touch);
+  sights_taken_ = true;
   for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
   probability_.resize(candidates_.size());
   footprint_->probability(candidates_.points, probability_);

@@ -11,6 +11,7 @@
 #include "gp/candidates.hpp"
 #include "gp/doubt.hpp"
 #include "gp/process.hpp"
+#include "view/view.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/footprint.hpp>
@@ -59,6 +60,10 @@ class TapBelief final : public Belief {
   const std::vector<int>& motions() const { return motions_; }
   const std::vector<Touch>& hits() const { return hits_; }
   std::optional<int> first_hit_tap() const;
+
+  /// What was seen before the first tap, which all models know before any contact; and whether an object was.
+  const std::vector<Sight>& sights() const { return sights_; }
+  bool sees_object() const { return !hits_seen_.empty(); }
 
   /// From now on these quantities are kept and belong to the record: builds the models that they lack, with all taps so
   /// far, and updates. Models go through the very states that they would have had, had they been there from the first
@@ -139,9 +144,8 @@ class TapBelief final : public Belief {
   /// Whether the objects are thought to have been pushed since that contact: then it says nothing of its place any
   /// more.
   bool moved(std::size_t contact) const {
-    return contact < touches_taken_ &&
-           (places_now_.row(static_cast<Eigen::Index>(contact)) - places_.row(static_cast<Eigen::Index>(contact)))
-                   .squaredNorm() > 0.0;
+    const auto row = static_cast<Eigen::Index>(sights_.size() + contact);
+    return contact < touches_taken_ && (places_now_.row(row) - places_.row(row)).squaredNorm() > 0.0;
   }
 
   /// Fits that found nothing better and kept the old values.
@@ -159,6 +163,9 @@ class TapBelief final : public Belief {
   Quantities predictable(Quantities wanted) const;
 
  private:
+  /// How far a tap is trusted comes in steps, so that a process is not made anew after every tap.
+  static constexpr double kSteps = 10.0;
+
   /// A process and all that it is made from; built when it is asked for.
   struct Model {
     const char* name = "";
@@ -180,8 +187,13 @@ class TapBelief final : public Belief {
   bool equal_for_good(const ExperimentOptions& options) const;
   const Model& labels() const { return joined_ ? heights_ : labels_; }
   int label_output() const { return joined_ ? 1 : 0; }
-  /// The taps that a model learns from.
-  const std::vector<Touch>& data_of(const Model& model) const { return &model == &object_ ? hits_ : touches_; }
+  /// What a model learns from: what was seen, and then the taps.
+  bool of_hits(const Model& model) const { return &model == &object_; }
+  int seen(const Model& model) const { return static_cast<int>(of_hits(model) ? hits_seen_.size() : sights_.size()); }
+  int data(const Model& model) const {
+    return seen(model) + static_cast<int>(of_hits(model) ? hits_.size() : touches_.size());
+  }
+  const Touch& datum(const Model& model, int number) const;
   const Model& surface() const { return two_part_ ? object_ : heights_; }
   static Output output(const Model& model, int output);
   void show(Model& model, int output);
@@ -200,6 +212,7 @@ class TapBelief final : public Belief {
   void read_again();
   void begin_again();
   void begin_again(Model& model);
+  Eigen::VectorXd shares_seen(bool of_hits) const;
   void judge();
   void believe();
   void correct();
@@ -222,11 +235,13 @@ class TapBelief final : public Belief {
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<Systematic> systematic_;
   Model heights_;
-  Model labels_;                        ///< unless joined
-  Model object_;                        ///< heights of the taps on an object
+  Model labels_;  ///< unless joined
+  Model object_;  ///< heights of the taps on an object
+  std::vector<Sight> sights_;
+  std::vector<std::size_t> hits_seen_;  ///< which of them are of an object
   std::vector<Touch> touches_;          ///< all contacts, heights above the desk
   std::vector<int> numbers_;            ///< of their taps
-  Points places_, places_now_;          ///< of those that the footprint has taken: as made, and see Footprint
+  Points places_, places_now_;          ///< of all that the footprint has taken: as made, and see Footprint
   std::vector<double> excess_, times_;  ///< of these: heights as they came, when,
   std::vector<int> motions_;            ///< by which motion (also where nothing is learnt),
   std::vector<double> share_;           ///< and how far its height is to be trusted for that, in [0, 1]
@@ -241,7 +256,8 @@ class TapBelief final : public Belief {
   bool outlines_asked_ = false;
   OutlineSample outlines_;
   bool height_asked_ = false;      ///< and not only whether it is believed
-  std::size_t touches_taken_ = 0;  ///< by the footprint
+  bool sights_taken_ = false;      ///< by the footprint
+  std::size_t touches_taken_ = 0;  ///< likewise
   /// Empty until somebody asks for them.
   Eigen::VectorXd uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
 };

@@ -17,7 +17,7 @@ constexpr double kBroader = 2.5;
 
 }  // namespace
 
-void DoubtedSurface::judge(const Process& process, const VectorView& suspicion) {
+void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, const Eigen::VectorXd& roughness) {
   const ProcessSettings& settings = process.settings();
   judged_ = process.size() > 0 && settings.noise > 0.0;
   judgement_.doubt = suspicion;
@@ -31,6 +31,7 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion) 
   process.kernel().covariance(closer, closer, testimony.broad);
   testimony.heights = process.targets().array() - settings.mean;
   testimony.suspicion = suspicion;
+  testimony.roughness = roughness;
   for (const double share : kSignals) testimony.signals.push_back(share * settings.signal);
   for (const double share : kNoises) testimony.noises.push_back(share * settings.noise);
   testimony.broad_signal = kBroadSignal * settings.signal;

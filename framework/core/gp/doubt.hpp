@@ -13,9 +13,10 @@ class DoubtedSurface {
   /// `candidates` must outlive it.
   explicit DoubtedSurface(const Candidates& candidates) : candidates_(candidates) {}
 
-  /// Judges all taps of `process`, of which `suspicion` (a value each) is thought before their heights are compared.
-  /// Without noise nobody is judged: the surface is that of the process.
-  void judge(const Process& process, const VectorView& suspicion);
+  /// Judges all taps of `process`, of which `suspicion` (a value each) is thought before their heights are compared,
+  /// and whose noise has this variance beside the usual one (a value each, or empty). Without noise nobody is judged:
+  /// the surface is that of the process.
+  void judge(const Process& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
 
   /// To be called before another process is judged.
   void forget();

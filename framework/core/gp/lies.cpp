@@ -43,6 +43,7 @@ class Court {
     Eigen::MatrixXd covariance = signal * signal * testimony.covariance;
     if (testimony.broad.size() > 0) covariance += testimony.broad_signal * testimony.broad_signal * testimony.broad;
     covariance.diagonal().array() += noise * noise;
+    if (testimony.roughness.size() > 0) covariance.diagonal() += testimony.roughness;
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
     inverse_ = factor.solve(Eigen::MatrixXd::Identity(n, n));
     heights_ = inverse_ * testimony.heights;

@@ -36,6 +36,7 @@ struct Testimony {
   Eigen::VectorXd suspicion;    ///< pi, in [0, 1]
   std::vector<double> signals;  ///< deviations that the surface may have, each as probable as the others
   std::vector<double> noises;   ///< the same of the noise of a tap, all above 0
+  Eigen::VectorXd roughness;    ///< n: variance that a tap's noise has beside that; empty for none
   double broad_signal = 0.0;    ///< deviation of the broad signal
   double level = 0.0;           ///< deviation of a constant that is added to all of f; 0: there is none
   double lie = 1.0;             ///< deviation of a lie: it is normal about the prior mean

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "view/points.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+/// Size in bytes of a scalar, and how its bytes read as a number; those of ascii read alike.
+struct Scalar {
+  std::size_t size;
+  double (*read)(const char* bytes);
+};
+
+template <class Number>
+double number_in(const char* bytes) {
+  Number out;
+  std::memcpy(&out, bytes, sizeof out);
+  return static_cast<double>(out);
+}
+
+const Scalar* scalar_named(std::string_view name) {
+  static const std::array<std::pair<std::array<const char*, 2>, Scalar>, 8> kScalars{
+      {{{"char", "int8"}, {1, number_in<std::int8_t>}},
+       {{"uchar", "uint8"}, {1, number_in<std::uint8_t>}},
+       {{"short", "int16"}, {2, number_in<std::int16_t>}},
+       {{"ushort", "uint16"}, {2, number_in<std::uint16_t>}},
+       {{"int", "int32"}, {4, number_in<std::int32_t>}},
+       {{"uint", "uint32"}, {4, number_in<std::uint32_t>}},
+       {{"float", "float32"}, {4, number_in<float>}},
+       {{"double", "float64"}, {8, number_in<double>}}}};
+  for (const auto& [names, scalar] : kScalars) {
+    if (name == names[0] || name == names[1]) return &scalar;
+  }
+  return nullptr;
+}
+
+enum class Format { ascii, little, big };
+
+/// What the header says of the vertices, which come first in every file that is read here.
+struct Header {
+  Format format = Format::ascii;
+  long points = -1;
+  std::vector<const Scalar*> properties;  ///< of a vertex
+  std::array<int, 3> places{-1, -1, -1};  ///< of x, y and z among them
+  std::size_t length = 0;                 ///< bytes, its last line end included
+};
+
+class Reader {
+ public:
+  Reader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+
+  PointCloud points() {
+    const Header header = read_header();
+    const std::string_view body = std::string_view(bytes_).substr(header.length);
+    return header.format == Format::ascii ? in_words(header, body) : in_bytes(header, body);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& reason) const { throw Error(file_, reason, "write it again as PLY"); }
+
+  Header read_header() {
+    Header out;
+    std::size_t at = 0;
+    bool of_vertices = false;
+    const auto next = [&] {
+      const std::size_t end = bytes_.find('\n', at);
+      if (end == std::string::npos) refuse("is no PLY or cut short: the line 'end_header' is missing");
+      std::string line = bytes_.substr(at, end - at);
+      at = end + 1;
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      return line;
+    };
+    if (next() != "ply") refuse("is no PLY: it does not begin with the line 'ply'");
+    for (std::string line = next(); line != "end_header"; line = next()) {
+      std::istringstream words(line);
+      std::string word, one, two;
+      words >> word >> one >> two;
+      if (word == "format") {
+        out.format = format_named(one);
+      } else if (word == "element") {
+        if (one != "vertex" && out.points < 0) refuse("does not begin with its vertices");
+        of_vertices = one == "vertex";
+        if (of_vertices) out.points = count_in(two);
+      } else if (word == "property" && of_vertices) {
+        add_property(out, one, two);
+      }
+    }
+    out.length = at;
+    if (out.points < 0) refuse("has no vertices");
+    for (const int place : out.places) {
+      if (place < 0) refuse("has vertices without x, y and z");
+    }
+    return out;
+  }
+
+  Format format_named(const std::string& name) const {
+    if (name == "ascii") return Format::ascii;
+    if (name == "binary_little_endian") return Format::little;
+    if (name == "binary_big_endian") return Format::big;
+    refuse("has the format '" + name + "', which no PLY has");
+  }
+
+  long count_in(const std::string& word) const {
+    long out = -1;
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), out);
+    if (read.ec != std::errc() || read.ptr != word.data() + word.size() || out < 0)
+      refuse("does not say how many vertices it has");
+    if (out > kMostPoints) {
+      throw Error(file_, fmt::format("has {} points, at most {} are read", out, kMostPoints), "thin them out");
+    }
+    return out;
+  }
+
+  void add_property(Header& header, const std::string& type, const std::string& name) const {
+    const Scalar* scalar = scalar_named(type);
+    if (scalar == nullptr) refuse("has vertices with a property of type '" + type + "'");
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (name == std::array{"x", "y", "z"}[k]) header.places[k] = static_cast<int>(header.properties.size());
+    }
+    header.properties.push_back(scalar);
+  }
+
+  [[noreturn]] void refuse_short(long points) const {
+    refuse(fmt::format("is cut short: its header promises {} vertices", points));
+  }
+
+  PointCloud in_words(const Header& header, std::string_view body) const {
+    std::vector<double> numbers(header.properties.size());
+    std::vector<Eigen::Vector3d> out;
+    const char* at = body.data();
+    const char* const end = at + body.size();
+    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+    for (long i = 0; i < header.points; ++i) {
+      for (double& number : numbers) {
+        at = std::find_if_not(at, end, is_space);
+        if (at == end) refuse_short(header.points);
+        const auto read = std::from_chars(at, end, number);
+        if (read.ec == std::errc::invalid_argument || (read.ptr != end && !is_space(*read.ptr)))
+          refuse(fmt::format("has something else than a number in vertex {}", i + 1));
+        if (read.ec == std::errc::result_out_of_range) number = std::numeric_limits<double>::infinity();
+        at = read.ptr;
+      }
+      add(header, numbers, out);
+    }
+    return joined(out);
+  }
+
+  PointCloud in_bytes(const Header& header, std::string_view body) const {
+    std::size_t row = 0;
+    for (const Scalar* scalar : header.properties) row += scalar->size;
+    if (body.size() / row < static_cast<std::size_t>(header.points)) refuse_short(header.points);
+    std::vector<double> numbers(header.properties.size());
+    std::vector<Eigen::Vector3d> out;
+    const char* at = body.data();
+    for (long i = 0; i < header.points; ++i) {
+      for (std::size_t k = 0; k < numbers.size(); ++k) {
+        const Scalar& scalar = *header.properties[k];
+        std::array<char, 8> bytes{};
+        std::copy_n(at, scalar.size, bytes.begin());
+        if (header.format == Format::big) std::reverse(bytes.begin(), bytes.begin() + static_cast<long>(scalar.size));
+        numbers[k] = scalar.read(bytes.data());
+        at += scalar.size;
+      }
+      add(header, numbers, out);
+    }
+    return joined(out);
+  }
+
+  static void add(const Header& header, const std::vector<double>& numbers, std::vector<Eigen::Vector3d>& out) {
+    Eigen::Vector3d point;
+    for (std::size_t k = 0; k < 3; ++k)
+      point(static_cast<Eigen::Index>(k)) = numbers[static_cast<std::size_t>(header.places[k])];
+    if (point.allFinite()) out.push_back(point);
+  }
+
+  PointCloud joined(const std::vector<Eigen::Vector3d>& points) const {
+    if (points.empty()) refuse("has no point that is finite");
+    PointCloud out(3, static_cast<Eigen::Index>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = points[i];
+    return out;
+  }
+
+  const std::string& bytes_;
+  const std::string& file_;
+};
+
+}  // namespace
+
+PointCloud read_points(const std::string& bytes, const std::string& file) { return Reader(bytes, file).points(); }
+
+}  // namespace palpate

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "view/view.hpp"
+
+#include "config/hash.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace palpate {
+namespace {
+
+std::string bytes_of(const std::string& file) {
+  std::error_code none;
+  const auto type = std::filesystem::status(file, none).type();
+  if (type == std::filesystem::file_type::not_found)
+    throw Error(file, "no such file", "a relative path starts in the current folder");
+  if (type != std::filesystem::file_type::regular) throw Error(file, "not a regular file", "name a PLY");
+  std::ifstream in(file, std::ios::binary);
+  std::string out{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw Error(file, std::string("cannot be read: ") + std::strerror(errno));
+  return out;
+}
+
+// An object's is a square that is above the desk by so many of its deviations, the desk's one that is not by fewer:
+// what lies in between may be a low thing as well as noise.
+constexpr double kClearlyAbove = 2.5;
+constexpr double kNotAbove = 1.0;
+
+/// The points in one square of the desk.
+struct Square {
+  int count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0.0;  ///< sum of those of the heights
+
+  void add(const Eigen::Vector3d& point) {
+    ++count;
+    sum += point;
+    squares += point.z() * point.z();
+  }
+  Eigen::Vector3d mean() const { return sum / count; }
+  double variance() const { return std::max(0.0, squares / count - mean().z() * mean().z()); }
+};
+
+/// What the desk tells of the offset of all heights: its mean and its variance, from a prior and the heights of squares
+/// of the desk, each of which errs by `noise`.
+struct Offset {
+  double mean = 0.0;
+  double variance = 0.0;
+};
+
+Offset offset_of(const std::vector<double>& of_desk, double noise, double bias) {
+  if (bias == 0.0) return {};
+  if (noise == 0.0 && !of_desk.empty()) return {of_desk.front(), 0.0};
+  double precision = 1.0 / (bias * bias);
+  double sum = 0.0;
+  for (const double height : of_desk) {
+    precision += 1.0 / (noise * noise);
+    sum += height / (noise * noise);
+  }
+  return {sum / precision, 1.0 / precision};
+}
+
+}  // namespace
+
+void ViewPose::list(Fields& fields) {
+  fields.real(x, Field("x", "where the origin of the points lies in the area").in(Unit::metre));
+  fields.real(y, Field("y", "likewise").in(Unit::metre));
+  fields.real(z, Field("z", "likewise, upwards").in(Unit::metre));
+  fields.real(roll, Field("roll", "about the area's x, first").in(Unit::radian));
+  fields.real(pitch, Field("pitch", "about its y, then").in(Unit::radian));
+  fields.real(yaw, Field("yaw", "about its z, at last").in(Unit::radian));
+}
+
+void PriorOptions::list(Fields& fields) {
+  fields.text(
+      depth,
+      Field("depth", "points that a depth camera saw, PLY; a relative path starts in the current folder").needed());
+  fields.real(unit, Field("unit", "length of one unit of the file").in(Unit::metre).above(0));
+  fields.real(noise, Field("noise", "standard deviation of a height that it saw")
+                         .in(Unit::metre)
+                         .at_least(0)
+                         .from("3 mm: structured light at 1 m, an estimate"));
+  fields.real(bias, Field("bias", "standard deviation of what is added to all of them alike")
+                        .in(Unit::metre)
+                        .at_least(0)
+                        .from("5 mm: where a camera is thought to stand, an estimate"));
+  fields.section(pose, Field("pose", "where the frame of the points lies; not given, it is the area's"));
+  const std::string found = depth.empty() ? std::string() : hash_of(bytes_of(depth));
+  checksum = found;
+  fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
+  fields.require(checksum == found, "checksum", "is not that of " + depth + ", which has " + found);
+}
+
+PointCloud placed(const PointCloud& points, const PriorOptions& options) {
+  PointCloud out = options.unit * points;
+  if (!options.pose) return out;
+  const ViewPose& pose = *options.pose;
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pose.pitch, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(pose.roll, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
+  return (turn * out).colwise() + Eigen::Vector3d(pose.x, pose.y, pose.z);
+}
+
+std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& options, const Scene& scene) {
+  const Area area = scene.area();
+  const double side = std::max(area.width, area.depth) / kSquaresAcross;
+  const int columns = static_cast<int>(std::ceil(area.width / side - 1e-9));
+  const int rows = static_cast<int>(std::ceil(area.depth / side - 1e-9));
+  std::vector<Square> squares(static_cast<std::size_t>(columns * rows));
+  for (const auto& point : points.colwise()) {
+    if (point.x() < 0.0 || point.x() > area.width || point.y() < 0.0 || point.y() > area.depth) continue;
+    const int column = std::min(columns - 1, static_cast<int>(point.x() / side));
+    const int row = std::min(rows - 1, static_cast<int>(point.y() / side));
+    squares[static_cast<std::size_t>(row * columns + column)].add({point.x(), point.y(), point.z() - scene.desk()});
+  }
+  squares.erase(std::remove_if(squares.begin(), squares.end(), [](const Square& one) { return one.count == 0; }),
+                squares.end());
+  if (squares.empty()) {
+    throw Error("prior.depth", fmt::format("none of its {} points lies in the area", points.cols()),
+                "mind their unit and pose");
+  }
+  const double noise = options.noise;
+  const double reach = kClearlyAbove * std::hypot(noise, options.bias);
+  std::vector<double> of_desk;
+  for (const Square& one : squares) {
+    if (std::abs(one.mean().z()) <= reach && one.variance() <= 4.0 * noise * noise) of_desk.push_back(one.mean().z());
+  }
+  const Offset offset = offset_of(of_desk, noise, options.bias);
+  std::vector<Sight> out;
+  for (const Square& one : squares) {
+    const Eigen::Vector3d mean = one.mean();
+    const double unevenness = std::max(0.0, one.variance() - noise * noise);
+    const double deviation = std::sqrt(noise * noise + unevenness + offset.variance);
+    const double height = mean.z() - offset.mean;
+    const bool on = height > kClearlyAbove * deviation && scene.on_surface(scene.desk() + height);
+    if (!on && height > kNotAbove * deviation) continue;
+    out.push_back({{{mean.x(), mean.y()}, on ? height : 0.0, on}, on ? deviation : noise});
+  }
+  return out;
+}
+
+std::vector<Sight> sights_of(const std::optional<PriorOptions>& options, const Scene& scene) {
+  if (!options) return {};
+  return sights_of(placed(read_points(bytes_of(options->depth), options->depth), *options), *options, scene);
+}
+
+}  // namespace palpate
