@@ -115,14 +115,14 @@ PointCloud placed(const PointCloud& points, const PriorOptions& options) {
 std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& options, const Scene& scene) {
   const Area area = scene.area();
   const double side = std::max(area.width, area.depth) / kSquaresAcross;
-  const int columns = static_cast<int>(std::ceil(area.width / side - 1e-9));
-  const int rows = static_cast<int>(std::ceil(area.depth / side - 1e-9));
-  std::vector<Square> squares(static_cast<std::size_t>(columns * rows));
+  const auto columns = static_cast<std::size_t>(std::ceil(area.width / side - 1e-9));
+  const auto rows = static_cast<std::size_t>(std::ceil(area.depth / side - 1e-9));
+  std::vector<Square> squares(columns * rows);
   for (const auto& point : points.colwise()) {
     if (point.x() < 0.0 || point.x() > area.width || point.y() < 0.0 || point.y() > area.depth) continue;
-    const int column = std::min(columns - 1, static_cast<int>(point.x() / side));
-    const int row = std::min(rows - 1, static_cast<int>(point.y() / side));
-    squares[static_cast<std::size_t>(row * columns + column)].add({point.x(), point.y(), point.z() - scene.desk()});
+    const std::size_t column = std::min(columns - 1, static_cast<std::size_t>(point.x() / side));
+    const std::size_t row = std::min(rows - 1, static_cast<std::size_t>(point.y() / side));
+    squares[row * columns + column].add({point.x(), point.y(), point.z() - scene.desk()});
   }
   squares.erase(std::remove_if(squares.begin(), squares.end(), [](const Square& one) { return one.count == 0; }),
                 squares.end());
