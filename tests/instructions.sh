@@ -114,7 +114,7 @@ cd "$root"
 last=$(git log -1 --format=%H -- tests/benchmark/instructions.csv 2>/dev/null || true)
 if [ "$mode" = check ] && [ -n "$last" ] && git show "$last~1:tests/benchmark/instructions.csv" >"$work/before" 2>/dev/null; then
   git show "$last:tests/benchmark/instructions.csv" | awk -F , 'NR == FNR {old[$1] = $3; next}
-    $1 in old && $3 > 1.02 * old[$1] {print $1}' "$work/before" - >"$work/raised"
+    old[$1] + 0 > 0 && $3 > 1.02 * old[$1] {print $1}' "$work/before" - >"$work/raised"
   git show "$last" -- CHANGELOG.md | grep '^+' >"$work/told" || true
   while read -r piece; do
     grep -qw "$piece" "$work/told" && continue
