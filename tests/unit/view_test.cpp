@@ -96,12 +96,12 @@ TEST(PointFile, SaysWhatIsWrongWithIt) {
 template <class Sees>
 PointCloud seen(const Scene& scene, double noise, double offset, const Sees& sees) {
   std::mt19937 engine(7);
-  std::normal_distribution<double> normal(0.0, noise);
+  std::normal_distribution<double> normal;
   std::vector<Eigen::Vector3d> points;
   constexpr double kStep = 0.002;
   for (double y = 0.5 * kStep; y < scene.area().depth; y += kStep) {
     for (double x = 0.5 * kStep; x < scene.area().width; x += kStep) {
-      if (sees(x, y)) points.emplace_back(x, y, scene.height(x, y) + offset + normal(engine));
+      if (sees(x, y)) points.emplace_back(x, y, scene.height(x, y) + offset + noise * normal(engine));
     }
   }
   PointCloud out(3, static_cast<Eigen::Index>(points.size()));
