@@ -24,8 +24,8 @@ struct PartsOptions : Options {
 /// make a whole:
 ///     static constexpr double kNothing;          the whole of no part
 ///     static void apply(whole, part);            takes the covariances of one more part into those of the parts before
-///     static void join_slopes(before, own, whole, part);   the same of the slopes of the parts before, and of its own;
-///                                                `whole` is that before apply()
+///     static void join_slopes(before, own, whole, part);   the same of the slopes of the parts before, and of its own,
+///                                                a matrix a parameter; `whole` is that before apply()
 template <class Join>
 class Composed : public Kernel {
  public:
@@ -71,17 +71,16 @@ class Composed : public Kernel {
     }
   }
 
-  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
+  void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     Eigen::Index first = 0;
-    Eigen::ArrayXd part(a.rows());
-    auto whole = value.array();
-    whole.setConstant(Join::kNothing);
+    Eigen::MatrixXd part(a.rows(), b.rows());
+    value.setConstant(Join::kNothing);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      auto own = slopes.middleCols(first, counts_[i]);
-      parts_[i]->derivatives(a, b, part.matrix(), own);
-      Join::join_slopes(slopes.leftCols(first), own, whole, part);
-      Join::apply(whole, part);
-      first += counts_[i];
+      auto own = slopes.middleCols(first, counts_[i] * b.rows());
+      parts_[i]->derivatives(a, b, part, own);
+      Join::join_slopes(slopes.leftCols(first), own, value, part);
+      Join::apply(value.array(), part.array());
+      first += own.cols();
     }
   }
 

@@ -7,15 +7,11 @@ namespace palpate::kernels {
 struct Matern12Shape : PlainShape {
   using PlainShape::PlainShape;
 
-  template <class Array>
-  void apply(Array r2) const {
-    r2 = (-r2.sqrt()).exp();
-  }
-  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    const Chunk r = r2.sqrt();
-    k = (-r).exp();
+  PALPATE_INLINE double value(double r2) const { return simd::exp(-std::sqrt(r2)); }
+  PALPATE_INLINE double slope(double r2, double& k) const {
+    k = value(r2);
     // At r = 0 the slope by the length scale, g r^2, is 0; the bound keeps g finite there.
-    g = k / r.max(1e-150);
+    return k / simd::max(std::sqrt(r2), 1e-150);
   }
 };
 

@@ -7,18 +7,15 @@ namespace palpate::kernels {
 struct Matern52Shape : PlainShape {
   using PlainShape::PlainShape;
 
-  template <class Array>
-  void apply(Array r2) const {
-    r2 = (5.0 * r2).sqrt();
-    // exp(-s) underflows to 0 long before s overflows; without the bound, infinity times 0 would be NaN.
-    r2 = r2.min(800.0);
-    r2 = (1.0 + r2 + r2.square() / 3.0) * (-r2).exp();
+  PALPATE_INLINE double value(double r2) const {
+    const double s = std::sqrt(5.0 * r2);
+    return (1.0 + s + s * s / 3.0) * simd::exp(-s);
   }
-  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    const Chunk s = (5.0 * r2).sqrt();
-    g = (-s).exp();
-    k = (1.0 + s + s.square() / 3.0) * g;
-    g *= (5.0 / 3.0) * (1.0 + s);
+  PALPATE_INLINE double slope(double r2, double& k) const {
+    const double s = std::sqrt(5.0 * r2);
+    const double falling = simd::exp(-s);
+    k = (1.0 + s + s * s / 3.0) * falling;
+    return (5.0 / 3.0) * (1.0 + s) * falling;
   }
 };
 

@@ -13,10 +13,11 @@ struct Multiply {
   }
   /// The slopes of this part times the values of those before it, and theirs times its value: no division, so that a
   /// value of 0 does no harm.
-  template <class Slopes, class Own, class Whole>
-  static void join_slopes(Slopes before, Own& own, const Whole& whole, const Eigen::ArrayXd& part) {
-    own.array().colwise() *= whole;
-    before.array().colwise() *= part;
+  template <class Slopes, class Own>
+  static void join_slopes(Slopes before, Own& own, const MatrixOut& whole, const Eigen::MatrixXd& part) {
+    const Eigen::Index m = whole.cols();
+    for (Eigen::Index p = 0; p < own.cols(); p += m) own.middleCols(p, m).array() *= whole.array();
+    for (Eigen::Index p = 0; p < before.cols(); p += m) before.middleCols(p, m).array() *= part.array();
   }
 };
 

@@ -3,6 +3,8 @@
 // length scales (Rasmussen and Williams 2006, equation 4.19).
 #include "stationary.hpp"
 
+#include <cmath>
+
 namespace palpate::kernels {
 
 struct RationalQuadraticOptions : StationaryOptions {
@@ -15,39 +17,36 @@ struct RationalQuadraticOptions : StationaryOptions {
   }
 };
 
-/// t, the same for covariance and slopes also where r^2 overflows: with a small alpha the kernel is not yet 0 there.
-template <class Array>
-auto bounded_t(const Array& r2, double alpha) {
-  return (r2.min(1e300) / (2.0 * alpha)).min(1e300);
-}
-
+/// Its powers are taken one by one: with an exponent of up to 1e4, vectors would have to find a logarithm to twice as
+/// many digits as a number has.
 class RationalQuadraticShape {
  public:
   using Options = RationalQuadraticOptions;
   static constexpr double kFarthest = 1e300;
   static constexpr bool kSeparable = false;
+  static constexpr bool kOwn = true;
   explicit RationalQuadraticShape(const Options& options) : alpha_(options.alpha) {}
 
-  template <class Array>
-  void apply(Array r2) const {
-    r2 = (1.0 + bounded_t(r2, alpha_)).pow(-alpha_);
-  }
-  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    const Chunk base = 1.0 + bounded_t(r2, alpha_);
-    k = base.pow(-alpha_);
-    g = k / base;
+  double value(double r2) const { return std::pow(1.0 + bounded_t(r2), -alpha_); }
+  double slope(double r2, double& k) const {
+    const double base = 1.0 + bounded_t(r2);
+    k = std::pow(base, -alpha_);
+    return k / base;
   }
 
   std::vector<KernelParameter> parameters() const { return {{"alpha", alpha_}}; }
   void set_parameters(const VectorView& values) { alpha_ = values(0); }
 
   /// d log k / d log alpha = alpha (t / (1 + t) - log(1 + t)).
-  void own_slopes(const Chunk& r2, const Chunk& k, MatrixOut out) const {
-    const Chunk t = bounded_t(r2, alpha_);
-    out.col(0) = alpha_ * k * (t / (1.0 + t) - t.log1p());
+  double own_slope(double r2, double k) const {
+    const double t = bounded_t(r2);
+    return alpha_ * k * (t / (1.0 + t) - std::log1p(t));
   }
 
  private:
+  /// t, finite also where the quotient is not: with a small alpha the kernel is not yet 0 there.
+  double bounded_t(double r2) const { return simd::min(r2 / (2.0 * alpha_), 1e300); }
+
   double alpha_;
 };
 

@@ -8,14 +8,8 @@ struct RbfShape : PlainShape {
   using PlainShape::PlainShape;
   static constexpr bool kSeparable = true;
 
-  template <class Array>
-  void apply(Array r2) const {
-    r2 = (-0.5 * r2).exp();
-  }
-  void slopes(const Chunk& r2, Chunk& k, Chunk& g) const {
-    k = (-0.5 * r2).exp();
-    g = k;
-  }
+  PALPATE_INLINE double value(double r2) const { return simd::exp(-0.5 * r2); }
+  PALPATE_INLINE double slope(double r2, double& k) const { return k = value(r2); }
 };
 
 using Rbf = Stationary<RbfShape>;

@@ -55,11 +55,12 @@ class Scale final : public Kernel {
     inner_->set_parameters(values.tail(values.size() - 1));
   }
 
-  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
-    inner_->derivatives(a, b, value, slopes.rightCols(slopes.cols() - 1));
+  void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
+    auto inner = slopes.rightCols(slopes.cols() - b.rows());
+    inner_->derivatives(a, b, value, inner);
     value *= factor_;
-    slopes.rightCols(slopes.cols() - 1) *= factor_;
-    slopes.col(0) = value;  // d k / d log factor = k
+    inner *= factor_;
+    slopes.leftCols(b.rows()) = value;  // d k / d log factor = k
   }
 
  private:

@@ -4,8 +4,11 @@
 
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
+#include <palpate/simd.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace palpate::kernels {
@@ -27,41 +30,37 @@ struct StationaryOptions : Options {
   }
 };
 
-/// A piece of a column of a covariance matrix, small enough for the stack and the first cache.
-constexpr Eigen::Index kChunk = 128;
-using Chunk = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kChunk, 1>;
-
 /// A kernel of unit variance, k(a, b) = f(r^2) with r^2 = ((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2.
 ///
-/// `Shape` is f and its parameters beyond the length scales, of which there may be none:
+/// `Shape` is f and its parameters beyond the length scales, of which there may be none; for the loops
+/// of simd.hpp:
 ///     using Options;                             derived from StationaryOptions
-///     static constexpr double kFarthest;         squares of scaled distances end here in slopes, so that no infinity
-///                                                meets a covariance of 0 and becomes NaN
+///     static constexpr double kFarthest;         squares of scaled distances end here, so that none is infinite and no
+///                                                product with a covariance near 0 is no number
 ///     explicit Shape(const Options&);
-///     void apply(r2) const;                      f, in place; r2 up to infinity
-///     void slopes(r2, k, g) const;               k = f and g = -2 df/dr^2; r2 up to 2 kFarthest
+///     double value(r2) const;                    f; r2 up to 2 kFarthest
+///     double slope(r2, k) const;                 k = f and -2 df/dr^2, which is returned
 ///     std::vector<KernelParameter> parameters() const;
 ///     void set_parameters(values);
-///     void own_slopes(r2, k, out) const;         out(i, p) = dk/d log parameter p
+///     static constexpr bool kOwn;                one parameter beyond the length scales, or none, and of that
+///     double own_slope(r2, k) const;              dk/d log parameter
 ///     static constexpr bool kSeparable;          f(a + b) = f(a) f(b)
 template <class Shape>
 class Stationary final : public Kernel {
  public:
   using Options = typename Shape::Options;
 
-  Stationary(const Options& options, const Context&)
+  Stationary(const Options& options, const Context& context)
       : shape_(options),
+        lanes_(context.lanes),
         along_x_(options.length_scale),
         along_y_(options.length_scale_y.value_or(options.length_scale)),
         per_axis_(options.length_scale_y.has_value()) {}
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
-    for (Eigen::Index j = 0; j < b.rows(); ++j) {
-      auto column = out.col(j).array();
-      // Dividing before squaring keeps r^2 finite for any representable pair of length scale and distance.
-      column = ((a.col(0).array() - b(j, 0)) / along_x_).square() + ((a.col(1).array() - b(j, 1)) / along_y_).square();
-      shape_.apply(column);
-    }
+    simd::for_each(lanes_, a.rows(), b.rows(),
+                   [x = Scaled(a.col(0), b.col(0), along_x_), y = Scaled(a.col(1), b.col(1), along_y_), shape = shape_,
+                    to = Columns(out)](Eigen::Index i, Eigen::Index j) { to(i, j) = shape.value(x(i, j) + y(i, j)); });
   }
 
   void variance(const PointsView& a, VectorOut out) const override { out.head(a.rows()).setOnes(); }
@@ -69,12 +68,9 @@ class Stationary final : public Kernel {
   bool separable() const override { return Shape::kSeparable; }
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
-    const double length_scale = axis == 0 ? along_x_ : along_y_;
-    for (Eigen::Index j = 0; j < b.size(); ++j) {
-      auto column = out.col(j).array();
-      column = ((a.array() - b(j)) / length_scale).square();
-      shape_.apply(column);
-    }
+    simd::for_each(lanes_, a.size(), b.size(),
+                   [x = Scaled(a, b, axis == 0 ? along_x_ : along_y_), shape = shape_, to = Columns(out)](
+                       Eigen::Index i, Eigen::Index j) { to(i, j) = shape.value(x(i, j)); });
   }
 
   std::vector<KernelParameter> parameters() const override {
@@ -93,31 +89,58 @@ class Stationary final : public Kernel {
     shape_.set_parameters(values.tail(values.size() - axes()));
   }
 
-  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
-    for (Eigen::Index from = 0; from < a.rows(); from += kChunk) {
-      const Eigen::Index count = std::min(kChunk, a.rows() - from);
-      const Chunk x2 = ((a.col(0).segment(from, count).array() - b(0, 0)) / along_x_).square().min(Shape::kFarthest);
-      const Chunk y2 = ((a.col(1).segment(from, count).array() - b(0, 1)) / along_y_).square().min(Shape::kFarthest);
-      const Chunk r2 = x2 + y2;
-      Chunk k(count);
-      Chunk g(count);
-      shape_.slopes(r2, k, g);
-      value.segment(from, count) = k;
-      auto out = slopes.middleRows(from, count);
-      if (per_axis_) {
-        out.col(0) = g * x2;
-        out.col(1) = g * y2;
-      } else {
-        out.col(0) = g * r2;
-      }
-      shape_.own_slopes(r2, k, out.rightCols(out.cols() - axes()));
+  void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
+    const Eigen::Index m = b.rows();
+    const Columns along(slopes);
+    const Columns along_y(slopes.rightCols(slopes.cols() - (axes() - 1) * m));
+    const Columns own(slopes.rightCols(slopes.cols() - axes() * m));
+    const auto pair = [=, x = Scaled(a.col(0), b.col(0), along_x_), y = Scaled(a.col(1), b.col(1), along_y_),
+                       shape = shape_, to = Columns(value)](Eigen::Index i, Eigen::Index j, bool per_axis) {
+      const double x2 = x(i, j);
+      const double y2 = y(i, j);
+      const double g = shape.slope(x2 + y2, to(i, j));
+      along(i, j) = per_axis ? g * x2 : g * (x2 + y2);
+      if (per_axis) along_y(i, j) = g * y2;
+      if constexpr (Shape::kOwn) own(i, j) = shape.own_slope(x2 + y2, to(i, j));
+    };
+    if (per_axis_) {
+      simd::for_each(lanes_, a.rows(), m, [pair](Eigen::Index i, Eigen::Index j) { pair(i, j, true); });
+    } else {
+      simd::for_each(lanes_, a.rows(), m, [pair](Eigen::Index i, Eigen::Index j) { pair(i, j, false); });
     }
   }
 
  private:
   Eigen::Index axes() const { return per_axis_ ? 2 : 1; }
 
+  /// Squares of the distances along an axis, in length scales. A multiplication is a quarter of a division's work.
+  struct Scaled {
+    template <class Column, class Other>
+    Scaled(const Column& a, const Other& b, double scale)
+        : places(a.data()), others(b.data()), per_length(std::min(1.0 / scale, kLargest)) {}
+
+    PALPATE_INLINE double operator()(Eigen::Index i, Eigen::Index j) const {
+      const double scaled = (places[i] - others[j]) * per_length;
+      return simd::min(scaled * scaled, Shape::kFarthest);
+    }
+    const double* places;
+    const double* others;
+    double per_length;
+  };
+  /// Of a length scale so small that it has no reciprocal.
+  static constexpr double kLargest = std::numeric_limits<double>::max();
+
+  /// What is written to.
+  struct Columns {
+    explicit Columns(MatrixOut matrix) : numbers(matrix.data()), stride(matrix.outerStride()) {}
+    PALPATE_INLINE double& operator()(Eigen::Index i, Eigen::Index j) const { return numbers[i + j * stride]; }
+
+    double* numbers;
+    Eigen::Index stride;
+  };
+
   Shape shape_;
+  simd::Lanes lanes_;
   double along_x_;
   double along_y_;
   bool per_axis_;
@@ -126,13 +149,13 @@ class Stationary final : public Kernel {
 /// The part of a shape that has no parameters of its own.
 struct PlainShape {
   using Options = StationaryOptions;
-  /// Exponentials of it are 0, or the smallest normal number, where Eigen's packets stop: 0 also times this.
+  /// Exponentials of it, and of its root, are the smallest that there are: as good as 0 also times this.
   static constexpr double kFarthest = 1e8;
   static constexpr bool kSeparable = false;
+  static constexpr bool kOwn = false;
   explicit PlainShape(const Options&) {}
   std::vector<KernelParameter> parameters() const { return {}; }
   void set_parameters(const VectorView&) {}
-  void own_slopes(const Chunk&, const Chunk&, const MatrixOut&) const {}
 };
 
 }  // namespace palpate::kernels

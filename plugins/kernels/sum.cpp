@@ -11,8 +11,8 @@ struct Add {
   static void apply(Whole whole, const Part& part) {
     whole += part;
   }
-  template <class Slopes, class Own, class Whole>
-  static void join_slopes(const Slopes&, const Own&, const Whole&, const Eigen::ArrayXd&) {}
+  template <class Slopes, class Own>
+  static void join_slopes(const Slopes&, const Own&, const MatrixOut&, const Eigen::MatrixXd&) {}
 };
 
 using Sum = Composed<Add>;

@@ -141,14 +141,15 @@ inline Eigen::VectorXd variance(const Kernel& kernel, const Points& a) {
 
 /// What Kernel::derivatives answers.
 struct Derivatives {
-  Eigen::VectorXd value;
+  Eigen::MatrixXd value;
   Eigen::MatrixXd slopes;
 };
 
 inline Derivatives derivatives(const Kernel& kernel, const Points& a, const Points& b) {
   const auto count = static_cast<Eigen::Index>(kernel.parameters().size());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Derivatives out{Eigen::VectorXd::Constant(a.rows(), nan), Eigen::MatrixXd::Constant(a.rows(), count, nan)};
+  Derivatives out{Eigen::MatrixXd::Constant(a.rows(), b.rows(), nan),
+                  Eigen::MatrixXd::Constant(a.rows(), count * b.rows(), nan)};
   kernel.derivatives(a, b, out.value, out.slopes);
   return out;
 }

@@ -30,7 +30,6 @@ class KernelDerivatives : public testing::TestWithParam<KernelCase> {
 };
 
 TEST_P(KernelDerivatives, ComeWithTheCovariance) {
-  // More than one piece of 128 rows, by which the shipped kernels work.
   const Places at(300);
   for (const auto& kernel : kernels_) {
     expect_same_values(derivatives(*kernel, at.a, at.b).value, covariance(*kernel, at.a, at.b));
@@ -136,12 +135,29 @@ TEST_P(KernelDerivatives, OfABatchEqualThoseRowByRow) {
   }
 }
 
+TEST_P(KernelDerivatives, OfSeveralPointsEqualThoseOfEach) {
+  const Places at(13);
+  const Points others = spread(5, 0.05, 22);
+  for (const auto& kernel : kernels_) {
+    const Derivatives batch = derivatives(*kernel, at.a, others);
+    for (Eigen::Index j = 0; j < others.rows(); ++j) {
+      const Derivatives one = derivatives(*kernel, at.a, others.row(j));
+      expect_same_values(batch.value.col(j), one.value);
+      for (Eigen::Index p = 0; p < one.slopes.cols(); ++p) {
+        const Eigen::VectorXd slopes = batch.slopes.col(p * others.rows() + j);
+        const double size = std::max(one.slopes.col(p).cwiseAbs().maxCoeff(), one.value.cwiseAbs().maxCoeff());
+        EXPECT_LE((slopes - one.slopes.col(p)).cwiseAbs().maxCoeff(), 8 * kEpsilon * size) << j << ", parameter " << p;
+      }
+    }
+  }
+}
+
 TEST_P(KernelDerivatives, WriteTheirOutputsAndNothingBeside) {
   const Places at(5);
   for (const auto& kernel : kernels_) {
     const auto parameters = static_cast<Eigen::Index>(kernel->parameters().size());
     written_inside(5, 1, [&](MatrixOut value) {
-      written_inside(5, parameters, [&](MatrixOut slopes) { kernel->derivatives(at.a, at.b, value.col(0), slopes); });
+      written_inside(5, parameters, [&](MatrixOut slopes) { kernel->derivatives(at.a, at.b, value, slopes); });
     });
   }
 }

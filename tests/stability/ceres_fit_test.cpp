@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The fitting plugin `ceres` on data whose optimum several independent optimisers agree on (tests/data/fit_N.csv).
 #include "support/fit_data.hpp"
+#include "support/sanitizers.hpp"
+#include "support/support.hpp"
 #include "support/testing.hpp"
+
+#include <fstream>
 
 namespace palpate::test {
 namespace {
@@ -152,6 +156,63 @@ FitSummary fit_with_another(FitState& state, const FitData& data, const Eigen::V
   return ceres("{priors: none}")->fit(problem, random);
 }
 
+/// Taps of an object that stands on a desk: tests/data/taps_w2.csv.
+FitData taps_of_a_step() {
+  std::ifstream file(source_folder() / "tests/data/taps_w2.csv");
+  std::string line;
+  std::getline(file, line);
+  FitData out{Points(200, 2), Eigen::VectorXd(200)};
+  char comma = ',';
+  for (int i = 0; i < 200; ++i) {
+    file >> out.points(i, 0) >> comma >> out.points(i, 1) >> comma >> out.targets(i) >> comma >> line;
+  }
+  out.points *= 0.01;
+  return out;
+}
+
+TEST(CeresFit, AfterOneMoreTapIsAsLikelyAsASearchFromTheSameValuesForMuchLess) {
+  for (const FitData& data : {fit_data(200), taps_of_a_step()}) {
+    for (const char* options : {"{}", "{priors: none}"}) {
+      const auto fitting = ceres(options);
+      FitState state;
+      std::vector<double> memory;
+      int fits = 0;
+      int worse = 0;
+      int cost = 0;
+      int cost_of_searches = 0;
+      double worst = 0.0;
+      for (Eigen::Index taps = 6; taps <= (brief() ? 60 : 200); ++taps) {
+        const FitData some{data.points.topRows(taps), data.targets.head(taps)};
+        FitState cold(state.length_scale(), state.signal * state.signal,
+                      state.noise_ratio * state.noise_ratio * state.signal * state.signal);
+        const auto seed = static_cast<std::uint64_t>(taps);
+        const FitSummary search = cold.fit(*fitting, some, seed);
+        const FitSummary refit = state.fit(*fitting, some, seed, &memory);
+        ++fits;
+        worse += refit.objective < search.objective - 1e-3 ? 1 : 0;
+        worst = std::max(worst, search.objective - refit.objective);
+        cost += refit.evaluations;
+        cost_of_searches += search.evaluations;
+      }
+      RecordProperty("worse", worse);
+      EXPECT_LE(worse, fits / 100) << options << ": of " << fits << ", by up to " << worst;
+      EXPECT_LT(cost, 0.5 * cost_of_searches) << options;
+    }
+  }
+}
+
+TEST(CeresFit, LeftWithNumbersOfOtherOutputsSearches) {
+  std::vector<double> memory;
+  FitState state;
+  state.fit(*ceres("{}"), fit_data(50), 1, &memory);
+  ASSERT_EQ(memory.size(), 10U);
+  FitState again = state;
+  std::vector<double> of_others(5, 50.0);
+  const FitSummary summary = again.fit(*ceres("{}"), fit_data(50), 1, &of_others);
+  EXPECT_NE(summary.reason.find("3 starts"), std::string::npos) << summary.reason;
+  EXPECT_EQ(of_others.size(), 10U);
+}
+
 TEST(CeresFit, LeavesOutAnOutputWhoseTargetsAreAllAlike) {
   const FitData data = fit_data(50);
   FitState state;
@@ -171,7 +232,7 @@ class Broken final : public Kernel {
   std::vector<KernelParameter> parameters() const override { return {{"length_scale", value_, Unit::metre}}; }
   bool differentiable() const override { return true; }
   void set_parameters(const VectorView& values) override { value_ = values(0); }
-  void derivatives(const PointsView&, const PointsView&, VectorOut value, MatrixOut slopes) const override {
+  void derivatives(const PointsView&, const PointsView&, MatrixOut value, MatrixOut slopes) const override {
     value.setConstant(std::nan(""));
     slopes.setConstant(std::nan(""));
   }

@@ -51,6 +51,14 @@ std::vector<Setting> settings() {
           {"left_out_all_large", "rbf", "{length_scale: 4 cm}", 1, 0.0, false, loo, 6.0}};
 }
 
+std::vector<simd::Lanes> sets() {
+  std::vector<simd::Lanes> out;
+  for (const simd::Lanes one : {simd::Lanes::sse2, simd::Lanes::avx2, simd::Lanes::avx512}) {
+    if (one <= simd::widest()) out.push_back(one);
+  }
+  return out;
+}
+
 class FitObjective : public testing::TestWithParam<Setting> {
  protected:
   static constexpr int kPoints = 14;
@@ -77,8 +85,8 @@ class FitObjective : public testing::TestWithParam<Setting> {
     expectations_.push_back({value + 0.2, 0.7, value - 50.0, value + 50.0});
   }
 
-  double value(const std::vector<double>& x, bool priors) {
-    Objective objective(model_, GetParam().measure, expectations_, priors);
+  double value(const std::vector<double>& x, bool priors, simd::Lanes lanes = simd::widest()) {
+    Objective objective(model_, GetParam().measure, expectations_, priors, lanes);
     double out = 0.0;
     EXPECT_TRUE(objective.evaluate(x.data(), &out, nullptr));
     return out;
@@ -147,14 +155,19 @@ TEST_P(FitObjective, IsTheDensityByDefinition) {
     }
   }
   const auto truth = static_cast<double>(sum / (kPoints * GetParam().outputs));
-  EXPECT_NEAR(value(x_, false), truth, 1e-9 * std::max(1.0, std::abs(truth)));
+  for (const simd::Lanes lanes : sets()) {
+    EXPECT_NEAR(value(x_, false, lanes), truth, 1e-9 * std::max(1.0, std::abs(truth))) << static_cast<int>(lanes);
+  }
 }
 
 TEST_P(FitObjective, HasTheGradientThatDifferencesHave) {
-  Objective objective(model_, GetParam().measure, expectations_, true);
-  std::vector<double> gradient(x_.size());
   double here = 0.0;
-  ASSERT_TRUE(objective.evaluate(x_.data(), &here, gradient.data()));
+  std::vector<std::vector<double>> gradients;
+  for (const simd::Lanes lanes : sets()) {
+    Objective objective(model_, GetParam().measure, expectations_, true, lanes);
+    gradients.emplace_back(x_.size());
+    ASSERT_TRUE(objective.evaluate(x_.data(), &here, gradients.back().data()));
+  }
   constexpr double kStep = 1e-3;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const auto at = [&](double steps) {
@@ -164,36 +177,66 @@ TEST_P(FitObjective, HasTheGradientThatDifferencesHave) {
     };
     // Fourth order: the error is that of rounding, eps |value| / step, not that of the step.
     const double slope = (8.0 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12.0 * kStep);
-    EXPECT_NEAR(gradient[i], slope, 1e-8 * std::max(1.0, std::abs(here)) + 1e-8 * std::abs(slope)) << "parameter " << i;
+    for (const std::vector<double>& gradient : gradients) {
+      EXPECT_NEAR(gradient[i], slope, 1e-8 * std::max(1.0, std::abs(here)) + 1e-8 * std::abs(slope))
+          << "parameter " << i;
+    }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, FitObjective, testing::ValuesIn(settings()),
                          [](const auto& one) { return one.param.name; });
 
-TEST(FitMatrices, InvertsWhatItFactorised) {
+Strips strips_of(const Eigen::MatrixXd& matrix) {
+  Strips out(matrix.rows());
+  for (Eigen::Index j = 0; j < matrix.rows(); ++j) out.put(j, matrix.col(j).tail(matrix.rows() - j / 8 * 8));
+  return out;
+}
+
+class FitMatrices : public testing::TestWithParam<simd::Lanes> {};
+
+TEST_P(FitMatrices, InvertWhatTheyFactorised) {
   Random random(4, "fit matrices");
-  for (const Eigen::Index n : {1, 2, 3, 31, 32, 33, 50, 64, 65, 100, 131}) {
+  for (const Eigen::Index n : {1, 2, 7, 8, 9, 31, 33, 50, 63, 64, 65, 100, 131, 200}) {
     Eigen::MatrixXd a(n, n);
     for (Eigen::Index i = 0; i < a.size(); ++i) a.data()[i] = random.uniform() - 0.5;
     const Eigen::MatrixXd k = a * a.transpose() + Eigen::MatrixXd::Identity(n, n);
-    Eigen::MatrixXd work = k;
-    work.triangularView<Eigen::StrictlyUpper>().setConstant(77.0);
-    ASSERT_TRUE(factorise(work)) << n;
-    invert_factored(work);
-    for (Eigen::Index j = 1; j < n; ++j) EXPECT_EQ(work(0, j), 77.0) << n;
-    mirror(work);
-    EXPECT_LT((work * k - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(), 1e-11) << n;
+    Strips matrix = strips_of(k);
+    std::vector<double> reciprocals;
+    ASSERT_TRUE(factorise(GetParam(), matrix, reciprocals)) << n;
+    const Eigen::MatrixXd factor = matrix.mirrored().triangularView<Eigen::Lower>();
+    EXPECT_LT((factor * factor.transpose() - k).cwiseAbs().maxCoeff(), 1e-12 * static_cast<double>(n)) << n;
+
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
+    Eigen::VectorXd x = b;
+    solve_lower(GetParam(), matrix, x);
+    EXPECT_LT((factor * x - b).cwiseAbs().maxCoeff(), 1e-12) << n;
+    Strips upper(n);
+    invert_transposed(GetParam(), matrix, reciprocals, upper);
+    multiply_upper(GetParam(), upper, x);
+    EXPECT_LT((k * x - b).cwiseAbs().maxCoeff(), 1e-11) << n;
+    square_upper(GetParam(), upper, matrix);
+    EXPECT_LT((matrix.mirrored() * k - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(), 1e-11) << n;
   }
 }
 
-TEST(FitMatrices, RefusesWhatIsNotPositiveDefinite) {
-  Eigen::MatrixXd indefinite(2, 2);
-  indefinite << 1.0, 2.0, 2.0, 1.0;
-  EXPECT_FALSE(factorise(indefinite));
-  Eigen::MatrixXd nothing = Eigen::MatrixXd::Constant(3, 3, std::nan(""));
-  EXPECT_FALSE(factorise(nothing));
+TEST_P(FitMatrices, RefuseWhatIsNotPositiveDefinite) {
+  std::vector<double> reciprocals;
+  for (const Eigen::Index n : {2, 9, 70}) {
+    Eigen::MatrixXd indefinite = Eigen::MatrixXd::Identity(n, n);
+    indefinite(n - 1, 0) = indefinite(0, n - 1) = 2.0;
+    Strips matrix = strips_of(indefinite);
+    EXPECT_FALSE(factorise(GetParam(), matrix, reciprocals)) << n;
+    for (const double nothing : {std::nan(""), HUGE_VAL}) {
+      Strips wrong = strips_of(Eigen::MatrixXd::Constant(n, n, nothing));
+      EXPECT_FALSE(factorise(GetParam(), wrong, reciprocals)) << n;
+    }
+  }
 }
+
+INSTANTIATE_TEST_SUITE_P(Every, FitMatrices, testing::ValuesIn(sets()), [](const auto& one) {
+  return one.param == simd::Lanes::sse2 ? "Sse2" : one.param == simd::Lanes::avx2 ? "Avx2" : "Avx512";
+});
 
 }  // namespace
 }  // namespace palpate::fitting

@@ -26,8 +26,8 @@ FitState::FitState(double length_scale, double signal_variance, double noise_var
   kernel->set_parameters(Eigen::VectorXd::Constant(1, length_scale));
 }
 
-FitSummary FitState::fit(const Fitting& fitting, const FitData& data, std::uint64_t seed) {
-  FitProblem problem{data.points, *kernel, noise_ratio, 0.0, {{data.targets, signal, mean}}};
+FitSummary FitState::fit(const Fitting& fitting, const FitData& data, std::uint64_t seed, std::vector<double>* memory) {
+  FitProblem problem{data.points, *kernel, noise_ratio, 0.0, {{data.targets, signal, mean}}, memory};
   Random random(seed, "fit");
   return fitting.fit(problem, random);
 }

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace palpate::test {
 
@@ -25,7 +26,8 @@ FitData fit_data(int count);
 struct FitState {
   explicit FitState(double length_scale = 0.01, double signal_variance = 1.0, double noise_variance = 1e-2);
 
-  FitSummary fit(const Fitting& fitting, const FitData& data, std::uint64_t seed = 1);
+  FitSummary fit(const Fitting& fitting, const FitData& data, std::uint64_t seed = 1,
+                 std::vector<double>* memory = nullptr);
 
   double length_scale() const { return kernel->parameters().front().value; }
 

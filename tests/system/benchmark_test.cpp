@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // configs/benchmark in its short form, two objects and two seeds: the sweep, its rows after fewer taps, the table.
+#include "support/sanitizers.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
@@ -29,6 +30,7 @@ TEST_F(Benchmark, ComparesThemOnTenEverydayThingsAndOnARandomOutlineForEachSeed)
   for (const auto& [file, jobs] :
        {std::pair{"benchmark/everyday.yaml", 10 * 25}, {"benchmark/random_outlines.yaml", 200}}) {
     EXPECT_EQ(lines(sweep("--list", config(file)).out), 6 * jobs);
+    if (test::kSanitized) continue;
     const std::vector<Cells> rows = csv_rows(text_of(swept("strategy=random taps=20", config(file)) / "results.csv"));
     ASSERT_EQ(rows.size(), static_cast<std::size_t>(jobs)) << file;
     for (const Cells& row : rows) EXPECT_EQ(row.at("status"), "done") << "each fits into the area";
@@ -44,6 +46,7 @@ TEST_F(Benchmark, RunsTheDefaultAsItIsShipped) {
 }
 
 TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
+  if (test::kSanitized) GTEST_SKIP() << "./check --all makes it in release";
   const fs::path directory = narrowed("strategy=default scene=object_i,tall_cone", 60);
   const std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
   ASSERT_EQ(rows.size(), 8U);

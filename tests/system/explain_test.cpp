@@ -190,7 +190,7 @@ TEST_F(Explain, SaysWhichTapsAreDoubtedSinceWhenAndWhy) {
                                                        " %, by (its height|where it is)"));
   }
   EXPECT_GE(sure, 1) << "a lie that all others contradict";
-  for (int tap = 1; tap <= 30; ++tap) {
+  for (int tap = 1; tap <= 30; tap += test::brief() ? 7 : 1) {
     if (taps.count(tap) == 0) {
       EXPECT_THAT(explain(directory, tap), Not(HasSubstr("By all 30 taps it may lie")));
     }

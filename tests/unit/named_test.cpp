@@ -26,7 +26,7 @@ struct BrokenKernel final : Kernel {
   std::vector<KernelParameter> parameters() const override { fail(); }
   bool differentiable() const override { fail(); }
   void set_parameters(const VectorView&) override { fail(); }
-  void derivatives(const PointsView&, const PointsView&, VectorOut, MatrixOut) const override { fail(); }
+  void derivatives(const PointsView&, const PointsView&, MatrixOut, MatrixOut) const override { fail(); }
 };
 
 struct BrokenFitting final : Fitting {

@@ -9,7 +9,7 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
                        const std::string& directory)
     : options_(options),
       scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
-      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
+      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory, lanes_of(options)},
       candidates_(options.candidates.spacing
                       ? grid_by_spacing(scene_->area(), *options.candidates.spacing)
                       : grid_by_count(scene_->area(), static_cast<int>(*options.candidates.count))),

@@ -40,10 +40,12 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
 
 }  // namespace
 
-const simd::Table& loops_of(const ExperimentOptions& options) {
+simd::Lanes lanes_of(const ExperimentOptions& options) {
   const bool baseline = options.instruction_set == ExperimentOptions::InstructionSet::baseline;
-  return baseline ? simd::baseline() : simd::fastest();
+  return baseline ? simd::Lanes::sse2 : simd::widest();
 }
+
+const simd::Table& loops_of(const ExperimentOptions& options) { return simd::table_of(lanes_of(options)); }
 
 // The plugins are made at once, so that options which they refuse are refused before the first tap.
 TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,

@@ -59,9 +59,10 @@ class Engine {
   /// Takes one more row into the maps.
   virtual void absorb(const FactorRow& row) = 0;
 
-  /// The largest error of a covariance between a tap and a candidate so far, in the unit of the kernel: what the engine
-  /// leaves away, beyond what the kernel itself may be off by rounding.
-  virtual double covariance_error() const { return 0.0; }
+  /// Of each row so far the largest error of a covariance between its tap and a candidate, in the unit of the kernel:
+  /// what the engine leaves away, beyond what the kernel itself may be off by rounding. Empty where nothing is left
+  /// away.
+  virtual VectorView covariance_errors() const { return Eigen::VectorXd(); }
 
   const Maps& maps() const { return maps_; }
 

@@ -17,8 +17,8 @@ struct Axis {
   AxisBasis basis;
   Eigen::VectorXd covariance;   ///< of the new tap with the places
   Eigen::VectorXd coordinates;  ///< of that in the basis
-  double largest = 0.0;         ///< covariance of any tap so far
-  double left = 0.0;            ///< of any covariance of any tap so far, outside of the basis
+  double largest = 0.0;         ///< of those
+  double left = 0.0;            ///< of what of them is outside of the basis
 
   Axis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
       : places(along),
@@ -28,10 +28,10 @@ struct Axis {
 
   void take(const Kernel& kernel, int axis, const FactorRow& row) {
     kernel.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), covariance);
-    largest = std::max(largest, covariance.cwiseAbs().maxCoeff());
+    largest = covariance.cwiseAbs().maxCoeff();
     coordinates.noalias() = basis.directions.transpose() * covariance;
     covariance.noalias() -= basis.directions * coordinates;
-    left = std::max(left, covariance.cwiseAbs().maxCoeff());
+    left = covariance.cwiseAbs().maxCoeff();
   }
 };
 
@@ -65,6 +65,7 @@ class Lowrank final : public Engine {
     reserved_ = rows;
     in_x_.reserve(rows);
     in_y_.reserve(rows);
+    if (errors_.size() < rows) errors_.conservativeResize(rows);
   }
   bool needs_inverse() const override { return true; }
 
@@ -73,6 +74,7 @@ class Lowrank final : public Engine {
     y_.take(kernel_, 1, row);
     in_x_.append(x_.coordinates.data());
     in_y_.append(y_.coordinates.data());
+    note_error();
     form_shares(row.inverse);
     form_rows();
     const int lines = basis_x_.padded() / kLine;
@@ -90,18 +92,22 @@ class Lowrank final : public Engine {
     });
   }
 
-  double covariance_error() const override {
-    // A kernel may be off by 8 ulp itself (kernel.hpp), for every engine.
-    constexpr double kOfKernel = 8.0 * std::numeric_limits<double>::epsilon();
-    const double left = x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
-    return std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
-  }
+  VectorView covariance_errors() const override { return errors_.head(in_x_.rows()); }
 
  private:
   void clear() override {
-    for (Axis* axis : {&x_, &y_}) axis->largest = axis->left = 0.0;
     in_x_.clear();
     in_y_.clear();
+  }
+
+  /// Of the newest tap.
+  void note_error() {
+    // A kernel may be off by 8 ulp itself (kernel.hpp), for every engine.
+    constexpr double kOfKernel = 8.0 * std::numeric_limits<double>::epsilon();
+    const double left = x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
+    const double error = std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
+    if (errors_.size() < in_x_.rows()) errors_.conservativeResize(2 * in_x_.rows());
+    errors_(in_x_.rows() - 1) = error;
   }
 
   /// S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
@@ -153,6 +159,7 @@ class Lowrank final : public Engine {
 
   Axis x_;
   Axis y_;
+  Eigen::VectorXd errors_;  ///< of covariances, a tap a number; with room for more
   int reserved_ = 0;
   simd::Panels in_x_;           ///< P_x, a tap a row
   simd::Panels in_y_;           ///< P_y

@@ -73,7 +73,14 @@ simd::Update Maps::update(int strip, const double* coefficients) {
 void Maps::read(const simd::Lines& map, VectorOut out) const {
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
-      for (int i = 0; i < count; ++i) out(candidate + step * i) = map.data()[cell + static_cast<std::size_t>(i)];
+      const double* const from = map.data() + cell;
+      double* const to = out.data() + candidate;
+      // A loop for each direction, as only steps that a compiler knows become moves of whole registers.
+      if (step > 0) {
+        for (int i = 0; i < count; ++i) to[i] = from[i];
+      } else {
+        for (int i = 0; i < count; ++i) to[-i] = from[i];
+      }
     });
   }
 }

@@ -161,20 +161,25 @@ void Process::keep_accuracy() {
 }
 
 double Process::error_bound() const {
-  const double error = choice_.engine->covariance_error();
+  const VectorView errors = choice_.engine->covariance_errors();
   const int n = factor_.size();
-  if (!(error > 0.0)) return 0.0;
+  if (errors.size() == 0 || !(errors.maxCoeff() > 0.0)) return 0.0;
   const double prior = prior_.maxCoeff();
   const double deviation = std::sqrt(prior);
-  const double row = error * std::sqrt(inverse_norms_) / deviation;
+  // L^-1 makes nothing longer than 1 / noise times, as no eigenvalue of L L^T is less than what is on its diagonal
+  // alone.
+  const double noise = std::sqrt(noise_ratio() * noise_ratio() + jitter_);
+  const double row = std::min(errors.maxCoeff() * std::sqrt(inverse_norms_), errors.norm() / noise) / deviation;
   double variance = 2.0 * row + row * row;
   double mean = 0.0;
-  const auto size_of = [&](Eigen::Index column) { return weights_.col(column).head(n).lpNorm<1>(); };
-  for (Eigen::Index k = 0; k < targets_.cols(); ++k) mean = std::max(mean, error * size_of(k) / deviation);
+  // What the errors make of a column of K^-1 (targets, 1).
+  const auto error_of = [&](Eigen::Index column) { return errors.dot(weights_.col(column).head(n).cwiseAbs()); };
+  for (Eigen::Index k = 0; k < targets_.cols(); ++k) mean = std::max(mean, error_of(k) / deviation);
   if (with_constant()) {
-    const double explained = size_of(targets_.cols());
-    mean += std::abs(constant_mean()) * error * explained / deviation;
-    variance += 2.0 * (1.0 + explained * prior) * error * explained / (constant_precision() * prior);
+    const double explained = weights_.col(targets_.cols()).head(n).lpNorm<1>();
+    const double error = error_of(targets_.cols());
+    mean += std::abs(constant_mean()) * error / deviation;
+    variance += 2.0 * (1.0 + explained * prior) * error / (constant_precision() * prior);
   }
   return std::max(mean, variance);
 }
@@ -211,7 +216,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
   for (const KernelParameter& one : kernel_->parameters()) old.push_back(one.value);
   std::vector<ProcessSettings> fitted = outputs_;
   double ratio = noise_ratio();
-  FitProblem problem{points_.topRows(size_), *kernel_, ratio, outputs_.front().mean_ratio, {}};
+  FitProblem problem{points_.topRows(size_), *kernel_, ratio, outputs_.front().mean_ratio, {}, &fit_memory_};
   for (std::size_t k = 0; k < fitted.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     problem.outputs.push_back({targets_.col(column).head(size_), fitted[k].signal, fitted[k].mean});
@@ -289,7 +294,10 @@ void Process::read_variance(int output, Eigen::VectorXd& out) const {
 
 void Process::read_relative_variance(Eigen::VectorXd& out) const {
   read_standard_variance(out);
-  with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) / prior; });
+  with_prior([&](const auto& prior) {
+    out.array() = out.array().max(0.0).min(prior);
+    if (!same_prior_ || prior(0) != 1.0) out.array() /= prior;  // dividing takes longest, and most priors are 1
+  });
 }
 
 int Process::variances_clamped() const {

@@ -98,9 +98,9 @@ class Process {
   double condition() const { return factor_.condition(); }
 
   /// The engine in use, why, and a bound of what it adds to the rounding of `dense`, of means in prior standard
-  /// deviations and of variances in prior variances: with p the largest kernel variance of a candidate, e the error of
-  /// a covariance, c_i the rows of L^-1 and alpha = L^-T L^-1 targets,
-  ///     2 E + E^2,  E = e sqrt(sum |c_i|_1^2 / p),   and   e |alpha|_1 / sqrt(p).
+  /// deviations and of variances in prior variances: with p the largest kernel variance of a candidate, e_i the largest
+  /// error of a covariance of tap i, e that of all, c_i the rows of L^-1, s the noise and alpha = L^-T L^-1 targets,
+  ///     2 E + E^2,  E = min(e sqrt(sum |c_i|_1^2), |(e_i)|_2 / s) / sqrt(p),   and   sum e_i |alpha_i| / sqrt(p).
   const char* engine() const { return choice_.engine->name(); }
   const std::string& engine_reason() const { return choice_.reason; }
   double error_bound() const;
@@ -167,6 +167,7 @@ class Process {
   double jitter_ = 0.0;  ///< relative to signal^2
   int jitter_raised_ = 0;
   int pivoted_ = 0;
+  std::vector<double> fit_memory_;  ///< what one fit leaves for the next
   int generation_ = 0;
 };
 

@@ -104,7 +104,7 @@ class NamedKernel final : public Named<Kernel> {
   std::vector<KernelParameter> parameters() const override { return call(&Kernel::parameters); }
   bool differentiable() const override { return call(&Kernel::differentiable); }
   void set_parameters(const VectorView& values) override { call(&Kernel::set_parameters, values); }
-  void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const override {
+  void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     call(&Kernel::derivatives, a, b, value, slopes);
   }
 };

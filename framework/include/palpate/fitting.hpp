@@ -27,6 +27,9 @@ struct FitProblem {
   double& noise_ratio;      ///< standard deviation of the noise of one tap, in signals
   const double mean_ratio;  ///< standard deviation of the unknown constant that is added to the mean, in signals; >= 0
   std::vector<FitOutput> outputs;  ///< one, or several that share their hyperparameters
+  /// What the fit of fewer taps of this process has left for this one, which may leave other numbers: nobody else reads
+  /// them. Empty before the first fit; null where no other follows. A resumed run makes all fits again, from the first.
+  std::vector<double>* memory = nullptr;
 };
 
 /// What a fit did, in numbers and words.

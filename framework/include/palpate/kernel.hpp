@@ -54,16 +54,16 @@ class Kernel {
   /// Takes new hyperparameters: P values in the order of parameters(), positive and finite.
   virtual void set_parameters(const VectorView& values);
 
-  /// Covariances with one point, and what they change with: `a` n x 2, `b` 1 x 2, `value` n, `slopes` n x P with
-  /// slopes(i, p) = d k(a_i, b) / d log parameter p. `value` equals covariance(a, b) within 8 ulp; the slopes are
-  /// finite for all finite points. Never throws.
-  virtual void derivatives(const PointsView& a, const PointsView& b, VectorOut value, MatrixOut slopes) const;
+  /// Covariances, and what they change with: `a` n x 2, `b` m x 2, `value` n x m, `slopes` n x Pm with
+  /// slopes(i, p m + j) = d k(a_i, b_j) / d log parameter p. `value` equals covariance(a, b) within 8 ulp; the slopes
+  /// are finite for all finite points. Never throws.
+  virtual void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const;
 };
 
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
 inline void Kernel::axis_covariance(int, const VectorView&, const VectorView&, MatrixOut) const {}
 inline void Kernel::set_parameters(const VectorView&) {}
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
-inline void Kernel::derivatives(const PointsView&, const PointsView&, VectorOut, MatrixOut) const {}
+inline void Kernel::derivatives(const PointsView&, const PointsView&, MatrixOut, MatrixOut) const {}
 
 }  // namespace palpate

@@ -31,12 +31,33 @@ constexpr Eigen::Index kPart = 96;
 /// maximum.
 constexpr double kFine = 1e-4;
 
+/// More taps than after the last search by this factor ask for another one: until then a fit climbs from where the one
+/// before ended.
+constexpr double kGrowth = 1.1;
+
 /// A place of the search and what is known of it.
 struct Spot {
   Eigen::VectorXd x;
   double value = 0.0;
-  bool valid = false;  ///< value and gradient were finite on the whole way
-  std::string reason;  ///< why the ascent ended
+  bool valid = false;      ///< value and gradient were finite on the whole way
+  bool converged = false;  ///< and the gradient is gone
+  std::string reason;      ///< why the ascent ended
+  Eigen::MatrixXd metric;  ///< of the ascent that ended here
+};
+
+/// What one fit leaves for the next (FitProblem::memory): after how many taps was searched, and the metric.
+struct Memory {
+  double searched = 0.0;
+  Eigen::MatrixXd metric;
+
+  static Memory of(const std::vector<double>& numbers, Eigen::Index size) {
+    if (static_cast<Eigen::Index>(numbers.size()) != 1 + size * size) return {};  // nothing, or of other outputs
+    return {numbers.front(), Eigen::Map<const Eigen::MatrixXd>(numbers.data() + 1, size, size)};
+  }
+  void keep(std::vector<double>& numbers) const {
+    numbers.assign(1, searched);
+    numbers.insert(numbers.end(), metric.data(), metric.data() + metric.size());
+  }
 };
 
 /// The objective, turned over and in the coordinates of a metric, as Ceres wants it.
@@ -90,7 +111,9 @@ Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::Mat
   const Eigen::VectorXd x = start + metric * u;
   // An ascent that ends in trouble has still come as far as it says, but for one that could not begin.
   const bool valid = !summary.iterations.empty() && std::isfinite(summary.final_cost) && x.allFinite();
-  return {x, -summary.final_cost, valid, summary.message.substr(0, summary.message.find_first_of(".\n"))};
+  const bool converged = valid && summary.termination_type == ceres::CONVERGENCE;
+  return {x,     -summary.final_cost, valid, converged, summary.message.substr(0, summary.message.find_first_of(".\n")),
+          metric};
 }
 
 /// A metric from the curvature at `spot`, by differences of gradients.
@@ -179,7 +202,9 @@ class Ceres final : public Fitting {
   using Options = CeresOptions;
 
   Ceres(const Options& options, const Context& context)
-      : options_(options), side_(std::max(context.scene.area().width, context.scene.area().depth)) {}
+      : options_(options),
+        lanes_(context.lanes),
+        side_(std::max(context.scene.area().width, context.scene.area().depth)) {}
 
   bool due(int taps) const override { return taps > 0 && taps % options_.every == 0; }
 
@@ -207,10 +232,25 @@ class Ceres final : public Fitting {
     double value_now = 0.0;
     const bool known = objective.evaluate(now.data(), &value_now, nullptr);
 
-    const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
+    const Memory memory = problem.memory != nullptr ? Memory::of(*problem.memory, now.size()) : Memory();
+    const auto taps = static_cast<double>(model.size());
+    Spot best;
+    if (known && taps >= memory.searched && taps < kGrowth * memory.searched) {
+      best = ascend(objective, now, memory.metric, kFine);
+      if (best.converged) summary.reason = best.reason + "; from the values before";
+    }
+    const bool searched = !best.converged;
+    if (searched) {
+      const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
+      best = spots.front();
+      summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent came to a finite value";
+    }
+    if (problem.memory != nullptr && best.valid) {
+      // The metric of a search among few points is that of its start, which may be far away.
+      if (searched && model.size() <= kPart) best.metric = metric_at(objective, best.x);
+      Memory{searched ? taps : memory.searched, best.metric}.keep(*problem.memory);
+    }
     summary.evaluations += objective.evaluations();
-    const Spot& best = spots.front();
-    summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent came to a finite value";
     if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs that tell nothing were left out";
     if (best.valid && (!known || best.value > value_now)) {
       summary.changed = true;
@@ -246,7 +286,7 @@ class Ceres final : public Fitting {
   }
 
   Objective objective_of(const Model& model, const std::vector<Expectation>& expected) const {
-    return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
+    return {model, options_.objective, expected, options_.priors == Options::Priors::touch, lanes_};
   }
 
   /// The optima that the ascents found, the best first. `objective` is that of `model`; `evaluations` counts those of
@@ -275,6 +315,7 @@ class Ceres final : public Fitting {
   }
 
   Options options_;
+  simd::Lanes lanes_;
   double side_;  ///< of the area, the longer one, metres
 };
 

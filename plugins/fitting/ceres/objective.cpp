@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "objective.hpp"
 
-#include "symmetric.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +14,12 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kWall = 1.0;
 /// Deviations of targets below this share of their size are rounding.
 constexpr double kRounding = 1e-9;
+
+/// Of two rows of lines.
+double product(const double* a, const double* b, Eigen::Index lines) {
+  using Numbers = Eigen::Map<const Eigen::VectorXd, Eigen::AlignedMax>;
+  return Numbers(a, 8 * lines).dot(Numbers(b, 8 * lines));
+}
 
 }  // namespace
 
@@ -83,16 +87,22 @@ void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
   }
 }
 
-Objective::Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors)
+Objective::Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors,
+                     simd::Lanes lanes)
     : model_(model),
       measure_(measure),
       expectations_(expectations),
       priors_(priors),
+      lanes_(lanes),
       parameters_(static_cast<Eigen::Index>(model.kernel.parameters().size())),
-      covariance_(model.size(), model.size()),
-      slopes_(model.size(), model.size() * parameters_),
-      adjoint_(model.size(), model.size()),
-      standard_(model.size(), model.outputs()) {}
+      matrix_(model.size()),
+      upper_(model.size()),
+      places_(8 * matrix_.strips(), 2),
+      slopes_(static_cast<std::size_t>(8 * matrix_.strips() * matrix_.strips() * parameters_)),
+      standard_(model.size(), model.outputs()),
+      solved_(Eigen::MatrixXd::Zero(8 * matrix_.strips(), model.outputs())) {
+  for (Eigen::Index i = 0; i < places_.rows(); ++i) places_.row(i) = model.points.row(std::min(i, model.size() - 1));
+}
 
 bool Objective::evaluate(const double* x, double* value, double* gradient) {
   ++evaluations_;
@@ -106,6 +116,7 @@ bool Objective::evaluate(const double* x, double* value, double* gradient) {
     standard_.col(i) = (model_.targets.col(i).array() - mean) * std::exp(-0.5 * log_signals[i]);
   }
   solve(standard_);
+  if (gradient != nullptr || measure_ == Measure::leave_one_out) invert();
   if (gradient != nullptr) std::fill(gradient, gradient + size(), 0.0);
   if (measure_ == Measure::log_marginal_likelihood) {
     *value = likelihood(log_signals);
@@ -148,51 +159,61 @@ void Objective::set_kernel(const double* logs) {
 }
 
 void Objective::fill(bool slopes) {
-  const Eigen::Index n = model_.size();
-  Points one(1, 2);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    one.row(0) = model_.points.row(j);
-    const auto below = model_.points.bottomRows(n - j);
+  using Lines = Eigen::Map<Eigen::MatrixXd, Eigen::AlignedMax>;
+  for (Eigen::Index s = 0; s < matrix_.strips(); ++s) {
+    const auto own = places_.middleRows(8 * s, 8);
+    const auto others = model_.points.topRows(columns(s));
+    Lines value(matrix_.at(s, 0)->numbers, 8, columns(s));
     if (slopes) {
-      model_.kernel.derivatives(below, one, covariance_.col(j).tail(n - j),
-                                slopes_.middleCols(j * parameters_, parameters_).bottomRows(n - j));
+      Lines out(slopes_[static_cast<std::size_t>(slopes_of(s))].numbers, 8, columns(s) * parameters_);
+      model_.kernel.derivatives(own, others, value, out);
     } else {
-      model_.kernel.covariance(below, one, covariance_.col(j).tail(n - j));
+      model_.kernel.covariance(own, others, value);
     }
   }
 }
 
 bool Objective::decompose(double noise) {
   noise_ = noise;
+  const Eigen::Index n = model_.size();
   // The smooth lower limit of the noise: what keeps the matrix positive definite in double precision, as jitter does in
   // a process. Too small to enter the gradient.
-  const double floor = 10.0 * static_cast<double>(model_.size()) * kEpsilon * covariance_(0, 0);
-  covariance_.diagonal().array() += noise + floor;
-  if (!factorise(covariance_)) return false;
-  log_determinant_ = 2.0 * covariance_.diagonal().array().log().sum();
+  const double floor = 10.0 * static_cast<double>(n) * kEpsilon * matrix_(0, 0);
+  for (Eigen::Index i = 0; i < n; ++i) matrix_(i, i) += noise + floor;
+  if (!factorise(lanes_, matrix_, reciprocals_)) return false;
+  log_determinant_ = 0.0;
+  for (Eigen::Index i = 0; i < n; ++i) log_determinant_ += 2.0 * std::log(matrix_(i, i));
   return true;
 }
 
 void Objective::solve(const Eigen::MatrixXd& targets) {
-  const auto factor = covariance_.triangularView<Eigen::Lower>();
-  const auto transposed = covariance_.transpose().triangularView<Eigen::Upper>();
-  solved_ = factor.solve(targets);
+  const Eigen::Index n = model_.size();
+  solved_.topRows(n) = targets;
+  solved_.bottomRows(solved_.rows() - n).setZero();
+  for (Eigen::Index i = 0; i < targets.cols(); ++i) solve_lower(lanes_, matrix_, solved_.col(i));
   squares_ = solved_.colwise().squaredNorm();
-  transposed.solveInPlace(solved_);
   if (!(model_.mean_ratio > 0.0)) return;
   // K + r^2 1 1^T by the formulas of Sherman, Morrison and Woodbury.
-  Eigen::VectorXd ones = Eigen::VectorXd::Ones(model_.size());
-  factor.solveInPlace(ones);
+  ones_ = Eigen::VectorXd::Zero(solved_.rows());
+  ones_.head(n).setOnes();
+  solve_lower(lanes_, matrix_, ones_);
   const double prior = model_.mean_ratio * model_.mean_ratio;
-  const double precision = 1.0 / prior + ones.squaredNorm();
-  transposed.solveInPlace(ones);
-  ones_ = ones / std::sqrt(precision);
+  const double precision = 1.0 / prior + ones_.squaredNorm();
+  ones_ /= std::sqrt(precision);
   log_determinant_ += std::log(precision * prior);
   for (Eigen::Index i = 0; i < targets.cols(); ++i) {
-    const double common = ones_.dot(targets.col(i));
+    const double common = ones_.dot(solved_.col(i));
     solved_.col(i) -= common * ones_;
     squares_(i) -= common * common;
   }
+}
+
+/// L -> K^-1, and what L^-1 was applied to gets the other half.
+void Objective::invert() {
+  invert_transposed(lanes_, matrix_, reciprocals_, upper_);
+  for (Eigen::Index i = 0; i < solved_.cols(); ++i) multiply_upper(lanes_, upper_, solved_.col(i));
+  if (model_.mean_ratio > 0.0) multiply_upper(lanes_, upper_, ones_);
+  square_upper(lanes_, upper_, matrix_);
 }
 
 double Objective::likelihood(const double* log_signals) const {
@@ -212,13 +233,17 @@ void Objective::likelihood_gradient(double* gradient) {
     if (model_.fit_means) gradient[parameters_ + 1 + m + i] += solved_.col(i).sum();
   }
   // dF/dK = (sum of alpha alpha^T over the outputs - m K^-1) / 2.
-  invert_factored(covariance_);
   const auto outputs = static_cast<double>(m);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    auto column = adjoint_.col(j).tail(n - j);
-    column = (-0.5 * outputs) * covariance_.col(j).tail(n - j);
-    for (Eigen::Index i = 0; i < m; ++i) column += (0.5 * solved_(j, i)) * solved_.col(i).tail(n - j);
-    if (model_.mean_ratio > 0.0) column += (0.5 * outputs * ones_(j)) * ones_.tail(n - j);
+  for (Eigen::Index s = 0; s < matrix_.strips(); ++s) {
+    Eigen::Map<Eigen::MatrixXd, Eigen::AlignedMax> adjoint(matrix_.at(s, 0)->numbers, 8, columns(s));
+    adjoint *= -0.5 * outputs;
+    const auto add = [&](double weight, const auto& numbers) {
+      simd::for_each(lanes_, 8, columns(s),
+                     [weight, out = adjoint.data(), own = numbers.data() + 8 * s, others = numbers.data()](
+                         Eigen::Index i, Eigen::Index j) { out[8 * j + i] += own[i] * (weight * others[j]); });
+    };
+    for (Eigen::Index i = 0; i < m; ++i) add(0.5, solved_.col(i));
+    if (model_.mean_ratio > 0.0) add(0.5 * outputs, ones_);
   }
   contract(gradient);
 }
@@ -226,38 +251,44 @@ void Objective::likelihood_gradient(double* gradient) {
 double Objective::leave_one_out(double* gradient) {
   const Eigen::Index n = model_.size();
   const Eigen::Index m = model_.outputs();
-  invert_factored(covariance_);
-  mirror(covariance_);
-  if (model_.mean_ratio > 0.0) covariance_.noalias() -= ones_ * ones_.transpose();
-  const Eigen::ArrayXd own = covariance_.diagonal();  // 1 / variance of each prediction
+  Eigen::MatrixXd inverse = matrix_.mirrored();
+  const auto ones = ones_.head(ones_.size() > 0 ? n : 0);
+  if (ones.size() > 0) inverse.noalias() -= ones * ones.transpose();
+  const Eigen::ArrayXd own = inverse.diagonal();  // 1 / variance of each prediction
   double sum = 0.5 * static_cast<double>(m) * (own.log() - kLogTwoPi).sum();
   Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(n);
-  if (gradient != nullptr) adjoint_.setZero();
+  Eigen::MatrixXd adjoint = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const Eigen::ArrayXd ratio = solved_.col(i).array() / own;  // target - prediction
-    const double squares = (solved_.col(i).array() * ratio).sum();
+    const Eigen::ArrayXd ratio = solved_.col(i).head(n).array() / own;  // target - prediction
+    const double squares = (solved_.col(i).head(n).array() * ratio).sum();
     sum -= 0.5 * squares;
     if (gradient == nullptr) continue;
     weight += 0.5 * (1.0 / own + ratio.square());
-    const Eigen::VectorXd turned = covariance_ * ratio.matrix();
-    adjoint_.selfadjointView<Eigen::Lower>().rankUpdate(turned, solved_.col(i), 0.5);
+    const Eigen::VectorXd turned = inverse * ratio.matrix();
+    adjoint.selfadjointView<Eigen::Lower>().rankUpdate(turned, solved_.col(i).head(n), 0.5);
     gradient[parameters_ + 1 + i] += 0.5 * (squares - static_cast<double>(n));
     if (model_.fit_means) gradient[parameters_ + 1 + m + i] += turned.sum();
   }
   if (gradient == nullptr) return sum;
-  const Eigen::MatrixXd scaled = covariance_ * weight.sqrt().matrix().asDiagonal();
-  adjoint_.selfadjointView<Eigen::Lower>().rankUpdate(scaled, -1.0);
+  const Eigen::MatrixXd scaled = inverse * weight.sqrt().matrix().asDiagonal();
+  adjoint.selfadjointView<Eigen::Lower>().rankUpdate(scaled, -1.0);
+  adjoint.triangularView<Eigen::StrictlyUpper>() = adjoint.transpose();
+  for (Eigen::Index j = 0; j < n; ++j) matrix_.put(j, adjoint.col(j).tail(n - j / 8 * 8));
   contract(gradient);
   return sum;
 }
 
 void Objective::contract(double* gradient) const {
-  const Eigen::Index n = model_.size();
-  gradient[parameters_] += noise_ * adjoint_.diagonal().sum();
-  for (Eigen::Index j = 0; j < n; ++j) {
+  double trace = 0.0;
+  for (Eigen::Index i = 0; i < model_.size(); ++i) trace += matrix_(i, i);
+  gradient[parameters_] += noise_ * trace;
+  for (Eigen::Index s = 0; s < matrix_.strips(); ++s) {
+    const double* const adjoint = matrix_.at(s, 0)->numbers;
     for (Eigen::Index p = 0; p < parameters_; ++p) {
-      const auto slope = slopes_.col(j * parameters_ + p);
-      gradient[p] += adjoint_(j, j) * slope(j) + 2.0 * adjoint_.col(j).tail(n - j - 1).dot(slope.tail(n - j - 1));
+      const double* const slopes = slopes_[static_cast<std::size_t>(slopes_of(s) + p * columns(s))].numbers;
+      // A tile of the diagonal holds both of its halves; those left of it stand for those right of it, too.
+      gradient[p] +=
+          2.0 * product(adjoint, slopes, 8 * s) + product(adjoint + 64 * s, slopes + 64 * s, columns(s) - 8 * s);
     }
   }
 }

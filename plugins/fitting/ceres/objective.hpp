@@ -2,9 +2,12 @@
 // The data of a fit, and what it maximises as a function of the logarithms of the hyperparameters, with its gradient.
 #pragma once
 
+#include "symmetric.hpp"
+
 #include <palpate/fitting.hpp>
 #include <palpate/types.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -64,7 +67,8 @@ struct Expectation {
 class Objective {
  public:
   /// `expectations`: one for each hyperparameter, or none: then walls are all there is. All three must outlive it.
-  Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors);
+  Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors,
+            simd::Lanes lanes);
 
   int size() const { return static_cast<int>(expectations_.size()); }
   int evaluations() const { return evaluations_; }
@@ -79,8 +83,12 @@ class Objective {
  private:
   void set_kernel(const double* logs);
   void fill(bool slopes);
+  /// Columns of a strip up to the end of its tile of the diagonal, or of all.
+  Eigen::Index columns(Eigen::Index strip) const { return std::min(model_.size(), 8 * (strip + 1)); }
+  Eigen::Index slopes_of(Eigen::Index strip) const { return strip * parameters_ * 8 * matrix_.strips(); }
   bool decompose(double noise);
   void solve(const Eigen::MatrixXd& targets);
+  void invert();
   double likelihood(const double* log_signals) const;
   void likelihood_gradient(double* gradient);
   double leave_one_out(double* gradient);
@@ -91,16 +99,21 @@ class Objective {
   Measure measure_;
   const std::vector<Expectation>& expectations_;
   bool priors_;
+  simd::Lanes lanes_;
   int evaluations_ = 0;
 
-  Eigen::Index parameters_;     ///< of the kernel
-  Eigen::MatrixXd covariance_;  ///< K, its factor, and its inverse, one after the other; lower triangle
-  Eigen::MatrixXd slopes_;      ///< n x nP: column jP + p is column j of dK / d log parameter p, from row j on
-  Eigen::MatrixXd adjoint_;     ///< dF/dK, lower triangle
-  Eigen::MatrixXd standard_;    ///< n x m: (targets - mean) / signal
-  Eigen::MatrixXd solved_;      ///< n x m: covariance^-1 standard, the unknown constant integrated out
-  Eigen::VectorXd squares_;     ///< m: standard^T covariance^-1 standard
-  Eigen::VectorXd ones_;        ///< K^-1 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
+  Eigen::Index parameters_;          ///< of the kernel
+  Strips matrix_;                    ///< K, its factor L, its inverse, and dF/dK, one after the other
+  std::vector<double> reciprocals_;  ///< of the diagonal of L
+  Strips upper_;                     ///< L^-T; only with a gradient
+  Points places_;                    ///< rows of whole strips: the last point again and again
+  std::vector<Line> slopes_;  ///< dK / d log parameter, of each strip what is not right of its tile of the diagonal:
+                              ///< all columns by the first parameter, then those by the next
+  Eigen::MatrixXd standard_;  ///< n x m: (targets - mean) / signal
+  Eigen::MatrixXd solved_;    ///< rows of whole strips x m: L^-1 standard, the unknown constant integrated out;
+                              ///< with a gradient K^-1 of it
+  Eigen::VectorXd squares_;   ///< m: standard^T K^-1 standard
+  Eigen::VectorXd ones_;      ///< the same of 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
   double log_determinant_ = 0.0;
   double noise_ = 0.0;  ///< squared noise ratio
 };

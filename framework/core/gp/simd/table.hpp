@@ -73,6 +73,8 @@ struct Table {
   void (*solve_lower_transposed)(const double* lower, int n, double* x);  ///< x = L^-T x
 };
 
+enum class Lanes;  // palpate/simd.hpp
+const Table& table_of(Lanes lanes);
 /// The fastest of SSE2, AVX2 + FMA and AVX-512 that this processor has.
 const Table& fastest();
 /// SSE2, which every x86-64 has.
