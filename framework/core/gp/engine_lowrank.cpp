@@ -106,7 +106,7 @@ class Lowrank final : public Engine {
     constexpr double kOfKernel = 8.0 * std::numeric_limits<double>::epsilon();
     const double left = x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
     const double error = std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
-    if (errors_.size() < in_x_.rows()) errors_.conservativeResize(2 * in_x_.rows());
+    if (errors_.size() < in_x_.rows()) errors_.conservativeResize(Eigen::Index{2} * in_x_.rows());
     errors_(in_x_.rows() - 1) = error;
   }
 

@@ -74,7 +74,7 @@ void Maps::read(const simd::Lines& map, VectorOut out) const {
   for (int tile = 0; tile < tiling_.tiles(); ++tile) {
     tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
       const double* const from = map.data() + cell;
-      double* const to = out.data() + candidate;
+      double* const to = &out(candidate);
       // A loop for each direction, as only steps that a compiler knows become moves of whole registers.
       if (step > 0) {
         for (int i = 0; i < count; ++i) to[i] = from[i];
