@@ -85,8 +85,10 @@ void Maps::read(const simd::Lines& map, VectorOut out) const {
   }
 }
 
+// A view goes by value although it is written through. NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Maps::read_mean(int k, VectorOut out) const { read(mean_[static_cast<std::size_t>(k)], out); }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Maps::read_variance(VectorOut out) const { read(variance_, out); }
 
 }  // namespace palpate
