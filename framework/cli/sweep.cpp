@@ -28,6 +28,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace palpate::cli {
 namespace {
@@ -68,7 +69,7 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
 
 int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted) {
   const Sweep& sweep = campaign.sweep;
-  const std::vector<std::optional<Row>> summaries = write_results(sweep);
+  std::vector<Row> results = write_results(sweep);
   // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and the first of their
   // configs that can be read tells it for all of them.
   const auto deciding = [&](const Job& job) {
@@ -89,7 +90,7 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
     taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
   }
   const auto initial_taps = [&](std::size_t job) { return known[deciding(sweep.jobs[job])]; };
-  fmt::print("{}", sweep_table(sweep, sweep_results(sweep, summaries), initial_taps));
+  fmt::print("{}", sweep_table(sweep, std::exchange(results, {}), initial_taps));
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
   if (!end.failures.empty()) fmt::print("try them again: palpate resume --retry-failed {}\n", directory);
@@ -100,8 +101,9 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
   std::optional<ResolvedConfig> config;
   for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(campaign, job);
   if (!config) throw Error(sweep.directory.string(), "no job has a config.yaml that can be read", "put them back");
-  const bool all_hold = conclude(config->expectations, outcomes_of(sweep, summaries),
-                                 {config->options.name, campaign.launch.junit, true});
+  const bool is_judged = !config->expectations.empty() || !campaign.launch.junit.empty();
+  const bool all_hold = !is_judged || conclude(config->expectations, outcomes_of(sweep),
+                                               {config->options.name, campaign.launch.junit, true});
   return sweep_status(config->expectations, all_hold, !end.failures.empty() || !end.open.empty());
 }
 
@@ -157,12 +159,19 @@ bool launch_open(const Campaign& campaign, const Standing& begun) {
   return true;
 }
 
-/// Throws Error if a job that is to run, or with `done_too` one that is done, was begun by another build, unless that
-/// is forced: before the first job runs. Notes whether only one may run at a time.
-void check_builds(Campaign& campaign, bool done_too) {
-  for (const std::size_t job : jobs_of(campaign)) {
+/// All that are not done, ascending.
+std::vector<std::size_t> undone(const Standing& standing) {
+  std::vector<std::size_t> out = standing.open;
+  for (const SweepFailure& one : standing.failures) out.push_back(one.job);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Throws Error if one of these jobs was begun by another build, unless that is forced: before the first job runs.
+/// Notes whether only one may run at a time.
+void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
+  for (const std::size_t job : jobs) {
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
-    if (!done_too && read_ending(directory).state == RunStatus::State::done) continue;
     const std::optional<ResolvedConfig> config = readable_config(campaign, job);
     if (!config) continue;
     campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
@@ -172,14 +181,13 @@ void check_builds(Campaign& campaign, bool done_too) {
   }
 }
 
-/// Runs what is missing, prints the result and judges it. Returns the exit status.
-int run_campaign(const Campaign& campaign) {
+/// Runs what is missing of jobs that stand as in `begun`, prints the result and judges it. Returns the exit status.
+int run_campaign(const Campaign& campaign, Standing begun) {
   const Sweep& sweep = campaign.sweep;
   check_locks(sweep.directory);
   listen_for_interrupts();
   const bool whole = campaign.only.empty();
-  const std::vector<std::size_t> jobs = jobs_of(campaign);
-  Standing begun = standing_of(sweep, jobs);
+  const std::vector<std::size_t> jobs = undone(begun);
   if (campaign.options.retry_failed) try_again(begun, campaign.launch.attempts);
   if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
     mention("one job at a time: the backend has but one thing to move\n");
@@ -245,12 +253,12 @@ int sweep(Program& program, const SweepArguments& arguments) {
   }
   const bool is_new = draft->publish(plan);
   draft.reset();
-  if (!is_new) check_builds(campaign, true);
+  if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
     mention(fmt::format("{} in {}{}\n", jobs, plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: what is missing is run"));
   }
-  return run_campaign(campaign);
+  return run_campaign(campaign, standing_of(plan.sweep, jobs_of(campaign)));
 }
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
@@ -268,8 +276,9 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
     if (!arguments.launch.junit.empty())
       refuse("--jobs and --junit do not go together: what is expected is judged of the whole sweep", hint);
   }
-  check_builds(campaign, false);
-  return run_campaign(campaign);
+  Standing begun = standing_of(sweep, jobs_of(campaign));
+  check_builds(campaign, undone(begun));
+  return run_campaign(campaign, std::move(begun));
 }
 
 /// From the jobs' directories alone: whoever runs them, a scheduler or a process that has died, is not asked.

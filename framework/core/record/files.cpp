@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include <fcntl.h>
@@ -111,12 +109,31 @@ fs::path make_inner_folder(const fs::path& folder) {
   return make_folder(folder);
 }
 
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  // A directory can be opened, too, and only reading it fails.
-  std::error_code none;
-  if (!in || fs::is_directory(file, none)) throw Error(file.string(), "cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
+std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
+  std::optional<std::string> text = read_if_there(file, most_bytes);
+  if (!text) throw Error(file.string(), "cannot be read");
+  return std::move(*text);
+}
+
+std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes) {
+  const auto refuse = [&] { throw Error(file.string(), "cannot be read"); };
+  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (!in && !is_there(file)) return std::nullopt;
+  struct stat what {};
+  if (!in || ::fstat(in.number(), &what) != 0) refuse();
+  const auto bytes = static_cast<std::uintmax_t>(what.st_size);
+  if (bytes > most_bytes)
+    throw Error(file.string(), "is too large for what it should hold", "the file is damaged: put it back as it was");
+  // One more byte than a file has shows its end; of a pipe nothing is known before.
+  std::string text(bytes + 1, '\0');
+  for (std::size_t read = 0;;) {
+    const ssize_t more = ::read(in.number(), text.data() + read, text.size() - read);
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) refuse();  // a folder can be opened, too
+    read += static_cast<std::size_t>(more);
+    if (more == 0) return text.resize(read), text;
+    if (read == text.size()) text.resize(2 * text.size() + 4096);
+  }
 }
 
 AppendFile::AppendFile(const fs::path& file)

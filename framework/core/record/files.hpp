@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
+#include <optional>
 #include <string>
 
 namespace palpate {
@@ -55,8 +57,13 @@ std::filesystem::path make_folder(const std::filesystem::path& folder);
 /// The same for a part of a record. Throws Error, where it is a link, too.
 std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 
-/// The whole content. Throws Error.
-std::string read_file(const std::filesystem::path& file);
+constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
+
+/// The whole content. Throws Error, for a file of more than `most_bytes`, too.
+std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kAnySize);
+
+/// The same; none where is_there() says that there is none.
+std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kAnySize);
 
 /// A file that only grows.
 class AppendFile {

@@ -157,14 +157,6 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
   }
 }
 
-std::string read_bounded(const std::filesystem::path& file) {
-  std::error_code trouble;
-  const auto bytes = std::filesystem::file_size(file, trouble);
-  if (!trouble && bytes > kMostBytes)
-    throw Error(file.string(), "is too large for what it should hold", "the file is damaged: put it back as it was");
-  return read_file(file);
-}
-
 }  // namespace
 
 std::optional<Row> parse_json_row(const std::string& text) {
@@ -186,14 +178,16 @@ JsonLines read_json_lines(const std::filesystem::path& file) {
   return out;
 }
 
-Row read_json_row(const std::filesystem::path& file, const std::string& remedy) {
-  std::optional<Row> row = parse_json_row(read_bounded(file));
+std::optional<Row> read_json_row(const std::filesystem::path& file, const std::string& remedy) {
+  const std::optional<std::string> text = read_if_there(file, kMostBytes);
+  if (!text) return std::nullopt;
+  std::optional<Row> row = parse_json_row(*text);
   if (!row) throw Error(file.string(), "is not a JSON object", remedy);
-  return std::move(*row);
+  return row;
 }
 
 Tree read_json(const std::filesystem::path& file) {
-  const std::string text = read_bounded(file);
+  const std::string text = read_file(file, kMostBytes);
   TreeReader reader(file);
   if (Json::sax_parse(text, &reader)) return std::move(reader.tree);
   throw Error(place_in(file.string(), text, std::max<std::size_t>(reader.bytes, 1) - 1), "is not valid JSON", kPutBack);

@@ -16,8 +16,8 @@ namespace palpate {
 /// lists, or whose names take over 1 MiB once they are joined.
 std::optional<Row> parse_json_row(const std::string& text);
 
-/// The same of a file of at most 64 MiB. Throws Error for anything else, with `remedy`.
-Row read_json_row(const std::filesystem::path& file, const std::string& remedy);
+/// The same of a file of at most 64 MiB; none where there is no file. Throws Error for anything else, with `remedy`.
+std::optional<Row> read_json_row(const std::filesystem::path& file, const std::string& remedy);
 
 /// The objects of a file, one a line. A last line without its line end was cut off by a kill and is left out; `bytes`
 /// then says where it begins. Throws Error for any other line that is no object.

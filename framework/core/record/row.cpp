@@ -83,6 +83,15 @@ std::string file_cell(const Scalar& value) {
 
 }  // namespace
 
+const Scalar* Row::find(std::string_view name, std::size_t& near) const {
+  if (near < fields.size() && fields[near].first == name) return &fields[near].second;
+  const Scalar* const found = find(name);
+  if (found == nullptr) return nullptr;
+  near = 0;
+  while (&fields[near].second != found) ++near;
+  return found;
+}
+
 const Scalar* Row::find(std::string_view name) const {
   for (const auto& [key, value] : fields) {
     if (key == name) return &value;
@@ -189,9 +198,13 @@ std::string to_csv(const std::vector<Row>& rows) {
   for (const std::string& name : header) out += (out.empty() ? "" : ",") + csv_text(guarded(name));
   out += "\n";
   for (const Row& row : rows) {
+    std::size_t near = 0;
     for (const std::string& name : header) {
-      const Scalar* value = row.find(name);
-      if (value != nullptr) out += file_cell(*value);
+      const Scalar* value = row.find(name, near);
+      if (value != nullptr) {
+        out += file_cell(*value);
+        ++near;
+      }
       out += &name == &header.back() ? "\n" : ",";
     }
   }

@@ -31,7 +31,6 @@ const char* state_name(RunStatus::State state) {
 bool is_sweep(const fs::path& directory) { return is_there(directory / "manifest.jsonl"); }
 
 std::optional<Row> read_summary(const fs::path& directory) {
-  if (!is_there(directory / kSummary)) return std::nullopt;
   // A power cut may leave its name without its content.
   return read_json_row(directory / kSummary,
                        "the file is damaged: remove it, and 'palpate resume' makes it anew from the taps");

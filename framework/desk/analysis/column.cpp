@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <set>
+#include <map>
 
 namespace palpate {
 
@@ -23,10 +23,17 @@ std::string Column::better_words() const {
 
 std::vector<std::string> columns_of(const std::vector<Row>& results) {
   std::vector<std::string> names;
-  std::set<std::string> seen;
+  std::map<std::string, std::size_t> places;
   for (const Row& row : results) {
-    for (const auto& field : row.fields) {
-      if (seen.insert(field.first).second) names.push_back(field.first);
+    std::size_t next = 0;  // the place of the next field, where this row is like those before it
+    for (const auto& [name, value] : row.fields) {
+      if (next < names.size() && names[next] == name) {
+        ++next;
+        continue;
+      }
+      const auto [place, is_new] = places.emplace(name, names.size());
+      if (is_new) names.push_back(name);
+      next = place->second + 1;
     }
   }
   return names;

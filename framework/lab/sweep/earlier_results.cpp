@@ -87,7 +87,7 @@ std::vector<Row> EarlierResults::write(const Occasion& occasion) const {
     throw Error(job_directory(sweep_, sweep_.jobs[job]).string(), fmt::format("has no summary {}", occasion.words()),
                 "it was removed while it was needed: ask again", Error::Kind::run);
   }
-  std::vector<Row> rows = sweep_results(sweep_, summaries);
+  std::vector<Row> rows = sweep_results(sweep_, std::move(summaries));
   write_file(sweep_.directory / fmt::format("results_{}.csv", occasion.key()), to_csv(rows));
   return rows;
 }

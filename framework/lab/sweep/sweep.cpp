@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 
@@ -119,12 +120,12 @@ Sweep read_sweep(const fs::path& directory) {
   return sweep;
 }
 
-std::vector<std::optional<Row>> write_results(const Sweep& sweep) {
+std::vector<Row> write_results(const Sweep& sweep) {
   const FileLock lock = FileLock::wait_for(sweep.directory / "lock");
   remove_neighbours(sweep.directory, {"results.csv"});
-  std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
-  write_file(sweep.directory / "results.csv", to_csv(sweep_results(sweep, summaries)));
-  return summaries;
+  std::vector<Row> results = sweep_results(sweep);
+  write_file(sweep.directory / "results.csv", to_csv(results));
+  return results;
 }
 
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
@@ -135,26 +136,42 @@ std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
   return summaries;
 }
 
-std::vector<Row> sweep_results(const Sweep& sweep) { return sweep_results(sweep, sweep_summaries(sweep)); }
+Row result_row(const Sweep& sweep, const Job& job, Row summary) {
+  Row row;
+  row.fields.reserve(2 + sweep.keys.size() + summary.fields.size());
+  row.add("job", job.index);
+  row.add("id", job.id);
+  for (std::size_t i = 0; i < sweep.keys.size(); ++i) row.add(sweep.keys[i], job.values[i]);
+  const auto behind = static_cast<std::ptrdiff_t>(row.fields.size());
+  for (auto& field : summary.fields) {
+    const auto same = [&](const auto& one) { return one.first == field.first; };
+    const auto keys = row.fields.begin();
+    if (std::none_of(keys, keys + behind, same)) row.fields.push_back(std::move(field));
+  }
+  return row;
+}
 
-std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries) {
+std::vector<Row> sweep_results(const Sweep& sweep) {
   std::vector<Row> rows;
+  rows.reserve(sweep.jobs.size());
   for (const Job& job : sweep.jobs) {
-    const std::optional<Row>& summary = summaries[static_cast<std::size_t>(job.index)];
-    if (!summary) continue;
-    Row row;
-    row.add("job", job.index);
-    row.add("id", job.id);
-    for (std::size_t i = 0; i < sweep.keys.size(); ++i) row.add(sweep.keys[i], job.values[i]);
-    for (const auto& field : summary->fields) {
-      if (row.find(field.first) == nullptr) row.fields.push_back(field);
-    }
-    rows.push_back(std::move(row));
+    std::optional<Row> summary = read_outcome(job_directory(sweep, job));
+    if (summary) rows.push_back(result_row(sweep, job, std::move(*summary)));
   }
   return rows;
 }
 
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries) {
+std::vector<Row> sweep_results(const Sweep& sweep, std::vector<std::optional<Row>> summaries) {
+  std::vector<Row> rows;
+  rows.reserve(sweep.jobs.size());
+  for (const Job& job : sweep.jobs) {
+    std::optional<Row>& summary = summaries[static_cast<std::size_t>(job.index)];
+    if (summary) rows.push_back(result_row(sweep, job, *std::exchange(summary, std::nullopt)));
+  }
+  return rows;
+}
+
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep) {
   std::vector<RunOutcome> runs;
   for (const Job& job : sweep.jobs) {
     RunOutcome run;
@@ -162,7 +179,7 @@ std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::o
     run.name = run.label;
     for (std::size_t i = 0; i < sweep.keys.size(); ++i)
       run.name += fmt::format("{}{}={}", i == 0 ? ": " : ", ", sweep.keys[i], job.values[i]);
-    run.summary = summaries[static_cast<std::size_t>(job.index)];
+    run.summary = read_outcome(job_directory(sweep, job));
     if (!run.summary) {
       run.failure = "has not run to its end";
     } else if (run.summary->text("status") != "done") {

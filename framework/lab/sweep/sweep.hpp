@@ -56,15 +56,17 @@ std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 /// The summary of each job, none for those that have not ended; see read_outcome().
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
-/// The rows of results.csv: job, id, the swept keys, then the fields of the summary, for jobs that ended.
-std::vector<Row> sweep_results(const Sweep& sweep);
-std::vector<Row> sweep_results(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
+/// A row of results.csv: job, id, the swept keys, then the fields of the summary.
+Row result_row(const Sweep& sweep, const Job& job, Row summary);
 
-/// Makes results.csv anew from the jobs, as they are once nobody else does the same. Returns their summaries. Throws
-/// Error.
-std::vector<std::optional<Row>> write_results(const Sweep& sweep);
+/// All of them, for jobs that ended. Those of very many take much memory: who has summaries gives them away for it.
+std::vector<Row> sweep_results(const Sweep& sweep);
+std::vector<Row> sweep_results(const Sweep& sweep, std::vector<std::optional<Row>> summaries);
+
+/// Makes results.csv anew from the jobs, as they are once nobody else does the same. Returns its rows. Throws Error.
+std::vector<Row> write_results(const Sweep& sweep);
 
 /// Every job of a sweep; one without a summary counts as failed.
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const std::vector<std::optional<Row>>& summaries);
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep);
 
 }  // namespace palpate

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -19,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A swept key: its values in the order in which they are shown, as numbers if all are of one dimension, else as in the
-/// sweep, what stands for no such option first; and for each job which of them it has.
-Json json_of_key(const Sweep& sweep, const std::string& key) {
+/// sweep, what stands for no such option first; and for each of `jobs` which of them it has.
+Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const std::string& key) {
   std::vector<JobGroup> groups = group_jobs(sweep, {}, {key});
   std::map<std::string, double> numbers;
   std::optional<Unit> unit;
@@ -41,11 +43,13 @@ Json json_of_key(const Sweep& sweep, const std::string& key) {
     return comparable && numbers.at(first) < numbers.at(second);
   });
   Json values;
-  std::vector<std::size_t> of_job(sweep.jobs.size());
+  std::vector<std::size_t> of_all(sweep.jobs.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {
     values.push_back(groups[i].values.front());
-    for (const JobResult& one : groups[i].jobs) of_job[static_cast<std::size_t>(one.job->index)] = i;
+    for (const JobResult& one : groups[i].jobs) of_all[static_cast<std::size_t>(one.job->index)] = i;
   }
+  std::vector<std::size_t> of_job;
+  for (const JobResult& one : jobs) of_job.push_back(of_all[static_cast<std::size_t>(one.job->index)]);
   return {{"name", key}, {"values", values}, {"of_job", of_job}};
 }
 
@@ -55,7 +59,9 @@ Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResul
   for (const std::string& name : columns_of(results)) {
     if (name == "job" || name == "id" || name == "seed") continue;
     std::vector<CellNumber> cells;
-    for (const JobResult& job : jobs) cells.push_back(number_of(job.row != nullptr ? job.row->find(name) : nullptr));
+    std::size_t near = 0;
+    for (const JobResult& job : jobs)
+      cells.push_back(number_of(job.row != nullptr ? job.row->find(name, near) : nullptr));
     if (std::any_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.is_text; })) continue;
     if (std::none_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.value; })) continue;
     Json numbers;
@@ -77,20 +83,68 @@ RunStatus standing_of(const Row* row, const fs::path& directory) {
   return out;
 }
 
-Json json_of_jobs(const Sweep& sweep, const std::vector<JobResult>& results, const OnProgress& progress) {
-  Json jobs;
-  for (const auto& [job, row] : results) {
-    const fs::path directory = job_directory(sweep, *job);
-    const RunStatus standing = standing_of(row, directory);
-    std::error_code none;
-    jobs.push_back({{"index", job->index},
-                    {"id", job->id},
-                    {"state", state_name(standing.state)},
-                    {"reason", standing.stop_reason},
-                    {"reported", fs::exists(directory / "report.html", none)}});
-    progress(static_cast<int>(jobs.size()), static_cast<int>(results.size()));
+/// More than these are too many for a browser, and for a file that is sent to others.
+constexpr std::size_t kMostJobsOnAPage = 20000;
+
+/// Which jobs are on the page: every one of so many, along the settings one after the other, so that each has its share
+/// and, where they have the same seeds, those of the same.
+std::vector<bool> drawn_jobs(const Sweep& sweep, std::size_t step) {
+  std::vector<bool> drawn(sweep.jobs.size(), true);
+  if (step == 1) return drawn;
+  std::size_t place = 0;
+  for (const JobGroup& setting : group_jobs(sweep, {}, setting_keys(sweep))) {
+    for (const JobResult& one : setting.jobs) drawn[static_cast<std::size_t>(one.job->index)] = place++ % step == 0;
   }
-  return jobs;
+  return drawn;
+}
+
+/// What became of all jobs, where not all are on the page.
+class Tally {
+ public:
+  void add(const Job& job, const RunStatus& standing) {
+    ++counts_[state_name(standing.state)];
+    if (standing.state != RunStatus::State::failed) return;
+    const auto [at, is_new] = places_.emplace(standing.stop_reason, failures_.size());
+    if (is_new) failures_.push_back({&job, standing.stop_reason, 0});
+    ++failures_[at->second].jobs;
+  }
+
+  Json json(const Sweep& sweep, std::size_t step) const {
+    constexpr std::size_t kMostReasons = 12;
+    const std::vector<std::string> keys = varying_keys(sweep, sweep.keys);
+    Json failures = Json::array();
+    for (const Failure& one : failures_) {
+      if (failures.size() == kMostReasons) break;
+      failures.push_back({{"reason", one.reason},
+                          {"jobs", one.jobs},
+                          {"first", one.first->index},
+                          {"words", key_words(sweep, *one.first, keys, true)}});
+    }
+    return {{"jobs", sweep.jobs.size()},
+            {"step", step},
+            {"counts", counts_},
+            {"failures", failures},
+            {"reasons", failures_.size()}};
+  }
+
+ private:
+  struct Failure {
+    const Job* first;
+    std::string reason;
+    std::size_t jobs;
+  };
+  std::map<std::string, std::size_t> counts_;  ///< by state
+  std::vector<Failure> failures_;              ///< one a reason
+  std::map<std::string, std::size_t> places_;  ///< of the reasons
+};
+
+Json json_of_job(const Job& job, const RunStatus& standing, const fs::path& directory) {
+  std::error_code none;
+  return {{"index", job.index},
+          {"id", job.id},
+          {"state", state_name(standing.state)},
+          {"reason", standing.stop_reason},
+          {"reported", fs::exists(directory / "report.html", none)}};
 }
 
 /// The factors of the 95 % intervals of means over 2, 3, ... jobs, as many as a setting may have.
@@ -118,21 +172,41 @@ std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
 }
 
 Json sweep_data(const Sweep& sweep, const OnProgress& progress) {
-  const std::vector<Row> results = sweep_results(sweep);
-  const std::vector<JobResult> jobs = group_jobs(sweep, results, {}).front().jobs;
+  const std::size_t step = (sweep.jobs.size() + kMostJobsOnAPage - 1) / kMostJobsOnAPage;
+  const std::vector<bool> drawn = drawn_jobs(sweep, step);
+  std::vector<Row> results;
+  results.reserve(sweep.jobs.size() / step + 1);  // what is pointed at does not move
+  std::vector<JobResult> shown;
+  Json jobs;
+  Tally tally;
+  int looked_at = 0;
+  for (const Job& job : sweep.jobs) {
+    const fs::path directory = job_directory(sweep, job);
+    std::optional<Row> summary = read_outcome(directory);
+    const RunStatus standing = standing_of(summary ? &*summary : nullptr, directory);
+    tally.add(job, standing);
+    if (drawn[static_cast<std::size_t>(job.index)]) {
+      jobs.push_back(json_of_job(job, standing, directory));
+      if (summary) results.push_back(result_row(sweep, job, std::move(*summary)));
+      shown.push_back({&job, summary ? &results.back() : nullptr});
+    }
+    progress(++looked_at, static_cast<int>(sweep.jobs.size()));
+  }
   const fs::path directory = fs::absolute(sweep.directory / "").lexically_normal().parent_path();
   Json keys = Json::array();
-  for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, key));
-  return {{"version", kVersion},
-          {"name", sweep_name(sweep)},
-          {"id", directory.filename().string()},
-          {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
-          {"keys", keys},
-          {"jobs", json_of_jobs(sweep, jobs, progress)},
-          {"columns", json_of_columns(results, jobs)},
-          {"first_looks", first_looks()},
-          {"factors", interval_factors(sweep.jobs.size())},
-          {"config", to_yaml(read_run_config(sweep.directory))}};
+  for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, shown, key));
+  Json out{{"version", kVersion},
+           {"name", sweep_name(sweep)},
+           {"id", directory.filename().string()},
+           {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
+           {"keys", keys},
+           {"jobs", jobs},
+           {"columns", json_of_columns(results, shown)},
+           {"first_looks", first_looks()},
+           {"factors", interval_factors(sweep.jobs.size())},
+           {"config", to_yaml(read_run_config(sweep.directory))}};
+  if (step > 1) out["sampled"] = tally.json(sweep, step);
+  return out;
 }
 
 }  // namespace palpate

@@ -138,7 +138,7 @@ class JobTable {
     const texts = [
       { name: "job", get: (job) => job.index, show: (job) => this.link(job) },
       { name: "state", get: (job) => this.state(job), show: (job) => foreign(this.state(job)) },
-      ...this.sweep.keys.map((key) => ({ name: key.name, get: (job) => key.of_job[job.index], show: (job) => foreign(this.sweep.text(key, job)) })),
+      ...this.sweep.keys.map((key) => ({ name: key.name, get: (job) => key.of_job[job.place], show: (job) => foreign(this.sweep.text(key, job)) })),
     ];
     const numbers = names.map((name) => {
       const get = (job) => this.sweep.number(name, job);
@@ -207,37 +207,53 @@ class JobTable {
     });
     this.table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...rows));
     const left = jobs.length < this.sweep.jobs.length ? ` of ${this.sweep.jobs.length}` : "";
-    this.note.textContent = `${drawn.length < jobs.length ? `the first ${drawn.length} of ` : ""}${jobs.length}${left} jobs`;
+    const rest = this.sweep.sampled ? `, one of ${this.sweep.sampled.step} of ${this.sweep.sampled.jobs}: the others stand in results.csv` : "";
+    this.note.textContent = `${drawn.length < jobs.length ? `the first ${drawn.length} of ` : ""}${jobs.length}${left} jobs${rest}`;
     this.more.hidden = drawn.length === jobs.length;
   }
+}
+
+/// The reasons of failed jobs: how many jobs each has, which is the first, and what its keys are.
+function failuresOf(sweep) {
+  if (sweep.sampled) return sweep.sampled.failures;
+  const reasons = new Map(sweep.failed.map((job) => [job.reason, []]));
+  for (const job of sweep.failed) reasons.get(job.reason).push(job);
+  return [...reasons].map(([reason, jobs]) => ({ reason, jobs: jobs.length, first: jobs[0].index, words: sweep.words(jobs[0], sweep.all) }));
 }
 
 /// What went wrong, in words: failures by their reason, and what has not ended.
 function troubles(sweep) {
   const kMostReasons = 12;
-  const reasons = new Map(sweep.failed.map((job) => [job.reason, []]));
-  for (const job of sweep.failed) reasons.get(job.reason).push(job);
-  const out = [...reasons].slice(0, kMostReasons).map(([reason, jobs]) => [
-    jobs.length === 1 ? `Job ${jobs[0].index} failed (` : `${jobs.length} jobs failed, the first is job ${jobs[0].index} (`,
-    foreign(sweep.words(jobs[0], sweep.all)),
+  const failures = failuresOf(sweep);
+  const out = failures.slice(0, kMostReasons).map(({ reason, jobs, first, words }) => [
+    jobs === 1 ? `Job ${first} failed (` : `${jobs} jobs failed, the first is job ${first} (`,
+    foreign(words),
     "): ",
     foreign(reason),
   ]);
-  if (reasons.size > kMostReasons) out.push([`${reasons.size - kMostReasons} more reasons stand in the table of jobs.`]);
-  const open = sweep.jobs.length - sweep.done.length - sweep.failed.length;
+  const more = (sweep.sampled?.reasons ?? failures.length) - out.length;
+  if (more > 0) out.push([`${more} more reasons stand in ${sweep.sampled ? "results.csv" : "the table of jobs"}.`]);
+  const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
+  const open = some.reduce((sum, [count]) => sum + count, 0);
   if (open > 0) {
-    const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
     const states = some.map((count) => count.join(" ")).join(", ");
-    out.push([`${open} of ${sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows the sweep as it stood" : ""}; 'palpate resume' carries on what nobody runs.`]);
+    out.push([`${open} of ${sweep.sampled?.jobs ?? sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows the sweep as it stood" : ""}; 'palpate resume' carries on what nobody runs.`]);
   }
   return out;
+}
+
+/// Of very many jobs, which of them the page has.
+function sampleNote({ sampled, jobs }) {
+  if (!sampled) return [];
+  const words = `This page has ${jobs.length} of ${sampled.jobs} jobs, one of ${sampled.step}, taken evenly from all settings: plots, means and the table below are of these. Counts and failures here are of all jobs, and results.csv, 'palpate compare' and 'palpate pareto' have all of them.`;
+  return [element("p", { class: "sub", id: "sampled" }, words)];
 }
 
 /// What became of the jobs so far.
 function standingOfSweep(sweep) {
   const counts = sweep.counts();
-  if (sweep.done.length === 0) counts.unshift([0, "done"]);
-  return [factList([[sweep.jobs.length, "jobs"], ...counts]), ...warningList(troubles(sweep))];
+  if (!counts.some(([, state]) => state === "done")) counts.unshift([0, "done"]);
+  return [factList([[sweep.sampled?.jobs ?? sweep.jobs.length, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
 }
 
 function drawSweep(data) {

@@ -26,7 +26,8 @@ const kStates = ["done", "failed", "running", "unfinished", "missing"];
 /// The sweep as the panels ask for it.
 class SweepData {
   constructor(data) {
-    Object.assign(this, data);  // jobs, keys, first_looks, factors
+    Object.assign(this, data);  // jobs, keys, first_looks, factors; of very many jobs `sampled`, what became of all
+    this.jobs.forEach((job, place) => Object.assign(job, { place }));
     [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
     this.columns = new Map(data.columns.map((column) => [column.name, column]));
     this.all = this.keys.filter((key) => key.values.length > 1);  // what tells jobs apart
@@ -39,7 +40,8 @@ class SweepData {
 
   /// The states that jobs are in and their number, [[19, "done"], [1, "failed"]].
   counts() {
-    const counts = kStates.map((state) => [this.jobs.filter((job) => job.state === state).length, state]);
+    const count = (state) => (this.sampled ? this.sampled.counts[state] ?? 0 : this.jobs.filter((job) => job.state === state).length);
+    const counts = kStates.map((state) => [count(state), state]);
     return counts.filter(([count]) => count > 0);
   }
 
@@ -49,7 +51,7 @@ class SweepData {
 
   /// The number of a job in SI units, or null.
   raw(column, job) {
-    return this.columns.get(column).numbers[job.index];
+    return this.columns.get(column).numbers[job.place];
   }
 
   /// That in the unit in which it is shown.
@@ -64,12 +66,12 @@ class SweepData {
 
   /// The value of a key as written; plugins without such an option have none.
   text(key, job) {
-    return key.values[key.of_job[job.index]] || kNothing;
+    return key.values[key.of_job[job.place]] || kNothing;
   }
 
   /// "acquisition=weighted, taps=17": what a job's keys are, those without a value left out.
   words(job, keys = this.varying) {
-    const said = keys.filter((key) => key.values[key.of_job[job.index]] !== "");
+    const said = keys.filter((key) => key.values[key.of_job[job.place]] !== "");
     return said.map((key) => `${key.name}=${this.text(key, job)}`).join(", ") || "the only setting";
   }
 
@@ -78,7 +80,7 @@ class SweepData {
   groups(keys) {
     const found = new Map();
     for (const job of this.jobs) {
-      const places = keys.map((key) => key.of_job[job.index]);
+      const places = keys.map((key) => key.of_job[job.place]);
       const name = places.join();
       if (!found.has(name)) found.set(name, { places, jobs: [] });
       found.get(name).jobs.push(job);

@@ -141,7 +141,7 @@ function drawGroups(sweep, { group, then, metric }) {
   const groups = all.slice(0, kMostGroups);
   const named = keys.filter((key) => key.values.length > 1);
   const nameOf = ({ jobs }) => (keys.length === 1 ? sweep.text(keys[0], jobs[0]) : sweep.words(jobs[0], named));
-  const colourOf = ({ jobs }) => lineColour(keys.length > 1 && named.length > 0 ? named[0].of_job[jobs[0].index] : 0);
+  const colourOf = ({ jobs }) => lineColour(keys.length > 1 && named.length > 0 ? named[0].of_job[jobs[0].place] : 0);
   const few = groups.reduce((sum, { jobs }) => sum + jobs.length, 0) <= kMostPoints;
   const traces = groups.map((one, i) => {
     const valued = one.jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
@@ -190,7 +190,7 @@ function parallelAxes(sweep, metric, mostJobs) {
   const ofKeys = sweep.varying.slice(0, 7).map((key) => {
     const thin = Math.ceil(key.values.length / 25);
     const ticks = briefs(namesOf(key), 12).map((text, at) => ({ at, text })).filter(({ at }) => at % thin === 0);
-    return { title: key.name, values: jobs.map((job) => key.of_job[job.index]), least: 0, most: key.values.length - 1, ticks };
+    return { title: key.name, values: jobs.map((job) => key.of_job[job.place]), least: 0, most: key.values.length - 1, ticks };
   });
   const ofColumns = columns.map((name) => {
     const values = sweep.numbers(name, jobs);
