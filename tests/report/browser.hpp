@@ -2,11 +2,11 @@
 // A page in a real browser: headless Chromium, driven by tests/report/browse.py.
 #pragma once
 
+#include "report/page/json.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <string>

@@ -36,8 +36,13 @@ Centred centre(const std::vector<double>& values, double mean) {
 }
 
 /// The ends of a small sample's interval lie far out among its means, where draws are few: it is drawn anew more often,
-/// which costs no more than a large one does.
-std::size_t resamples_of(std::size_t count) { return std::clamp(10'000'000 / count, kResamples, 10 * kResamples); }
+/// which costs no more than a large one does. Of a very large one, whose mean is as good as normal, fewer place the
+/// ends well enough: of 2000 within 3 % of half the interval.
+std::size_t resamples_of(std::size_t count) {
+  constexpr std::size_t kMostDraws = 100'000'000;
+  if (count > kMostDraws / kResamples) return std::max(kMostDraws / count, kResamples / 5);
+  return std::clamp(10'000'000 / count, kResamples, 10 * kResamples);
+}
 
 /// Calls `take` with the place of each of `count` draws with replacement.
 template <class Take>

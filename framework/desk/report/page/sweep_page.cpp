@@ -83,9 +83,6 @@ RunStatus standing_of(const Row* row, const fs::path& directory) {
   return out;
 }
 
-/// More than these are too many for a browser, and for a file that is sent to others.
-constexpr std::size_t kMostJobsOnAPage = 20000;
-
 /// Which jobs are on the page: every one of so many, along the settings one after the other, so that each has its share
 /// and, where they have the same seeds, those of the same.
 std::vector<bool> drawn_jobs(const Sweep& sweep, std::size_t step) {
@@ -167,12 +164,12 @@ std::vector<std::string> first_looks() {
 
 }  // namespace
 
-std::string sweep_page(const Sweep& sweep, const OnProgress& progress) {
-  return make_page(palpate_asset_sweep, sweep_data(sweep, progress), "");
+std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
+  return make_page(palpate_asset_sweep, sweep_data(sweep, progress, most_jobs), "");
 }
 
-Json sweep_data(const Sweep& sweep, const OnProgress& progress) {
-  const std::size_t step = (sweep.jobs.size() + kMostJobsOnAPage - 1) / kMostJobsOnAPage;
+Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
+  const std::size_t step = (sweep.jobs.size() + most_jobs - 1) / most_jobs;
   const std::vector<bool> drawn = drawn_jobs(sweep, step);
   std::vector<Row> results;
   results.reserve(sweep.jobs.size() / step + 1);  // what is pointed at does not move

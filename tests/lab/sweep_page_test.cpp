@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// The page of a sweep of very many jobs has some of them, evenly, and says what became of all; tables have all of them.
+#include "report/page/sweep_page.hpp"
+#include "analysis/compare.hpp"
+#include "analysis/runs_table.hpp"
+#include "support/large_sweep.hpp"
+#include "support/support.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+namespace palpate {
+namespace {
+
+using test::FakedJob;
+using test::large_sweep;
+using test::TemporaryFolder;
+
+constexpr int kSeeds = 1500;
+
+class LargeSweep : public ::testing::Test {
+ protected:
+  static Json data(const Sweep& sweep, std::size_t most_jobs) {
+    return sweep_data(
+        sweep, [](int, int) {}, most_jobs);
+  }
+
+  const TemporaryFolder folder_;
+  const Sweep sweep_ = large_sweep(folder_.path() / "many" / "0123456789ab", kSeeds);
+};
+
+TEST_F(LargeSweep, HasOnItsPageEveryFifthOfEachSettingWithItsNumbers) {
+  const Json page = data(sweep_, 700);
+  ASSERT_EQ(page.at("jobs").size(), 600U);
+  std::map<std::string, std::set<std::string>> seeds;
+  const Json& columns = page.at("columns");
+  const auto error =
+      std::find_if(columns.begin(), columns.end(), [](const Json& one) { return one["name"] == "rmse_m"; });
+  ASSERT_NE(error, columns.end());
+  for (std::size_t place = 0; place < page.at("jobs").size(); ++place) {
+    const Json& job = page.at("jobs")[place];
+    const int index = job.at("index");
+    const Job& known = sweep_.jobs.at(static_cast<std::size_t>(index));
+    EXPECT_EQ(job.at("id"), known.id);
+    EXPECT_EQ(job.at("state"), FakedJob::failed(index) ? "failed" : "done");
+    seeds[known.values[1]].insert(known.values[0]);
+    for (std::size_t key = 0; key < 2; ++key) {
+      const Json& swept = page.at("keys")[key];
+      EXPECT_EQ(swept.at("values").at(swept.at("of_job").at(place).get<std::size_t>()), known.values[key]);
+    }
+    const Json& number = error->at("numbers").at(place);
+    EXPECT_EQ(number, FakedJob::failed(index) ? Json() : Json(FakedJob::error(index)));
+  }
+  ASSERT_EQ(seeds.size(), 2U);
+  EXPECT_EQ(seeds["weighted"].size(), 300U);
+  EXPECT_EQ(seeds["weighted"], seeds["uncertainty"]) << "pairs stay pairs";
+  EXPECT_EQ(page.at("keys")[0].at("values").size(), static_cast<std::size_t>(kSeeds));
+}
+
+TEST_F(LargeSweep, SaysOnItsPageWhatBecameOfAllJobs) {
+  std::filesystem::remove_all(job_directory(sweep_, sweep_.jobs[11]));
+  const Json page = data(sweep_, 700);
+  EXPECT_EQ(page.at("sampled"), (Json{{"jobs", 3000},
+                                      {"step", 5},
+                                      {"counts", {{"done", 2969}, {"failed", 30}, {"missing", 1}}},
+                                      {"reasons", 1},
+                                      {"failures", Json::array({{{"reason", "out of luck"},
+                                                                 {"jobs", 30},
+                                                                 {"first", 7},
+                                                                 {"words", "seed=3, acquisition=uncertainty"}}})}}));
+}
+
+TEST_F(LargeSweep, HasAllJobsOnItsPageWhereThereIsRoom) {
+  const Json page = data(sweep_, 3000);
+  EXPECT_EQ(page.at("jobs").size(), 3000U);
+  EXPECT_EQ(page.count("sampled"), 0U);
+  EXPECT_EQ(data(sweep_, 2999).at("jobs").size(), 1500U) << "one more than there is room for";
+}
+
+TEST_F(LargeSweep, HasAllJobsInItsTableItsComparisonAndTheList) {
+  const Sweep read = read_sweep(sweep_.directory);
+  const std::vector<Row> results = write_results(read);
+  ASSERT_EQ(results.size(), 3000U);
+  const std::vector<test::Cells> rows = test::csv_rows(test::text_of(read.directory / "results.csv"));
+  ASSERT_EQ(rows.size(), 3000U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto index = static_cast<int>(i);
+    EXPECT_EQ(rows[i].at("id"), sweep_.jobs[i].id);
+    EXPECT_EQ(rows[i].at("seed"), sweep_.jobs[i].values[0]);
+    EXPECT_EQ(rows[i].at("taps"), "3");
+    EXPECT_EQ(rows[i].at("rmse_m"), FakedJob::failed(index) ? "" : csv_cell(FakedJob::error(index)));
+  }
+  const Comparison compared = compare(read, results, {{"acquisition"}, "rmse_m", nullptr, {}, false, true});
+  ASSERT_EQ(compared.groups.size(), 2U);
+  EXPECT_EQ(compared.groups[0].mean.count, 1500U);
+  EXPECT_EQ(compared.groups[1].mean.count, 1470U) << "all that failed are of this one";
+  const Row listed = list_record(read.directory).row;
+  EXPECT_EQ(listed.number("jobs"), 3000.0);
+  EXPECT_EQ(listed.number("jobs_done"), 2970.0);
+  EXPECT_EQ(listed.number("jobs_failed"), 30.0);
+}
+
+}  // namespace
+}  // namespace palpate
