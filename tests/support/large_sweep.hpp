@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
 
 namespace palpate::test {
 
@@ -35,7 +36,8 @@ inline Sweep large_sweep(const std::filesystem::path& directory, int seeds) {
       summary.add("stop_reason", FakedJob::failed(index) ? "out of luck" : "tap budget");
       summary.add("taps", 3);
       if (!FakedJob::failed(index)) summary.add("rmse_m", FakedJob::error(index));
-      write_file(folder / "summary.json", to_json_text(summary));
+      // Not write_file(): what makes a file safe takes longer than all the rest.
+      std::ofstream(folder / "summary.json") << to_json_text(summary);
     }
   }
   write_file(directory / "manifest.jsonl", manifest_text(sweep, sweep_id(read_run_config(directory), sweep)));
