@@ -5,6 +5,7 @@
 #include "experiment/experiment.hpp"
 #include "experiment/metrics.hpp"
 #include "record/recording.hpp"
+#include "record/run_directory.hpp"
 #include "shop.hpp"
 #include "sweep/sweep.hpp"
 #include "values.hpp"
@@ -88,17 +89,15 @@ class SweepRecord {
   std::string job(std::size_t index) const { return job_directory(sweep_, sweep_.jobs.at(index)).string(); }
 
   /// A row a job, of those that have not ended the swept keys alone.
-  std::vector<Column> table() const { return columns_of(sweep_results(sweep_, summaries_of_all())); }
-
- private:
-  std::vector<std::optional<Row>> summaries_of_all() const {
-    std::vector<std::optional<Row>> out = sweep_summaries(sweep_);
-    for (std::optional<Row>& one : out) {
-      if (!one) one = Row();
-    }
-    return out;
+  std::vector<Column> table() const {
+    std::vector<Row> rows;
+    rows.reserve(sweep_.jobs.size());
+    for (const Job& job : sweep_.jobs)
+      rows.push_back(result_row(sweep_, job, read_outcome(job_directory(sweep_, job)).value_or(Row())));
+    return columns_of(rows);
   }
 
+ private:
   Sweep sweep_;
 };
 
