@@ -46,7 +46,7 @@ fi
 # what it says.
 each() { echo "$1" | xargs -r -P "$(nproc)" -I FILE sh -c "{ $2; } >\$(mktemp $found/each.XXXXXX) 2>/dev/null || true"; }
 
-includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3"
+includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3 $(/usr/bin/python3-config --includes 2>/dev/null || true)"
 each "$(echo "$changed" | grep '^framework/.*\.hpp$')" \
   "g++ -std=c++17 -fsyntax-only $includes -x c++ FILE || echo 'FILE: does not stand alone: it lacks an include'"
 
