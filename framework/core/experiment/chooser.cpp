@@ -12,7 +12,7 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       candidates_(candidates),
       acquisition_(context.create<Acquisition>(options.acquisition)),
       initial_(initial_design(options.initial, candidates, context.scene.area(), context.seed)),
-      failed_(static_cast<std::size_t>(candidates.size()), false) {
+      allowed_(static_cast<std::size_t>(candidates.size())) {
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
   if (auto motions = context.factory.motions(options.backend, context.scene))
@@ -22,7 +22,7 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
 bool Chooser::starting(const TapBelief& belief) const {
   if (!search_) return taps_ < initial_.size();
   if (belief.sees_object()) return false;  // what is looked for has been seen
-  if (taps_ >= failed_.size()) return false;
+  if (taps_ >= allowed_.size()) return false;
   constexpr double kBelieved = 0.5;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (belief.touches()[i].on && belief.doubt_of(i) < kBelieved) return false;
@@ -41,8 +41,8 @@ std::optional<int> Chooser::second_look(const TapBelief& belief) const {
 }
 
 void Chooser::allow(const TapBelief& belief) {
-  allowed_.assign(failed_.size(), true);
-  for (std::size_t i = 0; i < failed_.size(); ++i) allowed_[i] = !failed_[i];
+  allowed_.assign(allowed_.size(), true);
+  for (const std::size_t place : failed_) allowed_[place] = false;
   if (options_.repeat == ExperimentOptions::Repeat::allow) return;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_[contacts_[i]] = false;
@@ -113,11 +113,7 @@ void Chooser::observe(const PastTap& tap, int candidate, const std::optional<Tar
   const bool looked = outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;
   if (search_ && looked) search_->look(tap.target);
   const auto place = static_cast<std::size_t>(candidate);
-  if (outcome == Outcome::contact) {
-    contacts_.push_back(place);
-  } else {
-    failed_[place] = true;
-  }
+  (outcome == Outcome::contact ? contacts_ : failed_).push_back(place);
 }
 
 }  // namespace palpate

@@ -71,8 +71,8 @@ class Chooser {
   std::optional<Search> search_;  ///< the other one
   std::optional<Pace> pace_;      ///< where the backend has several motions
   Eigen::VectorXd scores_;
-  std::vector<bool> failed_;           ///< candidates at which a tap came to nothing
-  std::vector<std::size_t> contacts_;  ///< those of all others, in their order
+  std::vector<std::size_t> failed_;    ///< candidates at which a tap came to nothing, in the order of the taps
+  std::vector<std::size_t> contacts_;  ///< those of all others, likewise
   std::vector<bool> allowed_;
   std::size_t taps_ = 0;
 };

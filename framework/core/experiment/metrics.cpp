@@ -2,6 +2,7 @@
 #include "experiment/metrics.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 namespace palpate {
 namespace {
@@ -44,9 +45,14 @@ std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool 
 }
 
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
-  const auto predicted = probability.array() >= 0.5;
-  const auto both = (predicted && truth.on).count();
-  const auto either = (predicted || truth.on).count();
+  std::int64_t both = 0;
+  std::int64_t either = 0;
+  for (Eigen::Index i = 0; i < probability.size(); ++i) {
+    const int predicted = probability(i) >= 0.5 ? 1 : 0;
+    const int on = truth.on(i) ? 1 : 0;
+    both += predicted & on;
+    either += predicted | on;
+  }
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
 }
 

@@ -102,9 +102,10 @@ class ObjectsSeen {
     // Of an object the cell that is nearest to one outside is one with a neighbour outside.
     std::vector<int> rim;
     for (int cell = 0; cell < grid_.size(); ++cell) {
+      if (truth_.object(cell) < 0) continue;
       bool on_rim = false;
       grid_.beside(cell, false, [&](int other) { on_rim = on_rim || truth_.object(other) != truth_.object(cell); });
-      if (on_rim && truth_.object(cell) >= 0) rim.push_back(cell);
+      if (on_rim) rim.push_back(cell);
     }
     std::vector<int> common(out_.size());
     std::vector<int> beyond(out_.size());

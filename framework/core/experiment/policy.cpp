@@ -60,17 +60,17 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   return design;
 }
 
-/// Visits the allowed candidates, in their order, whose score is not below `least()`, which may grow: by blocks, of
+/// Visits the allowed candidates, in their order, whose score is worth it, which no lower one then is: by blocks, of
 /// which most have none.
-template <class Least, class Visit>
-void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Least& least,
+template <class Worth, class Visit>
+void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Worth& worth,
                  const Visit& visit) {
   constexpr Eigen::Index kBlock = 64;
   for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
     const Eigen::Index count = std::min(kBlock, scores.size() - first);
-    if (scores.segment(first, count).maxCoeff() < least()) continue;
+    if (!worth(scores.segment(first, count).maxCoeff())) continue;
     for (Eigen::Index i = first; i < first + count; ++i) {
-      if (scores(i) >= least() && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
+      if (worth(scores(i)) && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
     }
   }
 }
@@ -98,14 +98,12 @@ Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, 
   const auto score = [&](int candidate) { return candidate < 0 ? kNone : scores(candidate); };
   int best = -1;  // of equals the first
   int second = -1;
+  double to_beat = kNone;  // the score of the second
   for_allowed(
-      scores, allowed, [&] { return score(second); },
+      scores, allowed, [&](double one) { return one > to_beat; },
       [&](int i) {
-        if (score(i) > score(best)) {
-          second = std::exchange(best, i);
-        } else if (score(i) > score(second)) {
-          second = i;
-        }
+        second = score(i) > score(best) ? std::exchange(best, i) : i;
+        to_beat = score(second);
       });
   Pick out;
   if (best < 0) return out;
@@ -117,7 +115,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, 
     out.candidate = -1;
     out.ties = 0;
     for_allowed(
-        scores, allowed, [&] { return threshold; },
+        scores, allowed, [&](double one) { return one >= threshold; },
         [&](int i) {
           if (out.ties++ == 0) out.candidate = i;
         });

@@ -4,20 +4,26 @@
 #include "config/quantity.hpp"
 #include "config/utf8.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <string_view>
 
 namespace palpate {
 namespace {
 
-std::string number_text(double value) {
-  if (!std::isfinite(value)) return {};
+/// Nothing for what is not a finite number.
+void append_number(std::string& out, double value) {
+  if (!std::isfinite(value)) return;
+  std::array<char, kLongestNumber> text;
+  out.append(text.data(), fmt::format_to(text.data(), FMT_COMPILE("{}"), value));
   // Readers of JSON take -0 for the integer 0.
-  return value == 0.0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+  if (value == 0.0 && std::signbit(value)) out += ".0";
 }
 
 /// Whether JSON holds this character as it is, alone.
@@ -26,30 +32,66 @@ bool is_plain(char c) {
   return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
 }
 
+void append_quoted(std::string& out, std::string_view text) {
+  out += '"';
+  if (std::all_of(text.begin(), text.end(), is_plain)) {
+    out.append(text) += '"';
+    return;
+  }
+  constexpr std::string_view kShort = "\"\\\n\t";  // these have a letter of their own
+  for (std::string_view rest = text; !rest.empty();) {
+    const char c = rest.front();
+    const std::size_t length = utf8_length(rest);
+    if (const std::size_t known = kShort.find(c); known != std::string_view::npos) {
+      out += {'\\', "\"\\nt"[known]};
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+    } else {
+      out += length > 0 ? rest.substr(0, length) : "\\ufffd";
+    }
+    rest.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  out += '"';
+}
+
+/// Nothing for null and for what is not a finite number; `append_text` appends what is a text.
+template <class AppendText>
+void append_scalar(std::string& out, const Scalar& value, const AppendText& append_text) {
+  if (const auto* truth = std::get_if<bool>(&value)) {
+    out += *truth ? "true" : "false";
+  } else if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+    out += std::to_string(*whole);
+  } else if (const auto* real = std::get_if<double>(&value)) {
+    append_number(out, *real);
+  } else if (const auto* text = std::get_if<std::string>(&value)) {
+    append_text(*text);
+  }
+}
+
 /// As csv_cell(), but as a value of JSON: null for null and for what is not a finite number.
-std::string json_value(const Scalar& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return json_quoted(*text);
-  const std::string cell = csv_cell(value);
-  return cell.empty() ? "null" : cell;
+void append_json(std::string& out, const Scalar& value) {
+  const std::size_t before = out.size();
+  append_scalar(out, value, [&](const std::string& text) { append_quoted(out, text); });
+  if (out.size() == before) out += "null";
 }
 
 /// Writes the fields from `next` on that share the prefix `prefix`; returns behind the last of them.
-std::size_t write_object(std::string& out, const Row& row, std::size_t next, const std::string& prefix,
+std::size_t write_object(std::string& out, const Row& row, std::size_t next, std::string_view prefix,
                          const std::string& indent) {
   const std::string line_end = indent.empty() ? "" : "\n" + indent;
   bool first = true;
   out += "{";
   while (next < row.fields.size()) {
-    const std::string& name = row.fields[next].first;
+    const std::string_view name = row.fields[next].first;
     if (name.compare(0, prefix.size(), prefix) != 0) break;
     if (!first) out += indent.empty() ? ", " : ",";
     out += line_end;
     first = false;
     const auto dot = name.find('.', prefix.size());
-    const std::string key = name.substr(prefix.size(), dot == std::string::npos ? dot : dot - prefix.size());
-    out += json_quoted(key) + ": ";
+    append_quoted(out, name.substr(prefix.size(), dot == std::string::npos ? dot : dot - prefix.size()));
+    out += ": ";
     if (dot == std::string::npos) {
-      out += json_value(row.fields[next].second);
+      append_json(out, row.fields[next].second);
       ++next;
     } else {
       next = write_object(out, row, next, name.substr(0, dot + 1), indent.empty() ? indent : indent + "  ");
@@ -76,9 +118,8 @@ std::string guarded(const std::string& text) {
 }
 
 /// As it stands in a file.
-std::string file_cell(const Scalar& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return text != nullptr ? csv_text(guarded(*text)) : csv_cell(value);
+void append_cell(std::string& out, const Scalar& value) {
+  append_scalar(out, value, [&](const std::string& text) { out += csv_text(guarded(text)); });
 }
 
 }  // namespace
@@ -134,33 +175,22 @@ std::string csv_text(const std::string& text) {
 }
 
 std::string csv_cell(const Scalar& value) {
-  struct Visitor {
-    std::string operator()(std::monostate) const { return {}; }
-    std::string operator()(bool truth) const { return truth ? "true" : "false"; }
-    std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
-    std::string operator()(double real) const { return number_text(real); }
-    std::string operator()(const std::string& text) const { return csv_text(text); }
-  };
-  return std::visit(Visitor{}, value);
+  std::string out;
+  append_scalar(out, value, [&](const std::string& text) { out += csv_text(text); });
+  return out;
+}
+
+char* write_shortest(char* to, double value) {
+  const double size = std::abs(value);
+  // Where one that is as long is written the same way by both, and what is below 0.0001 with an exponent.
+  const bool alike = size < 1e-4 || (size >= 1e-3 && size < 1e5);
+  return alike ? fmt::format_to(to, FMT_COMPILE("{}"), value) : std::to_chars(to, to + kLongestNumber, value).ptr;
 }
 
 std::string json_quoted(const std::string& text) {
-  if (std::all_of(text.begin(), text.end(), is_plain)) return '"' + text + '"';
-  constexpr std::string_view kShort = "\"\\\n\t";  // these have a letter of their own
-  std::string out = "\"";
-  for (std::string_view rest = text; !rest.empty();) {
-    const char c = rest.front();
-    const std::size_t length = utf8_length(rest);
-    if (const std::size_t known = kShort.find(c); known != std::string_view::npos) {
-      out += {'\\', "\"\\nt"[known]};
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    } else {
-      out += length > 0 ? rest.substr(0, length) : "\\ufffd";
-    }
-    rest.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return out + "\"";
+  std::string out;
+  append_quoted(out, text);
+  return out;
 }
 
 std::string to_json_line(const Row& row) {
@@ -202,10 +232,10 @@ std::string to_csv(const std::vector<Row>& rows) {
     for (const std::string& name : header) {
       const Scalar* value = row.find(name, near);
       if (value != nullptr) {
-        out += file_cell(*value);
+        append_cell(out, *value);
         ++near;
       }
-      out += &name == &header.back() ? "\n" : ",";
+      out += &name == &header.back() ? '\n' : ',';
     }
   }
   return out;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
+#include "record/row.hpp"
+
+#include <algorithm>
 #include <array>
-#include <charconv>
+#include <cstring>
 #include <ctime>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,27 +24,46 @@ double thread_cpu_seconds() {
 
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
 
-/// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: to_chars, the fastest there is,
-/// and once for the coordinates.
+/// A number as text, kept until there is another: the truth is the same all over the desk.
+class NumberText {
+ public:
+  std::string_view of(double value) {
+    if (length_ == 0 || std::memcmp(&value, &value_, sizeof value) != 0) {
+      length_ = static_cast<std::size_t>(write_shortest(text_.data(), value) - text_.data());
+      value_ = value;
+    }
+    return {text_.data(), length_};
+  }
+
+ private:
+  double value_ = 0.0;
+  std::array<char, kLongestNumber> text_;
+  std::size_t length_ = 0;
+};
+
+/// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: once for the coordinates, and for
+/// a map that is there twice.
 std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
   std::string out = "x,y";
-  for (const Column& column : columns) out += std::string(",") + column.first;
+  for (const Column& column : columns) out.append(",").append(column.first);
   out += '\n';
   out.reserve(out.size() + static_cast<std::size_t>(candidates.size()) * (columns.size() + 2) * 20);
-  const auto append = [](std::string& to, double value) {
-    std::array<char, 24> text;  // as long as a double in shortest form may be
-    to.append(text.data(), std::to_chars(text.begin(), text.end(), value).ptr);
-  };
-  std::vector<std::string> xs(static_cast<std::size_t>(candidates.columns));
-  for (std::size_t i = 0; i < xs.size(); ++i) append(xs[i], candidates.points(static_cast<Eigen::Index>(i), 0));
+  std::vector<std::string> xs;
+  for (int i = 0; i < candidates.columns; ++i) xs.emplace_back(NumberText().of(candidates.points(i, 0)));
+  std::vector<NumberText> texts(columns.size());
+  std::vector<NumberText*> text_of;  // each column's, of columns with the same map the first one's
+  for (const Column& column : columns) {
+    const auto first = std::find_if(columns.begin(), columns.end(),
+                                    [&](const Column& other) { return other.second == column.second; });
+    text_of.push_back(&texts[static_cast<std::size_t>(first - columns.begin())]);
+  }
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
-    std::string y = ",";
-    append(y, candidates.points(cell, 1));
+    const std::string y = "," + std::string(NumberText().of(candidates.points(cell, 1)));
     for (const std::string& x : xs) {
       out.append(x).append(y);
-      for (const Column& column : columns) {
+      for (std::size_t i = 0; i < columns.size(); ++i) {
         out += ',';
-        if (column.second != nullptr) append(out, (*column.second)(cell));
+        if (columns[i].second != nullptr) out.append(text_of[i]->of((*columns[i].second)(cell)));
       }
       out += '\n';
       ++cell;
