@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/yaml.hpp"
 
+#include "config/plain_yaml.hpp"
 #include "config/utf8.hpp"
 
 #include <palpate/error.hpp>
@@ -188,34 +189,84 @@ class Reader final : public YAML::EventHandler {
   std::optional<Error> refused_;
 };
 
-void emit(YAML::Emitter& out, const Tree& tree) {
-  switch (tree.kind) {
-    case Tree::Kind::null:
-      out << YAML::Null;
-      break;
-    case Tree::Kind::scalar:
-      if (tree.quoted) out << YAML::DoubleQuoted;
-      out << tree.text;
-      break;
-    case Tree::Kind::list: {
-      const bool flat = std::all_of(tree.items.begin(), tree.items.end(), [](const Tree& item) {
-        return item.kind == Tree::Kind::scalar || item.kind == Tree::Kind::null;
-      });
-      if (flat) out << YAML::Flow;
-      out << YAML::BeginSeq;
-      for (const Tree& item : tree.items) emit(out, item);
-      out << YAML::EndSeq;
-      break;
+/// A scalar as the library writes it, within brackets or not: what has signs of YAML's in it.
+std::string odd_scalar(const Tree& scalar, bool in_brackets) {
+  YAML::Emitter out;
+  if (in_brackets) out << YAML::Flow << YAML::BeginSeq;
+  if (scalar.quoted) out << YAML::DoubleQuoted;
+  out << scalar.text;
+  if (!in_brackets) return out.c_str();
+  out << YAML::EndSeq;
+  const std::string text = out.c_str();
+  return text.substr(1, text.size() - 2);
+}
+
+void append_scalar(std::string& out, const Tree& scalar, bool in_brackets) {
+  const auto stays = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+  if (!scalar.quoted && is_plain_word(scalar.text)) {
+    out += scalar.text;
+  } else if (scalar.quoted && std::all_of(scalar.text.begin(), scalar.text.end(), stays)) {
+    out.append("\"").append(scalar.text) += '"';
+  } else {
+    out += odd_scalar(scalar, in_brackets);
+  }
+}
+
+bool is_in_line(const Tree& tree) {
+  const auto is_leaf = [](const Tree& item) {
+    return item.kind == Tree::Kind::scalar || item.kind == Tree::Kind::null;
+  };
+  return is_leaf(tree) ||
+         (tree.is_map() ? tree.entries.empty() : std::all_of(tree.items.begin(), tree.items.end(), is_leaf));
+}
+
+void append_in_line(std::string& out, const Tree& tree, bool in_brackets = false) {
+  if (tree.is_scalar()) return append_scalar(out, tree, in_brackets);
+  if (tree.is_map()) {
+    out += "{}";
+  } else if (tree.kind == Tree::Kind::null) {
+    out += '~';
+  } else {
+    const char* separator = "[";
+    for (const Tree& item : tree.items) {
+      out += std::exchange(separator, ", ");
+      append_in_line(out, item, true);
     }
-    case Tree::Kind::map:
-      if (tree.entries.empty()) out << YAML::Flow;
-      out << YAML::BeginMap;
-      for (const Tree::Entry& entry : tree.entries) {
-        out << YAML::Key << entry.key << YAML::Value;
-        emit(out, entry.value);
-      }
-      out << YAML::EndMap;
-      break;
+    out += tree.items.empty() ? "[]" : "]";
+  }
+}
+
+/// A tree whose first line begins in that column, where `out` ends.
+void append_block(std::string& out, const Tree& tree, std::size_t column) {
+  if (is_in_line(tree)) return append_in_line(out, tree);
+  bool first = true;
+  const auto begin_line = [&] {
+    if (!std::exchange(first, false)) out.append("\n").append(column, ' ');
+  };
+  const auto append_below = [&](const Tree& value) {
+    out.append("\n").append(column + 2, ' ');
+    append_block(out, value, column + 2);
+  };
+  for (const Tree& item : tree.items) {
+    begin_line();
+    out += '-';
+    if (item.kind == Tree::Kind::list && !is_in_line(item)) {
+      append_below(item);
+    } else {
+      out += ' ';
+      append_block(out, item, column + 2);
+    }
+  }
+  for (const Tree::Entry& entry : tree.entries) {
+    begin_line();
+    append_scalar(out, Tree::scalar(entry.key), false);
+    out += ':';
+    if (is_in_line(entry.value)) {
+      out += ' ';
+      append_in_line(out, entry.value);
+    } else {
+      append_below(entry.value);
+    }
   }
 }
 
@@ -238,6 +289,8 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
   if (const std::size_t valid = utf8_prefix(text); valid < text.size()) {
     throw Error(place_in(file, text, valid), "not UTF-8", "save the file as UTF-8");
   }
+  if (std::optional<Tree> plain = read_plain_yaml(text, std::make_shared<const std::string>(file)))
+    return std::move(*plain);
   try {
     Tree tree = Reader(file, true).read(text);
     if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;
@@ -295,9 +348,9 @@ Tree parse_value(const std::string& text, const std::string& file) {
 }
 
 std::string to_yaml(const Tree& tree) {
-  YAML::Emitter out;
-  emit(out, tree);
-  return std::string(out.c_str()) + "\n";
+  std::string out;
+  append_block(out, tree, 0);
+  return out + "\n";
 }
 
 }  // namespace palpate
