@@ -11,6 +11,32 @@ constexpr double kLogTwoPi = 1.83787706640934548356;
 /// 97.5 % quantile of the standard normal distribution.
 constexpr double kNormal975 = 1.95996398454005423552;
 
+/// The squares of what a map is off by, in one pass over all cells and over those on an object.
+struct Misses {
+  struct Sum {
+    double squares = 0.0;
+    Eigen::Index cells = 0;
+
+    void add(double square) {
+      squares += square;
+      ++cells;
+    }
+    std::optional<double> rms() const {
+      return cells == 0 ? std::nullopt : std::optional(std::sqrt(squares / static_cast<double>(cells)));
+    }
+  };
+
+  Misses(const Eigen::VectorXd& map, const Truth& truth) {
+    for (Eigen::Index i = 0; i < map.size(); ++i) {
+      const double error = map(i) - truth.height(i);
+      all.add(error * error);
+      if (truth.on(i)) on_surface.add(error * error);
+    }
+  }
+
+  Sum all, on_surface;
+};
+
 Eigen::VectorXd gated(const SurfaceMaps& maps) {
   if (!maps.two_part) return *maps.height;
   const Eigen::VectorXd desk = Eigen::VectorXd::Constant(maps.height->size(), maps.desk);
@@ -32,27 +58,22 @@ Truth truth_at(const Candidates& candidates, const Scene& scene) {
 }
 
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface) {
-  double sum = 0.0;
-  Eigen::Index cells = 0;
-  for (Eigen::Index i = 0; i < map.size(); ++i) {
-    if (only_on_surface && !truth.on(i)) continue;
-    const double error = map(i) - truth.height(i);
-    sum += error * error;
-    ++cells;
-  }
-  if (cells == 0) return std::nullopt;
-  return std::sqrt(sum / static_cast<double>(cells));
+  const Misses misses(map, truth);
+  return only_on_surface ? misses.on_surface.rms() : misses.all.rms();
 }
 
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
+  std::int64_t predicted = 0;
+  std::int64_t on = 0;
   std::int64_t both = 0;
-  std::int64_t either = 0;
   for (Eigen::Index i = 0; i < probability.size(); ++i) {
-    const int predicted = probability(i) >= 0.5 ? 1 : 0;
-    const int on = truth.on(i) ? 1 : 0;
-    both += predicted & on;
-    either += predicted | on;
+    const int here = probability(i) >= 0.5 ? 1 : 0;
+    predicted += here;
+    if (!truth.on(i)) continue;
+    ++on;
+    both += here;
   }
+  const std::int64_t either = predicted + on - both;
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
 }
 
@@ -66,14 +87,15 @@ Eigen::VectorXd reconstruction(const TapBelief& belief) { return gated(maps_of(b
 Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   Errors out;
   if (maps.height != nullptr) {
-    out.rmse_height = rmse(*maps.height, truth, true);
+    const Misses of_height(*maps.height, truth);
+    out.rmse_height = of_height.on_surface.rms();
     if (!maps.two_part) {  // the reconstruction is the height mean
-      out.rmse = rmse(*maps.height, truth, false);
+      out.rmse = of_height.all.rms();
       out.rmse_on_surface = out.rmse_height;
     } else if (maps.probability != nullptr) {
-      const Eigen::VectorXd surface = gated(maps);
-      out.rmse = rmse(surface, truth, false);
-      out.rmse_on_surface = rmse(surface, truth, true);
+      const Misses of_surface(gated(maps), truth);
+      out.rmse = of_surface.all.rms();
+      out.rmse_on_surface = of_surface.on_surface.rms();
     }
   }
   if (maps.probability != nullptr) out.footprint_iou = footprint_iou(*maps.probability, truth);

@@ -3,14 +3,13 @@
 
 #include "config/quantity.hpp"
 #include "config/utf8.hpp"
+#include "record/number.hpp"
 
-#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -21,7 +20,7 @@ namespace {
 void append_number(std::string& out, double value) {
   if (!std::isfinite(value)) return;
   std::array<char, kLongestNumber> text;
-  out.append(text.data(), fmt::format_to(text.data(), FMT_COMPILE("{}"), value));
+  out.append(text.data(), static_cast<std::size_t>(write_number(text.data(), value) - text.data()));
   // Readers of JSON take -0 for the integer 0.
   if (value == 0.0 && std::signbit(value)) out += ".0";
 }
@@ -178,13 +177,6 @@ std::string csv_cell(const Scalar& value) {
   std::string out;
   append_scalar(out, value, [&](const std::string& text) { out += csv_text(text); });
   return out;
-}
-
-char* write_shortest(char* to, double value) {
-  const double size = std::abs(value);
-  // Where one that is as long is written the same way by both, and what is below 0.0001 with an exponent.
-  const bool alike = size < 1e-4 || (size >= 1e-3 && size < 1e5);
-  return alike ? fmt::format_to(to, FMT_COMPILE("{}"), value) : std::to_chars(to, to + kLongestNumber, value).ptr;
 }
 
 std::string json_quoted(const std::string& text) {

@@ -3,7 +3,6 @@
 // nests by the dots, CSV keeps them.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,13 +43,6 @@ struct Row {
 /// Text of one scalar as it stands in a CSV cell: shortest digits that read back as the same bits, empty for null and
 /// for what is not a finite number, quoted where commas, quotes or line ends need it.
 std::string csv_cell(const Scalar& value);
-
-/// The longest text of a number: -2.2250738585072014e-308.
-constexpr std::size_t kLongestNumber = 24;
-
-/// Writes a number as std::to_chars does, the shorter of the notations with and without an exponent, mostly in half the
-/// time; returns its end. For maps, which have thousands of numbers.
-char* write_shortest(char* to, double value);
 
 /// Text quoted for CSV where it needs to be.
 std::string csv_text(const std::string& text);

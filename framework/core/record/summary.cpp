@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
-#include "record/row.hpp"
+#include "record/number.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <ctime>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,29 +28,34 @@ using Column = std::pair<const char*, const Eigen::VectorXd*>;
 /// A number as text, kept until there is another: the truth is the same all over the desk.
 class NumberText {
  public:
-  std::string_view of(double value) {
-    if (length_ == 0 || std::memcmp(&value, &value_, sizeof value) != 0) {
-      length_ = static_cast<std::size_t>(write_shortest(text_.data(), value) - text_.data());
-      value_ = value;
+  /// Writes a number and returns its end; behind that, up to kLongestNumber from `to` on, is anything.
+  char* write(char* to, double value) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    if (length_ == 0 || bits != bits_) {
+      length_ = write_shortest(text_.data(), value) - text_.data();
+      bits_ = bits;
     }
-    return {text_.data(), length_};
+    std::memcpy(to, text_.data(), text_.size());
+    return to + length_;
   }
 
  private:
-  double value_ = 0.0;
-  std::array<char, kLongestNumber> text_;
-  std::size_t length_ = 0;
+  std::uint64_t bits_ = 0;  ///< of the number, of which 0 and -0 are written each its own way
+  std::array<char, kLongestNumber> text_{};
+  std::ptrdiff_t length_ = 0;
 };
 
-/// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: once for the coordinates, and for
-/// a map that is there twice.
+/// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: once for a coordinate, and for a
+/// map that is there twice.
 std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
   std::string out = "x,y";
   for (const Column& column : columns) out.append(",").append(column.first);
   out += '\n';
+  std::vector<char> line((columns.size() + 2) * (kLongestNumber + 1));
   out.reserve(out.size() + static_cast<std::size_t>(candidates.size()) * (columns.size() + 2) * 20);
-  std::vector<std::string> xs;
-  for (int i = 0; i < candidates.columns; ++i) xs.emplace_back(NumberText().of(candidates.points(i, 0)));
+  std::vector<NumberText> xs(static_cast<std::size_t>(candidates.columns));
+  NumberText y;
   std::vector<NumberText> texts(columns.size());
   std::vector<NumberText*> text_of;  // each column's, of columns with the same map the first one's
   for (const Column& column : columns) {
@@ -58,14 +64,16 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
     text_of.push_back(&texts[static_cast<std::size_t>(first - columns.begin())]);
   }
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
-    const std::string y = "," + std::string(NumberText().of(candidates.points(cell, 1)));
-    for (const std::string& x : xs) {
-      out.append(x).append(y);
+    for (NumberText& x : xs) {
+      char* end = x.write(line.data(), candidates.points(cell, 0));
+      *end++ = ',';
+      end = y.write(end, candidates.points(cell, 1));
       for (std::size_t i = 0; i < columns.size(); ++i) {
-        out += ',';
-        if (columns[i].second != nullptr) out.append(text_of[i]->of((*columns[i].second)(cell)));
+        *end++ = ',';
+        if (columns[i].second != nullptr) end = text_of[i]->write(end, (*columns[i].second)(cell));
       }
-      out += '\n';
+      *end++ = '\n';
+      out.append(line.data(), static_cast<std::size_t>(end - line.data()));
       ++cell;
     }
   }
