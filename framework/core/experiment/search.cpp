@@ -36,14 +36,16 @@ double step_of(const Eigen::VectorXd& places) { return places.size() > 1 ? place
 }  // namespace
 
 Search::Search(double smallest, const Candidates& candidates, const Area& area, Random random)
-    : candidates_(candidates), area_(area) {
-  rises_.assign(static_cast<std::size_t>(candidates.rows * (candidates.columns + 1)), 0);
-  const double ratio = std::log(std::min(area.width, area.depth) / smallest);
+    : smallest_(smallest), candidates_(candidates), area_(area), random_(random) {}
+
+void Search::draw_discs() {
+  rises_.assign(static_cast<std::size_t>(candidates_.rows) * static_cast<std::size_t>(candidates_.columns + 1), 0);
+  const double ratio = std::log(std::min(area_.width, area_.depth) / smallest_);
   discs_.reserve(kDiscs);
   for (int i = 0; i < kDiscs; ++i) {
-    const double radius = 0.5 * smallest * std::exp(ratio * random.uniform());
-    const double x = between(radius, area.width - radius, random);
-    const double y = between(radius, area.depth - radius, random);
+    const double radius = 0.5 * smallest_ * std::exp(ratio * random_.uniform());
+    const double x = between(radius, area_.width - radius, random_);
+    const double y = between(radius, area_.depth - radius, random_);
     discs_.push_back({x, y, radius, kWhole});
     weigh(discs_.back(), kWhole);
   }
@@ -68,6 +70,7 @@ void Search::strike_off(const Target& place) {
 }
 
 int Search::next(const std::vector<bool>& allowed) {
+  if (rises_.empty()) draw_discs();
   while (struck_off_ < looked_.size()) strike_off(looked_[struck_off_++]);
   const std::vector<int> weight = weights();
   int best = -1;
@@ -95,9 +98,9 @@ void Search::weigh(const Disc& disc, int weight) {
     const double half = std::sqrt(std::max(0.0, disc.radius * disc.radius - dy * dy));
     const Span cut(disc.x - half, disc.x + half, candidates_.xs(0), across, candidates_.columns);
     if (cut.first > cut.last) continue;
-    const int start = row * (candidates_.columns + 1);
-    rises_[static_cast<std::size_t>(start + cut.first)] += weight;
-    rises_[static_cast<std::size_t>(start + cut.last + 1)] -= weight;
+    int* const rises = rises_.data() + row * (candidates_.columns + 1);
+    rises[cut.first] += weight;
+    rises[cut.last + 1] -= weight;
   }
 }
 

@@ -42,6 +42,8 @@ class Search {
     int weight;  ///< probability that it was passed by as often as was looked there, in thousandths
   };
 
+  /// When the first place is asked for: of a search that nobody asks only its options count.
+  void draw_discs();
   void strike_off(const Target& place);
   /// Adds to what the candidates in a disc weigh.
   void weigh(const Disc& disc, int weight);
@@ -50,8 +52,10 @@ class Search {
   /// Radius of the largest disc around a place that lies on the area and has no tap in it.
   double room(const Target& place) const;
 
+  double smallest_;
   const Candidates& candidates_;
   Area area_;
+  Random random_;
   std::vector<Disc> discs_;  ///< those of some weight
   std::vector<int> rises_;   ///< of weights(), from one candidate of a row to the next; first and last of a row apart
   std::vector<Target> looked_;
