@@ -378,6 +378,15 @@ void add_about_one(CommandLine& line) {
   show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces"});
 }
 
+/// All commands, or of those that scripts give by the thousand only the one that is named.
+void add_commands(CommandLine& line, const std::string& named) {
+  if (named == "run") return add_run(line);
+  if (named == "sweep") return add_sweep(line);
+  if (named == "resume") return add_resume(line);
+  for (const auto add : {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_about_one})
+    add(line);
+}
+
 /// CLI11's own words, on one line, but of a command that there is not, and of many directories where one belongs, which
 /// is what a shell makes of a *.
 int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::string& first) {
@@ -499,11 +508,10 @@ int run_main(int argc, char** argv) {
   // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
-  CommandLine line(app, asked);
-  for (const auto add : {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_about_one})
-    add(line);
-  // Questions of shells and of the build, as --needs is one of ./palpate.
   const std::string first = argc > 1 ? argv[1] : "";
+  CommandLine line(app, asked);
+  add_commands(line, first);
+  // Questions of shells and of the build, as --needs is one of ./palpate.
   if (first == "--complete") return complete(app, argc, argv);
   if (first == "--manual" && argc == 3) return write_manual(usage_of(app), argv[2]), kDone;
   if (argc == 1 && !asked) {
