@@ -108,10 +108,8 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
   return attempt_job(workshop, config_of, *held, options);
 }
 
-bool has_ended(const fs::path& directory) {
-  const RunStatus::State state = read_ending(directory).state;
-  return state == RunStatus::State::done || state == RunStatus::State::failed;
-}
+// A damaged summary is an end, too: a failure.
+bool has_ended(const fs::path& directory) { return is_there(directory / "summary.json"); }
 
 int attempts_of(const fs::path& directory) {
   if (!is_there(directory / kAttempts)) return 0;
