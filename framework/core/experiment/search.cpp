@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace palpate {
 namespace {
@@ -98,7 +99,7 @@ void Search::weigh(const Disc& disc, int weight) {
     const double half = std::sqrt(std::max(0.0, disc.radius * disc.radius - dy * dy));
     const Span cut(disc.x - half, disc.x + half, candidates_.xs(0), across, candidates_.columns);
     if (cut.first > cut.last) continue;
-    int* const rises = rises_.data() + row * (candidates_.columns + 1);
+    int* const rises = rises_.data() + static_cast<std::ptrdiff_t>(row) * (candidates_.columns + 1);
     rises[cut.first] += weight;
     rises[cut.last + 1] -= weight;
   }
