@@ -61,50 +61,52 @@ class Shape final : public Footprint {
   Shape(const Options& options, const Context& context)
       : options_(options),
         classifier_(options, context),
-        area_(context.scene.area()),
-        random_(context.random("footprint/shape")) {}
+        particles_(prior(options, context.scene.area()),
+                   {static_cast<int>(options.particles), options.mistaken, options.lies.value_or(options.mistaken),
+                    options.blur, options.pushes, options.heights},
+                   context.random("footprint/shape")) {}
 
   void add(const Touch& touch) override {
     ++touches_;
     classifier_.add(touch);
     if (handed_over_at_ > 0) return;
-    particles().add(touch);
-    const double unexpected = particles().mean_mistakes() - options_.mistaken * touches_;
+    particles_.add(touch);
+    const double unexpected = particles_.mean_mistakes() - options_.mistaken * touches_;
     if (unexpected > options_.contradictions) handed_over_at_ = touches_;
   }
 
   void probability(const PointsView& places, VectorOut out) override {
     if (handed_over_at_ > 0) return classifier_.probability(places, out);
-    particles().probability(places, out);
+    particles_.probability(places, out);
   }
 
   void sample(const PointsView& places, OutlineSample& out) const override {
     if (handed_over_at_ > 0) return Footprint::sample(places, out);
-    particles().sample(places, kSample, out);
+    particles_.sample(places, kSample, out);
   }
 
   void doubt(VectorOut out) const override {
     if (handed_over_at_ > 0) return Footprint::doubt(out);
-    particles().doubt(out);
+    particles_.doubt(out);
   }
 
   void place_now(Points& places) const override {
-    if (handed_over_at_ == 0 && options_.pushes > 0.0) particles().place_now(places);
+    if (handed_over_at_ == 0 && options_.pushes > 0.0) particles_.place_now(places);
   }
 
   std::vector<FootprintNumber> numbers() const override {
-    std::vector<FootprintNumber> out{{"mistakes", particles().mean_mistakes()},
-                                     {"pieces", particles().mean_pieces()},
-                                     {"left", particles().left(kWorthFinding)},
-                                     {"acceptance", particles().acceptance()},
+    std::vector<FootprintNumber> out{{"mistakes", particles_.mean_mistakes()},
+                                     {"pieces", particles_.mean_pieces()},
+                                     {"left", particles_.left(kWorthFinding)},
+                                     {"acceptance", particles_.acceptance()},
                                      {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
-    if (options_.pushes > 0.0) out.push_back({"pushed", particles().pushed().share});
+    if (options_.pushes > 0.0) out.push_back({"pushed", particles_.pushed().share});
     return out;
   }
 
   std::string remark() const override {
     if (handed_over_at_ == 0) {
-      const Particles::Pushed pushed = particles().pushed();
+      const Particles::Pushed pushed = particles_.pushed();
       if (pushed.share <= 0.5) return {};
       return fmt::format(
           "the object was pushed after touch {:.0f}, by {:.1f} cm (probability {:.2f}): what was "
@@ -119,29 +121,19 @@ class Shape final : public Footprint {
   static constexpr int kSample = 256;
   static constexpr double kWorthFinding = 0.03;  // metres
 
-  /// Drawn when they are first asked for: of some experiments all that is wished is which models they read.
-  Particles& particles() const {
-    if (particles_) return *particles_;
+  static OutlinePrior prior(const Options& options, const Area& area) {
     OutlinePrior::Settings settings;
-    settings.area = area_;
-    settings.smallest = options_.smallest;
-    settings.largest = options_.largest;
-    settings.expected = options_.expected * area_.width * area_.depth / (0.23 * 0.23);
-    settings.hollow = options_.hollow;
-    const ParticleSettings how{static_cast<int>(options_.particles),
-                               options_.mistaken,
-                               options_.lies.value_or(options_.mistaken),
-                               options_.blur,
-                               options_.pushes,
-                               options_.heights};
-    return particles_.emplace(OutlinePrior(settings), how, random_);
+    settings.area = area;
+    settings.smallest = options.smallest;
+    settings.largest = options.largest;
+    settings.expected = options.expected * area.width * area.depth / (0.23 * 0.23);
+    settings.hollow = options.hollow;
+    return OutlinePrior(settings);
   }
 
   Options options_;
   Classifier classifier_;
-  Area area_;
-  Random random_;
-  mutable std::optional<Particles> particles_;
+  Particles particles_;
   int touches_ = 0;
   int handed_over_at_ = 0;  ///< touches; 0: not yet
 };
