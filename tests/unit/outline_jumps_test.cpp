@@ -10,11 +10,15 @@
 
 #include <array>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace palpate::footprints {
 namespace {
 
 using Kind = Proposal::Kind;
+/// Of each touch: bit i is set where piece i holds it.
+using Holders = std::vector<std::uint16_t>;
 
 // That a standard normal deviation is above 5 happens once in three million times; each test looks at forty at most.
 constexpr double kRare = 5.0;
@@ -62,11 +66,8 @@ class Chain {
     const Holders beside = holders_of(unseen);
     Holders holders = holders_of(seen);
     for (int i = 0; i < times; ++i) {
-      proposal_.outline = seen;
-      proposal_.correction = 0.0;
-      proposal_.changed = 0;
-      proposal_.everywhere = false;
-      propose(proposal_, prior_, {&touches_, &holders}, random_);
+      proposal_.begin({seen, {}});
+      propose(proposal_, prior_, touches_, random_);
       const double accepted = proposal_.correction * factor(proposal_.kind);
       const double taken = random_.uniform();
       if (!(accepted > 0.0)) continue;
@@ -360,37 +361,37 @@ TEST(Moves, OfABeliefAndLabelsDrawnInTurnComeToOutlinesWithTheirLabels) {
   EXPECT_LT(deviation, kRare) << of;
 }
 
-TEST(Moves, SayWhereNothingChangesAndKeepTheDensityOfPieces) {
+TEST(Moves, SayWhichPiecesStayAndKeepTheDensityOfPieces) {
   const OutlinePrior prior(prior_settings(12, 0.23));
   const std::vector<Touch> touches = touches_over(0.23, 12);
-  Random random(5, "outline jumps test: circles");
+  Random random(5, "outline jumps test: pieces");
   std::array<int, 8> changed{};
-  const auto holders = [](const Outline& outline, const Target& place) {
-    unsigned out = 0;
-    for (int i = 0; i < outline.size(); ++i) out |= outline[i].contains(place.x, place.y) ? 1U << i : 0U;
-    return static_cast<std::uint16_t>(out);
+  const auto equal = [](const Piece& one, const Piece& other) {
+    const auto numbers = [](const Piece& piece) {
+      const auto of = [](const Form& form) {
+        return std::tuple(form.family, form.x, form.y, form.a, form.b, form.cosine, form.sine);
+      };
+      return std::tuple(of(piece.form), piece.hollow, of(piece.hollow ? piece.hole : Form{}));
+    };
+    return numbers(one) == numbers(other);
   };
   for (int i = 0; i < 20000; ++i) {
+    const Outline before = prior.draw(random);
     Proposal proposal;
-    proposal.outline = prior.draw(random);
-    const Outline before = proposal.outline;
-    Holders seen;
-    for (const Touch& touch : touches) seen.push_back(holders(before, touch.place));
-    propose(proposal, prior, {&touches, &seen}, random);
+    proposal.begin({before, {}});
+    propose(proposal, prior, touches, random);
     if (!(proposal.correction > 0.0)) continue;
     ++changed[static_cast<std::size_t>(proposal.kind)];
-    for (const Piece& piece : proposal.outline) ASSERT_EQ(piece.density, prior.density(piece));
-    for (int k = 0; k < 30; ++k) {
-      const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
-      bool within = false;
-      for (int c = 0; c < proposal.changed; ++c) {
-        const Proposal::Circle& circle = proposal.circles[static_cast<std::size_t>(c)];
-        within = within || std::hypot(place.x - circle.x, place.y - circle.y) <= circle.radius;
-      }
-      if (!within) {
-        ASSERT_EQ(holders(proposal.outline, place), holders(before, place)) << static_cast<int>(proposal.kind);
-      }
+    std::array<bool, Outline::kMost> stays{};
+    for (int k = 0; k < proposal.outline.size(); ++k) {
+      const Piece& piece = proposal.outline[k];
+      ASSERT_EQ(piece.density, prior.density(piece));
+      const int was = proposal.was[static_cast<std::size_t>(k)];
+      if (was == Proposal::kNew) continue;
+      ASSERT_TRUE(was < before.size() && equal(piece, before[was])) << static_cast<int>(proposal.kind);
+      ASSERT_FALSE(std::exchange(stays[static_cast<std::size_t>(was)], true)) << static_cast<int>(proposal.kind);
     }
+    ASSERT_EQ(proposal.since, proposal.until);
   }
   for (const int count : changed) EXPECT_GT(count, 15) << "of each kind";
 }

@@ -8,6 +8,7 @@
 #include "support/touches.hpp"
 
 #include <array>
+#include <utility>
 
 namespace palpate::footprints {
 namespace {
@@ -202,17 +203,23 @@ TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
   OutlinePrior::Settings settings;
   settings.area = {0.23, 0.23};
   const OutlinePrior prior(settings);
-  for (const double blur : {0.0, 0.004}) {
+  for (const auto& [blur, pushes] : {std::pair(0.0, 0.0), std::pair(0.004, 0.0), std::pair(0.004, 0.2)}) {
     ParticleSettings how;
     how.count = 300;
     how.mistaken = 0.05;
     how.lies = 0.02;
     how.blur = blur;
+    how.pushes = pushes;
     Particles belief(prior, how, Random(10, "particles test"));
-    const std::vector<Touch> touches = test::disc_touches(25);
-    for (const Touch& touch : touches) belief.add(touch);
+    const std::vector<Touch> made = test::disc_touches(25);
+    for (const Touch& touch : made) belief.add(touch);
     int pieces = 0;
     for (const Particle& one : belief.particles()) {
+      std::vector<Touch> touches = made;
+      for (int i = 0; i < one.push.before; ++i) {
+        Target& place = touches[static_cast<std::size_t>(i)].place;
+        place = one.push.now(place);
+      }
       const LabelModel labels(how.mistaken, how.lies, one.blurred ? blur : 0.0);
       double loss = 0.0;
       for (std::size_t i = 0; i < touches.size(); ++i) {
@@ -223,10 +230,10 @@ TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
           holders |= one.outline[p].contains(place.x, place.y) ? 1U << p : 0U;
           deepest = std::max(deepest, one.outline[p].depth(place.x, place.y));
         }
-        ASSERT_EQ(one.holders[i], holders);
+        ASSERT_EQ(one.depths.holders(i, one.outline.size()), holders);
         const LabelModel::Step step =
             !one.blurred ? (holders != 0 ? LabelModel::kInside : LabelModel::kOutside) : labels.step(deepest);
-        ASSERT_EQ(one.depths[i], step);
+        ASSERT_EQ(one.depths.deepest()[i], step);
         loss += labels.loss(step, touches[i].on);
       }
       // Summed up over some hundred moves.

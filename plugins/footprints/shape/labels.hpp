@@ -4,6 +4,7 @@
 
 #include <palpate/footprint.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -22,12 +23,21 @@ class LabelModel {
 
   /// Depths (metres; negative: outside) are told apart in steps.
   using Step = std::uint8_t;
+  static constexpr int kSteps = 128;  ///< over the depths at which the place decides
   static constexpr Step kOutside = 0;
-  static constexpr Step kInside = 129;
-  Step step(double depth) const {
-    const double steps = depth * steps_per_metre_ + 0.5 * kSteps;
-    return steps < 0.0 ? kOutside : steps >= kSteps ? kInside : static_cast<Step>(1 + static_cast<int>(steps));
-  }
+  static constexpr Step kInside = kSteps + 1;
+  /// How depths become steps.
+  struct Steps {
+    double per_metre;
+    Step of(double depth) const {
+      const double steps = depth * per_metre + 0.5 * kSteps;
+      return static_cast<Step>(static_cast<int>(std::min(std::max(steps, -1.0), 1.0 * kSteps) + 1.0));
+    }
+  };
+  Steps steps() const { return {steps_per_metre_}; }
+  Step step(double depth) const { return steps().of(depth); }
+  /// Whether a depth is not negative.
+  static bool holds(Step step) { return step > kSteps / 2; }
 
   /// The probability of a label.
   double probability(Step step, bool on) const { return entry(step, on).probability; }
@@ -44,7 +54,6 @@ class LabelModel {
     double loss;
     double wrong;
   };
-  static constexpr int kSteps = 128;  ///< over the depths at which the place decides
   const Entry& entry(Step step, bool on) const { return table_[2 * static_cast<std::size_t>(step) + (on ? 1 : 0)]; }
 
   bool blurs_;

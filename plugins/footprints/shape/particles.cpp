@@ -13,6 +13,15 @@ namespace {
 
 constexpr double kPushMoves = 0.1;  // share of the moves
 
+/// How deep a place lies in a piece. Most pieces are elsewhere, where how far away they are makes no difference.
+double depth_of(const Piece& piece, const Target& place, double reach) {
+  const Form& form = piece.form;
+  const double dx = place.x - form.x;
+  const double dy = place.y - form.y;
+  if (dx * dx + dy * dy > 2.0 * (form.a * form.a + form.b * form.b + reach * reach)) return -1.0;
+  return std::max(-1.0, piece.depth(place.x, place.y));
+}
+
 }  // namespace
 
 Particles::Particles(const OutlinePrior& prior, const ParticleSettings& settings, Random random)
@@ -55,7 +64,7 @@ void Particles::doubt(VectorOut out) const {
     if (!(particle.labels > 0.0)) continue;  // nothing speaks against it
     const LabelModel& labels = this->labels(particle.blurred);
     for (std::size_t i = 0; i < touches_.size(); ++i)
-      out(static_cast<Eigen::Index>(i)) += labels.wrong(particle.depths[i], touches_[i].on);
+      out(static_cast<Eigen::Index>(i)) += labels.wrong(particle.depths.deepest()[i], touches_[i].on);
   }
   out /= size();
 }
@@ -93,43 +102,48 @@ Particles::Pushed Particles::pushed() const {
   return out;
 }
 
-Particles::View Particles::look(const Outline& outline, const Target& place, const LabelModel& labels) const {
-  View out{LabelModel::kOutside, 0};
-  if (!labels.blurs()) {
-    for (int i = 0; i < outline.size(); ++i) {
-      if (outline[i].contains(place.x, place.y)) out.holders = static_cast<std::uint16_t>(out.holders | 1U << i);
-    }
-    if (out.holders != 0) out.depth = LabelModel::kInside;
-    return out;
+void Particles::look(Particle& particle) const {
+  const LabelModel& labels = this->labels(particle.blurred);
+  const std::size_t touch = touches_.size() - 1;
+  const Target& place = touches_[touch].place;
+  LabelModel::Step deepest = LabelModel::kOutside;
+  particle.depths.grow_to(places_.length());
+  for (int i = 0; i < particle.outline.size(); ++i) {
+    const Piece& piece = particle.outline[i];
+    const LabelModel::Step step = labels.blurs() ? labels.step(depth_of(piece, place, labels.reach()))
+                                  : piece.contains(place.x, place.y) ? LabelModel::kInside
+                                                                     : LabelModel::kOutside;
+    particle.depths.row(i)[touch] = step;
+    deepest = std::max(deepest, step);
   }
-  double deepest = -1.0;
-  for (int i = 0; i < outline.size(); ++i) {
-    // Most pieces are elsewhere, where how far away they are makes no difference.
-    const Form& form = outline[i].form;
-    const double dx = place.x - form.x;
-    const double dy = place.y - form.y;
-    const double reach = labels.reach();
-    if (dx * dx + dy * dy > 2.0 * (form.a * form.a + form.b * form.b + reach * reach)) continue;
-    const double depth = outline[i].depth(place.x, place.y);
-    if (depth >= 0.0) out.holders = static_cast<std::uint16_t>(out.holders | 1U << i);
-    deepest = std::max(deepest, depth);
-  }
-  out.depth = labels.step(deepest);
-  return out;
+  particle.depths.deepest()[touch] = deepest;
 }
 
-Particles::View Particles::look_again(std::uint16_t holders, const Outline& outline, int only, const Target& place) {
-  const unsigned bit = 1U << only;
-  const unsigned others = holders & ~bit;
-  const unsigned now = outline[only].contains(place.x, place.y) ? others | bit : others;
-  return {now != 0 ? LabelModel::kInside : LabelModel::kOutside, static_cast<std::uint16_t>(now)};
+double Particles::evidence(const LabelModel::Step* const* rows, int pieces) {
+  if (!settings_.heights) return 0.0;
+  holders_.resize(objects_.size());
+  holders_of(rows, pieces, places_.length(), holders_.data());
+  return heights_.evidence(holders_, pieces);
+}
+
+bool Particles::all_touched(const LabelModel::Step* const* rows, int pieces) const {
+  return std::all_of(rows, rows + pieces,
+                     [&](const LabelModel::Step* row) { return holds_any(row, objects_.data(), places_.length()); });
+}
+
+const Places& Particles::seen_after(const Push& push) {
+  if (!push) return places_;
+  places_.seen_after(push, pushed_places_);
+  return pushed_places_;
 }
 
 double Particles::add(const Touch& touch) {
   const std::size_t number = touches_.size();
   touches_.push_back(touch);
-  xs_.push_back(static_cast<float>(touch.place.x));
-  ys_.push_back(static_cast<float>(touch.place.y));
+  places_.add(touch.place);
+  objects_.resize(static_cast<std::size_t>(places_.length()), 0);
+  objects_[number] = touch.on ? 0xFF : 0;
+  depths_.grow_to(places_.length());
   if (touch.on) heights_.add(touch, number);
   const Unseen::Holding unseen = unseen_.holding(touch.place);
   const double something_new = 1.0 - std::exp(-unseen.rate());
@@ -140,16 +154,15 @@ double Particles::add(const Touch& touch) {
   double of_label = 0.0;
   for (Particle& particle : particles_) {
     const LabelModel& labels = this->labels(particle.blurred);
-    const View view = look(particle.outline, touch.place, labels);
-    particle.holders.push_back(view.holders);
-    particle.depths.push_back(view.depth);
-    particle.mistakes += labels.mistake(view.depth, touch.on) ? 1 : 0;
-    particle.labels += labels.loss(view.depth, touch.on);
-    double weight = (1.0 - something_new) * labels.probability(view.depth, touch.on) +
+    look(particle);
+    const LabelModel::Step depth = particle.depths.deepest()[number];
+    particle.mistakes += labels.mistake(depth, touch.on) ? 1 : 0;
+    particle.labels += labels.loss(depth, touch.on);
+    double weight = (1.0 - something_new) * labels.probability(depth, touch.on) +
                     something_new * labels.probability(LabelModel::kInside, touch.on);
     of_label += weight;
     if (touch.on && settings_.heights) {
-      const double gain = heights_.evidence(particle.holders, particle.outline.size());
+      const double gain = evidence(particle.depths.rows().data(), particle.outline.size());
       weight *= std::exp(gain - particle.heights);
       particle.heights = gain;
     }
@@ -177,19 +190,20 @@ void Particles::find(std::size_t number, const Unseen::Holding& unseen, double s
     if (particle.outline.size() >= prior_.settings().most) continue;
     const LabelModel& labels = this->labels(particle.blurred);
     const double found = something_new * labels.probability(LabelModel::kInside, true);
-    const double known = (1.0 - something_new) * labels.probability(particle.depths[number], true);
+    const double known = (1.0 - something_new) * labels.probability(particle.depths.deepest()[number], true);
     if (random_.uniform() * (found + known) >= found) continue;
+    Depths& depths = particle.depths;
+    const int one = particle.outline.size();
     particle.outline.add(unseen.draw(random_));
+    seen_after(particle.push).steps(particle.outline[one], labels, 0, places_.size(), depths.row(one));
+    deepest_of(depths.rows().data(), one + 1, places_.length(), depths.row(one), depths.deepest());
     particle.mistakes = 0;
     particle.labels = 0.0;
     for (std::size_t i = 0; i <= number; ++i) {
-      const View view = look(particle.outline, seen_from(particle, i), labels);
-      particle.holders[i] = view.holders;
-      particle.depths[i] = view.depth;
-      particle.mistakes += labels.mistake(view.depth, touches_[i].on) ? 1 : 0;
-      particle.labels += labels.loss(view.depth, touches_[i].on);
+      particle.mistakes += labels.mistake(depths.deepest()[i], touches_[i].on) ? 1 : 0;
+      particle.labels += labels.loss(depths.deepest()[i], touches_[i].on);
     }
-    particle.heights = settings_.heights ? heights_.evidence(particle.holders, particle.outline.size()) : 0.0;
+    particle.heights = evidence(depths.rows().data(), one + 1);
   }
 }
 
@@ -220,21 +234,16 @@ void Particles::move(Particle& particle) {
   ++tried_;
   constexpr double kChangesBlur = 0.02;
   Proposal& proposal = proposal_;
-  proposal.outline = particle.outline;
-  proposal.push = particle.push;
-  proposal.correction = 0.0;
-  proposal.changed = 0;
-  proposal.everywhere = false;
-  proposal.only = -1;
+  proposal.begin(particle);
   bool blurred = particle.blurred;
   if (settings_.blur > 0.0 && random_.uniform() < kChangesBlur) {
     blurred = !blurred;
-    proposal.everywhere = true;
+    proposal.until = places_.size();
     proposal.correction = 1.0;
   } else if (settings_.pushes > 0.0 && touches_.size() > 1 && random_.uniform() < kPushMoves) {
-    propose_push(proposal, prior_, static_cast<int>(touches_.size()), settings_.pushes, random_);
+    propose_push(proposal, prior_, places_.size(), settings_.pushes, random_);
   } else {
-    propose(proposal, prior_, {&touches_, &particle.holders}, random_);
+    propose(proposal, prior_, touches_, random_);
   }
   if (proposal.correction > 0.0 && weigh(particle, proposal, blurred)) ++moved_;
 }
@@ -244,77 +253,69 @@ void Particles::move(Particle& particle) {
 bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred) {
   const LabelModel& labels = this->labels(blurred);
   const LabelModel& labels_before = this->labels(particle.blurred);
-  // So much more loss is allowed. The latest touches are the nearest to the edge: most outlines are given up at these.
+  // So much more loss is allowed.
   const double allowed = std::log(proposal.correction / (1.0 - random_.uniform()));
-  const double allowed_at_most = allowed + particle.labels;
-  if (allowed_at_most < 0.0) return false;
-  struct Reach {
-    float x, y, square;
-  };
-  std::array<Reach, Proposal::kMostCircles> circles;
-  for (int i = 0; i < proposal.changed; ++i) {
-    const Proposal::Circle& circle = proposal.circles[static_cast<std::size_t>(i)];
-    const auto reach = static_cast<float>(circle.radius + labels.reach() + 1e-5);  // rounding is far below that
-    circles[static_cast<std::size_t>(i)] = {static_cast<float>(circle.x), static_cast<float>(circle.y), reach * reach};
-  }
-  const auto near = [&](float x, float y) {
-    for (int i = 0; i < proposal.changed; ++i) {
-      const Reach& circle = circles[static_cast<std::size_t>(i)];
-      const float dx = x - circle.x;
-      const float dy = y - circle.y;
-      if (dx * dx + dy * dy <= circle.square) return true;
+  if (allowed + particle.labels < 0.0) return false;
+  const Outline& outline = proposal.outline;
+  const int length = places_.length();
+  const bool seen_otherwise = proposal.since < proposal.until;
+  Depths::Rows rows;
+  bool held_otherwise = outline.size() != particle.outline.size();
+  const Places& places = seen_after(proposal.push);
+  for (int i = 0; i < outline.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const int was = proposal.was[at];
+    rows[at] = was == Proposal::kNew ? depths_.row(i) : particle.depths.row(was);
+    if (was != Proposal::kNew && !seen_otherwise) continue;
+    if (was == Proposal::kNew) {
+      places.steps(outline[i], labels, 0, places.size(), depths_.row(i));
+    } else {
+      std::copy_n(rows[at], length, depths_.row(i));
+      rows[at] = depths_.row(i);
+      places.steps(outline[i], labels, proposal.since, proposal.until, depths_.row(i));
     }
-    return false;
-  };
-  changed_.clear();
-  views_.clear();
-  double before = 0.0;
+    held_otherwise = held_otherwise || differ_in_holding(rows[at], particle.depths.row(i), objects_.data(), length);
+  }
+  const LabelModel::Step* now = depths_.deepest();
+  const LabelModel::Step* before = particle.depths.deepest();
+  const bool labelled_otherwise = deepest_of(rows.data(), outline.size(), length, before, depths_.deepest());
+  // The latest touches are the nearest to the edge: most outlines are given up at these.
   double loss = 0.0;
-  bool held_otherwise = false;
-  for (std::size_t touch = touches_.size(); touch-- > 0;) {
-    Target place = touches_[touch].place;
-    if (static_cast<int>(touch) < proposal.push.before) {
-      place = proposal.push.now(place);
-      if (!proposal.everywhere && !near(static_cast<float>(place.x), static_cast<float>(place.y))) continue;
-    } else if (!proposal.everywhere && !near(xs_[touch], ys_[touch])) {
-      continue;
+  double loss_before = 0.0;
+  const double most = allowed + particle.labels;
+  const auto weigh_touch = [&](int touch) {
+    const bool on = objects_[static_cast<std::size_t>(touch)] != 0;
+    loss += labels.loss(now[touch], on);
+    loss_before += labels_before.loss(before[touch], on);
+    return loss <= most;
+  };
+  if (blurred != particle.blurred) {
+    for (int touch = places.size(); touch-- > 0;) {
+      if (!weigh_touch(touch)) return false;
     }
-    const bool on = touches_[touch].on;
-    const View view = proposal.only >= 0 && !labels.blurs()
-                          ? look_again(particle.holders[touch], proposal.outline, proposal.only, place)
-                          : look(proposal.outline, place, labels);
-    loss += labels.loss(view.depth, on);
-    if (loss > allowed_at_most) return false;
-    before += labels_before.loss(particle.depths[touch], on);
-    held_otherwise = held_otherwise || (on && view.holders != particle.holders[touch]);
-    changed_.push_back(touch);
-    views_.push_back(view);
+  } else if (labelled_otherwise && !all_differences(now, before, length, weigh_touch)) {
+    return false;
   }
-  if (loss - before > allowed) return false;
+  if (loss - loss_before > allowed) return false;
   double heights = particle.heights;
-  if (held_otherwise || proposal.outline.size() != particle.outline.size()) {
-    holders_ = particle.holders;
-    for (std::size_t i = 0; i < changed_.size(); ++i) holders_[changed_[i]] = views_[i].holders;
+  if (held_otherwise) {
     // A piece that holds no touch of an object would be one that was not seen.
-    unsigned seen = 0;
-    for (const std::size_t touch : heights_.touches()) seen |= holders_[touch];
-    if (seen + 1 != 1U << proposal.outline.size()) return false;
-    if (settings_.heights) heights = heights_.evidence(holders_, proposal.outline.size());
+    if (!all_touched(rows.data(), outline.size())) return false;
+    heights = evidence(rows.data(), outline.size());
     if (heights < particle.heights && std::log(1.0 - random_.uniform()) > heights - particle.heights) return false;
   }
-  for (std::size_t i = 0; i < changed_.size(); ++i) {
-    const std::size_t touch = changed_[i];
-    const bool on = touches_[touch].on;
-    particle.mistakes +=
-        (labels.mistake(views_[i].depth, on) ? 1 : 0) - (labels_before.mistake(particle.depths[touch], on) ? 1 : 0);
-    particle.holders[touch] = views_[i].holders;
-    particle.depths[touch] = views_[i].depth;
-  }
-  particle.outline = proposal.outline;
-  particle.push = proposal.push;
-  particle.blurred = blurred;
-  particle.labels = proposal.everywhere ? loss : particle.labels + loss - before;
+  particle.mistakes = 0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) particle.mistakes += labels.mistake(now[i], touches_[i].on) ? 1 : 0;
+  particle.labels += loss - loss_before;
   particle.heights = heights;
+  particle.blurred = blurred;
+  particle.push = proposal.push;
+  particle.outline = outline;
+  for (int i = 0; i < outline.size(); ++i) {
+    if (rows[static_cast<std::size_t>(i)] != particle.depths.row(i))
+      std::copy_n(rows[static_cast<std::size_t>(i)], length, particle.depths.row(i));
+  }
+  std::copy_n(now, length, particle.depths.deepest());
   return true;
 }
 

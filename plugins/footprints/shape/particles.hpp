@@ -3,6 +3,7 @@
 // (resample-move: Gilks and Berzuini 2001).
 #pragma once
 
+#include "depths.hpp"
 #include "labels.hpp"
 #include "proposals.hpp"
 #include "unseen.hpp"
@@ -36,8 +37,7 @@ struct Particle : State {
   int mistakes = 0;      ///< touches so far that it has wrong
   double labels = 0.0;   ///< what the labels of all of them say against it
   double heights = 0.0;  ///< what their heights say for it
-  Holders holders;       ///< of each touch
-  std::vector<LabelModel::Step> depths;
+  Depths depths;         ///< of each touch
 };
 
 class Particles {
@@ -84,23 +84,20 @@ class Particles {
   const std::vector<Particle>& particles() const { return particles_; }
 
  private:
-  struct View {
-    LabelModel::Step depth;
-    std::uint16_t holders;
-  };
-  View look(const Outline& outline, const Target& place, const LabelModel& labels) const;
-  /// The same of a touch that had these holders, where one piece is not what it was, and labels do not blur.
-  static View look_again(std::uint16_t holders, const Outline& outline, int only, const Target& place);
   /// So many of the outlines, evenly among all.
   std::vector<const Outline*> some(int count) const;
   void resample(const std::vector<double>& weights, double sum);
   void find(std::size_t number, const Unseen::Holding& unseen, double something_new);
   void move(Particle& particle);
   bool weigh(Particle& particle, const Proposal& proposal, bool blurred);
-  Target seen_from(const State& state, std::size_t touch) const {
-    const Target& place = touches_[touch].place;
-    return static_cast<int>(touch) < state.push.before ? state.push.now(place) : place;
-  }
+  /// How deep the latest touch lies in its pieces.
+  void look(Particle& particle) const;
+  /// What the heights say for so many pieces with these rows of depths.
+  double evidence(const LabelModel::Step* const* rows, int pieces);
+  /// The touches as seen after a push.
+  const Places& seen_after(const Push& push);
+  /// Whether each piece holds a touch of an object.
+  bool all_touched(const LabelModel::Step* const* rows, int pieces) const;
   const LabelModel& labels(bool blurred) const { return blurred ? blurred_ : exact_; }
 
   OutlinePrior prior_;
@@ -114,13 +111,14 @@ class Particles {
   long tried_ = 0;
   long moved_ = 0;
 
-  std::vector<float> xs_, ys_;  ///< of the touches, as made: to see quickly which are near
+  Places places_;                          ///< of the touches, as made
+  std::vector<LabelModel::Step> objects_;  ///< of each touch: all bits where it is of an object, or none
 
   // What moves work with, kept so that it need not be made for each of them.
   Proposal proposal_;
-  std::vector<std::size_t> changed_;
-  std::vector<View> views_;
-  Holders holders_;
+  Depths depths_;
+  Places pushed_places_;
+  std::vector<std::uint16_t> holders_;
 };
 
 }  // namespace palpate::footprints

@@ -115,36 +115,38 @@ Target seen_from(const State& state, const std::vector<Touch>& touches, std::siz
 }
 
 /// The density of a centre so that a touch of an object, any of them, lies anywhere in the form: per square metre.
-double density_about_touches(const State& state, const Seen& seen, const Form& form) {
+double density_about_touches(const State& state, const std::vector<Touch>& touches, const Form& form) {
   int all = 0;
   int held = 0;
-  for (std::size_t i = 0; i < seen.touches->size(); ++i) {
-    if (!(*seen.touches)[i].on) continue;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    if (!touches[i].on) continue;
     ++all;
-    const Target place = seen_from(state, *seen.touches, i);
+    const Target place = seen_from(state, touches, i);
     held += form.contains(place.x, place.y) ? 1 : 0;
   }
   return held / (all * form.extent());
 }
 
 /// How much more often the prior has the centre of a form than it is drawn about a touch.
-double correction_about(const State& state, const OutlinePrior& prior, const Seen& seen, const Form& form) {
-  const double drawn = density_about_touches(state, seen, form);
+double correction_about(const State& state, const OutlinePrior& prior, const std::vector<Touch>& touches,
+                        const Form& form) {
+  const double drawn = density_about_touches(state, touches, form);
   return drawn > 0.0 ? prior.centre_density(form) / drawn : 0.0;
 }
 
 /// A piece without a hole about a touch of an object; false where there is none.
-bool draw_about(Piece& out, const State& state, const OutlinePrior& prior, const Seen& seen, Random& random) {
+bool draw_about(Piece& out, const State& state, const OutlinePrior& prior, const std::vector<Touch>& touches,
+                Random& random) {
   std::size_t all = 0;
-  for (const Touch& touch : *seen.touches) all += touch.on ? 1 : 0;
+  for (const Touch& touch : touches) all += touch.on ? 1 : 0;
   if (all == 0) return false;
   std::size_t one = random.index(all);
   std::size_t number = 0;
   for (;; ++number) {
-    if ((*seen.touches)[number].on && one-- == 0) break;
+    if (touches[number].on && one-- == 0) break;
   }
   out = prior.draw_piece(random);
-  const Target place = seen_from(state, *seen.touches, number);
+  const Target place = seen_from(state, touches, number);
   Form about = out.form;
   about.x = place.x;
   about.y = place.y;
@@ -156,48 +158,47 @@ bool draw_about(Piece& out, const State& state, const OutlinePrior& prior, const
 }
 
 /// Touches of the desk within a form.
-std::vector<Target> wrongly_held(const State& state, const Seen& seen, const Form& form) {
+std::vector<Target> wrongly_held(const State& state, const std::vector<Touch>& touches, const Form& form) {
   std::vector<Target> out;
-  for (std::size_t i = 0; i < seen.touches->size(); ++i) {
-    if ((*seen.touches)[i].on) continue;
-    const Target place = seen_from(state, *seen.touches, i);
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    if (touches[i].on) continue;
+    const Target place = seen_from(state, touches, i);
     if (form.contains(place.x, place.y)) out.push_back(place);
   }
   return out;
 }
 
-void add_piece(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
+void add_piece(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
   const int pieces = out.outline.size();
   if (pieces >= prior.settings().most) return;
   Piece piece;
-  if (!draw_about(piece, out, prior, seen, random)) return;
+  if (!draw_about(piece, out, prior, touches, random)) return;
   // Pieces with a hole come by way of a piece without.
   out.correction = prior.settings().expected / (pieces + 1) * prior.whole(piece.form) *
-                   correction_about(out, prior, seen, piece.form);
-  out.outline.add(piece);
-  out.changes_about(piece.form);
+                   correction_about(out, prior, touches, piece.form);
+  out.add(piece);
 }
 
-void remove_piece(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
+void remove_piece(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
   const int pieces = out.outline.size();
   if (pieces == 0) return;
   const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
   const Piece piece = out.outline[one];
   if (piece.hollow) return;
-  const double way_back = prior.whole(piece.form) * correction_about(out, prior, seen, piece.form);
+  const double way_back = prior.whole(piece.form) * correction_about(out, prior, touches, piece.form);
   if (!(way_back > 0.0)) return;
   out.correction = pieces / (prior.settings().expected * way_back);
-  out.changes_about(piece.form);
-  if (one != pieces - 1) out.changes_about(out.outline[pieces - 1].form);
-  out.outline.remove(one);
+  out.remove(one);
 }
 
-void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const Seen& seen, Random& random) {
+void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const std::vector<Touch>& touches,
+                 Random& random) {
   const int pieces = out.outline.size();
   if (pieces == 0) return;
-  Piece& piece = out.outline[static_cast<int>(random.index(static_cast<std::size_t>(pieces)))];
+  const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
+  Piece& piece = out.outline[one];
   if (piece.hollow == adds || piece.form.a < prior.settings().smallest) return;
-  const std::vector<Target> near = wrongly_held(out, seen, piece.form);
+  const std::vector<Target> near = wrongly_held(out, touches, piece.form);
   if (adds) {
     piece.hole = prior.draw_hole(piece.form, random);
     draw_near(piece.hole, near, random);
@@ -207,7 +208,7 @@ void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const Seen
   if (!(by_prior > 0.0)) return;
   const double correction = odds * correction_near(by_prior, near, piece.hole);
   out.correction = adds ? correction : 1.0 / correction;
-  out.changes_about(piece.form);
+  out.changes(one);
   piece.hollow = adds;
   piece.density = prior.density(piece);
 }
@@ -219,8 +220,7 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
   Piece& piece = out.outline[one];
   const double chosen = choice_of(out.outline, one, here);
   const double before = piece.density;
-  out.changes_about(piece.form);
-  out.only = one;
+  out.changes(one);
   const double target = piece.hollow ? random.uniform() : 0.0;
   Form& form = target < 0.5 ? piece.form : piece.hole;
   const bool both = target > 0.8;
@@ -246,22 +246,21 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
   } else {
     change_family(form);
   }
-  out.changes_about(piece.form);
   piece.density = out.correction > 0.0 ? prior.density(piece) : 0.0;
   out.correction *= piece.density / before * choice_of(out.outline, one, here) / chosen;
 }
 
 /// Takes a new piece for one of them.
-void replace(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
+void replace(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
   const int pieces = out.outline.size();
   if (pieces == 0) return;
-  Piece& piece = out.outline[static_cast<int>(random.index(static_cast<std::size_t>(pieces)))];
+  const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
+  Piece& piece = out.outline[one];
   if (piece.hollow) return;
-  const double before = prior.whole(piece.form) * correction_about(out, prior, seen, piece.form);
-  out.changes_about(piece.form);
-  if (!(before > 0.0) || !draw_about(piece, out, prior, seen, random)) return;
-  out.changes_about(piece.form);
-  out.correction = prior.whole(piece.form) * correction_about(out, prior, seen, piece.form) / before;
+  const double before = prior.whole(piece.form) * correction_about(out, prior, touches, piece.form);
+  out.changes(one);
+  if (!(before > 0.0) || !draw_about(piece, out, prior, touches, random)) return;
+  out.correction = prior.whole(piece.form) * correction_about(out, prior, touches, piece.form) / before;
 }
 
 // Shares of the moves that are not of a form. What leads there is proposed as often as what leads back.
@@ -273,22 +272,22 @@ constexpr double kForm = 1.0 - 2.0 * (kAddOrRemove + kHoleOrFill + kSplitOrMerge
 
 }  // namespace
 
-void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
+void propose(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
   using Kind = Proposal::Kind;
   double which = random.uniform();
   const auto falls = [&](Kind kind, double share) {
     out.kind = kind;
     return (which -= share) < 0.0;
   };
-  if (falls(Kind::replace, kReplace)) return replace(out, prior, seen, random);
-  if (falls(Kind::add, kAddOrRemove)) return add_piece(out, prior, seen, random);
-  if (falls(Kind::remove, kAddOrRemove)) return remove_piece(out, prior, seen, random);
-  if (falls(Kind::make_hole, kHoleOrFill)) return change_hole(out, true, prior, seen, random);
-  if (falls(Kind::fill_hole, kHoleOrFill)) return change_hole(out, false, prior, seen, random);
+  if (falls(Kind::replace, kReplace)) return replace(out, prior, touches, random);
+  if (falls(Kind::add, kAddOrRemove)) return add_piece(out, prior, touches, random);
+  if (falls(Kind::remove, kAddOrRemove)) return remove_piece(out, prior, touches, random);
+  if (falls(Kind::make_hole, kHoleOrFill)) return change_hole(out, true, prior, touches, random);
+  if (falls(Kind::fill_hole, kHoleOrFill)) return change_hole(out, false, prior, touches, random);
   if (falls(Kind::split, kSplitOrMerge)) return propose_split(out, prior, random);
   if (falls(Kind::merge, kSplitOrMerge)) return propose_merge(out, prior, random);
   out.kind = Kind::change_form;
-  const Target here = seen.touches->empty() ? Target{} : seen.touches->back().place;
+  const Target here = touches.empty() ? Target{} : touches.back().place;
   change_form(out, prior, here, which / kForm, random);
 }
 

@@ -15,9 +15,6 @@
 
 namespace palpate::footprints {
 
-/// What an outline says of each touch: bit i is set where piece i holds it.
-using Holders = std::vector<std::uint16_t>;
-
 /// An outline, and where it was before.
 struct State {
   Outline outline;
@@ -32,34 +29,37 @@ struct Proposal : State {
   Kind kind = Kind::change_form;
   double correction = 0.0;
 
-  /// Beyond these circles the outline holds what it held, each place by the same pieces.
-  struct Circle {
-    double x, y, radius;
-  };
-  static constexpr int kMostCircles = 4;
-  std::array<Circle, kMostCircles> circles;
-  int changed = 0;          ///< how many of them
-  bool everywhere = false;  ///< there is no such beyond
-  int only = -1;            ///< all other pieces are what they were; -1: that is not said
+  /// Which piece each one was before; kNew: none.
+  static constexpr int kNew = -1;
+  std::array<int, Outline::kMost> was;
+  /// Touches from `since` on, and before `until`, are seen otherwise, or by another model of labels: of these, what any
+  /// piece holds may have changed.
+  int since = 0, until = 0;
 
-  void changes_about(const Form& form) {
-    circles[static_cast<std::size_t>(changed++)] = {form.x, form.y, form.radius()};
+  /// It is this state, so far, and there is no way.
+  void begin(const State& from) {
+    static_cast<State&>(*this) = from;
+    correction = 0.0;
+    since = until = 0;
+    for (int i = 0; i < outline.size(); ++i) was[static_cast<std::size_t>(i)] = i;
   }
-};
-
-/// What the moves are told of the touches: where each is seen by the outline that is to be moved, its label, and who
-/// holds it.
-struct Seen {
-  const std::vector<Touch>* touches;
-  const Holders* holders;
+  void changes(int piece) { was[static_cast<std::size_t>(piece)] = kNew; }
+  void add(const Piece& piece) {
+    changes(outline.size());
+    outline.add(piece);
+  }
+  void remove(int piece) {
+    was[static_cast<std::size_t>(piece)] = was[static_cast<std::size_t>(outline.size() - 1)];
+    outline.remove(piece);
+  }
 };
 
 /// Shifts, turns or stretches a form, moves one of its sides, changes its family; adds a piece or takes one away, makes
 /// a hole or fills it, splits a piece or merges two, or draws one anew. A piece is added where the prior would have it
 /// or, one time in two, about a touch of an object that no piece holds, a hole about one of the desk that the piece
 /// holds: there they may set a label right. Pieces near the latest touch are moved more often, as they know least of
-/// it. `out` is `from` at first.
-void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random);
+/// it. `out` has just begun.
+void propose(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random);
 
 /// Two of the moves of propose(): a piece is split into two, or two that are near each other are merged.
 void propose_split(Proposal& out, const OutlinePrior& prior, Random& random);

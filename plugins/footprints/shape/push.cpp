@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate::footprints {
 namespace {
@@ -37,7 +38,6 @@ Push some_push(const Area& area, Random& random) {
 void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double rate, Random& random) {
   const State from = out;
   out.kind = Proposal::Kind::push;
-  out.everywhere = true;
   const bool stays_before = random.uniform() < 0.5;
   if (random.uniform() < 0.5) {
     // A push that was found out late has been fitted over by then: one time in two it is looked for among the latest.
@@ -73,6 +73,14 @@ void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double 
       if (stays_before) out.outline = out.push.now(from.push.then(from.outline));
     }
     out.correction = density(out.push) / density(from.push);
+  }
+  // An outline that moves along with the touches before is to them what it was, one that stays to those after.
+  out.since = std::max(out.push.before, from.push.before);
+  out.until = touches;
+  if (out.push && from.push && out.push.before != from.push.before) {
+    out.until = std::exchange(out.since, std::min(out.push.before, from.push.before));
+  } else if (!stays_before) {
+    out.until = std::exchange(out.since, 0);
   }
   for (int i = 0; i < out.outline.size(); ++i) {
     Piece& piece = out.outline[i];

@@ -163,8 +163,8 @@ void propose_split(Proposal& out, const OutlinePrior& prior, Random& random) {
   second.density = prior.density(second);
   if (first.density <= 0.0 || second.density <= 0.0) return;
   out.outline[one] = first;
-  out.outline.add(second);
-  for (const Form& form : {whole.form, first.form, second.form}) out.changes_about(form);
+  out.changes(one);
+  out.add(second);
   out.correction = correction_of_split(prior, out.outline, {one, pieces}, whole, pieces);
 }
 
@@ -181,10 +181,9 @@ void propose_merge(Proposal& out, const OutlinePrior& prior, Random& random) {
   if (!in_order(whole.form)) return;
   whole.density = prior.density(whole);
   if (whole.density <= 0.0) return;
-  for (const Form& form : {whole.form, first, second}) out.changes_about(form);
-  if (parts.second != pieces - 1) out.changes_about(before[pieces - 1].form);
   out.outline[parts.first] = whole;
-  out.outline.remove(parts.second);
+  out.changes(parts.first);
+  out.remove(parts.second);
   out.correction = 1.0 / correction_of_split(prior, before, parts, whole, pieces - 1);
 }
 

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Loops that are compiled twice, for processors that have wide vectors and for those that have not. What they compute
+// is the same to the last bit: products are not fused with sums.
+#pragma once
+
+#if defined(__x86_64__)
+#define PALPATE_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define PALPATE_CLONES
+#endif
+// What they call is compiled along with them.
+#define PALPATE_INLINED __attribute__((always_inline)) inline
