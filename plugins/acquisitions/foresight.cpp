@@ -8,13 +8,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace palpate::acquisitions {
 
 #if defined(__x86_64__)
-// Bits are counted by the machine where it can: nothing else is as much of the work.
-#define PALPATE_COUNTS_BITS __attribute__((target_clones("popcnt", "default")))
+// Bits are counted by as many at a time as the machine can: nothing else is as much of the work.
+#define PALPATE_COUNTS_BITS __attribute__((target_clones("avx2", "default")))
 #else
 #define PALPATE_COUNTS_BITS
 #endif
@@ -24,7 +25,7 @@ namespace {
 using Words = Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// How many outlines hold each place.
-PALPATE_COUNTS_BITS std::vector<int> count(const Words& holds) {
+std::vector<int> count(const Words& holds) {
   std::vector<int> out(static_cast<std::size_t>(holds.cols()), 0);
   for (Eigen::Index i = 0; i < holds.cols(); ++i) {
     for (Eigen::Index word = 0; word < holds.rows(); ++word)
@@ -33,20 +34,61 @@ PALPATE_COUNTS_BITS std::vector<int> count(const Words& holds) {
   return out;
 }
 
+/// Some places, of which the same word of many lies side by side: covariances with several are computed at once.
+struct Others {
+  static constexpr int kAtOnce = 4;
+
+  Others(const Words& holds, const std::vector<int>& held, const std::vector<int>& places)
+      : words(static_cast<int>(holds.rows())),
+        length((static_cast<int>(places.size()) + kAtOnce - 1) / kAtOnce * kAtOnce),
+        bits(static_cast<std::size_t>(words * length), 0),
+        held_by(static_cast<std::size_t>(length), 0.0) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      held_by[i] = held[static_cast<std::size_t>(places[i])];
+      for (int word = 0; word < words; ++word)
+        bits[static_cast<std::size_t>(word * length) + i] = holds(word, places[i]);
+    }
+  }
+
+  int words;
+  int length;                       ///< whole multiples of kAtOnce; places that no outline holds fill it up
+  std::vector<std::uint64_t> bits;  ///< words x length
+  std::vector<double> held_by;      ///< outlines
+};
+
 /// The sum of the squares of the covariances of one place with others, times the number of outlines.
-PALPATE_COUNTS_BITS double squares(const Words& holds, int outlines, const std::vector<int>& held, int one,
-                                   const std::vector<int>& others) {
-  double sum = 0.0;
-  const double share = static_cast<double>(held[static_cast<std::size_t>(one)]) / outlines;
-  const std::uint64_t* here = holds.col(one).data();
-  for (const int other : others) {
-    const std::uint64_t* there = holds.col(other).data();
-    int both = 0;
-    for (Eigen::Index word = 0; word < holds.rows(); ++word) both += __builtin_popcountll(here[word] & there[word]);
-    const double covariance = both - share * held[static_cast<std::size_t>(other)];
+PALPATE_COUNTS_BITS double squares(const std::uint64_t* here, int held, int outlines, const Others& others) {
+  using Bits = std::uint64_t __attribute__((vector_size(8 * Others::kAtOnce)));
+  using Reals = double __attribute__((vector_size(8 * Others::kAtOnce)));
+  constexpr int kWords = 16;  // of so many the bits of a byte are counted within a byte
+  const double share = static_cast<double>(held) / outlines;
+  Reals sum{};
+  for (int from = 0; from < others.length; from += Others::kAtOnce) {
+    Bits both{};
+    for (int first = 0; first < others.words; first += kWords) {
+      Bits bytes{};
+      for (int word = first; word < std::min(first + kWords, others.words); ++word) {
+        Bits bits;
+        std::memcpy(&bits, &others.bits[static_cast<std::size_t>(word * others.length + from)], sizeof(bits));
+        bits &= here[word];
+        bits -= (bits >> 1) & 0x5555555555555555U;
+        bits = (bits & 0x3333333333333333U) + ((bits >> 2) & 0x3333333333333333U);
+        bytes += (bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0FU;
+      }
+      bytes = (bytes & 0x00FF00FF00FF00FFU) + ((bytes >> 8) & 0x00FF00FF00FF00FFU);
+      bytes += bytes >> 16;
+      both += (bytes + (bytes >> 32)) & 0xFFFFU;
+    }
+    // As fractions of 2^52, of which whole numbers are the last bits.
+    both |= 0x4330000000000000U;
+    Reals covariance;
+    Reals of_others;
+    std::memcpy(&covariance, &both, sizeof(covariance));
+    std::memcpy(&of_others, &others.held_by[static_cast<std::size_t>(from)], sizeof(of_others));
+    covariance = covariance - 0x1.0p52 - share * of_others;
     sum += covariance * covariance;
   }
-  return sum;
+  return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
 /// At most so many, evenly among all.
@@ -110,9 +152,11 @@ class Foresight final : public Acquisition {
     out = options_.find * sample.to_find;
     if (places.empty()) return;
     const double each = extent_of_place * static_cast<double>(open.size()) / static_cast<double>(places.size());
+    const Others others(sample.holds, held, places);
     for (const int x : some_of(open, kTaps)) {
-      const double of_x = held[static_cast<std::size_t>(x)];
-      out(x) += each * squares(sample.holds, sample.count, held, x, places) / (of_x * (sample.count - of_x));
+      const int of_x = held[static_cast<std::size_t>(x)];
+      out(x) += each * squares(sample.holds.col(x).data(), of_x, sample.count, others) /
+                (static_cast<double>(of_x) * (sample.count - of_x));
     }
   }
 
