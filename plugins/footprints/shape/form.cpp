@@ -32,24 +32,22 @@ void Form::order_axes() {
   std::tie(cosine, sine) = std::pair(-sine, cosine);
 }
 
-bool meet(const Form& one, const Form& other) {
+bool no_line_between(const Form& one, const Form& other) {
   const double dx = other.x - one.x;
   const double dy = other.y - one.y;
-  const auto apart = [&](double x, double y) {
-    return std::abs(dx * x + dy * y) > one.reach_along(x, y) + other.reach_along(x, y);
-  };
-  // The circles about them, and those in them, tell of most.
-  const double square = dx * dx + dy * dy;
-  const double within = one.b + other.b;
-  if (square <= within * within) return true;
-  const double beyond = one.a + other.a;
-  if (square > 2.0 * beyond * beyond) return false;
-  const double distance = std::sqrt(square);
-  if (distance > 0.0 && apart(dx / distance, dy / distance)) return false;
-  for (const Form* form : {&one, &other}) {
-    if (apart(form->cosine, form->sine) || apart(-form->sine, form->cosine)) return false;
-  }
-  return true;
+  // The way from centre to centre along the axes of both, and the axes of one along those of the other.
+  const double u = one.cosine * dx + one.sine * dy;
+  const double v = one.cosine * dy - one.sine * dx;
+  const double other_u = other.cosine * dx + other.sine * dy;
+  const double other_v = other.cosine * dy - other.sine * dx;
+  if (dx * dx + dy * dy > one.reach(one.a * u, one.b * v) + other.reach(other.a * other_u, other.b * other_v))
+    return false;
+  const double c = one.cosine * other.cosine + one.sine * other.sine;
+  const double s = one.cosine * other.sine - one.sine * other.cosine;
+  return std::abs(u) <= one.a + other.reach(other.a * c, other.b * s) &&
+         std::abs(v) <= one.b + other.reach(other.a * s, other.b * c) &&
+         std::abs(other_u) <= other.a + one.reach(one.a * c, one.b * s) &&
+         std::abs(other_v) <= other.b + one.reach(one.a * s, one.b * c);
 }
 
 }  // namespace palpate::footprints

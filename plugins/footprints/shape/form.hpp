@@ -70,14 +70,26 @@ struct Form {
   /// Names the longer axis `a` again, the shape stays.
   void order_axes();
 
- private:
+  /// How far it reaches in a direction, given so much of its half axes along that.
   double reach(double along, double across) const {
     return family == Family::box ? std::abs(along) + std::abs(across) : std::sqrt(along * along + across * across);
   }
 };
 
+/// Whether none of the lines along an axis of one, or across the way from one to the other, has them on either side.
+bool no_line_between(const Form& one, const Form& other);
+
 /// Whether two forms have a place in common; of ellipses that pass close by each other it may say so too early.
-bool meet(const Form& one, const Form& other);
+inline bool meet(const Form& one, const Form& other) {
+  // The circles about them, and those in them, tell of most.
+  const double dx = other.x - one.x;
+  const double dy = other.y - one.y;
+  const double square = dx * dx + dy * dy;
+  const double within = one.b + other.b;
+  if (square <= within * within) return true;
+  const double beyond = one.a + other.a;
+  return square <= 2.0 * beyond * beyond && no_line_between(one, other);
+}
 
 /// The cuts of a form along x: what they have in common is computed once.
 class Cuts {
@@ -98,6 +110,10 @@ class Cuts {
     const double half = half_[0] * std::sqrt(rest);
     return {middle - half, middle + half};
   }
+
+  /// Of cuts at whole numbers from `begin` on, before `end`: the whole numbers within, at least 0 and below `columns`,
+  /// from one on and before another; none where that is not above it.
+  void rows(int begin, int end, int columns, int* begins, int* ends) const;
 
   /// No cut lies farther from the centre along y.
   double y() const { return y_; }

@@ -7,6 +7,7 @@
 #include <palpate/types.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -35,7 +36,6 @@ struct Axis {
   /// Those of them between two ends, in steps from the first.
   Cells within(double low, double high) const { return {not_below(low), std::min(count, above(high))}; }
 
- private:
   /// The first whole number that is not below `t`, none of them negative, and the first above it. (Without SSE4.1
   /// std::ceil and std::floor are calls.)
   static int not_below(double t) { return t <= 0.0 ? 0 : above(t) - (static_cast<double>(above(t) - 1) == t ? 1 : 0); }
@@ -66,44 +66,50 @@ class LatticeCounts {
   }
 
   void add(const Outline& outline, double weight = 1.0) {
-    if (outline.size() == 1 && !outline[0].hollow) {
-      const Cuts cuts = in_steps(outline[0].form);
-      const Cells rows = rows_of(cuts);
-      for (int row = rows.begin; row < rows.end; ++row) mark(row, cells(cuts, row), weight);
-      return;
-    }
-    for_each_run(outline, [&](int row, const Cells& cells) { mark(row, cells, weight); });
+    for_each_run(outline, [&](int row, const Cells& cells) {
+      marks_(cells.begin, row) += weight;
+      marks_(cells.end, row) -= weight;
+    });
   }
 
   /// Calls visit(row, cells) for all that the outline holds, each place once.
   template <class Visit>
   void for_each_run(const Outline& outline, const Visit& visit) {
-    parts_.clear();
-    Cells rows{y_.count, 0};
-    for (const Piece& piece : outline) {
-      const Cuts cuts = in_steps(piece.form);
-      parts_.push_back({cuts, piece.hollow ? in_steps(piece.hole) : cuts, rows_of(cuts), piece.hollow});
-      rows = {std::min(rows.begin, parts_.back().rows.begin), std::max(rows.end, parts_.back().rows.end)};
+    constexpr std::size_t kForms = 2 * Outline::kMost;
+    std::array<Cells, kForms> rows;  // of each form and hole
+    Cells all{y_.count, 0};
+    for (int i = 0; i < outline.size(); ++i) {
+      const auto at = static_cast<std::size_t>(2 * i);
+      rows[at] = cut(outline[i].form, at);
+      rows[at + 1] = outline[i].hollow ? cut(outline[i].hole, at + 1) : Cells{0, 0};
+      all = {std::min(all.begin, rows[at].begin), std::max(all.end, rows[at].end)};
     }
-    for (int row = rows.begin; row < rows.end; ++row) {
-      runs_.clear();
-      for (const Part& part : parts_) {
-        if (row < part.rows.begin || row >= part.rows.end) continue;
-        const Cells whole = cells(part.cuts, row);
-        const Cells hole = part.hollow ? cells(part.hole, row) : Cells{0, 0};
+    for (int row = all.begin; row < all.end; ++row) {
+      std::array<Cells, kForms> runs;  // by their beginnings
+      std::size_t count = 0;
+      const auto add = [&](const Cells& run) {
+        if (run.begin >= run.end) return;
+        std::size_t place = count++;
+        for (; place > 0 && runs[place - 1].begin > run.begin; --place) runs[place] = runs[place - 1];
+        runs[place] = run;
+      };
+      for (std::size_t at = 0; at < static_cast<std::size_t>(2 * outline.size()); at += 2) {
+        if (row < rows[at].begin || row >= rows[at].end) continue;
+        const Cells whole = cells(at, row);
+        const bool hollow = row >= rows[at + 1].begin && row < rows[at + 1].end;
+        const Cells hole = hollow ? cells(at + 1, row) : Cells{0, 0};
         if (hole.begin >= hole.end) {
-          add_run(whole);
+          add(whole);
         } else {
-          add_run({whole.begin, std::min(whole.end, hole.begin)});
-          add_run({std::max(whole.begin, hole.end), whole.end});
+          add({whole.begin, std::min(whole.end, hole.begin)});
+          add({std::max(whole.begin, hole.end), whole.end});
         }
       }
-      // Few, and mostly in order.
       int reached = 0;
-      for (const Cells& run : runs_) {
-        if (run.end <= reached) continue;
-        visit(row, Cells{std::max(run.begin, reached), run.end});
-        reached = run.end;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (runs[i].end <= reached) continue;
+        visit(row, Cells{std::max(runs[i].begin, reached), runs[i].end});
+        reached = runs[i].end;
       }
     }
   }
@@ -119,40 +125,29 @@ class LatticeCounts {
   }
 
  private:
-  LatticeCounts(const Axis& x, const Axis& y) : x_(x), y_(y), marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)) {}
+  LatticeCounts(const Axis& x, const Axis& y)
+      : x_(x),
+        y_(y),
+        marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)),
+        begins_(static_cast<std::size_t>(2 * Outline::kMost * y.count)),
+        ends_(begins_.size()) {}
 
-  // Cuts in steps of the lattice, from its first place on.
-  Cells rows_of(const Cuts& cuts) const { return y_.within(cuts.y() - cuts.reach(), cuts.y() + cuts.reach()); }
-  Cells cells(const Cuts& cuts, int row) const {
-    const auto [low, high] = cuts.at(row);
-    return low > high ? Cells{0, 0} : x_.within(low, high);
+  /// The rows that a form may reach into, and, in the place for it, what it holds of them.
+  Cells cut(const Form& form, std::size_t at) {
+    const Cuts cuts = Cuts(form).scaled(x_.first, x_.step, y_.first, y_.step);
+    const Cells rows = y_.within(cuts.y() - cuts.reach(), cuts.y() + cuts.reach());
+    const std::size_t from = at * static_cast<std::size_t>(y_.count);
+    cuts.rows(rows.begin, rows.end, x_.count, begins_.data() + from, ends_.data() + from);
+    return rows;
   }
-
-  Cuts in_steps(const Form& form) const { return Cuts(form).scaled(x_.first, x_.step, y_.first, y_.step); }
-
-  void add_run(const Cells& run) {
-    if (run.begin >= run.end) return;
-    auto place = runs_.end();
-    while (place != runs_.begin() && (place - 1)->begin > run.begin) --place;
-    runs_.insert(place, run);
+  Cells cells(std::size_t at, int row) const {
+    const std::size_t i = at * static_cast<std::size_t>(y_.count) + static_cast<std::size_t>(row);
+    return {begins_[i], ends_[i]};
   }
-
-  void mark(int row, const Cells& cells, double weight) {
-    if (cells.begin >= cells.end) return;
-    marks_(cells.begin, row) += weight;
-    marks_(cells.end, row) -= weight;
-  }
-
-  struct Part {
-    Cuts cuts, hole;
-    Cells rows;
-    bool hollow;
-  };
 
   Axis x_, y_;
   Eigen::MatrixXd marks_;
-  std::vector<Part> parts_;  ///< of the outline that is looked at, and the runs of a row of it
-  std::vector<Cells> runs_;
+  std::vector<int> begins_, ends_;  ///< of the outline that is looked at, for each form and hole, in each row
 };
 
 }  // namespace palpate::footprints

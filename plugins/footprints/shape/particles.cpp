@@ -352,14 +352,21 @@ void Particles::sample(const PointsView& places, int count, OutlineSample& out) 
     const auto word = static_cast<Eigen::Index>(k / 64);
     const std::uint64_t bit = std::uint64_t{1} << (k % 64);
     if (lattice) {
+      // Where a row of places begins and ends; what lies between is filled in below.
       lattice->for_each_run(outline, [&](int row, const Cells& cells) {
-        for (int i = cells.begin; i < cells.end; ++i) out.holds(word, row * lattice->columns() + i) |= bit;
+        const int first = row * lattice->columns();
+        out.holds(word, first + cells.begin) ^= bit;
+        if (cells.end < lattice->columns()) out.holds(word, first + cells.end) ^= bit;
       });
       continue;
     }
     for (Eigen::Index i = 0; i < places.rows(); ++i) {
       if (outline.contains(places(i, 0), places(i, 1))) out.holds(word, i) |= bit;
     }
+  }
+  for (Eigen::Index i = 1; lattice && i < places.rows(); ++i) {
+    if (i % lattice->columns() == 0) continue;
+    for (Eigen::Index word = 0; word < out.holds.rows(); ++word) out.holds(word, i) ^= out.holds(word, i - 1);
   }
   out.to_find.resize(places.rows());
   unseen_.to_find(places, out.to_find);
