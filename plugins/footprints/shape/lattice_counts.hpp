@@ -7,9 +7,10 @@
 #include <palpate/types.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace palpate::footprints {
@@ -65,52 +66,63 @@ class LatticeCounts {
     return LatticeCounts(x, y);
   }
 
+  /// Where a row of what an outline holds begins and ends, among the marks.
+  struct Run {
+    int begin;
+    int end;
+  };
+
   void add(const Outline& outline, double weight = 1.0) {
-    for_each_run(outline, [&](int row, const Cells& cells) {
-      marks_(cells.begin, row) += weight;
-      marks_(cells.end, row) -= weight;
-    });
+    for_each_run(outline, [&](int row, const Cells& cells) { mark(run(row, cells), weight); });
+  }
+  /// The same in two steps, for what is added again and again.
+  void append_runs(const Outline& outline, std::vector<Run>& out) {
+    for_each_run(outline, [&](int row, const Cells& cells) { out.push_back(run(row, cells)); });
+  }
+  void add(const Run* begin, const Run* end, double weight) {
+    for (const Run* run = begin; run != end; ++run) mark(*run, weight);
   }
 
   /// Calls visit(row, cells) for all that the outline holds, each place once.
   template <class Visit>
   void for_each_run(const Outline& outline, const Visit& visit) {
-    constexpr std::size_t kForms = 2 * Outline::kMost;
-    std::array<Cells, kForms> rows;  // of each form and hole
-    Cells all{y_.count, 0};
-    for (int i = 0; i < outline.size(); ++i) {
-      const auto at = static_cast<std::size_t>(2 * i);
-      rows[at] = cut(outline[i].form, at);
-      rows[at + 1] = outline[i].hollow ? cut(outline[i].hole, at + 1) : Cells{0, 0};
-      all = {std::min(all.begin, rows[at].begin), std::max(all.end, rows[at].end)};
+    if (outline.size() == 1 && !outline[0].hollow) {
+      const Cells rows = cut(outline[0].form, 0);
+      for (int row = rows.begin; row < rows.end; ++row) {
+        const Cells held = cells(0, row);
+        if (held.begin < held.end) visit(row, held);
+      }
+      return;
     }
-    for (int row = all.begin; row < all.end; ++row) {
-      std::array<Cells, kForms> runs;  // by their beginnings
-      std::size_t count = 0;
-      const auto add = [&](const Cells& run) {
-        if (run.begin >= run.end) return;
-        std::size_t place = count++;
-        for (; place > 0 && runs[place - 1].begin > run.begin; --place) runs[place] = runs[place - 1];
-        runs[place] = run;
-      };
-      for (std::size_t at = 0; at < static_cast<std::size_t>(2 * outline.size()); at += 2) {
-        if (row < rows[at].begin || row >= rows[at].end) continue;
-        const Cells whole = cells(at, row);
-        const bool hollow = row >= rows[at + 1].begin && row < rows[at + 1].end;
-        const Cells hole = hollow ? cells(at + 1, row) : Cells{0, 0};
+    // A bit for each place.
+    Cells all{y_.count, 0};
+    for (const Piece& piece : outline) {
+      const Cells rows = cut(piece.form, 0);
+      const Cells rows_of_hole = piece.hollow ? cut(piece.hole, 1) : Cells{0, 0};
+      all = {std::min(all.begin, rows.begin), std::max(all.end, rows.end)};
+      for (int row = rows.begin; row < rows.end; ++row) {
+        const Cells whole = cells(0, row);
+        const bool hollow = row >= rows_of_hole.begin && row < rows_of_hole.end;
+        const Cells hole = hollow ? cells(1, row) : Cells{0, 0};
         if (hole.begin >= hole.end) {
-          add(whole);
+          hold(row, whole);
         } else {
-          add({whole.begin, std::min(whole.end, hole.begin)});
-          add({std::max(whole.begin, hole.end), whole.end});
+          hold(row, {whole.begin, std::min(whole.end, hole.begin)});
+          hold(row, {std::max(whole.begin, hole.end), whole.end});
         }
       }
-      int reached = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (runs[i].end <= reached) continue;
-        visit(row, Cells{std::max(runs[i].begin, reached), runs[i].end});
-        reached = runs[i].end;
+    }
+    for (int row = all.begin; row < all.end; ++row) {
+      int begin = -1;  // of what is held up to here
+      for (int word = 0; word < words_; ++word) {
+        const std::uint64_t held = std::exchange(held_[static_cast<std::size_t>(row * words_ + word)], 0);
+        for (std::uint64_t edges = held ^ (held << 1U | (begin >= 0 ? 1U : 0U)); edges != 0; edges &= edges - 1) {
+          const int at = word * 64 + __builtin_ctzll(edges);
+          if (begin >= 0) visit(row, Cells{begin, at});
+          begin = begin >= 0 ? -1 : at;
+        }
       }
+      if (begin >= 0) visit(row, Cells{begin, x_.count});
     }
   }
 
@@ -129,8 +141,28 @@ class LatticeCounts {
       : x_(x),
         y_(y),
         marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)),
-        begins_(static_cast<std::size_t>(2 * Outline::kMost * y.count)),
-        ends_(begins_.size()) {}
+        begins_(static_cast<std::size_t>(2 * y.count)),
+        ends_(begins_.size()),
+        words_((x.count + 63) / 64),
+        held_(static_cast<std::size_t>(words_ * y.count), 0) {}
+
+  Run run(int row, const Cells& cells) const {
+    const int first = row * (x_.count + 1);
+    return {first + cells.begin, first + cells.end};
+  }
+  void mark(const Run& run, double weight) {
+    marks_.data()[run.begin] += weight;
+    marks_.data()[run.end] -= weight;
+  }
+
+  void hold(int row, const Cells& cells) {
+    if (cells.begin >= cells.end) return;
+    const auto below = [](int count) { return count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1; };
+    for (int word = cells.begin / 64; word <= (cells.end - 1) / 64; ++word) {
+      held_[static_cast<std::size_t>(row * words_ + word)] |=
+          below(cells.end - word * 64) & ~below(std::max(cells.begin - word * 64, 0));
+    }
+  }
 
   /// The rows that a form may reach into, and, in the place for it, what it holds of them.
   Cells cut(const Form& form, std::size_t at) {
@@ -147,7 +179,9 @@ class LatticeCounts {
 
   Axis x_, y_;
   Eigen::MatrixXd marks_;
-  std::vector<int> begins_, ends_;  ///< of the outline that is looked at, for each form and hole, in each row
+  std::vector<int> begins_, ends_;   ///< of the form that is looked at, and of its hole, in each row
+  int words_;                        ///< of a row
+  std::vector<std::uint64_t> held_;  ///< by the outline that is looked at: a bit for each place
 };
 
 }  // namespace palpate::footprints

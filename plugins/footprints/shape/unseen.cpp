@@ -94,13 +94,19 @@ void Unseen::rates(const PointsView& places, VectorOut out) {
     std::fill(counted_.begin(), counted_.end(), 0);
     changed_.resize(pieces_.size());
     for (std::size_t i = 0; i < changed_.size(); ++i) changed_[i] = i;
+    runs_.clear();
+    first_run_.assign(1, 0);
+    Outline outline;
+    outline.add({});
+    for (const Piece& piece : pieces_) {
+      outline[0] = piece;
+      counts_->append_runs(outline, runs_);
+      first_run_.push_back(runs_.size());
+    }
   }
-  Outline outline;
-  outline.add({});
   for (const std::size_t i : changed_) {
     if (weights_[i] == counted_[i]) continue;
-    outline[0] = pieces_[i];
-    counts_->add(outline, static_cast<double>(weights_[i]) - counted_[i]);
+    add_runs(*counts_, i, static_cast<double>(weights_[i]) - counted_[i]);
     counted_[i] = weights_[i];
   }
   changed_.clear();
@@ -122,20 +128,33 @@ double Unseen::apart(double size) const {
   return sum;
 }
 
+void Unseen::add_runs(LatticeCounts& counts, std::size_t one, double weight) const {
+  counts.add(runs_.data() + first_run_[one], runs_.data() + first_run_[one + 1], weight);
+}
+
 void Unseen::to_find(const PointsView& places, VectorOut out) const {
   std::optional<LatticeCounts> counts = LatticeCounts::over(places);
+  const bool known = counts && counts_ && counts->same_places(*counts_);
   out.setZero();
   Outline outline;
   outline.add({});
   constexpr int kOneIn = 2;  // is asked
   int next = 0;
-  for_each([&](const Piece& piece, double expected, double apart) {
-    if (next++ % kOneIn != 0 || !(apart > 0.0)) return;
-    const double extent = kOneIn * expected * apart * piece.form.extent();
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (weights_[i] == 0 || next++ % kOneIn != 0 || !(apart_[i] > 0.0F)) continue;
+    const Piece& piece = pieces_[i];
+    const double extent = kOneIn * expected(i) * static_cast<double>(apart_[i]) * piece.form.extent();
+    if (known) {
+      add_runs(*counts, i, extent);
+      continue;
+    }
     outline[0] = piece;
-    if (counts) return counts->add(outline, extent);
+    if (counts) {
+      counts->add(outline, extent);
+      continue;
+    }
     for (Eigen::Index k = 0; k < out.size(); ++k) out(k) += outline.contains(places(k, 0), places(k, 1)) ? extent : 0.0;
-  });
+  }
   if (counts) counts->sum(out);
   out = out.cwiseMax(0.0);  // sums of both signs leave some rounding where there is nothing
 }

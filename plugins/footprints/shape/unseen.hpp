@@ -54,7 +54,7 @@ class Unseen {
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (weights_[i] > 0) visit(pieces_[i], unit_ * weights_[i], static_cast<double>(apart_[i]));
+      if (weights_[i] > 0) visit(pieces_[i], expected(i), static_cast<double>(apart_[i]));
     }
   }
   /// How many pieces at least `size` long, metres, are expected that lie apart.
@@ -70,7 +70,9 @@ class Unseen {
   using Weight = std::uint32_t;
   static constexpr Weight kWhole = 1U << 20U;
 
+  double expected(std::size_t one) const { return unit_ * weights_[one]; }
   void change(std::size_t one, Weight to);
+  void add_runs(LatticeCounts& counts, std::size_t one, double weight) const;
 
   std::vector<Piece> pieces_;
   std::vector<Weight> weights_;
@@ -78,6 +80,8 @@ class Unseen {
   Eigen::ArrayXf xs_, ys_, radii_;  ///< of their forms, to see quickly which are near
   double unit_;                     ///< what one in kWhole of a piece is expected to be there as often as
   std::optional<LatticeCounts> counts_;
+  std::vector<LatticeCounts::Run> runs_;  ///< of all pieces there, and where those of each begin
+  std::vector<std::size_t> first_run_;
   std::vector<Weight> counted_;       ///< what each piece counts for there
   std::vector<std::size_t> changed_;  ///< since then
 };
