@@ -70,6 +70,7 @@ void HeightModel::add(const Touch& touch, std::size_t number) {
     const Touch& earlier = touches_[nearest[i].second];
     neighbours.push_back({numbers_[nearest[i].second], gain(earlier, touch, kLevel), gain(earlier, touch, kSlope)});
   }
+  beside_.push_back(neighbours.empty() ? 0.0 : std::log(1.0 - kBeside + kBeside * std::exp(neighbours[0].level)));
   touches_.push_back(touch);
   numbers_.push_back(number);
 }
@@ -94,8 +95,7 @@ double HeightModel::evidence(const std::vector<std::uint16_t>& holders, int piec
       }
       if (held == 0) break;
     }
-    if (held != 0 && !neighbours_[i].empty())
-      out += part * __builtin_popcount(held) * std::log(1.0 - kBeside + kBeside * std::exp(neighbours_[i][0].level));
+    if (held != 0 && !neighbours_[i].empty()) out += part * __builtin_popcount(held) * beside_[i];
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(pieces); ++i) {
     const double most = std::max({level[i], slope[i], 0.0});

@@ -89,6 +89,7 @@ class HeightModel {
   std::vector<Touch> touches_;
   std::vector<std::size_t> numbers_;
   std::vector<std::vector<Neighbour>> neighbours_;  ///< of each of them
+  std::vector<double> beside_;  ///< how much more probable each is as the first of a piece beside the nearest of them
 };
 
 }  // namespace palpate::footprints

@@ -61,9 +61,12 @@ Form OutlinePrior::draw_form(double longest, Random& random) const {
   return out;
 }
 
+bool OutlinePrior::in_bounds(const Form& form) const {
+  return 2.0 * form.b >= settings_.smallest && form.a <= longest_ && form.a <= settings_.most_slender * form.b;
+}
+
 bool OutlinePrior::fits(const Form& form) const {
-  return 2.0 * form.b >= settings_.smallest && form.a <= longest_ && form.a <= settings_.most_slender * form.b &&
-         2.0 * form.reach_x() < settings_.area.width && 2.0 * form.reach_y() < settings_.area.depth;
+  return in_bounds(form) && 2.0 * form.reach_x() < settings_.area.width && 2.0 * form.reach_y() < settings_.area.depth;
 }
 
 Piece OutlinePrior::draw_piece(Random& random) const {
@@ -117,11 +120,12 @@ double OutlinePrior::family(const Form& form) const {
 }
 
 double OutlinePrior::centre_density(const Form& form) const {
-  if (!fits(form)) return 0.0;
+  if (!in_bounds(form)) return 0.0;
   const double reach_x = form.reach_x();
   const double reach_y = form.reach_y();
   const double width = settings_.area.width;
   const double depth = settings_.area.depth;
+  if (!(2.0 * reach_x < width && 2.0 * reach_y < depth)) return 0.0;
   if (form.x < reach_x || form.x + reach_x > width || form.y < reach_y || form.y + reach_y > depth) return 0.0;
   return 1.0 / ((width - 2.0 * reach_x) * (depth - 2.0 * reach_y));
 }

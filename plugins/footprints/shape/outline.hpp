@@ -106,7 +106,8 @@ class OutlinePrior {
   /// Family, half axes up to `longest` and direction, at the origin.
   Form draw_form(double longest, Random& random) const;
   double family(const Form& form) const;
-  /// Whether it keeps the bounds and there is room for it.
+  /// Whether it keeps the bounds of lengths and widths, and, to fit, whether there is room for it.
+  bool in_bounds(const Form& form) const;
   bool fits(const Form& form) const;
 
   Settings settings_;

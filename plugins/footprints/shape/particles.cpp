@@ -253,8 +253,10 @@ void Particles::move(Particle& particle) {
 bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred) {
   const LabelModel& labels = this->labels(blurred);
   const LabelModel& labels_before = this->labels(particle.blurred);
+  const double ratio = proposal.correction / (1.0 - random_.uniform());
+  if (particle.labels == 0.0 && ratio < 1.0) return false;  // without the logarithm
   // So much more loss is allowed.
-  const double allowed = std::log(proposal.correction / (1.0 - random_.uniform()));
+  const double allowed = std::log(ratio);
   if (allowed + particle.labels < 0.0) return false;
   const Outline& outline = proposal.outline;
   const int length = places_.length();
@@ -304,8 +306,14 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     heights = evidence(rows.data(), outline.size());
     if (heights < particle.heights && std::log(1.0 - random_.uniform()) > heights - particle.heights) return false;
   }
-  particle.mistakes = 0;
-  for (std::size_t i = 0; i < touches_.size(); ++i) particle.mistakes += labels.mistake(now[i], touches_[i].on) ? 1 : 0;
+  if (labelled_otherwise || blurred != particle.blurred) {
+    for (int touch = 0; touch < places.size(); ++touch) {
+      if (now[touch] == before[touch] && blurred == particle.blurred) continue;
+      const bool on = objects_[static_cast<std::size_t>(touch)] != 0;
+      particle.mistakes +=
+          (labels.mistake(now[touch], on) ? 1 : 0) - (labels_before.mistake(before[touch], on) ? 1 : 0);
+    }
+  }
   particle.labels += loss - loss_before;
   particle.heights = heights;
   particle.blurred = blurred;

@@ -28,25 +28,34 @@ double wish_to_move(const Piece& piece, const Target& here) {
   return dx * dx + dy * dy <= reach * reach ? kHere : 1.0;
 }
 
-/// How probable it is that this piece is the one that is moved.
-double choice_of(const Outline& outline, int one, const Target& here) {
-  if (outline.size() == 1) return 1.0;
-  double sum = 0.0;
-  for (const Piece& piece : outline) sum += wish_to_move(piece, here);
-  return wish_to_move(outline[one], here) / sum;
-}
-
-int choose(const Outline& outline, const Target& here, Random& random) {
-  if (outline.size() == 1) return 0;
-  std::array<double, Outline::kMost> wishes;
-  double sum = 0.0;
-  for (int i = 0; i < outline.size(); ++i) sum += wishes[static_cast<std::size_t>(i)] = wish_to_move(outline[i], here);
-  double left = random.uniform();
-  for (int i = 0; i + 1 < outline.size(); ++i) {
-    if ((left -= wishes[static_cast<std::size_t>(i)] / sum) < 0.0) return i;
+/// Which piece is moved.
+class Choice {
+ public:
+  Choice(const Outline& outline, const Target& here, Random& random) {
+    if (outline.size() == 1) return;
+    std::array<double, Outline::kMost> wishes;
+    for (int i = 0; i < outline.size(); ++i)
+      sum_ += wishes[static_cast<std::size_t>(i)] = wish_to_move(outline[i], here);
+    double left = random.uniform();
+    for (; one_ + 1 < outline.size(); ++one_) {
+      if ((left -= wishes[static_cast<std::size_t>(one_)] / sum_) < 0.0) break;
+    }
+    wish_ = wishes[static_cast<std::size_t>(one_)];
   }
-  return outline.size() - 1;
-}
+
+  int one() const { return one_; }
+  /// How much more probable this choice is where that piece has become another.
+  double correction(const Piece& other, const Target& here) const {
+    if (!(sum_ > 0.0)) return 1.0;
+    const double wish = wish_to_move(other, here);
+    return (wish / (sum_ - wish_ + wish)) / (wish_ / sum_);
+  }
+
+ private:
+  int one_ = 0;
+  double sum_ = 0.0;  ///< of the wishes: whole numbers
+  double wish_ = 0.0;
+};
 
 /// Moves a side and leaves the one across from it. Returns the correction: even steps in the length of a half axis are
 /// uneven ones in its logarithm.
@@ -216,11 +225,10 @@ void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const std:
 /// Moves a form, or the hole in it, or both.
 void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, double which, Random& random) {
   if (out.outline.size() == 0) return;
-  const int one = choose(out.outline, here, random);
-  Piece& piece = out.outline[one];
-  const double chosen = choice_of(out.outline, one, here);
+  const Choice choice(out.outline, here, random);
+  Piece& piece = out.outline[choice.one()];
   const double before = piece.density;
-  out.changes(one);
+  out.changes(choice.one());
   const double target = piece.hollow ? random.uniform() : 0.0;
   Form& form = target < 0.5 ? piece.form : piece.hole;
   const bool both = target > 0.8;
@@ -247,7 +255,7 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
     change_family(form);
   }
   piece.density = out.correction > 0.0 ? prior.density(piece) : 0.0;
-  out.correction *= piece.density / before * choice_of(out.outline, one, here) / chosen;
+  out.correction *= piece.density / before * choice.correction(piece, here);
 }
 
 /// Takes a new piece for one of them.

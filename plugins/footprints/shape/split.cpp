@@ -34,9 +34,14 @@ class About {
     const double angle = std::atan(sine / cosine);  // directions have no sign
     const double family =
         form.family == Form::Family::ellipse ? prior.settings().ellipses : 1.0 - prior.settings().ellipses;
-    return family * normal_density(form.x - fit_.x, shift_) * normal_density(form.y - fit_.y, shift_) *
-           normal_density(std::log(form.a / fit_.a), kSize) * normal_density(std::log(form.b / fit_.b), kSize) *
-           (normal_density(angle, kAngle) + normal_density(std::abs(angle) - kPi, kAngle));
+    const auto square = [](double x) { return x * x; };
+    const double apart = square((form.x - fit_.x) / shift_) + square((form.y - fit_.y) / shift_) +
+                         square(std::log(form.a / fit_.a) / kSize) + square(std::log(form.b / fit_.b) / kSize);
+    const double turned = square(angle / kAngle);
+    const double other_way = square((std::abs(angle) - kPi) / kAngle);
+    constexpr double kNormals = 0.010105326013811644;  // (2 pi)^-5/2
+    return family * kNormals / (shift_ * shift_ * kSize * kSize * kAngle) *
+           (std::exp(-0.5 * (apart + turned)) + std::exp(-0.5 * (apart + other_way)));
   }
 
  private:

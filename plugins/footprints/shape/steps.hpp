@@ -19,12 +19,6 @@ inline double normal(Random& random) {
   return radius * std::cos(2.0 * kPi * random.uniform());
 }
 
-/// Its density.
-inline double normal_density(double deviation, double scale) {
-  const double x = deviation / scale;
-  return std::exp(-0.5 * x * x) / (scale * std::sqrt(2.0 * kPi));
-}
-
 /// Uniform in (-1, 1]: as good as a normal step where steps are of all sizes anyway, and quicker.
 inline double either_way(Random& random) { return 1.0 - 2.0 * random.uniform(); }
 
