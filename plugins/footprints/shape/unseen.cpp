@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "unseen.hpp"
 
+#include "forms.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,14 +10,6 @@ namespace palpate::footprints {
 namespace {
 
 constexpr int kPieces = 8192;
-
-/// Share of the outlines that have no place in common with a form.
-float share_apart(const Form& form, const std::vector<const Outline*>& known) {
-  const auto lies_apart = [&](const Outline* outline) {
-    return std::none_of(outline->begin(), outline->end(), [&](const Piece& piece) { return meet(piece.form, form); });
-  };
-  return static_cast<float>(std::count_if(known.begin(), known.end(), lies_apart)) / static_cast<float>(known.size());
-}
 
 }  // namespace
 
@@ -115,8 +109,21 @@ void Unseen::rates(const PointsView& places, VectorOut out) {
 }
 
 void Unseen::lie_apart_from(const std::vector<const Outline*>& known) {
+  Forms there;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (weights_[i] > 0) apart_[i] = share_apart(pieces_[i].form, known);
+    if (weights_[i] > 0) there.add(pieces_[i].form);
+  }
+  std::vector<int> apart(there.size(), 0);  // from so many outlines
+  std::vector<std::uint8_t> met;
+  for (const Outline* outline : known) {
+    met.clear();
+    for (const Piece& piece : *outline) there.mark_met(piece.form, met);
+    met.resize(there.size(), 0);
+    for (std::size_t k = 0; k < apart.size(); ++k) apart[k] += met[k] == 0 ? 1 : 0;
+  }
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (weights_[i] > 0) apart_[i] = static_cast<float>(apart[next++]) / static_cast<float>(known.size());
   }
 }
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Many forms, as vectors take them.
+#pragma once
+
+#include "form.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace palpate::footprints {
+
+class Forms {
+ public:
+  void clear();
+  void add(const Form& form);
+  /// As often as add() was called.
+  std::size_t size() const { return count_; }
+
+  /// Sets to 1 what belongs to a form that meets another, as of meet(): as many as there are forms, rounded up to
+  /// kRound.
+  static constexpr std::size_t kRound = 32;
+  void mark_met(const Form& other, std::vector<std::uint8_t>& met) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<double> x_, y_, a_, b_, cosine_, sine_, ellipse_;  ///< the last: 1 of an ellipse, 0 of a box
+};
+
+}  // namespace palpate::footprints
