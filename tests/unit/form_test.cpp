@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Boxes and ellipses, against the simplest ways to compute the same: corners and foci.
 #include "shape/form.hpp"
+#include "shape/forms.hpp"
 
 #include "outline_bench.hpp"
 #include "support/support.hpp"
@@ -53,52 +54,70 @@ TEST(Form, HoldsWhatItsEdgesOrItsFociSay) {
 }
 
 TEST(Form, ReachesAsFarAsItsRim) {
-  Random random(1, "form test: directions");
   for (const Form& form : forms(200, 2)) {
-    const double angle = 2.0 * kPi * random.uniform();
-    const Point to{std::cos(angle), std::sin(angle)};
-    double x = 0.0, y = 0.0, along = 0.0, radius = 0.0;
+    double x = 0.0, y = 0.0, radius = 0.0;
     for (const Point& p : rim(form)) {
       x = std::max(x, std::abs(p[0] - form.x));
       y = std::max(y, std::abs(p[1] - form.y));
-      along = std::max(along, std::abs((p[0] - form.x) * to[0] + (p[1] - form.y) * to[1]));
       radius = std::max(radius, std::hypot(p[0] - form.x, p[1] - form.y));
     }
     // The farthest of 4000 points of an ellipse falls short by half the square of half a step.
     EXPECT_NEAR(form.reach_x(), x, 1e-7);
     EXPECT_NEAR(form.reach_y(), y, 1e-7);
-    EXPECT_NEAR(form.reach_along(to[0], to[1]), along, 1e-7);
     EXPECT_GE(form.radius(), radius - 1e-12);
   }
 }
 
+TEST(Form, AmongManyMeetsWhatItMeetsAlone) {
+  const std::vector<Form> all = forms(301, 6);
+  Forms many;
+  for (const Form& form : all) many.add(form);
+  ASSERT_EQ(many.size(), all.size());
+  for (const Form& other : forms(50, 7)) {
+    std::vector<std::uint8_t> met;
+    many.mark_met(other, met);
+    for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(met[i] != 0, meet(other, all[i])) << i;
+  }
+}
+
 TEST(Form, IsCutWhereALineEntersAndLeavesIt) {
+  constexpr int kRows = 121;
+  constexpr int kColumns = 241;
   for (const Form& form : forms(100, 3)) {
-    for (int row = -60; row <= 60; ++row) {
-      const double y = form.y + row / 50.0 * form.reach_y();
-      const auto [low, high] = form.cut(y);
-      for (int column = -120; column <= 120; ++column) {
-        const double x = form.x + column / 100.0 * form.reach_x();
-        const double inside = inside_of(form, {x, y});
-        if (std::abs(inside) > kOnTheRim) {
-          ASSERT_EQ(low <= x && x <= high, inside > 0.0) << "row " << row << " column " << column;
-        }
+    const double x0 = form.x - 1.2 * form.reach_x();
+    const double y0 = form.y - 1.2 * form.reach_y();
+    const double step_x = 0.01 * form.reach_x();
+    const double step_y = 0.02 * form.reach_y();
+    std::array<int, kRows> begins{};
+    std::array<int, kRows> ends{};
+    Cuts(form).scaled(x0, step_x, y0, step_y).rows(0, kRows, kColumns, begins.data(), ends.data());
+    for (int row = 0; row < kRows; ++row) {
+      for (int column = 0; column < kColumns; ++column) {
+        const double inside = inside_of(form, {x0 + column * step_x, y0 + row * step_y});
+        if (std::abs(inside) <= kOnTheRim) continue;
+        const auto at = static_cast<std::size_t>(row);
+        ASSERT_EQ(begins[at] <= column && column<ends[at], inside> 0.0) << "row " << row << " column " << column;
       }
     }
   }
 }
 
+/// Of the cut of a form at one place along y: the first millimetre that it holds the middle of, and the first beyond.
+std::pair<int, int> millimetres(const Form& form, double y) {
+  std::pair<int, int> out;
+  Cuts(form).scaled(0.0005, 0.001, y, 1.0).rows(0, 1, 230, &out.first, &out.second);
+  return out;
+}
+
 TEST(Form, OfAnUprightBoxAndACircleIsWhatItIs) {
   const Form box{Form::Family::box, 0.1, 0.1, 0.04, 0.02, 1.0, 0.0};
-  EXPECT_DOUBLE_EQ(box.cut(0.115).first, 0.06);
-  EXPECT_DOUBLE_EQ(box.cut(0.115).second, 0.14);
-  EXPECT_GT(box.cut(0.125).first, box.cut(0.125).second) << "beyond it";
+  EXPECT_EQ(millimetres(box, 0.115), std::pair(60, 140));
+  EXPECT_GT(millimetres(box, 0.125).first, millimetres(box, 0.125).second) << "beyond it";
   EXPECT_DOUBLE_EQ(box.depth(0.13, 0.1), 0.01);
   EXPECT_DOUBLE_EQ(box.extent(), 0.08 * 0.04);
   const Form circle{Form::Family::ellipse, 0.1, 0.1, 0.05, 0.05, 0.8, 0.6};
-  EXPECT_DOUBLE_EQ(circle.cut(0.13).first, 0.06);
-  EXPECT_DOUBLE_EQ(circle.cut(0.13).second, 0.14);
-  EXPECT_GT(circle.cut(0.1501).first, circle.cut(0.1501).second);
+  EXPECT_EQ(millimetres(circle, 0.13), std::pair(60, 140));
+  EXPECT_GT(millimetres(circle, 0.1501).first, millimetres(circle, 0.1501).second);
   EXPECT_NEAR(circle.depth(0.1, 0.16), -0.01, 2e-3) << "to first order";
   EXPECT_DOUBLE_EQ(circle.extent(), kPi * 0.05 * 0.05);
 }

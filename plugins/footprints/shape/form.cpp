@@ -7,8 +7,6 @@ namespace palpate::footprints {
 
 double Form::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
-std::pair<double, double> Form::cut(double py) const { return Cuts(*this).at(py); }
-
 Cuts::Cuts(const Form& piece) : family_(piece.family), x_(piece.x), y_(piece.y), reach_(piece.reach_y()) {
   if (family_ == Form::Family::ellipse) {
     // (u, v) along the cut is linear in x: a quadratic whose middle and half width follow from the reach.

@@ -49,19 +49,11 @@ struct Form {
   double reach_x() const { return reach(cosine * a, sine * b); }
   double reach_y() const { return reach(sine * a, cosine * b); }
 
-  /// And in a direction of unit length.
-  double reach_along(double dx, double dy) const {
-    return reach(a * (cosine * dx + sine * dy), b * (cosine * dy - sine * dx));
-  }
-
   /// No place of it is farther from its centre.
   double radius() const { return std::sqrt(a * a + b * b); }
 
   /// Square metres.
   double extent() const;
-
-  /// See Cuts.
-  std::pair<double, double> cut(double py) const;
 
   /// Turns it about its centre, radians from x to y.
   void turn(double angle) { turn_by(std::cos(angle), std::sin(angle)); }
@@ -95,21 +87,6 @@ inline bool meet(const Form& one, const Form& other) {
 class Cuts {
  public:
   explicit Cuts(const Form& piece);
-
-  /// The ends along x of the cut at `py`; the first is larger where there is none.
-  std::pair<double, double> at(double py) const {
-    const double dy = py - y_;
-    if (family_ == Form::Family::box) {
-      if (std::abs(dy) > reach_) return {1.0, 0.0};
-      return {x_ + std::max(slope_[0] * dy - half_[0], slope_[1] * dy - half_[1]),
-              x_ + std::min(slope_[0] * dy + half_[0], slope_[1] * dy + half_[1])};
-    }
-    const double rest = 1.0 - dy * dy / (reach_ * reach_);
-    if (rest < 0.0) return {1.0, 0.0};
-    const double middle = x_ + slope_[0] * dy;
-    const double half = half_[0] * std::sqrt(rest);
-    return {middle - half, middle + half};
-  }
 
   /// Of cuts at whole numbers from `begin` on, before `end`: the whole numbers within, at least 0 and below `columns`,
   /// from one on and before another; none where that is not above it.

@@ -5,7 +5,7 @@
 
 namespace palpate::footprints {
 
-// Cuts::at, written out for each family so that the loops are without branches.
+// Written out for each family, so that the loops are without branches.
 PALPATE_CLONES void Cuts::rows(int begin, int end, int columns, int* __restrict begins, int* __restrict ends) const {
   const Cuts by = *this;
   const double squared = by.reach_ * by.reach_;

@@ -37,6 +37,7 @@ struct Axis {
   /// Those of them between two ends, in steps from the first.
   Cells within(double low, double high) const { return {not_below(low), std::min(count, above(high))}; }
 
+ private:
   /// The first whole number that is not below `t`, none of them negative, and the first above it. (Without SSE4.1
   /// std::ceil and std::floor are calls.)
   static int not_below(double t) { return t <= 0.0 ? 0 : above(t) - (static_cast<double>(above(t) - 1) == t ? 1 : 0); }
