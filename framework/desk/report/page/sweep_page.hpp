@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-/// More than these are too many for a browser, and for a file that is sent to others: some 400 bytes a job.
+/// More than these are too many for a browser, and for a file that is sent to others: up to 700 bytes a job.
 inline constexpr std::size_t kMostJobsOnAPage = 20000;
 
 /// The page of a sweep as it stands, under way or not: HTML, complete in itself but for the links to its jobs, which
