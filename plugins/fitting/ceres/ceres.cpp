@@ -32,7 +32,7 @@ constexpr Eigen::Index kPart = 96;
 constexpr double kFine = 1e-4;
 
 /// More taps than after the last search by this factor ask for another one: until then a fit climbs from where the one
-/// before ended.
+/// before ended. Not without priors: a likelihood has several optima, of which one more tap may make another the best.
 constexpr double kGrowth = 1.1;
 
 /// A place of the search and what is known of it.
@@ -235,7 +235,8 @@ class Ceres final : public Fitting {
     const Memory memory = problem.memory != nullptr ? Memory::of(*problem.memory, now.size()) : Memory();
     const auto taps = static_cast<double>(model.size());
     Spot best;
-    if (known && taps >= memory.searched && taps < kGrowth * memory.searched) {
+    const bool one_optimum = options_.priors == Options::Priors::touch;
+    if (known && one_optimum && taps >= memory.searched && taps < kGrowth * memory.searched) {
       best = ascend(objective, now, memory.metric, kFine);
       if (best.converged) summary.reason = best.reason + "; from the values before";
     }
