@@ -69,7 +69,7 @@ PALPATE_COUNTS_BITS double squares(const std::uint64_t* here, int held, int outl
       Bits bytes{};
       for (int word = first; word < std::min(first + kWords, others.words); ++word) {
         Bits bits;
-        std::memcpy(&bits, &others.bits[static_cast<std::size_t>(word * others.length + from)], sizeof(bits));
+        std::memcpy(&bits, others.bits.data() + static_cast<std::ptrdiff_t>(word) * others.length + from, sizeof(bits));
         bits &= here[word];
         bits -= (bits >> 1) & 0x5555555555555555U;
         bits = (bits & 0x3333333333333333U) + ((bits >> 2) & 0x3333333333333333U);

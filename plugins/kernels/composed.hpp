@@ -40,11 +40,13 @@ class Composed : public Kernel {
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
     parts_[0]->covariance(a, b, out);
+    // Views go by value. NOLINTNEXTLINE(performance-unnecessary-value-param)
     join_others(out, [&](const Kernel& part, Eigen::Index j, VectorOut own) { part.covariance(a, b.row(j), own); });
   }
 
   void variance(const PointsView& a, VectorOut out) const override {
     parts_[0]->variance(a, out);
+    // NOLINTNEXTLINE(performance-unnecessary-value-param)
     join_others(out, [&](const Kernel& part, Eigen::Index, VectorOut own) { part.variance(a, own); });
   }
 

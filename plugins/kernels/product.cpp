@@ -31,6 +31,7 @@ class Product final : public Composed<Multiply> {
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
     parts_[0]->axis_covariance(axis, a, b, out);
+    // Views go by value. NOLINTNEXTLINE(performance-unnecessary-value-param)
     join_others(out, [&](const Kernel& part, Eigen::Index j, VectorOut own) {
       part.axis_covariance(axis, a, b.segment(j, 1), own);
     });

@@ -157,6 +157,7 @@ TEST_P(KernelDerivatives, WriteTheirOutputsAndNothingBeside) {
   for (const auto& kernel : kernels_) {
     const auto parameters = static_cast<Eigen::Index>(kernel->parameters().size());
     written_inside(5, 1, [&](MatrixOut value) {
+      // Views go by value. NOLINTNEXTLINE(performance-unnecessary-value-param)
       written_inside(5, parameters, [&](MatrixOut slopes) { kernel->derivatives(at.a, at.b, value, slopes); });
     });
   }

@@ -3,7 +3,8 @@
 // is the same to the last bit: products are not fused with sums.
 #pragma once
 
-#if defined(__x86_64__)
+// Clang clones no function that has been declared without.
+#if defined(__x86_64__) && !defined(__clang__)
 #define PALPATE_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define PALPATE_CLONES

@@ -116,7 +116,7 @@ class LatticeCounts {
     for (int row = all.begin; row < all.end; ++row) {
       int begin = -1;  // of what is held up to here
       for (int word = 0; word < words_; ++word) {
-        const std::uint64_t held = std::exchange(held_[static_cast<std::size_t>(row * words_ + word)], 0);
+        const std::uint64_t held = std::exchange(held_[index(row, word)], 0);
         for (std::uint64_t edges = held ^ (held << 1U | (begin >= 0 ? 1U : 0U)); edges != 0; edges &= edges - 1) {
           const int at = word * 64 + __builtin_ctzll(edges);
           if (begin >= 0) visit(row, Cells{begin, at});
@@ -138,6 +138,10 @@ class LatticeCounts {
   }
 
  private:
+  std::size_t index(int row, int word) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(words_) + static_cast<std::size_t>(word);
+  }
+
   LatticeCounts(const Axis& x, const Axis& y)
       : x_(x),
         y_(y),
@@ -160,8 +164,7 @@ class LatticeCounts {
     if (cells.begin >= cells.end) return;
     const auto below = [](int count) { return count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1; };
     for (int word = cells.begin / 64; word <= (cells.end - 1) / 64; ++word) {
-      held_[static_cast<std::size_t>(row * words_ + word)] |=
-          below(cells.end - word * 64) & ~below(std::max(cells.begin - word * 64, 0));
+      held_[index(row, word)] |= below(cells.end - word * 64) & ~below(std::max(cells.begin - word * 64, 0));
     }
   }
 
