@@ -133,7 +133,7 @@ std::vector<std::string> SlurmLauncher::words_for(std::size_t first, std::size_t
   std::vector<std::string> words = options_.more;
   words.push_back(fmt::format("--array=0-{}{}", count - 1, options_.one_at_a_time ? "%1" : ""));
   words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
-  // A percent sign begins a placeholder of Slurm's.
+  // A percent sign begins what Slurm fills in.
   words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
   words.push_back(fmt::format("--cpus-per-task={}", options_.workers));
   if (!options_.partition.empty()) words.push_back("--partition=" + options_.partition);

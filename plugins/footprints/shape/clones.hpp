@@ -3,11 +3,11 @@
 // is the same to the last bit: products are not fused with sums.
 #pragma once
 
+#include <palpate/simd.hpp>  // PALPATE_INLINE: what they call is compiled along with them
+
 // Clang clones no function that has been declared without.
 #if defined(__x86_64__) && !defined(__clang__)
 #define PALPATE_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define PALPATE_CLONES
 #endif
-// What they call is compiled along with them.
-#define PALPATE_INLINED __attribute__((always_inline)) inline

@@ -15,24 +15,24 @@ constexpr int kRound = Places::kRound;
 
 using Bytes = LabelModel::Step __attribute__((vector_size(kRound)));
 
-PALPATE_INLINED void load(const LabelModel::Step* from, Bytes& out) { std::memcpy(&out, from, sizeof(out)); }
+PALPATE_INLINE void load(const LabelModel::Step* from, Bytes& out) { std::memcpy(&out, from, sizeof(out)); }
 
 /// Of each byte the highest bit: whether it is that of a depth that is not negative.
-PALPATE_INLINED void load_held(const LabelModel::Step* from, Bytes& out) {
+PALPATE_INLINE void load_held(const LabelModel::Step* from, Bytes& out) {
   static_assert(LabelModel::kSteps == 128);
   load(from, out);
   out = (out + 63) & 128;
 }
 
-PALPATE_INLINED bool any(const Bytes& bytes) {
+PALPATE_INLINE bool any(const Bytes& bytes) {
   std::uint64_t parts[kRound / 8];
   std::memcpy(parts, &bytes, sizeof(parts));
   return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
 }
 
 // Written out for each family and way to look, so that the loops are without branches.
-PALPATE_INLINED void depths_in(const Form& form, bool exact, const double* __restrict xs, const double* __restrict ys,
-                               int count, double* __restrict out) {
+PALPATE_INLINE void depths_in(const Form& form, bool exact, const double* __restrict xs, const double* __restrict ys,
+                              int count, double* __restrict out) {
   Form box = form;
   Form ellipse = form;
   box.family = Form::Family::box;

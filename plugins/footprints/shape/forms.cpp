@@ -7,7 +7,7 @@ namespace palpate::footprints {
 namespace {
 
 /// How far a form reaches, as Form::reach.
-PALPATE_INLINED double reach_of(double along, double across, double ellipse) {
+PALPATE_INLINE double reach_of(double along, double across, double ellipse) {
   const double box = std::abs(along) + std::abs(across);
   const double round = std::sqrt(along * along + across * across);
   return ellipse > 0.0 ? round : box;
