@@ -16,7 +16,6 @@
 #include <cstring>
 #include <functional>
 
-#include <malloc.h>
 #include <pthread.h>
 #include <sys/wait.h>
 
@@ -24,11 +23,6 @@ namespace palpate {
 namespace {
 
 constexpr std::chrono::milliseconds kBusyPause{200};
-
-/// An arena grows page by page, each a call of the kernel, unless a job makes room in it once and what is given back is
-/// kept: as much as the C library comes to keep by itself where large blocks come and go.
-constexpr std::size_t kRoom = 1 << 20;
-constexpr int kLargeBlock = 32 << 20;
 
 /// Signals by which a program breaks down by itself; others come from outside.
 bool is_crash(int signal) {
@@ -51,8 +45,6 @@ void in_fresh_memory(const std::function<void()>& work) {
   const auto enter = [](void* given) -> void* {
     const Start& it = *static_cast<Start*>(given);
     ::pthread_sigmask(SIG_SETMASK, &it.before, nullptr);
-    void* volatile room = std::malloc(kRoom);
-    std::free(room);
     it.work();
     return nullptr;
   };
@@ -66,11 +58,7 @@ void in_fresh_memory(const std::function<void()>& work) {
 
 }  // namespace
 
-std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order) {
-  ::mallopt(M_MMAP_THRESHOLD, kLargeBlock);
-  ::mallopt(M_TRIM_THRESHOLD, 2 * kLargeBlock);
-  return std::make_unique<LocalLauncher>(order);
-}
+std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order) { return std::make_unique<LocalLauncher>(order); }
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
