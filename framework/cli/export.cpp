@@ -31,7 +31,7 @@ int export_run(Program& program, const std::string& directory, const std::string
   const Recording recording = read_recording(program, directory);
   Playback playback(program, recording);
   playback.advance_to(static_cast<int>(recording.taps.size()));
-  const ReconstructedSurface surface = reconstruct(playback.experiment());
+  const ReconstructedSurface surface = reconstruct(playback.from_above());
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
   const fs::path folder = to.empty() ? make_inner_folder(recording.directory / "export") : make_folder(to);
   mention_state(recording);

@@ -2,7 +2,7 @@
 // A run whose taps the caller makes, for Python.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "record/callers_run.hpp"
 #include "record/tap_row.hpp"
 #include "shop.hpp"
@@ -55,7 +55,7 @@ class Asked {
     const Candidates& candidates = open().experiment().candidates();
     return {candidates.rows, candidates.columns};
   }
-  Experiment& experiment() { return open().experiment(); }
+  FromAbove& experiment() { return open().experiment(); }
 
  private:
   CallersRun& open() {

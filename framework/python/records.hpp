@@ -2,7 +2,7 @@
 // What is recorded, for Python: a run with its taps and models, a sweep with its jobs.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "experiment/metrics.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
@@ -20,7 +20,7 @@
 namespace palpate {
 
 /// What is believed as of now, in arrays of the caller's.
-inline py::dict maps_of(Experiment& experiment) {
+inline py::dict maps_of(FromAbove& experiment) {
   experiment.build(Quantity::uncertainty | Quantity::weight | Quantity::probability | Quantity::height);
   const TapBelief& belief = experiment.belief();
   const int rows = experiment.candidates().rows;
@@ -54,13 +54,13 @@ class Record {
       const py::gil_scoped_release free;
       playback_->advance_to(taps);
     }
-    return maps_of(playback_->experiment());
+    return maps_of(playback_->from_above());
   }
 
   /// The heights of the scene that was tapped; None where another world was.
   py::object truth() {
     if (!playback_) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
-    Experiment& experiment = playback_->experiment();
+    FromAbove& experiment = playback_->from_above();
     const Truth* truth = experiment.truth();
     if (truth == nullptr) return py::none();
     return copied(truth->height, experiment.candidates().rows, experiment.candidates().columns);
@@ -68,7 +68,7 @@ class Record {
 
   std::pair<Array, Array> axes() {
     if (!playback_) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
-    const Candidates& candidates = playback_->experiment().candidates();
+    const Candidates& candidates = playback_->from_above().candidates();
     return {Array(candidates.xs.size(), candidates.xs.data()), Array(candidates.ys.size(), candidates.ys.data())};
   }
 

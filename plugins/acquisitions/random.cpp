@@ -11,14 +11,18 @@ class RandomSearch final : public Acquisition {
   RandomSearch(const Options&, const Context& context) : seed_(context.seed) {}
 
   Quantities reads() const override { return {}; }
-  void score(const Belief& belief, VectorOut out) const override {
-    // A stream a tap: the score stays a pure function of the belief, and a resumed run draws the same.
-    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.taps()));
-    for (double& one : out) one = random.uniform() + 0x1.0p-54;
-  }
+  void score(const Belief& belief, VectorOut out) const override { draw(belief.taps(), out); }
+  bool any_side() const override { return true; }
+  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override { draw(belief.taps(), out); }
   double prior_scale() const override { return 0.0; }
 
  private:
+  /// A stream a tap: the score stays a pure function of the belief, and a resumed run draws the same.
+  void draw(int taps, VectorOut out) const {
+    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(taps));
+    for (double& one : out) one = random.uniform() + 0x1.0p-54;
+  }
+
   std::uint64_t seed_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tap where the height is least known: score = u, the posterior variance (Yi et al., IROS 2016; the paper's rival).
+// From any side: along the normal of the surface where it is least known (after Caccamo et al., RIL 2016: GPAtlasRRT).
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -12,6 +13,12 @@ class Uncertainty final : public Acquisition {
 
   Quantities reads() const override { return Quantity::uncertainty; }
   void score(const Belief& belief, VectorOut out) const override { out = belief.uncertainty(); }
+  bool any_side() const override { return true; }
+  Quantities reads_of_approaches() const override { return Quantity::deviation; }
+  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
+    constexpr double kAlong = 0.999;
+    out = (belief.squareness().array() > kAlong).select(belief.deviation().array().square(), 0.0);
+  }
   double prior_scale() const override { return 1.0; }
 };
 

@@ -29,22 +29,25 @@ double Prism::top(double s, double t) const {
 }
 
 double Prism::first_hit(const Line& line) const {
-  const double upper = (height_ - line.origin.z()) / line.direction.z();
-  const double lower = -line.origin.z() / line.direction.z();
+  // Between the planes of top and bottom.
+  Interval between;
+  between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
+  if (between.empty()) return kInfinity;
+  const double enters = between.begin;
   const Point direction{line.direction.x(), line.direction.y()};
   // Far beyond the outline before a line so near to the vertical has passed the height.
   if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
-    const double s = line.origin.x() + upper * direction[0];
-    const double t = line.origin.y() + upper * direction[1];
-    if (top(s, t) == height_) return upper;
+    const double s = line.origin.x() + enters * direction[0];
+    const double t = line.origin.y() + enters * direction[1];
+    if (top(s, t) == height_) return enters;
     return kInfinity;
   }
-  // Seen from above, each crossing leads in or out. In at the height of the top: that is the hit; else the first wall
-  // before the line is through the plane 0.
+  // Seen from above, each crossing leads in or out. In where the line comes between the planes: that is the hit; else
+  // the first wall before it has left them.
   bool inside = false;
   double wall = kInfinity;
   const auto visit = [&](double x) {
-    if (x < upper) {
+    if (x < enters) {
       inside = !inside;
     } else {
       wall = std::min(wall, x);
@@ -53,8 +56,8 @@ double Prism::first_hit(const Line& line) const {
   const Point origin{line.origin.x(), line.origin.y()};
   visit_crossings(outline_, origin, direction, visit);
   if (!hole_.empty()) visit_crossings(hole_, origin, direction, visit);
-  if (inside) return upper;
-  if (wall > lower) return kInfinity;
+  if (inside) return enters;
+  if (wall > between.end) return kInfinity;
   return wall;
 }
 

@@ -109,12 +109,15 @@ class RandomOutline final : public Shape {
   }
 
   double first_hit(const Line& line) const override {
-    const double begin = (middle_ + relief_ - line.origin.z()) / line.direction.z();
-    const double end = -line.origin.z() / line.direction.z();
+    Interval between;
+    between.clip(line.origin.z(), line.direction.z(), 0.0, middle_ + relief_);
+    if (between.empty()) return kInfinity;
+    const auto [begin, end] = between;
     const Point direction{line.direction.x(), line.direction.y()};
     // So near to the vertical it passes all heights over one place.
     if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
       const double height = top(line.origin.x() + begin * direction[0], line.origin.y() + begin * direction[1]);
+      if (line.direction.z() > 0.0) return height > 0.0 ? begin : kInfinity;
       return (height - line.origin.z()) / line.direction.z();
     }
     // Seen from above, it is within the outline between the first and the second crossing, the third and the fourth,
@@ -188,6 +191,7 @@ class RandomOutline final : public Shape {
       const double clear = p.z() - (middle_ + slope_[0] * p.x() + slope_[1] * p.y() + swell_ * std::cos(at));
       if (clear <= 0.0) return x;
       const double slope = u.z() - slope_[0] * u.x() - slope_[1] * u.y() + swell_ * rate * std::sin(at);
+      if (slope >= 0.0 && curvature == 0.0) return kInfinity;
       const double root = std::sqrt(slope * slope + 2 * curvature * clear);
       const double next = x + (slope < 0.0 ? 2 * clear / (root - slope) : (root + slope) / curvature);
       if (!(next > x)) return x;

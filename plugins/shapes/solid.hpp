@@ -96,12 +96,16 @@ struct Quadric {
     const double discriminant = b * b - a * c;
     if (discriminant < 0.0 && a >= 0.0) return interval.clear();
     const double q = -(b + std::copysign(std::sqrt(std::max(0.0, discriminant)), b));
-    if (q == 0.0) return clip_double_root(a, c, shift, interval);
+    if (q == 0.0) return clip_double_root(a, c, u.z() < 0.0, shift, interval);
     const double one = c / q;
     const double other = a == 0.0 ? std::copysign(kInfinity, q) : q / a;
     if (a < 0.0) {
-      // A steep line is within both halves of a double cone, above the upper root and below the lower; it points down.
-      interval.begin = std::max(interval.begin, std::max(one, other) + shift);
+      // A steep line is within both halves of a double cone, above the upper root and below the lower.
+      if (u.z() < 0.0) {
+        interval.begin = std::max(interval.begin, std::max(one, other) + shift);
+      } else {
+        interval.end = std::min(interval.end, std::min(one, other) + shift);
+      }
       return;
     }
     interval.begin = std::max(interval.begin, std::min(one, other) + shift);
@@ -111,11 +115,11 @@ struct Quadric {
  private:
   /// b and the discriminant are 0: a line that runs within or without for ever, one that touches, or a steep one
   /// through the apex of a double cone, below which it is within.
-  static void clip_double_root(double a, double c, double shift, Interval& interval) {
+  static void clip_double_root(double a, double c, bool down, double shift, Interval& interval) {
     if (a == 0.0 && c > 0.0) interval.clear();
     if (a == 0.0) return;
-    interval.begin = std::max(interval.begin, shift);
-    if (a > 0.0) interval.end = std::min(interval.end, shift);
+    if (a > 0.0 || down) interval.begin = std::max(interval.begin, shift);
+    if (a > 0.0 || !down) interval.end = std::min(interval.end, shift);
   }
 };
 

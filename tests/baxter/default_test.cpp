@@ -146,7 +146,7 @@ TEST(DefaultOnTheArm, IsSimulatedByWhatCalibrateMakesOfFortyOfItsTaps) {
   Tree twin = arm.config.tree;
   twin.at("scene").at("effects") = parse_yaml(file, "effects.yaml").at("effects");
   const ResolvedConfig config = resolve_experiment(twin, palpate::test::shared_host());
-  Experiment experiment(config.options, palpate::test::shared_host(), nullptr);
+  FromAbove experiment(config.options, palpate::test::shared_host(), nullptr);
   palpate::test::Collector journal;
   experiment.run(journal);
   const double simulated = mean_error(config, journal.taps);

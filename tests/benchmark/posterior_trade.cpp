@@ -45,7 +45,7 @@ struct Outcome {
 Outcome run(std::vector<std::string> overrides, const std::string& engine, const std::vector<PastTap>& past = {}) {
   overrides.push_back("posterior=" + engine);
   const ResolvedConfig config = test::shipped_config("paper/object_i_right.yaml", overrides);
-  Experiment experiment(config.options, test::shared_host(), nullptr);
+  FromAbove experiment(config.options, test::shared_host(), nullptr);
   experiment.resume(past);
   Timer timer;
   experiment.run(timer);

@@ -4,7 +4,7 @@
 #include "fuzz/harness.hpp"
 
 #include "config/compose.hpp"
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "record/resolved.hpp"
 
 #include <palpate/error.hpp>
@@ -30,7 +30,7 @@ void table(const std::string& bytes) {
       with({"backend=replay", "backend.record=" + (ground().path() / "table.csv").string()});
   ground().write("table.csv", bytes);
   try {
-    Experiment(config.options, host(), nullptr);
+    FromAbove(config.options, host(), nullptr);
   } catch (const Error&) {
   }
 }
@@ -43,7 +43,7 @@ void mesh(const std::string& bytes) {
   try {
     const ResolvedConfig config =
         with({"scene.objects=[{type: mesh, file: '" + file.string() + "', unit: 1 mm, at: [11.5 cm, 11.5 cm]}]"});
-    Experiment(config.options, host(), nullptr);
+    FromAbove(config.options, host(), nullptr);
   } catch (const Error&) {
   }
 }

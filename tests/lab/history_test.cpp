@@ -131,8 +131,8 @@ TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
   const Recording recording = run.recording();
   Playback last(run.workshop, recording);
   last.advance_to(12);
-  last.experiment().ask(Quantity::probability);
-  const TapBelief& belief = last.experiment().belief();
+  last.from_above().ask(Quantity::probability);
+  const TapBelief& belief = last.from_above().belief();
   EXPECT_EQ(history.maps.at(3).frames.back(), Eigen::VectorXf(belief.probability().cast<float>()));
   EXPECT_FALSE(history.moments.back().least_weight.has_value());
   EXPECT_EQ(belief.weight_process().process, nullptr) << "nobody has asked for it";
@@ -146,8 +146,8 @@ TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
   const Recording recording = run.recording();
   Playback last(run.workshop, recording);
   last.advance_to(12);
-  last.experiment().ask(Quantity::height);
-  const Eigen::VectorXd deviation = last.experiment().belief().height_variance().cwiseSqrt();
+  last.from_above().ask(Quantity::height);
+  const Eigen::VectorXd deviation = last.from_above().belief().height_variance().cwiseSqrt();
   for (Eigen::Index i = 0; i < deviation.size(); ++i)
     EXPECT_NEAR(static_cast<double>(history.maps.at(1).frames.back()(i)), std::min(deviation(i), 1.0), 1e-6);
 }

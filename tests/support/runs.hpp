@@ -4,7 +4,7 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "record/resolved.hpp"
 #include "support/support.hpp"
 
@@ -102,7 +102,7 @@ struct Prepared {
   }
 
   ResolvedConfig config;
-  Experiment experiment;
+  FromAbove experiment;
   Collector journal;
   const std::vector<TapRecord>& taps = journal.taps;
 };

@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 /// A few roundings of lengths up to a metre, divided by slopes of walls.
 constexpr double kRounding = 1e-11;
 
-Line random_line(const Shape& shape, Random& random) {
+/// Down, or anywhere.
+Line random_line(const Shape& shape, Random& random, bool down) {
   const double length = shape.support({1, 0, 0});
   const double width = shape.support({0, 1, 0});
   const double height = shape.support({0, 0, 1});
@@ -24,7 +25,7 @@ Line random_line(const Shape& shape, Random& random) {
                  height * random.uniform()};
   do {
     line.direction = random_direction(random);
-  } while (line.direction.z() > -0.1);
+  } while (down && line.direction.z() > -0.1);
   return line;
 }
 
@@ -52,8 +53,8 @@ void check_shape_laws(const Shape& shape) {
   }
 
   int hits = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const Line line = random_line(shape, random);
+  for (int i = 0; i < 2000; ++i) {
+    const Line line = random_line(shape, random, i < 1000);
     const double hit = shape.first_hit(line);
     ASSERT_FALSE(std::isnan(hit));
     ASSERT_GT(hit, -HUGE_VAL);
@@ -77,8 +78,20 @@ void check_shape_laws(const Shape& shape) {
   }
   EXPECT_GT(hits, 100);
 
+  // The other way along the same line the solid begins where it ends: both ways it is met, or neither, and no later.
+  for (int i = 0; i < 1000; ++i) {
+    const Line line = random_line(shape, random, false);
+    const double there = shape.first_hit(line);
+    const double back = shape.first_hit({line.origin, -line.direction});
+    if (std::isinf(there) != std::isinf(back)) {
+      ADD_FAILURE() << "met one way only: " << line.origin.transpose() << " along " << line.direction.transpose();
+    } else if (std::isfinite(there)) {
+      EXPECT_LE(there, -back + 1e-6 * size) << "of a solid that begins behind its end";
+    }
+  }
+
   for (int i = 0; i < 300; ++i) {
-    const Line line = random_line(shape, random);
+    const Line line = random_line(shape, random, true);
     const double s = line.origin.x();
     const double t = line.origin.y();
     const double straight = -shape.first_hit({{s, t, 0.0}, {0.0, 0.0, -1.0}});

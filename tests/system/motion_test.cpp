@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The motions of configs/backend on an arm like Baxter's: whole runs of the paper's experiment, tap by tap.
 #include "config/compose.hpp"
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "record/resolved.hpp"
 #include "support/runs.hpp"
 #include "support/support.hpp"
@@ -25,7 +25,7 @@ Motion measured(const std::string& backend, int seeds) {
     const ResolvedConfig config =
         shipped_config("paper/object_i.yaml", {"scene=object_i_arm", "surface=two_part", "height.signal=5cm",
                                                "backend=" + backend, "seed=" + std::to_string(seed)});
-    Experiment experiment(config.options, shared_host(), nullptr);
+    FromAbove experiment(config.options, shared_host(), nullptr);
     Collector collector;
     experiment.run(collector);
     for (const TapRecord& tap : collector.taps) {
@@ -60,7 +60,7 @@ TEST(Motions, AdaptiveHoverSavesTimeWhereTheModelIsSure) {
     const ResolvedConfig config =
         shipped_config("paper/object_ii.yaml", {"kernel.length_scale=10cm", "surface=two_part", "height.signal=5cm",
                                                 "taps=30", "seed=3", "backend=" + backend});
-    Experiment experiment(config.options, shared_host(), nullptr);
+    FromAbove experiment(config.options, shared_host(), nullptr);
     Collector collector;
     experiment.run(collector);
     return experiment.result().robot_seconds;

@@ -121,7 +121,7 @@ void expect_found(const std::vector<std::string>& overrides) {
   const int count = starts(1000, 100);
   for (int seed = 0; seed < count; ++seed) {
     config.options.seed = seed;
-    Experiment experiment(config.options, test::shared_host(), nullptr);
+    FromAbove experiment(config.options, test::shared_host(), nullptr);
     test::Collector collector;
     experiment.run(collector);
     std::set<int> places;

@@ -17,7 +17,7 @@ namespace {
 const int kSeeds = test::brief() ? 10 : 200;
 
 std::vector<int> taps_of(const ExperimentOptions& options) {
-  Experiment experiment(options, test::shared_host(), nullptr);
+  FromAbove experiment(options, test::shared_host(), nullptr);
   test::Collector collector;
   experiment.run(collector);
   std::vector<int> out;

@@ -2,7 +2,7 @@
 // Plugins of a build that has not found their libraries.
 #include "config/compose.hpp"
 #include "config/describe.hpp"
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "record/resolved.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -76,7 +76,7 @@ TEST_F(WithoutLibraries, ARunIsToldWhatToInstallAndNotFirstWhatItsConfigLacks) {
        "shape/mesh: " + remedy("Embree or no assimp", mesh)}};
   for (const auto& [override, words] : cases) {
     const auto build = [&, &override = override] {
-      Experiment(resolved({parse_override(override)}).options, host_, nullptr);
+      FromAbove(resolved({parse_override(override)}).options, host_, nullptr);
     };
     EXPECT_THAT(error_of(build, Error::Kind::usage), testing::EndsWith(words)) << override;
   }

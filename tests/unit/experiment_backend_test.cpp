@@ -68,7 +68,7 @@ TEST(ShownBelief, HasTheTapThatWasJustMade) {
   int shown = 0;
   const auto backend = four_taps();
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
-  const Experiment& experiment = prepared.experiment;
+  const FromAbove& experiment = prepared.experiment;
   backend->read = Quantity::height;
   backend->reading = [&](const Belief& belief) {
     ++shown;

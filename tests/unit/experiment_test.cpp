@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 
 #include "record/recording.hpp"
 #include "record/row.hpp"
@@ -137,7 +137,7 @@ TEST(Experiment, StopsWhenNoCandidateIsUncertainAnyMore) {
 TEST(Experiment, AnInterruptionStopsItAfterTheTapUnderWay) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml");
   std::atomic<bool> interrupted{false};
-  Experiment experiment(config.options, shared_host(), &interrupted);
+  FromAbove experiment(config.options, shared_host(), &interrupted);
   Collector collector;
   collector.announcing = [&](const TapRecord& tap) { interrupted = tap.number == 5; };
   experiment.run(collector);
@@ -150,8 +150,8 @@ TEST(Experiment, ATapThatWasBrokenOffAndCanBeRepeatedIsNotRecorded) {
   for (const bool wished : {true, false}) {
     std::atomic<bool> interrupted{false};
     // Its second tap is broken off, or fails by itself.
-    Experiment experiment(config.options, shared_host(), &interrupted,
-                          scripted({contact_at(0.0), failure(Outcome::aborted)}));
+    FromAbove experiment(config.options, shared_host(), &interrupted,
+                         scripted({contact_at(0.0), failure(Outcome::aborted)}));
     Collector collector;
     collector.announcing = [&](const TapRecord& tap) { interrupted = wished && tap.number == 2; };
     experiment.run(collector);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Mean and variance of whole runs against a computation with 50 digits that shares nothing with ours: the covariance
 // is built from the recorded taps, factorised and solved anew after every tap, in Boost.Multiprecision over MPFR.
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "support/arrays.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -27,7 +27,7 @@ struct Worst {
 /// Follows a run, and after every tap compares both processes with the oracle at every candidate.
 class Comparison final : public Journal {
  public:
-  Comparison(Experiment& experiment, double length_scale)
+  Comparison(FromAbove& experiment, double length_scale)
       : experiment_(experiment),
         oracle_(
             // The squared-exponential kernel of unit variance, point by point.
@@ -60,7 +60,7 @@ class Comparison final : public Journal {
   }
 
  private:
-  Experiment& experiment_;
+  FromAbove& experiment_;
   Textbook<Real> oracle_;
 };
 

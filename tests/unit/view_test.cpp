@@ -216,7 +216,7 @@ TEST_F(SeenHalf, SendsTheTapsWhereTheCameraWasBlind) {
 TEST_F(SeenHalf, IsKnownToEveryModelBeforeTheFirstTap) {
   for (const std::string strategy : {"default", "weighted", "uncertainty", "weighted_two_part"}) {
     Prepared prepared("default.yaml", {"strategy=" + strategy, "backend=simulator", words(1, 5).front(), "taps=5"});
-    Experiment& experiment = prepared.experiment;
+    FromAbove& experiment = prepared.experiment;
     experiment.ask(Quantity::uncertainty | Quantity::probability | Quantity::height);
     const TapBelief& belief = experiment.belief();
     double near = 0.0;

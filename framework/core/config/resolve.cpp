@@ -133,7 +133,7 @@ class Resolver final : public Fields {
       const bool is_type = std::any_of(cases.begin(), cases.end(), [](const Case& one) { return bool(one.list); });
       if (is_type) type_layer_ = std::max(type_layer_, tree->layer);
     }
-    write(field, Tree::scalar(cases[index].name));
+    if (index > 0 || !field.is_left_out) write(field, Tree::scalar(cases[index].name));
     if (cases[index].list) cases[index].list(*this);
   }
 

@@ -3,6 +3,8 @@
 // both processes, choose the next tap by the exploration function.
 #include "experiment/experiment.hpp"
 
+#include "experiment/tap_belief.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
@@ -15,14 +17,13 @@ namespace palpate {
 void Experiment::run(Journal& journal, int most_taps) {
   while (std::optional<TapRecord> tap = begin(journal, most_taps)) {
     tap->contact = touch(*tap);
-    if (is_broken_off(tap->contact)) return watch_.stop(kStoppedByUser);
+    if (is_broken_off(tap->contact)) return stop(kStoppedByUser);
     end(*tap, journal);
   }
 }
 
 std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, const Wish* wish) {
-  belief_.update();  // fit, infer
-  show_belief();
+  update();  // fit, infer
   const std::int64_t budget = std::min<std::int64_t>(options_.taps, most_taps);
   std::optional<std::string> reason = stop_reason(budget, wish != nullptr ? Source::caller : Source::acquisition);
   std::optional<TapRecord> tap;
@@ -32,7 +33,7 @@ std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, cons
   }
   if (tap && !journal.permits(*tap)) reason = kStoppedByUser;
   if (reason) {
-    watch_.stop(*reason);
+    stop(*reason);
     return std::nullopt;
   }
   journal.announce(*tap);
@@ -40,56 +41,18 @@ std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, cons
 }
 
 void Experiment::end(TapRecord& tap, Journal& journal) {
-  if (tap.contact.outcome == Outcome::contact) {
-    const TapBelief::Reading reading = belief_.read(tap.contact, tap.motion);
-    tap.on_surface = reading.on;
-    if (belief_.systematic()) tap.corrected = reading.height;
-  }
+  if (tap.contact.outcome == Outcome::contact) read(tap);
   observe(tap);
   journal.record(tap, clock_.take());
   check_backend(tap.contact);
 }
 
-std::optional<TapRecord> Experiment::choose_next(const Wish* wish) {
-  TapRecord tap;
-  {
-    const PhaseClock::Scope acquire(clock_, Phase::acquire);
-    belief_.ask(reads_for(wish != nullptr              ? Source::caller
-                          : chooser_.starting(belief_) ? Source::initial
-                                                       : Source::acquisition));
-    if (!chooser_.choose(belief_, tap, previous_, wish)) return std::nullopt;
-  }
-  tap.number = watch_.counts().taps + 1;
-  tap.target = candidates_.target(tap.candidate);
-  if (const Quantities expected = backend_->expects(); expected != Quantities())
-    tap.predicted = belief_.predict(tap.candidate, expected);
-  const PhaseClock::Scope log(clock_, Phase::log);
-  watch_.describe(tap, belief_);
-  return tap;
-}
-
-void Experiment::observe(const PastTap& tap) {
-  const int candidate = candidates_.nearest(tap.target.x, tap.target.y, scene_->area());
-  const Manner manner = manner_of(tap);
-  belief_.observe(tap.target, tap.contact, manner);
-  chooser_.observe(tap, candidate, previous_, belief_);
-  watch_.observe(tap, manner, candidate, belief_);
-  previous_ = tap.target;
-}
-
 std::optional<std::string> Experiment::stop_reason(std::int64_t budget, Source source) {
   if (stop_wished()) return kStoppedByUser;
-  if (watch_.counts().taps >= budget) return "tap budget";
+  if (counts().taps >= budget) return "tap budget";
   const StopOptions& stop = options_.stop;
-  if (stop.robot_time && watch_.counts().robot_seconds >= *stop.robot_time) return "robot_time";
-  if (chooser_.starting(belief_)) return std::nullopt;
-  belief_.ask(reads_for(source));
-  if (stop.max_standard_deviation &&
-      std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
-    return "max_standard_deviation";
-  }
-  if (stop.expected_rmse && good_enough(*watch_.forecast(belief_), *stop.expected_rmse)) return "expected_rmse";
-  return std::nullopt;
+  if (stop.robot_time && counts().robot_seconds >= *stop.robot_time) return "robot_time";
+  return stop_rule(source);
 }
 
 Contact Experiment::touch(const TapRecord& tap) {
@@ -119,11 +82,12 @@ void Experiment::check_backend(const Contact& last) {
        "see to it, then 'palpate resume --retry-failed' carries on; stop.failed_in_a_row sets how many");
 }
 
-void Experiment::show_belief() {
-  const PhaseClock::Scope log(clock_, Phase::log);
-  if (watch_.counts().taps == 0) return;
-  belief_.ask(backend_->reads());
-  backend_->show(belief_);
-}
+Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,
+                       const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend,
+                       const std::string& directory)
+    : options_(options),
+      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
+      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory, lanes_of(options)},
+      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)) {}
 
 }  // namespace palpate

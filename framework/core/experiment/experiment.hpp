@@ -2,11 +2,8 @@
 // The experiment: tap, observe, fit, infer, score, choose, tap again.
 #pragma once
 
-#include "experiment/chooser.hpp"
 #include "experiment/experiment_options.hpp"
-#include "experiment/tap_belief.hpp"
 #include "experiment/tap_record.hpp"
-#include "experiment/watch.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
@@ -16,22 +13,22 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
 
-/// One run of one config. Owns the loop and the objects in it; writes nothing.
+struct Wish;
+
+/// One run of one config: the loop. It owns the scene and the backend, and writes nothing. What is believed and how the
+/// next tap is chosen is a derived class's: FromAbove, where the desk is tapped from above; FromAnySide, where the tool
+/// comes from any direction.
 ///
 /// The loop has two halves, for those who tap by other means than a backend: begin() says where, end() takes what came
 /// of it; choose_next() and observe() do the same and tell nobody.
 class Experiment {
  public:
-  /// Builds scene, candidates, strategy and, unless one is given, backend. `factory` and `interrupted` (may be null)
-  /// must outlive it; `directory` is that of the record, "" if none is kept. Throws Error for what only building can
-  /// find out.
-  Experiment(const ExperimentOptions& options, const PluginFactory& factory, const std::atomic<bool>* interrupted,
-             std::shared_ptr<Backend> backend = nullptr, const std::string& directory = {});
-
+  virtual ~Experiment() = default;
   Experiment(const Experiment&) = delete;
   Experiment& operator=(const Experiment&) = delete;
 
@@ -47,82 +44,75 @@ class Experiment {
   /// Takes in what came of the tap that begin() chose, and tells `journal`. Throws Error as run() does.
   void end(TapRecord& tap, Journal& journal);
 
-  /// Ends the run before its budget, for this reason.
-  void stop(const std::string& reason) { watch_.stop(reason); }
-
   /// Chooses the next tap, whatever the budget, and describes the state that it is chosen from; makes none. The same
   /// again until the next observe(). None if no candidate is left.
-  std::optional<TapRecord> choose_next(const Wish* wish = nullptr);
+  virtual std::optional<TapRecord> choose_next(const Wish* wish = nullptr) = 0;
 
   /// Notes a tap that was made, wherever. The models take it in when next they are asked.
-  void observe(const PastTap& tap);
+  virtual void observe(const PastTap& tap) = 0;
 
-  /// Takes over the taps of an earlier process, in their order, and asks for what was read then: the record goes on as
-  /// it was.
-  void resume(const std::vector<PastTap>& past);
+  /// Takes over the taps of an earlier process, in their order: the record goes on as it was.
+  virtual void resume(const std::vector<PastTap>& past) = 0;
+
+  /// Ends the run before its budget, for this reason.
+  virtual void stop(const std::string& reason) = 0;
 
   /// What was counted so far, without errors: builds and computes nothing.
-  const RunResult& counts() const { return watch_.counts(); }
+  virtual const RunResult& counts() const = 0;
 
   /// The result as of now. Where the truth is known, with the errors of the final models, whoever has read them.
-  RunResult result() { return watch_.result(belief_); }
-
-  /// What is known of a tap that choose_next() chose. The backend is asked; no model is built for it.
-  Preview preview(const TapRecord& tap) const;
-
-  /// What the acquisition gives each candidate as of now: asked again, which changes nothing (its law).
-  Eigen::VectorXd scores();
-
-  /// Every reader of every model, before any is built. What is recorded of a tap are the models that these have asked
-  /// for until then.
-  std::vector<ModelReader> readers() const;
-
-  /// Has the belief hold these quantities from now on, and choose_next() describe them, as if the strategy read them.
-  void ask(Quantities quantities) { belief_.ask(quantities); }
-
-  /// Has the belief hold these quantities as of now, for who looks at it; the record is the same without.
-  void build(Quantities quantities) { belief_.build(quantities); }
+  virtual RunResult result() = 0;
 
   /// The errors as of now, none where no truth is known. For people who watch: what is recorded, times included, is the
   /// same without them, because models that nobody else reads are kept apart.
-  Errors errors() { return watch_.errors(belief_); }
+  virtual Errors errors() = 0;
 
-  const Candidates& candidates() const { return candidates_; }
+  /// Has the models hold what such readers read, from now on, and choose_next() describe it, as if the strategy read
+  /// it.
+  virtual void ask(Quantities quantities) = 0;
+
+  /// What is known of a tap that choose_next() chose. The backend is asked; no model is built for it.
+  virtual Preview preview(const TapRecord& tap) const = 0;
+
+  /// Every reader of every model, before any is built. What is recorded of a tap are the models that these have asked
+  /// for until then.
+  virtual std::vector<ModelReader> readers() const = 0;
+
   const Scene& scene() const { return *scene_; }
   const Backend& backend() const { return *backend_; }
-  const TapBelief& belief() const { return belief_; }
   PhaseClock& clock() { return clock_; }
-  /// The scene at the candidates; null where the backend taps another world.
-  const Truth* truth() { return watch_.truth(); }
 
- private:
-  /// `source`: who would choose the next tap.
-  std::optional<std::string> stop_reason(std::int64_t budget, Source source);
-  bool stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
-  /// What a tap of this source reads of the belief: strategy, stop rules and backend. What a forecast reads is asked
-  /// for by itself, from the first hit on.
-  Quantities reads_for(Source source) const;
+ protected:
+  /// Builds scene and, unless one is given, backend. `factory` and `interrupted` (may be null) must outlive it;
+  /// `directory` is that of the record, "" if none is kept. Throws Error for what only building can find out.
+  Experiment(const ExperimentOptions& options, const PluginFactory& factory, const std::atomic<bool>* interrupted,
+             std::shared_ptr<Backend> backend, const std::string& directory);
+
+  /// Fits and infers what anybody has asked for, after the latest tap.
+  virtual void update() = 0;
+  /// A reason to stop, beside budget and user, before another tap, which `source` would choose; none if there is none.
+  virtual std::optional<std::string> stop_rule(Source source) = 0;
+  /// Notes in `tap` how its contact is read.
+  virtual void read(TapRecord& tap) = 0;
+
   TapRequest request_of(const TapRecord& tap) const {
-    return {tap.number, tap.target, previous_, tap.predicted, watch_.counts().robot_seconds, tap.motion};
+    return {tap.number, tap.target, previous_, tap.predicted, counts().robot_seconds, tap.motion, tap.approach};
   }
-  Manner manner_of(const PastTap& tap) const {
-    return {tap.source == Source::initial, tap.motion, chooser_.roughness(tap.motion)};
-  }
-  Contact touch(const TapRecord& tap);
-  bool is_broken_off(const Contact& contact) const;
-  void check_backend(const Contact& last);
-  void show_belief();
 
   ExperimentOptions options_;
   std::unique_ptr<const Scene> scene_;
   Context context_;
-  Candidates candidates_;
-  PhaseClock clock_;
-  TapBelief belief_;
-  Chooser chooser_;
   std::shared_ptr<Backend> backend_;
-  Watch watch_;
-  std::optional<Target> previous_;
+  PhaseClock clock_;
+  std::optional<Target> previous_;  ///< of the tap before
+
+ private:
+  std::optional<std::string> stop_reason(std::int64_t budget, Source source);
+  bool stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
+  Contact touch(const TapRecord& tap);
+  bool is_broken_off(const Contact& contact) const;
+  void check_backend(const Contact& last);
+
   int failed_in_a_row_ = 0;  ///< of this process: somebody has looked at the arm before a run is carried on
 };
 

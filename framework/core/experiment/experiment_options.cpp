@@ -112,6 +112,18 @@ void LowrankOptions::list(Fields& fields) {
   fields.choice(precision, Field("precision", "of the maps over the candidates"), {{"double", "the only one", {}}});
 }
 
+void SpaceOptions::list(Fields& fields) {
+  fields.integer(
+      approaches,
+      Field("approaches", "among which the next is chosen, drawn anew before every tap").at_least(1).at_most(100000));
+  fields.integer(
+      compositions,
+      Field("compositions", "of simple solids that are kept, each about equally probable").at_least(2).at_most(1000));
+  fields.integer(
+      moves, Field("moves", "of each, after a tap, by which it is fitted to the touches").at_least(0).at_most(100000));
+  fields.real(misfit, Field("misfit", "by how much objects are off the simple solids").in(Unit::metre).above(0));
+}
+
 void StopOptions::list(Fields& fields) {
   fields.real(
       max_standard_deviation,
@@ -160,7 +172,10 @@ void ExperimentOptions::list(Fields& fields) {
       surface,
       Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it").of_strategy(),
       {{"single", "one process for the heights of object and desk, as the paper has it", {}},
-       {"two_part", "heights from the taps on an object alone, where the footprint is at least 1/2; else desk", {}}});
+       {"two_part", "heights from the taps on an object alone, where the footprint is at least 1/2; else desk", {}},
+       {"implicit", "closed surfaces in space; for `scene.touch: any`, and only for that", {}}});
+  if (surface == Surface::implicit && !space) space.emplace();
+  fields.section(space, Field("space", "what is believed of `surface: implicit`").of_strategy());
   fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates").of_strategy(),
                 {{"auto", "the fastest that is exact enough: see accuracy", {}},
                  {"dense", "any kernel; time and memory grow with taps times candidates", {}},
@@ -213,6 +228,13 @@ void ExperimentOptions::list(Fields& fields) {
   };
   const double columns = cells(scene.area.width);
   const double rows = cells(scene.area.depth);
+  const bool any_side = scene.touch == SceneOptions::Touch::any;
+  fields.require(any_side == (surface == Surface::implicit), "surface",
+                 any_side ? "scene.touch is any, what is touched from any side is believed by surface: implicit; "
+                            "strategy=any_side has it"
+                          : "implicit is for a scene with touch: any");
+  fields.require(!any_side || initial.design == InitialOptions::Design::random, "initial.design",
+                 "from any side the first taps are random");
   fields.require(
       std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
       fmt::format("cuts the area into {} x {} cells, at most {} a side are possible", columns, rows, kMaxCellsPerSide));

@@ -69,6 +69,15 @@ struct LowrankOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// Of `surface: implicit`: see space/.
+struct SpaceOptions : Options {
+  std::int64_t approaches = 2000;
+  std::int64_t compositions = 24;
+  std::int64_t moves = 300;
+  double misfit = 0.002;  ///< metres
+  void list(Fields& fields) override;
+};
+
 struct StopOptions : Options {
   std::optional<double> max_standard_deviation;
   std::optional<double> expected_rmse;
@@ -90,7 +99,7 @@ struct LogOptions : Options {
 inline constexpr std::int64_t kFormat = 1;
 
 struct ExperimentOptions : Options {
-  enum class Surface { single, two_part };
+  enum class Surface { single, two_part, implicit };
   enum class Posterior { automatic, dense, grid, lowrank };
   enum class Fallback { uncertainty, none };
   enum class Repeat { forbid, allow };
@@ -106,6 +115,7 @@ struct ExperimentOptions : Options {
   WeightOptions weight;
   std::optional<PriorOptions> prior;  ///< absent: nothing was seen before the first tap
   Surface surface = Surface::single;
+  std::optional<SpaceOptions> space;  ///< of `surface: implicit`, always
   Posterior posterior = Posterior::automatic;
   LowrankOptions lowrank;
   PluginChoice acquisition{"acquisition", {}, nullptr};

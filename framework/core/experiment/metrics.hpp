@@ -27,6 +27,10 @@ struct Errors {
   std::optional<double> rmse_on_surface;  ///< metres, the same over the cells on an object
   std::optional<double> rmse_height;      ///< metres, the height mean itself over the cells on an object
   std::optional<double> footprint_iou;    ///< predicted against true cells on an object; 1 if both are empty
+  // From any side alone; then rmse is over the points of either surface, rmse_on_surface over those of the true one.
+  std::optional<double> nearest =
+      std::nullopt;  ///< metres, mean distance from the points of either surface to the other
+  std::optional<double> f_score = std::nullopt;  ///< at 5 mm
 };
 
 /// Root mean square of (map - truth.height), over all cells or over those on an object. None if there are none.

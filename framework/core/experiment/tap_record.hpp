@@ -63,6 +63,7 @@ struct PastTap {
   int motion = 0;                                      ///< of the backend's, where it has several
   std::optional<Prediction> predicted = std::nullopt;  ///< of the height at the target, for a backend that wants it
   std::string why{};                                   ///< of a fallback
+  std::optional<Approach> approach = std::nullopt;     ///< the way of the tool; none: straight down at the target
 
   /// Whether scores from outside were asked for, and not the strategy.
   bool of_caller() const {

@@ -114,6 +114,12 @@ class NamedAcquisition final : public Named<Acquisition> {
   using Named::Named;
   Quantities reads() const override { return call(&Acquisition::reads); }
   void score(const Belief& belief, VectorOut out) const override { call(&Acquisition::score, declared(belief), out); }
+  bool from_above() const override { return call(&Acquisition::from_above); }
+  bool any_side() const override { return call(&Acquisition::any_side); }
+  Quantities reads_of_approaches() const override { return call(&Acquisition::reads_of_approaches); }
+  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
+    call(&Acquisition::score_approaches, belief, out);
+  }
   double prior_scale() const override { return call(&Acquisition::prior_scale); }
 };
 
@@ -145,6 +151,7 @@ class NamedBackend final : public Named<Backend> {
   bool repeatable() const override { return call(&Backend::repeatable); }
   std::vector<std::string> describe(const TapRequest& request) override { return call(&Backend::describe, request); }
   std::vector<Learnt> learnt() const override { return call(&Backend::learnt); }
+  bool reaches(const Approach& approach) const override { return call(&Backend::reaches, approach); }
   Quantities expects() const override { return call(&Backend::expects); }
   Quantities reads() const override { return call(&Backend::reads); }
   void show(const Belief& belief) override { call(&Backend::show, declared(belief)); }

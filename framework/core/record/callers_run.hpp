@@ -39,7 +39,7 @@ class CallersRun {
   virtual const RunReport& finish() = 0;
   virtual bool finished() const = 0;
 
-  virtual Experiment& experiment() = 0;
+  virtual FromAbove& experiment() = 0;
   virtual const ResolvedConfig& config() const = 0;
   virtual const std::filesystem::path& directory() const = 0;
 };

@@ -70,8 +70,7 @@ void move_away(const fs::path& directory) {
 std::unique_ptr<Experiment> build_experiment(const Workshop& workshop, const ResolvedConfig& config,
                                              const fs::path& directory) {
   try {
-    return std::make_unique<Experiment>(config.options, workshop.host, workshop.interrupted, nullptr,
-                                        directory.string());
+    return make_experiment(config.options, workshop.host, workshop.interrupted, nullptr, directory.string());
   } catch (const Error& trouble) {  // thrown on, with the place that only the config knows
     const std::string place = config.tree.place_of(trouble.where()).text();
     if (place.empty()) throw;
@@ -132,7 +131,8 @@ void Relay::look_at_errors() {
 }
 
 void Relay::write_maps(int number) const {
-  const std::string text = maps_csv(experiment_);
+  const auto* const above = dynamic_cast<const FromAbove*>(&experiment_);
+  const std::string text = above != nullptr ? maps_csv(*above) : std::string();
   if (text.empty()) return;
   make_inner_folder(directory_.path() / "maps");
   directory_.write(fmt::format("maps/tap_{:03}.csv", number), text);
@@ -166,7 +166,10 @@ RunReport Course::finish(std::string failure) {
   report.summary = summary_list().row(summary);
   directory_.write("taps.csv", to_csv(directory_.rows()));
   if (result.interrupted) return report;
-  if (config_.options.log.surface && failure.empty()) directory_.write("surface.csv", surface_csv(experiment_));
+  if (config_.options.log.surface && failure.empty()) {
+    const auto [name, text] = surface_file(experiment_);
+    directory_.write(name, text);
+  }
   if (const std::string objects = objects_csv(summary); !objects.empty()) directory_.write("objects.csv", objects);
   directory_.write("summary.json", to_json_text(report.summary));
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);

@@ -3,10 +3,10 @@
 // have in common, and nobody else uses.
 #pragma once
 
-#include "experiment/experiment.hpp"
 #include "record/run_directory.hpp"
 #include "record/session.hpp"
 #include "record/summary.hpp"
+#include "space/from_any_side.hpp"
 
 #include <array>
 #include <exception>

@@ -37,7 +37,7 @@ constexpr std::array kStatistics{
 constexpr std::array<std::string_view, 5> kComparisons{">=", ">", "<=", "<", "=="};
 
 /// One key with its value, once nested maps are undone.
-struct Line {
+struct Clause {
   std::string key;
   Place place;
   const Tree* value;
@@ -54,21 +54,21 @@ Place place_of(const Tree::Entry& entry) {
   return value.file && (!entry.place.file || *value.file != *entry.place.file) ? value : entry.place;
 }
 
-void collect(const Tree& map, const std::string& prefix, std::vector<Line>& lines) {
+void collect(const Tree& map, const std::string& prefix, std::vector<Clause>& lines) {
   for (const Tree::Entry& entry : map.entries) {
     const std::string key = without_spaces(prefix + entry.key);
     if (entry.value.is_map() && !entry.value.entries.empty()) {
       collect(entry.value, key + ".", lines);
       continue;
     }
-    const auto twin = std::find_if(lines.begin(), lines.end(), [&](const Line& line) { return line.key == key; });
+    const auto twin = std::find_if(lines.begin(), lines.end(), [&](const Clause& line) { return line.key == key; });
     if (twin != lines.end()) throw Error(place_of(entry).text(), fmt::format("expect.{}: stands there twice", key));
     lines.push_back({key, place_of(entry), &entry.value});
   }
 }
 
-std::vector<Line> lines_of(const Tree& expect) {
-  std::vector<Line> lines;
+std::vector<Clause> lines_of(const Tree& expect) {
+  std::vector<Clause> lines;
   if (!expect.is_map() && expect.kind != Tree::Kind::null) {
     throw Error(expect.place.text(), "expect: is not a map of expectations",
                 fmt::format("write expect: {{on_surface_taps: \">= 9\", {}: \"<= 2 cm\"}}", main_error()));
@@ -85,7 +85,7 @@ std::vector<std::string> field_names() {
 }
 
 /// Splits the key into statistic and field, and refuses unknown ones.
-const RecordField& read_key(const Line& line, Expectation& out) {
+const RecordField& read_key(const Clause& line, Expectation& out) {
   static const RecordField failed_runs = RecordField(kFailedRuns, "runs that failed").less();
   out.key = out.field = line.key;
   const auto open = line.key.find('(');
@@ -170,7 +170,7 @@ std::vector<std::string> statistic_names() {
 std::vector<Expectation> read_expectations(const Tree* expect) {
   std::vector<Expectation> out;
   if (expect == nullptr) return out;
-  for (const Line& line : lines_of(*expect)) {
+  for (const Clause& line : lines_of(*expect)) {
     Expectation one;
     const RecordField& field = read_key(line, one);
     one.place = line.place.text();
@@ -187,7 +187,7 @@ std::vector<Expectation> read_expectations(const Tree* expect) {
 
 Tree resolved_expect(const Tree& expect, ResolveNotes& notes) {
   Tree out = Tree::map();
-  for (const Line& line : lines_of(expect)) {
+  for (const Clause& line : lines_of(expect)) {
     Tree value = *line.value;
     value.quoted = value.is_scalar();
     for (Tree& item : value.items) item.quoted = true;

@@ -20,6 +20,7 @@ const char* const kNoTruth = "no truth is known";
 struct ErrorField {
   RecordField field;
   std::optional<double> Errors::*value;
+  bool any_side = false;  ///< only where the tool comes from any side
 };
 
 /// The first is the one by which surfaces are judged where one number has to do.
@@ -52,6 +53,20 @@ const std::vector<ErrorField>& error_list() {
            .called("footprint IoU")
            .headline(),
        &Errors::footprint_iou},
+      {RecordField("nearest_m",
+                   "from any side: mean distance from the points of the reconstructed surface to the nearest of the "
+                   "true one and back, over the points of both; each surface is where lines from all sides first meet "
+                   "it, thinned to one point in a cube of 3 mm")
+           .in(Unit::metre)
+           .less()
+           .called("to the nearest point"),
+       &Errors::nearest, true},
+      {RecordField("f_score",
+                   "from any side: harmonic mean of the share of reconstructed points within 5 mm of the true surface "
+                   "and of true points within 5 mm of the reconstructed one")
+           .more()
+           .called("F-score at 5 mm"),
+       &Errors::f_score, true},
   };
   return list;
 }
@@ -162,6 +177,26 @@ FieldList<TapRecord> make_tap_list() {
   list.add("why", "of a fallback, why", [](const Tap& t) { return if_any(t.why); });
   list.add("x", "where", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
   list.add("y", "where", [](const Tap& t) { return t.target.y; }).in(Unit::metre);
+  const auto of_approach = [&](const char* name, const char* meaning, auto get, Unit unit) {
+    list.add_where([](const Tap& t) { return t.approach.has_value(); }, name, meaning,
+                   [get](const Tap& t) { return std::optional<double>(get(*t.approach)); })
+        .in(unit);
+  };
+  of_approach(
+      "z", "where the tool starts, from any side; x and y, too", [](const Approach& a) { return a.line.origin.z(); },
+      Unit::metre);
+  of_approach(
+      "direction.x", "in which it goes, of unit length", [](const Approach& a) { return a.line.direction.x(); },
+      Unit::none);
+  of_approach(
+      "direction.y", "the same", [](const Approach& a) { return a.line.direction.y(); }, Unit::none);
+  of_approach(
+      "direction.z", "the same", [](const Approach& a) { return a.line.direction.z(); }, Unit::none);
+  of_approach(
+      "length", "how far it goes at most", [](const Approach& a) { return a.length; }, Unit::metre);
+  list.add_where([](const Tap& t) { return t.contact.along.has_value(); }, "along", "how far it went",
+                 [](const Tap& t) { return t.contact.along; })
+      .in(Unit::metre);
   list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
@@ -474,7 +509,8 @@ const std::vector<RecordField>& error_fields() {
 }
 
 void add_errors(Row& row, const Errors& errors) {
-  for (const ErrorField& one : error_list()) row.add(one.field.name, errors.*one.value);
+  for (const ErrorField& one : error_list())
+    if (!one.any_side || errors.*one.value) row.add(one.field.name, errors.*one.value);
 }
 
 Errors errors_in(const Row& row) {

@@ -27,6 +27,7 @@ class Absent : public Backend {
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_known_; }
+  bool reaches(const Approach&) const override { return true; }
 
  private:
   bool truth_known_;
@@ -60,7 +61,7 @@ class Collector final : public Journal {
 };
 
 /// What somebody had chosen by scores of their own; none where the strategy chose.
-std::optional<Wish> wish_of(const Row& row, const Experiment& experiment) {
+std::optional<Wish> wish_of(const Row& row, const FromAbove& experiment) {
   TapRecord tap;
   for (const Source source : {Source::caller, Source::fallback}) {
     if (row.text("source") == source_name(source)) tap.source = source;
@@ -155,8 +156,8 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
 
 Playback::Playback(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
-      experiment_(std::make_unique<Experiment>(recording.config.options, workshop.host, workshop.interrupted,
-                                               no_backend(recording.truth_known()))) {}
+      experiment_(make_experiment(recording.config.options, workshop.host, workshop.interrupted,
+                                  no_backend(recording.truth_known()))) {}
 
 void Playback::advance_to(int taps) {
   const auto begin = recording_.taps.begin();
@@ -169,11 +170,14 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const std::vector<Row>& recorded = recording.rows;
   const auto made = static_cast<int>(recorded.size());
   const bool cut = made < recording.config.options.taps;
-  Experiment experiment(recording.config.options, workshop.host, workshop.interrupted,
-                        std::make_shared<Recorded>(recording));
+  const std::unique_ptr<Experiment> made_again = make_experiment(
+      recording.config.options, workshop.host, workshop.interrupted, std::make_shared<Recorded>(recording));
+  Experiment& experiment = *made_again;
+  const auto* const from_above = dynamic_cast<const FromAbove*>(made_again.get());
   Collector collector;
   for (std::size_t i = 0;; ++i) {
-    const std::optional<Wish> wish = i < recorded.size() ? wish_of(recorded[i], experiment) : std::nullopt;
+    const std::optional<Wish> wish =
+        from_above != nullptr && i < recorded.size() ? wish_of(recorded[i], *from_above) : std::nullopt;
     std::optional<TapRecord> tap = experiment.begin(collector, made, wish ? &*wish : nullptr);
     if (!tap) break;
     tap->contact = recording.taps.at(i).contact;

@@ -3,11 +3,11 @@
 // and for what it had come to after fewer taps.
 #pragma once
 
-#include "experiment/experiment.hpp"
 #include "record/occasion.hpp"
 #include "record/resolved.hpp"
 #include "record/row.hpp"
 #include "record/session.hpp"
+#include "space/from_any_side.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -52,6 +52,8 @@ class Playback {
 
   /// The experiment as of now: beliefs, errors, and the tap that it would choose next. Not to be run.
   Experiment& experiment() { return *experiment_; }
+  /// The same, of a run that taps from above. Throws Error for another.
+  FromAbove& from_above() { return from_above_of(*experiment_, recording_.directory.string()); }
 
  private:
   const Recording& recording_;

@@ -2,10 +2,10 @@
 #include "record/session.hpp"
 
 #include "config/yaml.hpp"
-#include "experiment/experiment.hpp"
 #include "record/course.hpp"
 #include "record/recording.hpp"
 #include "record/summary.hpp"
+#include "space/from_any_side.hpp"
 
 #include <fmt/format.h>
 
@@ -30,8 +30,8 @@ RunReport report_done(const fs::path& directory) { return {directory, true, fals
 
 std::vector<ModelReader> readers_of(const Workshop& workshop, const ResolvedConfig& config) {
   const bool is_robot = workshop.host.one_at_a_time({{Backend::kKind, config.options.backend.type}});
-  return Experiment(config.options, workshop.host, workshop.interrupted, is_robot ? no_backend(false) : nullptr)
-      .readers();
+  return make_experiment(config.options, workshop.host, workshop.interrupted, is_robot ? no_backend(false) : nullptr)
+      ->readers();
 }
 
 fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {

@@ -94,7 +94,7 @@ std::int64_t peak_rss_bytes() {
   return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
-std::string surface_csv(Experiment& experiment) {
+std::string surface_csv(FromAbove& experiment) {
   experiment.ask(Quantity::height | Quantity::probability);
   const TapBelief& belief = experiment.belief();
   const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
@@ -108,7 +108,12 @@ std::string surface_csv(Experiment& experiment) {
                    {"true_height", truth != nullptr ? &truth->height : nullptr}});
 }
 
-std::string maps_csv(const Experiment& experiment) {
+std::pair<std::string, std::string> surface_file(Experiment& experiment) {
+  if (auto* const any_side = dynamic_cast<FromAnySide*>(&experiment)) return {"surface.ply", any_side->surface_ply()};
+  return {"surface.csv", surface_csv(from_above_of(experiment, ""))};
+}
+
+std::string maps_csv(const FromAbove& experiment) {
   const TapBelief& belief = experiment.belief();
   const Quantities known = belief.recorded();
   std::vector<Column> columns;

@@ -2,11 +2,12 @@
 // What is measured for the summary of a run, and its surface; the fields of the summary are in fields.cpp.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "space/from_any_side.hpp"
 
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace palpate {
 
@@ -26,9 +27,12 @@ class Stopwatch {
 std::int64_t peak_rss_bytes();
 
 /// The candidate grid: x, y, height mean and standard deviation, on-surface probability, reconstruction, truth.
-std::string surface_csv(Experiment& experiment);
+std::string surface_csv(FromAbove& experiment);
+
+/// What the surface came to, as a file and its content: surface.csv, or, of a run from any side, surface.ply.
+std::pair<std::string, std::string> surface_file(Experiment& experiment);
 
 /// The maps of the models that are recorded, as CSV; "" if there are none.
-std::string maps_csv(const Experiment& experiment);
+std::string maps_csv(const FromAbove& experiment);
 
 }  // namespace palpate

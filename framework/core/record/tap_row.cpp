@@ -41,6 +41,13 @@ PastTap past_tap(const Row& row, const std::string& where) {
   out.contact.seconds = number_at(row, "robot_seconds", 0.0, where);
   out.contact.reason = row.text("reason");
   out.contact.peak = row.number("peak_force");
+  if (const std::optional<double> z = row.number("z")) {
+    const auto number = [&](const char* name) { return number_at(row, name, 0.0, where); };
+    out.approach = Approach{
+        {{out.target.x, out.target.y, *z}, {number("direction.x"), number("direction.y"), number("direction.z")}},
+        number("length")};
+    out.contact.along = row.number("along");
+  }
   out.why = row.text("why");
   out.motion = static_cast<int>(row.number("motion").value_or(0.0));
   if (const std::optional<double> height = row.number("predicted.height")) {

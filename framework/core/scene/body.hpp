@@ -21,6 +21,9 @@ class Body {
   /// Height above the desk at (x, y): 0 beside the body; its outline belongs to it.
   double height(double x, double y) const;
 
+  /// Where a line first meets it, metres from the line's origin; +infinity if it does not.
+  double first_hit(const Line& line) const;
+
   /// Of its highest point, above the desk.
   double highest() const;
 

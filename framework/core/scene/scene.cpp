@@ -7,6 +7,7 @@
 #include <palpate/plugin.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace palpate {
 namespace {
@@ -17,6 +18,7 @@ class Desk final : public Scene {
       : area_{options.area.width, options.area.depth},
         desk_(options.desk),
         margin_(options.on_surface_above),
+        any_side_(options.touch == SceneOptions::Touch::any),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
     // Shapes see a desk that is still bare.
@@ -40,6 +42,15 @@ class Desk final : public Scene {
     double above = 0.0;
     for (const Body& body : bodies_) above = std::max(above, body.height(x, y));
     return desk_ + above;
+  }
+
+  bool any_side() const override { return any_side_; }
+
+  double first_hit(const Line& line) const override {
+    const Line above{line.origin - Eigen::Vector3d(0.0, 0.0, desk_), line.direction};
+    double first = std::numeric_limits<double>::infinity();
+    for (const Body& body : bodies_) first = std::min(first, body.first_hit(above));
+    return first;
   }
 
   double highest() const override {
@@ -79,6 +90,7 @@ class Desk final : public Scene {
   Area area_;
   double desk_;
   double margin_;
+  bool any_side_;
   Effects effects_;
   Context context_;  ///< outlives the plugins in bodies_
   std::vector<Body> bodies_;

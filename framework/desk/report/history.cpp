@@ -31,7 +31,7 @@ bool own_scores(const Snapshot& now) {
 
 /// The run as `playback` has it now, after as many of the taps of `recording`.
 Snapshot snapshot_of(Playback& playback, const Recording& recording) {
-  Experiment& experiment = playback.experiment();
+  FromAbove& experiment = playback.from_above();
   const TapBelief& belief = experiment.belief();
   Snapshot out;
   out.taps = playback.taps();
@@ -74,11 +74,11 @@ std::string count_words(const RunResult& result) {
 
 HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recording)
     : recording_(recording), playback_(workshop, recording) {
-  const Candidates& all = playback_.experiment().candidates();
+  const Candidates& all = playback_.from_above().candidates();
   stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
   grown_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
   grown_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
-  const bool weight = playback_.experiment().belief().footprint_is_weight();
+  const bool weight = playback_.from_above().belief().footprint_is_weight();
   for (const char* name : {"height", "deviation", "u", weight ? "w" : "p", "score"}) grown_.maps.push_back({name, {}});
   add();
 }
@@ -95,13 +95,13 @@ void HistoryGrower::add() {
   for (std::size_t i = 0; i < std::size(maps); ++i) grown_.maps[i].frames.push_back(shown(*maps[i]));
   own_scores_ = own_scores_ || own_scores(now);
   largest_ = std::max(largest_, now.largest_deviation);
-  if (const Truth* truth = playback_.experiment().truth()) truth_ = shown(truth->height);
+  if (const Truth* truth = playback_.from_above().truth()) truth_ = shown(truth->height);
   grown_.shown.push_back(now.taps);
   grown_.moments.push_back(now);
 }
 
 Eigen::VectorXf HistoryGrower::shown(const Eigen::VectorXd& map) {
-  const Candidates& all = playback_.experiment().candidates();
+  const Candidates& all = playback_.from_above().candidates();
   const auto some = Eigen::seq(0, Eigen::last, stride_);
   const Eigen::MatrixXd cells = map.reshaped<Eigen::RowMajor>(all.rows, all.columns)(some, some);
   return cells.reshaped<Eigen::RowMajor>().cast<float>();

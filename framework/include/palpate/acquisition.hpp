@@ -3,6 +3,7 @@
 #pragma once
 
 #include <palpate/belief.hpp>
+#include <palpate/surface_belief.hpp>
 #include <palpate/types.hpp>
 
 namespace palpate {
@@ -20,6 +21,17 @@ class Acquisition {
 
   /// Scores all candidates at once; `out` has M elements. The candidate of the highest score is tapped next.
   virtual void score(const Belief& belief, VectorOut out) const = 0;
+
+  /// Whether score() is of use, and whether score_approaches(), the same from birth to death: where the tool comes from
+  /// above, or from any side.
+  virtual bool from_above() const { return true; }
+  virtual bool any_side() const { return false; }
+
+  /// What score_approaches() reads of what only a SurfaceBelief has.
+  virtual Quantities reads_of_approaches() const { return {}; }
+
+  /// Scores all approaches at once, by the laws of score(); `out` has N elements.
+  virtual void score_approaches(const SurfaceBelief& /*belief*/, VectorOut /*out*/) const {}
 
   /// The size of a typical score before any tap: the unit in which ties are judged when scores become small.
   virtual double prior_scale() const = 0;

@@ -22,12 +22,13 @@ struct Prediction {
 /// One tap as it is asked for. It says all that a simulated answer may depend on beside options and seed, so that a
 /// resumed run goes on exactly as the unbroken one would have.
 struct TapRequest {
-  int number = 1;                       ///< of the tap within the run, from 1
-  Target target;                        ///< within the scene's area
-  std::optional<Target> previous;       ///< the target of the tap before, none for the first
-  std::optional<Prediction> predicted;  ///< only for a backend that wants it
-  double elapsed = 0.0;                 ///< robot time of all taps before, seconds
-  int motion = 0;                       ///< in which way, where the backend has several: see motions.hpp
+  int number = 1;                                   ///< of the tap within the run, from 1
+  Target target;                                    ///< within the scene's area
+  std::optional<Target> previous;                   ///< the target of the tap before, none for the first
+  std::optional<Prediction> predicted;              ///< only for a backend that wants it
+  double elapsed = 0.0;                             ///< robot time of all taps before, seconds
+  int motion = 0;                                   ///< in which way, where the backend has several: see motions.hpp
+  std::optional<Approach> approach = std::nullopt;  ///< the way of the tool; none: straight down, at the target
 };
 
 /// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up
@@ -50,6 +51,10 @@ class Backend {
 
   /// Whether a tap can be made again at no risk. If not, each tap is announced in the log and synced before it moves.
   virtual bool repeatable() const = 0;
+
+  /// Whether a tap can be made along this approach, as far as that is known before: whether arm and shaft get there and
+  /// stay clear of the desk. A backend that only comes from above says no to all.
+  virtual bool reaches(const Approach& /*approach*/) const { return false; }
 
   /// What tap() would do with `request`, for a person who is asked before every tap (`palpate run --step`): a few lines
   /// without line ends, as where the tool comes from, how deep and fast it goes, which forces end it. Empty: nothing is

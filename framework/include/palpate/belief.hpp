@@ -18,6 +18,9 @@ enum class Quantity : unsigned {
   height = 8,       ///< mean and variance
   doubt = 16,       ///< which contacts are believed; nothing that a plugin reads
   outlines = 32,    ///< some of the outlines that p is the mean of
+  // From any side, of a SurfaceBelief:
+  meetings = 64,   ///< meetings and differences
+  deviation = 128  ///< deviation and squareness
 };
 
 /// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.

@@ -86,6 +86,10 @@ class Field {
   /// Of what is the run's own, an option that a strategy may bring along for runs that do not say it.
   Field& but_of_strategy(const char* option) { return strategy_part = option, *this; }
 
+  /// A choice that a resolved config has only where it is not the first case: those before it was there stay as they
+  /// are.
+  Field& left_out() { return is_left_out = true, *this; }
+
   /// A list, in whose place `{draw: {least, most, of}}` may stand: items that are drawn from the seed.
   Field& drawable() { return is_drawable = true, *this; }
 
@@ -99,6 +103,7 @@ class Field {
   bool required = false;
   bool is_group = false;
   bool is_drawable = false;
+  bool is_left_out = false;
   const char* heir_of = "";
   Owner owner = Owner::unsaid;
   const char* strategy_part = "";

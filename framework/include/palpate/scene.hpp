@@ -30,6 +30,13 @@ class Scene {
   /// Height of the highest thing at (x, y), metres: the desk, or an object on it. Defined on the whole plane.
   virtual double height(double x, double y) const = 0;
 
+  /// Whether the tool comes from any side, or else from above.
+  virtual bool any_side() const = 0;
+
+  /// Where the line first meets an object, metres from its origin, negative behind it; +infinity if it meets none. The
+  /// desk does not count. z of the line is as heights are.
+  virtual double first_hit(const Line& line) const = 0;
+
   /// Upper bound of `height` over the plane, metres.
   virtual double highest() const = 0;
 

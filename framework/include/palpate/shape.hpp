@@ -2,15 +2,11 @@
 // The form of an object, apart from where it stands. The scene turns, tilts and places it.
 #pragma once
 
+#include <palpate/types.hpp>
+
 #include <Eigen/Core>
 
 namespace palpate {
-
-/// A straight line without ends: the points origin + x * direction for every real x.
-struct Line {
-  Eigen::Vector3d origin;     ///< metres
-  Eigen::Vector3d direction;  ///< of unit length, pointing down: its z is negative
-};
 
 /// A bounded solid in a frame of its own: the first coordinate along its length, the second across, the third up,
 /// metres. It rests on the plane 0 of the third, and the rectangle that bounds its outline, seen from above, is centred
@@ -24,8 +20,9 @@ class Shape {
   virtual ~Shape() = default;
 
   /// The least x at which the line meets the solid, negative if that is behind the line's origin; +infinity if it
-  /// misses. Laws: moving the origin by a step along the line lessens the answer by that step; no point met lies
-  /// further out than support() says.
+  /// misses. Lines point anywhere; but where a scene is touched from above alone they point down. Laws: moving the
+  /// origin by a step along the line lessens the answer by that step; no point met lies further out than support()
+  /// says.
   virtual double first_hit(const Line& line) const = 0;
 
   /// The largest scalar product of a point of the solid with `direction`, which is finite and need not be of unit

@@ -26,6 +26,19 @@ struct Target {
   double y = 0.0;
 };
 
+/// A straight line without ends: the points origin + x * direction for every real x.
+struct Line {
+  Eigen::Vector3d origin;     ///< metres
+  Eigen::Vector3d direction;  ///< of unit length
+};
+
+/// The way of a tool towards what it is to touch: from the origin of the line, `length` metres along its direction, its
+/// shaft straight behind it. In the frame of the area, z as heights are. A tap from above is the one straight down.
+struct Approach {
+  Line line;
+  double length = 0.0;
+};
+
 /// A contact as the models see it.
 struct Touch {
   Target place;
@@ -66,6 +79,9 @@ struct Contact {
   /// The largest force against the tool in all of the tap, newtons, of failed taps, too: the true one where a simulator
   /// knows it, else the largest that was felt. None where no force is simulated or felt.
   std::optional<double> peak = std::nullopt;
+  /// Of a tap along an approach, how far along it the tool was when it touched, metres; the height is that of the tip
+  /// there. Of one that met nothing, how far it went.
+  std::optional<double> along = std::nullopt;
 };
 
 }  // namespace palpate

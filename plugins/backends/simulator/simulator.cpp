@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ Simulator::Simulator(const Options& options, const Context& context)
            effects.missed_contacts || effects.false_contacts;
   perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
                effects.height_offset || effects.outliers || effects.push);
-  if (scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
+  if (!scene_.any_side() && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
                             100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.at(0).hover),
@@ -30,6 +31,7 @@ Simulator::Simulator(const Options& options, const Context& context)
 }
 
 Contact Simulator::tap(const TapRequest& request) {
+  if (request.approach) return tap_along(request);
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
 #ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
@@ -40,6 +42,25 @@ Contact Simulator::tap(const TapRequest& request) {
 #endif
   const double surface = scene_.height(request.target.x, request.target.y);
   Contact contact = ideal_tap(down, surface);
+  contact.seconds += tapping::travel_seconds(motion, request);
+  return paced(std::move(contact));
+}
+
+bool Simulator::reaches(const Approach& approach) const { return approach.line.origin.z() > scene_.desk(); }
+
+/// Along its approach the arm does what it does above a place: what is left of the way stands for the height.
+Contact Simulator::tap_along(const TapRequest& request) const {
+  const tapping::MotionOptions& motion = options_.motion.of_request(request);
+  const auto& [line, length] = *request.approach;
+  const double down = line.direction.z();
+  const double to_desk =
+      down < 0.0 ? (scene_.desk() - line.origin.z()) / down : std::numeric_limits<double>::infinity();
+  const double along = std::min(scene_.first_hit(line), to_desk);
+  const Descending way{motion, {length, length, 0.0}};
+  Contact contact = ideal_tap(way, std::max(0.0, length - along));
+  if (along > length) contact.outcome = Outcome::no_contact;
+  contact.along = std::min(along, length);
+  contact.height = line.origin.z() + *contact.along * down;
   contact.seconds += tapping::travel_seconds(motion, request);
   return paced(std::move(contact));
 }

@@ -30,6 +30,7 @@ class Simulator final : public Backend {
   Simulator(const Options& options, const Context& context);
 
   Contact tap(const TapRequest& request) override;
+  bool reaches(const Approach& approach) const override;
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return true; }
   Quantities expects() const override { return tapping::expects(options_.motion); }
@@ -46,6 +47,7 @@ class Simulator final : public Backend {
   Contact ideal_tap(const Descending& tap, double surface) const;
   Contact imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
   Contact simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
+  Contact tap_along(const TapRequest& request) const;
   Contact paced(Contact contact) const;
 
   SimulatorOptions options_;

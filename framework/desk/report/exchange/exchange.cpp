@@ -54,7 +54,7 @@ std::string header_text(const std::string& text) {
   return out;
 }
 
-ReconstructedSurface reconstruct(Experiment& experiment) {
+ReconstructedSurface reconstruct(FromAbove& experiment) {
   experiment.ask(Quantity::height | Quantity::probability);
   const TapBelief& belief = experiment.belief();
   ReconstructedSurface out{surface_mesh(experiment.candidates(), reconstruction(belief)),

@@ -2,7 +2,7 @@
 // What a run found out, as programs that show meshes read it: PLY. Tables are the run's own surface.csv and taps.csv.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "record/recording.hpp"
 
 #include <array>
@@ -35,7 +35,7 @@ struct ReconstructedSurface {
 };
 
 /// As of now; builds the models that it needs.
-ReconstructedSurface reconstruct(Experiment& experiment);
+ReconstructedSurface reconstruct(FromAbove& experiment);
 
 /// PLY 1.0 in ASCII: x, y, z, nx, ny, nz in double precision and, in single precision because MeshLab reads it in no
 /// other, `quality`, the standard deviation; also `on_surface_probability` and, where it is known, `true_height`.

@@ -119,7 +119,7 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
     taps.push_back(at);
   }
   return {recording.config.options.acquisition.type, shown, snapshots_at(playback, recording, taps),
-          ground_of(playback.experiment())};
+          ground_of(playback.from_above())};
 }
 
 /// Rows below each other, of one run or of several with as many snapshots; `rows` is not empty.

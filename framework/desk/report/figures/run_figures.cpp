@@ -178,7 +178,7 @@ Figures write_run_figures(const Workshop& workshop, const Recording& recording, 
                           const std::filesystem::path& folder) {
   Playback playback(workshop, recording);
   const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
-  const Ground ground = ground_of(playback.experiment());
+  const Ground ground = ground_of(playback.from_above());
   const ExperimentOptions& options = recording.config.options;
   return {write_gallery(folder, {surface_figure(options, ground, last), maps_figure(options, ground, last),
                                  curves_figure(recording, history)}),

@@ -92,7 +92,7 @@ std::string gnuplot_palette(Palette palette) {
   return out + ")\n";
 }
 
-Ground ground_of(const Experiment& experiment) {
+Ground ground_of(const FromAbove& experiment) {
   return {experiment.candidates(), experiment.scene().area(), experiment.scene().desk()};
 }
 

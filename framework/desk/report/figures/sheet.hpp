@@ -3,7 +3,7 @@
 // named blocks before them.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "report/history.hpp"
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct Ground {
   double desk = 0.0;  ///< metres
 };
 
-Ground ground_of(const Experiment& experiment);
+Ground ground_of(const FromAbove& experiment);
 
 /// A rectangle of the picture, pixels from its upper left corner.
 struct Box {

@@ -38,7 +38,7 @@ class Explanation {
 
   std::string text() {
     playback_.advance_to(number_ - 1);
-    Experiment& experiment = playback_.experiment();
+    FromAbove& experiment = playback_.from_above();
     // What the choice read, and the height, which was expected whoever read it.
     experiment.ask(recorded_quantities(row_) | Quantity::height);
 
@@ -61,12 +61,12 @@ class Explanation {
   }
 
  private:
-  const RunResult& before() { return playback_.experiment().counts(); }
+  const RunResult& before() { return playback_.from_above().counts(); }
   int hits_before() { return before().on_surface_taps; }
 
   /// The candidate at which a tap was made.
   int candidate_of(const PastTap& tap) {
-    const Experiment& experiment = playback_.experiment();
+    const FromAbove& experiment = playback_.from_above();
     return experiment.candidates().nearest(tap.target.x, tap.target.y, experiment.scene().area());
   }
 
@@ -124,7 +124,7 @@ class Explanation {
   }
 
   double acquisition_scale() {
-    const Context context{workshop_.host, playback_.experiment().scene(), static_cast<std::uint64_t>(options_.seed),
+    const Context context{workshop_.host, playback_.from_above().scene(), static_cast<std::uint64_t>(options_.seed),
                           nullptr};
     return context.create<Acquisition>(options_.acquisition)->prior_scale();
   }
@@ -163,7 +163,7 @@ class Explanation {
     const auto score = row_.number("score");
     if (!score) return page_.say("The record holds no score.");
     const int out = left_out();
-    const int allowed = playback_.experiment().candidates().size() - out;
+    const int allowed = playback_.from_above().candidates().size() - out;
     const double ties = row_.number("ties").value_or(1.0);
     const auto second = row_.number("runner_up.score");
     const double best = second ? std::max(*score, *second) : *score;
@@ -227,7 +227,7 @@ class Explanation {
   // The tap.
 
   void explain_expectation() {
-    const TapBelief& belief = playback_.experiment().belief();
+    const TapBelief& belief = playback_.from_above().belief();
     const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
     if (two_part && hits_before() == 0) return page_.say("Expected: nothing, no tap has been on an object yet.");
     const int candidate = candidate_of(tap_);
@@ -298,8 +298,8 @@ class Explanation {
     page_.heading("Whether it is believed");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
-      playback_.experiment().choose_next();  // which has the models take in all taps
-      for (const TapBelief::Doubted& one : playback_.experiment().belief().doubted()) {
+      playback_.from_above().choose_next();  // which has the models take in all taps
+      for (const TapBelief::Doubted& one : playback_.from_above().belief().doubted()) {
         if (one.tap == number_) return "may lie: " + doubt_words(one);
       }
       return std::string("is believed");

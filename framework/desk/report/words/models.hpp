@@ -2,7 +2,7 @@
 // What the record of a tap says of the models that it was chosen from, in words.
 #pragma once
 
-#include "experiment/experiment.hpp"
+#include "experiment/from_above.hpp"
 #include "report/words/words.hpp"
 
 namespace palpate {

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/from_above.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace palpate {
+
+FromAbove::FromAbove(const ExperimentOptions& options, const PluginFactory& factory,
+                     const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend,
+                     const std::string& directory)
+    : Experiment(options, factory, interrupted, std::move(backend), directory),
+      candidates_(options.candidates.spacing
+                      ? grid_by_spacing(scene_->area(), *options.candidates.spacing)
+                      : grid_by_count(scene_->area(), static_cast<int>(*options.candidates.count))),
+      belief_(options_, candidates_, context_, clock_),
+      chooser_(options_, candidates_, context_),
+      watch_(options_, candidates_, context_, backend_->scene_is_truth()) {}
+
+void FromAbove::update() {
+  belief_.update();
+  const PhaseClock::Scope log(clock_, Phase::log);
+  if (watch_.counts().taps == 0) return;
+  belief_.ask(backend_->reads());
+  backend_->show(belief_);
+}
+
+std::optional<TapRecord> FromAbove::choose_next(const Wish* wish) {
+  TapRecord tap;
+  {
+    const PhaseClock::Scope acquire(clock_, Phase::acquire);
+    belief_.ask(reads_for(wish != nullptr              ? Source::caller
+                          : chooser_.starting(belief_) ? Source::initial
+                                                       : Source::acquisition));
+    if (!chooser_.choose(belief_, tap, previous_, wish)) return std::nullopt;
+  }
+  tap.number = watch_.counts().taps + 1;
+  tap.target = candidates_.target(tap.candidate);
+  if (const Quantities expected = backend_->expects(); expected != Quantities())
+    tap.predicted = belief_.predict(tap.candidate, expected);
+  const PhaseClock::Scope log(clock_, Phase::log);
+  watch_.describe(tap, belief_);
+  return tap;
+}
+
+void FromAbove::observe(const PastTap& tap) {
+  const int candidate = candidates_.nearest(tap.target.x, tap.target.y, scene_->area());
+  const Manner manner = manner_of(tap);
+  belief_.observe(tap.target, tap.contact, manner);
+  chooser_.observe(tap, candidate, previous_, belief_);
+  watch_.observe(tap, manner, candidate, belief_);
+  previous_ = tap.target;
+}
+
+void FromAbove::read(TapRecord& tap) {
+  const TapBelief::Reading reading = belief_.read(tap.contact, tap.motion);
+  tap.on_surface = reading.on;
+  if (belief_.systematic()) tap.corrected = reading.height;
+}
+
+std::optional<std::string> FromAbove::stop_rule(Source source) {
+  if (chooser_.starting(belief_)) return std::nullopt;
+  belief_.ask(reads_for(source));
+  const StopOptions& stop = options_.stop;
+  if (stop.max_standard_deviation &&
+      std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
+    return "max_standard_deviation";
+  }
+  if (stop.expected_rmse && good_enough(*watch_.forecast(belief_), *stop.expected_rmse)) return "expected_rmse";
+  return std::nullopt;
+}
+
+void FromAbove::resume(const std::vector<PastTap>& past) {
+  Quantities read;
+  for (const PastTap& tap : past) {
+    observe(tap);
+    read = read | reads_for(tap.of_caller() ? Source::caller : tap.source);
+    if (tap.source == Source::fallback) read = read | Chooser::kFallbackReads;
+    // Who is doubted depends on who was, once there are many; a fit on what was taken off the heights at its tap.
+    if (options_.height.lies || options_.height.systematic) belief_.ask(read);
+  }
+  belief_.ask(read);
+}
+
+Quantities FromAbove::reads_for(Source source) const {
+  Quantities out = belief_.predictable(backend_->expects() | chooser_.predicts());
+  if (options_.height.lies) out = out | Quantity::doubt;
+  if (source == Source::initial) return out;
+  if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
+  if (source == Source::caller) return out;
+  out = out | chooser_.reads();
+  if (source == Source::fallback) out = out | Chooser::kFallbackReads;
+  return out;
+}
+
+std::vector<ModelReader> FromAbove::readers() const {
+  std::vector<ModelReader> out;
+  const auto add = [&](Quantities reads, const std::string& who) {
+    for (const std::string& model : belief_.models_of(reads)) out.push_back({model, who});
+  };
+  add(chooser_.reads(), "acquisition " + options_.acquisition.type);
+  if (chooser_.may_fall_back()) add(Chooser::kFallbackReads, "fallback uncertainty, from its first use on");
+  if (options_.height.lies) add(Quantity::doubt, "height.lies");
+  if (options_.stop.max_standard_deviation) add(Quantity::uncertainty, "stop.max_standard_deviation");
+  if (options_.stop.expected_rmse) add(belief_.surface_reads(), "stop.expected_rmse");
+  add(backend_->reads() | belief_.predictable(backend_->expects()), "backend " + options_.backend.type);
+  return out;
+}
+
+Eigen::VectorXd FromAbove::scores() {
+  belief_.ask(reads_for(Source::acquisition));
+  return chooser_.scores(belief_);
+}
+
+Preview FromAbove::preview(const TapRecord& tap) const {
+  Preview out{tap.predicted, backend_->describe(request_of(tap))};
+  if (!out.expected && belief_.recorded().has(Quantity::height))
+    out.expected = belief_.predict(tap.candidate, Quantity::height);
+  return out;
+}
+
+}  // namespace palpate

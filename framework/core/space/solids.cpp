@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: MIT
+#include "space/solids.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+double normal(Random& random) {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+  return radius * std::cos(2.0 * kHalfTurn * random.uniform());
+}
+
+double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
+
+Matrix3d about(const Vector3d& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
+
+/// By how much the way of a tool, which came from far outside, contradicts a piece in it: how far its surface would
+/// have to be moved back, or the way aside, so that it is met no earlier than the touch ended; 0 where it is not.
+double depth_of(const Piece& piece, const SurfaceTouch& touch) {
+  const Vector3d to = piece.centre - touch.line.origin;
+  if ((to - to.dot(touch.line.direction) * touch.line.direction).squaredNorm() > piece.half.squaredNorm()) return 0.0;
+  const Span first = piece.inside(touch.line)[0];
+  if (first.empty() || first.begin >= touch.length) return 0.0;
+  const double back = (touch.length - first.begin) * first.begin_cosine;
+  return back < 1e-4 ? back : std::min(back, piece.aside(touch.line));
+}
+
+/// Upright, lying or in between.
+Matrix3d stance(Random& random) {
+  const Matrix3d turned = about(Vector3d::UnitZ(), between(0.0, 2.0 * kHalfTurn, random));
+  const double how = random.uniform();
+  if (how < 0.65) return turned;
+  if (how < 0.85) return turned * about(Vector3d::UnitY(), kHalfTurn / 2);
+  return turned * about(Vector3d::UnitY(), between(0.0, kHalfTurn / 2, random));
+}
+
+/// A piece of any size whose surface or inside is near a point.
+Piece draw(const Vector3d& near, Random& random) {
+  Piece out;
+  const double form = random.uniform();
+  out.form = form < 0.4 ? Piece::Form::box : form < 0.8 ? Piece::Form::cylinder : Piece::Form::ellipsoid;
+  out.turn = stance(random);
+  for (Eigen::Index i = 0; i < 3; ++i) out.half(i) = std::exp(between(std::log(0.004), std::log(0.12), random));
+  if (out.form == Piece::Form::cylinder || random.uniform() < 0.3) out.half.y() = out.half.x();
+  if (random.uniform() < 0.3) out.wall = between(0.002, 0.007, random);
+  Vector3d within;
+  for (Eigen::Index i = 0; i < 3; ++i) within(i) = out.half(i) * between(-1.0, 1.0, random);
+  out.centre = near - out.turn * within;
+  if (random.uniform() < 0.5) {  // set down
+    const Vector3d up = out.turn.transpose() * Vector3d::UnitZ();
+    out.centre.z() = out.half.dot(up.cwiseAbs());
+  }
+  return out;
+}
+
+}  // namespace
+
+double Composition::first_hit(const Line& line) const {
+  double first = kNoHit;
+  for (const Part& part : parts) first = std::min(first, part.piece.first_hit(line));
+  return first;
+}
+
+double Composition::distance(const Vector3d& point) const {
+  double least = kNoHit;
+  for (const Part& part : parts) least = std::min(least, part.piece.distance(point));
+  return least;
+}
+
+Solids::Solids(const Area& area, const SolidsSettings& settings, Random random)
+    : area_(area), settings_(settings), random_(random) {
+  const double middle = std::min(area.width, area.depth);
+  for (int i = 0; i < settings.count; ++i) {
+    Composition one;
+    const Vector3d near(area.width / 2 + 0.1 * middle * normal(random_),
+                        area.depth / 2 + 0.1 * middle * normal(random_), between(0.0, 0.1, random_));
+    Composition::Part part{draw(near, random_), {}, {}, 0.0};
+    while (!(prior_of(part.piece) > -kNoHit)) part.piece = draw(near, random_);
+    part.prior = one.prior = prior_of(part.piece);
+    one.parts.push_back(part);
+    all_.push_back(one);
+  }
+}
+
+double Solids::prior_of(const Piece& piece) const {
+  double out = -settings_.pieces;
+  const Vector3d up = piece.turn * Vector3d::UnitZ();
+  const double tilt = std::abs(up.z());
+  out += tilt > 1.0 - 1e-9 ? std::log(0.65) : tilt < 1e-9 ? std::log(0.2) : std::log(0.15);
+  out += piece.hollow() ? std::log(0.3) : std::log(0.7);
+  if (piece.half.minCoeff() < settings_.smallest || piece.half.maxCoeff() > settings_.largest) return -kNoHit;
+  if (piece.hollow() && (piece.wall < 0.002 || piece.wall > 0.8 * piece.half.minCoeff())) return -kNoHit;
+  const Vector3d own = piece.turn.transpose() * Vector3d::UnitZ();
+  const double lowest = piece.centre.z() - piece.half.dot(own.cwiseAbs());
+  // Nothing reaches into the desk, and what floats needs something that holds it.
+  if (lowest < 0.0) out -= 0.5 * std::pow(lowest / 0.003, 2);
+  if (lowest > 0.003) out -= 1.0;
+  // Of two that explain the same the smaller.
+  out -= 0.3 * std::log(1.0 + piece.volume() / 1e-5);
+  return out;
+}
+
+void Solids::look(Composition::Part& part, std::size_t from) const {
+  part.reach.resize(touches_.size());
+  part.depth.resize(touches_.size());
+  for (std::size_t i = from; i < touches_.size(); ++i) {
+    part.reach[i] = touches_[i].contact && !touches_[i].desk ? std::abs(part.piece.distance(touches_[i].end())) : 0.0;
+    part.depth[i] = depth_of(part.piece, touches_[i]);
+  }
+}
+
+/// Log likelihood of all touches: of heavy tails, because the simple solids are not the objects.
+double Solids::likelihood_of(const Composition& one) const {
+  constexpr double kTails = 3.0;
+  constexpr double kFarthest = 0.3;
+  constexpr std::size_t kAtOnce = 8;  // as many factors have one logarithm
+  const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
+  double out = 0.0;
+  double product = 1.0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    double reach = kFarthest;
+    double depth = 0.0;
+    for (const Composition::Part& part : one.parts) {
+      reach = std::min(reach, part.reach[i]);
+      depth = std::max(depth, part.depth[i]);
+    }
+    if (!touches_[i].contact || touches_[i].desk) reach = 0.0;
+    product *= 1.0 + scale * (reach * reach + depth * depth);
+    if (i % kAtOnce == kAtOnce - 1) out += std::log(product), product = 1.0;
+  }
+  return -0.5 * (kTails + 1.0) * (out + std::log(product));
+}
+
+const Composition& Solids::best() const {
+  return *std::max_element(all_.begin(), all_.end(), [](const Composition& one, const Composition& other) {
+    return one.posterior() < other.posterior();
+  });
+}
+
+std::optional<Piece> Solids::unseen(const Composition& one, Random& random) const {
+  constexpr int kDraws = 12;
+  constexpr double kClear = 0.001;
+  for (int i = 0; i < kDraws && !one.parts.empty(); ++i) {
+    const Piece& held = one.parts[random.index(one.parts.size())].piece;
+    Vector3d at;
+    for (Eigen::Index k = 0; k < 3; ++k) at(k) = held.half(k) * between(-1.0, 1.0, random);
+    at(static_cast<Eigen::Index>(random.index(3))) = 0.0;
+    const auto side = static_cast<Eigen::Index>(random.index(3));
+    at(side) = std::copysign(held.half(side), at(side));
+    const Piece piece = draw(held.centre + held.turn * at, random);
+    if (!(prior_of(piece) > -settings_.pieces - 6.0)) continue;
+    const bool clear = std::all_of(touches_.begin(), touches_.end(),
+                                   [&](const SurfaceTouch& touch) { return depth_of(piece, touch) < kClear; });
+    if (clear) return piece;
+  }
+  return std::nullopt;
+}
+
+void Solids::add(const std::vector<SurfaceTouch>& touches) {
+  const std::size_t before = touches_.size();
+  touches_.insert(touches_.end(), touches.begin(), touches.end());
+  std::vector<double> weights;
+  for (Composition& one : all_) {
+    const double was = one.likelihood;
+    for (Composition::Part& part : one.parts) look(part, before);
+    one.likelihood = likelihood_of(one);
+    weights.push_back(one.likelihood - was);
+  }
+  resample(weights);
+  for (Composition& one : all_) move(one);
+}
+
+void Solids::resample(const std::vector<double>& weights) {
+  const double most = *std::max_element(weights.begin(), weights.end());
+  std::vector<double> shares;
+  double total = 0.0;
+  double squares = 0.0;
+  for (const double w : weights) {
+    shares.push_back(std::exp(w - most));
+    total += shares.back();
+    squares += shares.back() * shares.back();
+  }
+  if (total * total / squares > 0.5 * static_cast<double>(shares.size())) return;
+  std::vector<Composition> drawn;
+  const double step = total / static_cast<double>(shares.size());
+  double at = step * random_.uniform();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    sum += shares[i];
+    for (; at < sum && drawn.size() < shares.size(); at += step) drawn.push_back(all_[i]);
+  }
+  while (drawn.size() < shares.size()) drawn.push_back(drawn.back());
+  all_ = std::move(drawn);
+}
+
+double Solids::likelihood_with(const Composition& one, std::size_t which, const Piece* piece, double least) {
+  constexpr double kTails = 3.0;
+  constexpr double kFarthest = 0.3;
+  constexpr std::size_t kAtOnce = 8;
+  const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
+  const double most = std::exp(std::min(700.0, -2.0 * least / (kTails + 1.0)));
+  scratch_.reach.resize(touches_.size());
+  scratch_.depth.resize(touches_.size());
+  double out = 0.0;
+  double product = 1.0;
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    const std::size_t i = order_[k];
+    const SurfaceTouch& touch = touches_[i];
+    const bool object = touch.contact && !touch.desk;
+    double reach = object ? kFarthest : 0.0;
+    double depth = 0.0;
+    for (std::size_t p = 0; p < one.parts.size(); ++p) {
+      if (p == which) continue;
+      reach = std::min(reach, one.parts[p].reach[i]);
+      depth = std::max(depth, one.parts[p].depth[i]);
+    }
+    if (piece != nullptr) {
+      scratch_.depth[i] = depth_of(*piece, touch);
+      scratch_.reach[i] = object ? std::abs(piece->distance(touch.end())) : 0.0;
+      reach = std::min(reach, scratch_.reach[i]);
+      depth = std::max(depth, scratch_.depth[i]);
+    }
+    product *= 1.0 + scale * (reach * reach + depth * depth);
+    if (k % kAtOnce == kAtOnce - 1) {
+      out += std::log(product), product = 1.0;
+    }
+    if (-0.5 * (kTails + 1.0) * out < least || product > most) {
+      // Whoever refuses is asked first the next time.
+      std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(k),
+                  order_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+      return -kNoHit;
+    }
+  }
+  const double sum = -0.5 * (kTails + 1.0) * (out + std::log(product));
+  return sum < least ? -kNoHit : sum;
+}
+
+void Solids::move(Composition& one) {
+  constexpr double kBirths = 0.1;
+  order_.resize(touches_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::reverse(order_.begin(), order_.end());
+  for (int i = 0; i < settings_.moves; ++i) {
+    const double kind = random_.uniform();
+    if (kind < kBirths || one.parts.empty()) {
+      give_birth(one);
+      continue;
+    }
+    if (kind < 2.0 * kBirths) {
+      take_away(one);
+      continue;
+    }
+    const std::size_t which = random_.index(one.parts.size());
+    Composition::Part& part = one.parts[which];
+    Piece piece = part.piece;
+    if (!change(one, piece)) continue;
+    const double prior = prior_of(piece);
+    if (!(prior > -kNoHit)) continue;
+    const double least = one.likelihood + part.prior - prior + std::log(1.0 - random_.uniform());
+    const double likelihood = likelihood_with(one, which, &piece, least);
+    if (!(likelihood > -kNoHit)) continue;
+    part.piece = piece;
+    part.reach.swap(scratch_.reach);
+    part.depth.swap(scratch_.depth);
+    one.prior += prior - part.prior;
+    part.prior = prior;
+    one.likelihood = likelihood;
+  }
+}
+
+/// One piece more, at one of the touches that are explained worst.
+bool Solids::give_birth(Composition& one) {
+  constexpr std::size_t kMost = 7;
+  if (one.parts.size() >= kMost || touches_.empty()) return false;
+  const auto reach = [&](std::size_t i) {
+    if (!touches_[i].contact || touches_[i].desk) return -1.0;
+    double least = kNoHit;
+    for (const Composition::Part& part : one.parts) least = std::min(least, part.reach[i]);
+    return least;
+  };
+  std::size_t worst = random_.index(touches_.size());
+  for (int k = 0; k < 6; ++k) {
+    const std::size_t other = random_.index(touches_.size());
+    if (reach(other) > reach(worst)) worst = other;
+  }
+  if (reach(worst) < 0.0) return false;
+  Piece piece = draw(touches_[worst].end(), random_);
+  fit_to_contact(piece);
+  const double prior = prior_of(piece);
+  if (!(prior > -kNoHit)) return false;
+  const double least = one.likelihood - prior + std::log(1.0 - random_.uniform());
+  const double likelihood = likelihood_with(one, one.parts.size(), &piece, least);
+  if (!(likelihood > -kNoHit)) return false;
+  one.parts.push_back({piece, scratch_.reach, scratch_.depth, prior});
+  one.likelihood = likelihood;
+  one.prior += prior;
+  return true;
+}
+
+bool Solids::take_away(Composition& one) {
+  if (one.parts.size() < 2) return false;
+  const std::size_t which = random_.index(one.parts.size());
+  const double least = one.likelihood + one.parts[which].prior + std::log(1.0 - random_.uniform());
+  const double likelihood = likelihood_with(one, which, nullptr, least);
+  if (!(likelihood > -kNoHit)) return false;
+  one.likelihood = likelihood;
+  one.prior -= one.parts[which].prior;
+  std::swap(one.parts[which], one.parts.back());
+  one.parts.pop_back();
+  return true;
+}
+
+/// Moves the face that is nearest to one of the contacts there, its opposite face stays.
+bool Solids::fit_to_contact(Piece& piece) {
+  const SurfaceTouch& touch = touches_[random_.index(touches_.size())];
+  if (!touch.contact || touch.desk) return false;
+  const Vector3d at = piece.turn.transpose() * (touch.end() - piece.centre);
+  if (piece.form != Piece::Form::box && random_.uniform() < 0.7) {
+    const double away = at.head<2>().norm();
+    if (away < 1e-6) return false;
+    const double by = away - std::min(piece.half.x(), piece.half.y()) + 0.5 * settings_.misfit * normal(random_);
+    const double how = random_.uniform();
+    const double grow = how < 0.4 ? 0.5 : how < 0.7 ? 0.0 : 1.0;
+    piece.half.x() += grow * by;
+    piece.half.y() += grow * by;
+    const double shift = grow == 1.0 ? 0.0 : grow == 0.0 ? by : by / 2;
+    piece.centre += piece.turn * Vector3d(shift * at.x() / away, shift * at.y() / away, 0.0);
+    return true;
+  }
+  auto axis = static_cast<Eigen::Index>(random_.index(3));
+  if (random_.uniform() < 0.7) (at.cwiseAbs() - piece.half).cwiseAbs().minCoeff(&axis);
+  double by = std::abs(at(axis)) - piece.half(axis) + 0.5 * settings_.misfit * normal(random_);
+  if (piece.hollow() && random_.uniform() < 0.3) by += piece.wall;
+  piece.half(axis) += by / 2;
+  Vector3d shift = Vector3d::Zero();
+  shift(axis) = std::copysign(by / 2, at(axis));
+  piece.centre += piece.turn * shift;
+  return true;
+}
+
+/// Changes a piece; false where that makes none.
+bool Solids::change(const Composition&, Piece& piece) {
+  const double kind = random_.uniform();
+  const double size = std::exp(between(std::log(0.0005), std::log(0.03), random_));
+  const auto axis = static_cast<Eigen::Index>(random_.index(3));
+  if (kind < 0.3) return fit_to_contact(piece);
+  if (kind < 0.4) {
+    piece.centre += size * Vector3d(normal(random_), normal(random_), normal(random_));
+  } else if (kind < 0.6) {  // one face
+    const double by = size * normal(random_);
+    Vector3d grown = Vector3d::Zero();
+    grown(axis) = by / 2;
+    piece.half += grown;
+    piece.centre += piece.turn * (random_.uniform() < 0.5 ? Vector3d(-grown) : grown);
+    if (piece.form == Piece::Form::cylinder && axis < 2 && random_.uniform() < 0.8)
+      piece.half(1 - axis) = piece.half(axis);
+  } else if (kind < 0.7) {  // both faces, or all
+    const double factor = std::exp(10.0 * size * normal(random_));
+    if (random_.uniform() < 0.5 || piece.form != Piece::Form::box) {
+      piece.half.head<2>() *= factor;
+    } else {
+      piece.half(axis) *= factor;
+    }
+  } else if (kind < 0.82) {
+    const double angle = std::exp(between(std::log(0.01), std::log(1.0), random_)) * normal(random_);
+    const double tilt = std::abs(piece.turn(2, 2));
+    if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random_.uniform() < 0.7) {
+      const Vector3d axis_of(normal(random_), normal(random_), 0.0);
+      piece.turn = about(axis_of.normalized(), 0.3 * angle) * piece.turn;
+    }
+    piece.turn = about(Vector3d::UnitZ(), angle) * piece.turn;
+  } else if (kind < 0.88) {
+    const auto form = static_cast<Piece::Form>(random_.index(3));
+    if (form == piece.form) return false;
+    piece.form = form;
+    if (form == Piece::Form::cylinder) piece.half.y() = piece.half.x();
+  } else if (kind < 0.94) {
+    if (piece.hollow() && random_.uniform() < 0.5) {
+      piece.wall *= std::exp(0.3 * normal(random_));
+    } else {
+      piece.wall = piece.hollow() ? 0.0 : between(0.002, 0.007, random_);
+    }
+  } else {
+    const Vector3d lowest = piece.centre;
+    piece.turn =
+        random_.uniform() < 0.5 ? stance(random_) : Matrix3d(piece.turn * about(Vector3d::Unit(axis), kHalfTurn / 2));
+    if (random_.uniform() < 0.5) piece.centre.z() = piece.half.dot(piece.turn.row(2).cwiseAbs().transpose());
+    if (random_.uniform() < 0.3) piece.centre = lowest;
+  }
+  return true;
+}
+
+}  // namespace palpate

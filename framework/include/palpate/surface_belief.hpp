@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// What the taps so far say of surfaces in space, as plugins see it where the tool comes from any side.
+#pragma once
+
+#include <palpate/types.hpp>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace palpate {
+
+/// What is believed after the taps so far, over the approaches among which the next is chosen: N of them, drawn anew
+/// before every tap, half of them anywhere through the region, half along normals of the surface that is believed.
+/// K compositions of simple solids are believed in about equally. References stay valid until the next tap.
+class SurfaceBelief {
+ public:
+  virtual ~SurfaceBelief() = default;
+
+  virtual const std::vector<Approach>& approaches() const = 0;
+
+  /// Taps made so far, failed ones included.
+  virtual int taps() const = 0;
+
+  /// N x K: how far along each approach the tool would touch something, the desk included, if a composition were the
+  /// truth, metres; the length of the approach where it would meet nothing.
+  virtual const Eigen::MatrixXd& meetings() const = 0;
+
+  /// K x K, symmetric: how far the surfaces of two compositions are apart, metres: the mean over lines from all sides
+  /// of the difference of where they meet either, of which no line counts more than 2 cm.
+  virtual const Eigen::MatrixXd& differences() const = 0;
+
+  /// N: the standard deviation of the surface where the most probable composition has an approach meet it, along its
+  /// normal there, metres; 0 where it meets no object.
+  virtual const Eigen::VectorXd& deviation() const = 0;
+
+  /// N: the cosine between approach and normal there, in [0, 1]; 0 where it meets no object.
+  virtual const Eigen::VectorXd& squareness() const = 0;
+};
+
+}  // namespace palpate
