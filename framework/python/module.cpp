@@ -110,6 +110,7 @@ PYBIND11_MODULE(_palpate, module) {
       .def("config", &Record::config)
       .def("id", &Record::id)
       .def("taps", &Record::taps)
+      .def("manifest", &Record::manifest)
       .def("size", &Record::size)
       .def("after", &Record::after)
       .def("truth", &Record::truth)

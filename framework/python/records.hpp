@@ -6,6 +6,7 @@
 #include "experiment/metrics.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_files.hpp"
 #include "shop.hpp"
 #include "sweep/sweep.hpp"
 #include "values.hpp"
@@ -44,6 +45,11 @@ class Record {
   std::string id() const { return recording_.config.id; }
   std::vector<Column> taps() const { return columns_of(recording_.rows); }
   int size() const { return static_cast<int>(recording_.rows.size()); }
+  /// None where there is none.
+  py::object manifest() const {
+    const std::optional<Tree> manifest = RunFiles(recording_.directory).manifest();
+    return manifest ? py::module_::import("json").attr("loads")(to_json(*manifest)) : py::none();
+  }
 
   /// The models after so many taps.
   py::dict after(int taps) {

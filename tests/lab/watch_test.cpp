@@ -55,6 +55,18 @@ TEST_F(AGrowingLog, HasEachTapOnceWhenItsLineIsWhole) {
   EXPECT_FALSE(anew_);
 }
 
+TEST_F(AGrowingLog, OfAJobHasItsTapsAndNothingElseOfItsRecord) {
+  append("{\"attempt\": 1, \"pid\": 7}\n{\"manifest\": {\"models\": [1]}}\n{\"tap\": 1, \"intent\": true}\n");
+  EXPECT_THAT(read(), IsEmpty());
+  append("{\"tap\": 1, \"seconds\": {\"robot\": 0.5}, \"x\": 0.1}\n{\"object\": 0}\n");
+  const std::vector<Row> rows = log_.read(anew_);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(to_json_line(rows[0]), "{\"tap\": 1, \"x\": 0.1}") << "as a run of its own has it";
+  append("{\"attempt\": 1, \"end\": \"done\"}\n");
+  EXPECT_THAT(read(), IsEmpty());
+  EXPECT_FALSE(anew_);
+}
+
 TEST_F(AGrowingLog, LosesNothingWhenHalfALineIsCutOffAndMadeAnew) {
   append("{\"tap\": 1}\n{\"tap\": 2, \"x\": 0.1");
   EXPECT_THAT(read(), ElementsAre(1));

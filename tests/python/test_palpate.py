@@ -312,6 +312,7 @@ class Module(unittest.TestCase):
         self.assertEqual(list(zip(table["taps"], table["seed"])), [(taps, seed) for taps in (4, 6) for seed in range(3)])
         self.assertEqual([len(run) for run in by_python], [4, 4, 4, 6, 6, 6])
         self.assertEqual(by_python[-1].id, table["id"][5])
+        self.assertIn("sweep", by_python[0].manifest["command_line"])
         with self.assertRaises(IndexError):
             by_python[6]
 

@@ -3,6 +3,7 @@
 
 #include "record/fields.hpp"
 #include "record/json.hpp"
+#include "support/parts.hpp"
 #include "support/sanitizers.hpp"
 #include "support/support.hpp"
 
@@ -59,6 +60,10 @@ std::string lasting(const fs::path& file) {
   const std::string name = file.filename().string();
   const bool of_job = file.parent_path().parent_path().filename() == "jobs";
   if (name == "timings.csv") return first_column(text);
+  if (name == "record.jsonl") {
+    const fs::path job = file.parent_path();
+    return part_of(job, "taps.jsonl") + identity(part_of(job, "manifest.json"), of_job) + part_of(job, "objects.csv");
+  }
   if (name == "summary.json") return without_clocks(parse_json_row(text).value());
   if (name == "results.csv") return without_clocks(csv_rows(text));
   if (name == "manifest.json" && text.find("\"resumed\"") != std::string::npos) return identity(text, of_job);

@@ -78,14 +78,24 @@ std::string Shell::refused(const Words& words, int status) const {
 
 void Shell::break_off(const fs::path& run) const {
   fs::remove(run / "summary.json");
-  fs::resize_file(run / "taps.jsonl", fs::file_size(run / "taps.jsonl") / 2);
+  cut_taps(run);
+}
+
+void cut_taps(const fs::path& run) {
+  const bool packed = fs::exists(run / "record.jsonl");
+  const fs::path file = run / (packed ? "record.jsonl" : "taps.jsonl");
+  const std::string text = text_of(file);
+  const std::size_t last = text.rfind("\n{\"tap\": ");
+  const std::size_t end = packed ? text.find('\n', last + 1) + 1 : text.size();
+  fs::resize_file(file, (text.find("{\"tap\": ") + end) / 2);
 }
 
 void Shell::make_of_another_build(const fs::path& run) const {
-  std::string manifest = text_of(run / "manifest.json");
+  const fs::path file = run / (fs::exists(run / "record.jsonl") ? "record.jsonl" : "manifest.json");
+  std::string manifest = text_of(file);
   char& first = manifest[manifest.find("\"build\": \"") + 10];
   first = first == '0' ? '1' : '0';
-  write(run / "manifest.json", manifest);
+  write(file, manifest);
 }
 
 fs::path job_of(const fs::path& sweep, int index) {

@@ -2,6 +2,7 @@
 // A folder in which a test calls palpate as a user does, and looks at what that leaves there.
 #pragma once
 
+#include "support/parts.hpp"
 #include "system/shipped.hpp"
 
 #include <gtest/gtest.h>
@@ -78,6 +79,9 @@ std::filesystem::path job_of(const std::filesystem::path& sweep, int index);
 /// The folders below jobs/, in no order.
 std::vector<std::filesystem::path> jobs_of(const std::filesystem::path& sweep);
 
+/// Cuts the taps of a run in their middle, and with them what a job has recorded behind them.
+void cut_taps(const std::filesystem::path& run);
+
 /// The outcome of each tap of a run.
 std::vector<std::string> outcomes(const std::filesystem::path& run);
 
@@ -85,9 +89,12 @@ std::vector<std::string> outcomes(const std::filesystem::path& run);
 
 namespace palpate {
 
+using test::cut_taps;
 using test::job_of;
 using test::jobs_of;
 using test::outcomes;
+using test::part_of;
+using test::rows_of;
 using test::Shell;
 using test::Words;
 

@@ -102,11 +102,16 @@ TEST_F(AStrangeRecord, OfASweepIsNotCarriedOnThroughLinks) {
   const fs::path sweep = swept("seed=0,1 taps=4");
   const fs::path job = job_of(sweep, 0);
   fs::remove(job / "summary.json");
+  test::unpack(job);
   link(job / "attempts.jsonl");
   EXPECT_THAT(resume(sweep).out, HasSubstr(refusal(job / "attempts.jsonl"))) << "it fails alone";
   expect_unharmed();
   fs::remove(job / "attempts.jsonl");
   fs::remove(job / "summary.json");
+  link(job / "record.jsonl");
+  EXPECT_THAT(resume(sweep).err, HasSubstr(refusal(job / "record.jsonl"))) << "where nothing can be recorded";
+  expect_unharmed();
+  fs::remove(job / "record.jsonl");
   fs::rename(job, here() / "job");
   fs::create_directory_symlink(here() / "job", job);
   EXPECT_THAT(resume(sweep).err, HasSubstr(refusal(job)));

@@ -48,6 +48,7 @@ TEST_F(DamagedSweep, IsRefusedByEveryCommandWhereItsManifestWasChanged) {
 struct Damage {
   const char* file;
   std::string text;
+  bool loose = false;  ///< the job has a file for each part of its record, as older sweeps have them
   friend std::ostream& operator<<(std::ostream& out, const Damage& one) { return out << one.file << ": " << one.text; }
 };
 
@@ -56,10 +57,11 @@ class DamagedJob : public DamagedSweep, public testing::WithParamInterface<Damag
 TEST_P(DamagedJob, FailsAloneIsNamedAndIsCarriedOnOnceItWasPutRight) {
   std::vector<std::string> taps;
   for (int i = 0; i < 4; ++i) taps.push_back(text_of(job(i) / "taps.csv"));
+  if (GetParam().loose) test::unpack(job(0));
   const fs::path file = job(0) / GetParam().file;
   std::string sound = text_of(file);
   for (int i : {0, 2}) break_off(job(i));
-  if (file.filename() == "taps.jsonl") sound = text_of(file);
+  if (file.filename() == "taps.jsonl" || file.filename() == "record.jsonl") sound = text_of(file);
   write(file, GetParam().text);
   const Ended ended = resume(sweep_);
   EXPECT_EQ(ended.status, 1);
@@ -71,7 +73,7 @@ TEST_P(DamagedJob, FailsAloneIsNamedAndIsCarriedOnOnceItWasPutRight) {
               AllOf(StartsWith("4 jobs, 3 done, 0 running, 1 failed"), HasSubstr(GetParam().file)));
   EXPECT_EQ(lines(text_of(sweep_ / "results.csv")), 5);
   EXPECT_EQ(text_of(job(2) / "taps.csv"), taps[2]);
-  EXPECT_EQ(text_of(file), GetParam().text) << "nothing of it is overwritten";
+  EXPECT_THAT(text_of(file), StartsWith(GetParam().text)) << "nothing of it is overwritten";
   for (const char* command : {"report", "status"}) EXPECT_EQ(palpate({command, sweep_}).status, 0);
 
   if (file.filename() == "summary.json") {
@@ -84,12 +86,15 @@ TEST_P(DamagedJob, FailsAloneIsNamedAndIsCarriedOnOnceItWasPutRight) {
   for (int i = 0; i < 4; ++i) EXPECT_EQ(text_of(job(i) / "taps.csv"), taps[static_cast<std::size_t>(i)]) << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachFile, DamagedJob,
-                         testing::Values(Damage{"config.yaml", "{name: x},"}, Damage{"config.yaml", "taps: 5\n"},
-                                         Damage{"manifest.json", "{},"}, Damage{"manifest.json", ""},
-                                         Damage{"taps.jsonl", "{\"tap\": 1\n{}\n"}, Damage{"taps.jsonl", "{}\n"},
-                                         Damage{"summary.json", ""}, Damage{"summary.json", "{\"status\": \"do"},
-                                         Damage{"attempts.jsonl", "{\"attempt\n{}\n"}));
+INSTANTIATE_TEST_SUITE_P(
+    OfEachFile, DamagedJob,
+    testing::Values(Damage{"config.yaml", "{name: x},"}, Damage{"config.yaml", "taps: 5\n"}, Damage{"summary.json", ""},
+                    Damage{"summary.json", "{\"status\": \"do"}, Damage{"record.jsonl", "{\"manifest\": {},\n"},
+                    Damage{"record.jsonl", "{\"manifest\": []\n"}, Damage{"record.jsonl", "{\"tap\": 1\n{}\n"},
+                    Damage{"record.jsonl", "{}\n"}, Damage{"record.jsonl", "{\"attempt\n{}\n"},
+                    Damage{"manifest.json", "{},", true}, Damage{"manifest.json", "", true},
+                    Damage{"taps.jsonl", "{\"tap\": 1\n{}\n", true}, Damage{"taps.jsonl", "{}\n", true},
+                    Damage{"attempts.jsonl", "{\"attempt\n{}\n", true}));
 
 TEST_F(DamagedSweep, IsSummedUpWhereOnlyTheConfigOfAFinishedJobCannotBeRead) {
   const std::string whole = resume(sweep_).out;
@@ -101,7 +106,7 @@ TEST_F(DamagedSweep, IsSummedUpWhereOnlyTheConfigOfAFinishedJobCannotBeRead) {
 
 TEST_F(DamagedSweep, CountsAsFailedWhatCouldNotEvenRecordItsFailure) {
   for (int i = 0; i < 4; ++i) {
-    for (const char* name : {"summary.json", "taps.jsonl", "attempts.jsonl"}) fs::remove(job(i) / name);
+    for (const char* name : {"summary.json", "record.jsonl"}) fs::remove(job(i) / name);
   }
   // No file may grow, as on a full disk; what is said goes into a pipe.
   const std::string words = test::program_file().string() + " resume " + sweep_.string();

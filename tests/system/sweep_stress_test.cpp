@@ -31,10 +31,6 @@ std::vector<int> children_of(int pid) {
   return out;
 }
 
-std::vector<Row> rows_of(const fs::path& file) {
-  return fs::exists(file) ? read_json_lines(file).rows : std::vector<Row>();
-}
-
 std::int64_t whole(const Row& row, const char* name) { return std::get<std::int64_t>(*row.find(name)); }
 
 /// A sweep that two launchers work at, each begun again when it is killed.
@@ -118,13 +114,13 @@ TEST_P(Stress, EveryJobIsDoneNoneTwiceAndNoTapTwice) {
   for (const fs::path& job : jobs_of(directory())) {
     EXPECT_THAT(text_of(job / "summary.json"), testing::HasSubstr("\"status\": \"done\""));
     int ends = 0;
-    for (const Row& row : rows_of(job / "attempts.jsonl")) {
+    for (const Row& row : rows_of(job, "attempts.jsonl")) {
       begun += row.find("pid") != nullptr ? 1 : 0;
       ends += row.find("end") != nullptr ? 1 : 0;
     }
     EXPECT_LE(ends, 1) << job << " ran to its end more than once";
     std::int64_t next = 1;
-    for (const Row& row : rows_of(job / "taps.jsonl")) {
+    for (const Row& row : rows_of(job, "taps.jsonl")) {
       if (is_intent(row)) continue;
       EXPECT_EQ(whole(row, "tap"), next++) << job;
       unknown += row.text("outcome") == "unknown" ? 1 : 0;

@@ -302,7 +302,7 @@ TEST_F(WatchedRun, OfASweepFillsUpAndHasAPageForEachJobAndForNothingElse) {
   const Words nowhere{"jobs/000000000000/",
                       "jobs/../",
                       "jobs/" + id,
-                      "jobs/" + id + "/taps.jsonl",
+                      "jobs/" + id + "/record.jsonl",
                       "jobs/" + id + "/../../config.yaml",
                       "jobs//",
                       "jobs/" + id + "/jobs/" + id + "/"};

@@ -66,21 +66,5 @@ TEST(Fields, OfAnErrorAreFoundAgainInTheirRow) {
   EXPECT_EQ(back.footprint_iou, 0.5);
 }
 
-TEST(Timings, AreReadUpToTheirEndOrTheirDamage) {
-  const test::TemporaryFolder folder;
-  EXPECT_TRUE(read_timings(folder.path()).taps.empty()) << "no file";
-  folder.write("timings.csv", "tap,robot,fit,infer,acquire,log\n1,0.5,0,0.25,0,0\n2,1,0,0,0,0.125\n3,1,0,0");
-  const Timings cut = read_timings(folder.path());
-  ASSERT_EQ(cut.taps.size(), 2U) << "what has no line end was cut off by a kill";
-  EXPECT_FALSE(cut.trouble);
-  EXPECT_EQ(cut.taps[1].tap, 2);
-  EXPECT_EQ(cut.taps[1].seconds, (std::array<double, kPhases>{1.0, 0.0, 0.0, 0.0, 0.125}));
-  folder.write("timings.csv", "tap,robot,fit,infer,acquire,log\n1,0.5,0,0.25,0,0\n2,1,x,0,0,0\n3,1,0,0,0,0\n");
-  const Timings damaged = read_timings(folder.path());
-  EXPECT_EQ(damaged.taps.size(), 1U);
-  ASSERT_TRUE(damaged.trouble);
-  EXPECT_THAT(damaged.trouble->what(), HasSubstr("has the line '2,1,x,0,0,0', the file is damaged"));
-}
-
 }  // namespace
 }  // namespace palpate::test

@@ -5,6 +5,7 @@
 #include "record/files.hpp"
 #include "record/resolved.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_files.hpp"
 #include "record/session.hpp"
 
 #include <fmt/format.h>
@@ -30,8 +31,9 @@ constexpr const char* kLatest = "@latest";
 
 /// Damaged ones, too: what is wrong with them is for the command to say.
 bool is_record(const fs::path& folder) {
-  constexpr std::array<const char*, 4> kParts{"config.yaml", "manifest.jsonl", "taps.jsonl", "summary.json"};
-  return std::any_of(kParts.begin(), kParts.end(), [&](const char* part) { return is_there(folder / part); });
+  constexpr std::array<const char*, 3> kParts{"config.yaml", "manifest.jsonl", "summary.json"};
+  return std::any_of(kParts.begin(), kParts.end(), [&](const char* part) { return is_there(folder / part); }) ||
+         RunFiles(folder).begun();
 }
 
 bool is_moved_aside(const fs::path& directory) {

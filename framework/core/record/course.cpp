@@ -4,7 +4,6 @@
 #include "config/yaml.hpp"
 #include "record/callers_run.hpp"
 #include "record/fields.hpp"
-#include "record/json.hpp"
 #include "record/recording.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config, const Experiment& experiment) {
+Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config, const Experiment& experiment) {
   Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
   const auto places = [](const std::vector<ResolveNotes::Origin>& of) {
     Tree all = Tree::map();
@@ -35,26 +34,26 @@ std::string manifest_text(const Workshop& workshop, const ResolvedConfig& config
     who.items.push_back(Tree::quote(one.who));
   }
   out.at("resumed") = Tree::list();
-  return to_json(out);
+  return out;
 }
 
 /// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
-void note_resume(const Workshop& workshop, const ResolvedConfig& config, const RunDirectory& directory, int from) {
-  Tree manifest = read_json(directory.path() / "manifest.json");
+void note_resume(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& directory, int from) {
+  Tree manifest = directory.files().manifest().value();
   manifest.at("resumed").kind = Tree::Kind::list;
   manifest.at("resumed").items.push_back(
       Tree::map({{"after_tap", Tree::scalar(std::to_string(from))},
                  {"build", Tree::quote(build_hash(workshop.host, config.notes.plugins))}}));
-  directory.write("manifest.json", to_json(manifest));
+  directory.write_manifest(manifest);
 }
 
 /// Notes in the manifest what the taps have shown of the robot.
-void note_learnt(const RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
+void note_learnt(RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
   if (learnt.empty()) return;
-  Tree manifest = read_json(directory.path() / "manifest.json");
+  Tree manifest = directory.files().manifest().value();
   Tree& notes = manifest.at("learnt") = Tree::map();
   for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, Tree::quote(one.value)});
-  directory.write("manifest.json", to_json(manifest));
+  directory.write_manifest(manifest);
 }
 
 void move_away(const fs::path& directory) {
@@ -90,9 +89,8 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 }  // namespace
 
 std::string recorded_build(const fs::path& directory) {
-  if (!is_there(directory / "manifest.json")) return {};
-  const Tree manifest = read_json(directory / "manifest.json");
-  const Tree* build = manifest.find("build");
+  const std::optional<Tree> manifest = RunFiles(directory).manifest();
+  const Tree* build = manifest ? manifest->find("build") : nullptr;
   return build != nullptr ? build->text : std::string();
 }
 
@@ -170,7 +168,7 @@ RunReport Course::finish(std::string failure) {
     const auto [name, text] = surface_file(experiment_);
     directory_.write(name, text);
   }
-  if (const std::string objects = objects_csv(summary); !objects.empty()) directory_.write("objects.csv", objects);
+  directory_.write_objects(object_rows(summary));
   directory_.write("summary.json", to_json_text(report.summary));
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
   return report;
@@ -179,7 +177,7 @@ RunReport Course::finish(std::string failure) {
 Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
                 bool supervised) {
   const RunStatus status = read_status(directory);
-  if (status.state == RunStatus::State::running) FileLock{directory / "lock"};  // throws: busy
+  if (status.state == RunStatus::State::running) FileLock{RunFiles(directory).lock_file()};  // throws: busy
   if (status.state != RunStatus::State::absent && !force) {
     const std::string where = directory.string();
     switch (status.state) {
@@ -206,7 +204,7 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
                 Error::Kind::busy);
   }
   held->write("config.yaml", to_yaml(config.tree));
-  held->write("manifest.json", manifest_text(workshop, config, *experiment));
+  held->write_manifest(manifest_of(workshop, config, *experiment));
   return {std::move(held), std::move(experiment)};
 }
 
@@ -228,7 +226,7 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   if (supervised) check_worth_asking(config, *experiment);
   experiment->resume(past);
   if (recorded_build(directory).empty()) {
-    held.write("manifest.json", manifest_text(workshop, config, *experiment));
+    held.write_manifest(manifest_of(workshop, config, *experiment));
   } else {
     note_resume(workshop, config, held, static_cast<int>(past.size()));
   }

@@ -432,19 +432,6 @@ FieldList<TapTimes> make_timing_list() {
   return list;
 }
 
-/// One line of timings.csv; none if it is damaged.
-std::optional<TapTimes> read_times(std::string_view line) {
-  TapTimes out;
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  auto read = std::from_chars(at, end, out.tap);
-  for (double& seconds : out.seconds) {
-    if (read.ec != std::errc() || read.ptr == end || *read.ptr != ',') return {};
-    read = std::from_chars(read.ptr + 1, end, seconds);
-  }
-  return read.ec == std::errc() && read.ptr == end ? std::optional(out) : std::nullopt;
-}
-
 }  // namespace
 
 const FieldList<TapRecord>& tap_list() {
@@ -467,14 +454,14 @@ const FieldList<ObjectRow>& object_list() {
   return list;
 }
 
-std::string objects_csv(const Summary& summary) {
+std::vector<Row> object_rows(const Summary& summary) {
   std::vector<Row> rows;
-  if (!summary.objects) return {};
+  if (!summary.objects) return rows;
   for (const ObjectResult& one : *summary.objects) {
     const ObjectOptions& options = summary.config.options.scene.objects[rows.size()];
     rows.push_back(object_list().row({one, static_cast<int>(rows.size()), options.shape.type}));
   }
-  return to_csv(rows);
+  return rows;
 }
 
 const std::vector<RecordField>& summary_fields() {
@@ -516,24 +503,6 @@ void add_errors(Row& row, const Errors& errors) {
 Errors errors_in(const Row& row) {
   Errors out;
   for (const ErrorField& one : error_list()) out.*one.value = row.number(one.field.name);
-  return out;
-}
-
-Timings read_timings(const std::filesystem::path& directory) {
-  Timings out;
-  const auto file = directory / "timings.csv";
-  if (!is_there(file)) return out;
-  const std::string text = read_file(file);
-  for (std::size_t begin = text.find('\n') + 1, end; begin != 0 && (end = text.find('\n', begin)) != std::string::npos;
-       begin = end + 1) {
-    const std::string_view line(text.data() + begin, end - begin);
-    const std::optional<TapTimes> times = read_times(line);
-    if (!times) {
-      out.trouble = Error(file.string(), "has the line '" + std::string(line) + "'", "the file is damaged");
-      return out;
-    }
-    out.taps.push_back(*times);
-  }
   return out;
 }
 

@@ -45,8 +45,8 @@ const FieldList<Summary>& summary_list();
 const FieldList<TapTimes>& timing_list();
 const FieldList<ObjectRow>& object_list();
 
-/// objects.csv: what became of each object, where the truth is known; "" where it is not.
-std::string objects_csv(const Summary& summary);
+/// What became of each object, where the truth is known; none where it is not.
+std::vector<Row> object_rows(const Summary& summary);
 
 /// The fields that every summary has, in their order; those of the models depend on the config.
 const std::vector<RecordField>& summary_fields();
@@ -70,12 +70,5 @@ inline const std::string& main_error() { return error_fields().front().name; }
 /// Adds the errors to a row, null where no truth is known; and finds them in one.
 void add_errors(Row& row, const Errors& errors);
 Errors errors_in(const Row& row);
-
-/// What timings.csv tells: no run depends on it, and a kill may have cut its last line off, which is left out.
-struct Timings {
-  std::vector<TapTimes> taps;
-  std::optional<Error> trouble;  ///< of a damaged file; `taps` are then those before the damage
-};
-Timings read_timings(const std::filesystem::path& directory);
 
 }  // namespace palpate

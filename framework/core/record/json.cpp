@@ -131,8 +131,9 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   std::size_t values_ = 0;
 };
 
+/// `indent`: what a line of it begins with; "" for one line alone.
 void append(std::string& out, const Tree& tree, const std::string& indent) {
-  const std::string inner = indent + "  ";
+  const std::string inner = indent.empty() ? "" : indent + "  ";
   switch (tree.kind) {
     case Tree::Kind::null:
       out += "null";
@@ -142,15 +143,15 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
       break;
     case Tree::Kind::list:
     case Tree::Kind::map: {
-      const char* separator = "\n";
+      const char* separator = "";
       out += tree.is_map() ? "{" : "[";
       const auto add = [&](const std::string& name, const Tree& value) {
-        out += std::exchange(separator, ",\n") + inner + name;
+        out += std::exchange(separator, indent.empty() ? ", " : ",") + inner + name;
         append(out, value, inner);
       };
       for (const Tree& item : tree.items) add("", item);
       for (const Tree::Entry& entry : tree.entries) add(json_quoted(entry.key) + ": ", entry.value);
-      if (!tree.items.empty() || !tree.entries.empty()) out += "\n" + indent;
+      if (!tree.items.empty() || !tree.entries.empty()) out += indent;
       out += tree.is_map() ? "}" : "]";
       break;
     }
@@ -188,15 +189,26 @@ std::optional<Row> read_json_row(const std::filesystem::path& file, const std::s
 
 Tree read_json(const std::filesystem::path& file) {
   const std::string text = read_file(file, kMostBytes);
+  return parse_json(text, 0, text.size(), file);
+}
+
+Tree parse_json(const std::string& text, std::size_t begin, std::size_t end, const std::filesystem::path& file) {
   TreeReader reader(file);
-  if (Json::sax_parse(text, &reader)) return std::move(reader.tree);
-  throw Error(place_in(file.string(), text, std::max<std::size_t>(reader.bytes, 1) - 1), "is not valid JSON", kPutBack);
+  if (Json::sax_parse(text.data() + begin, text.data() + end, &reader)) return std::move(reader.tree);
+  throw Error(place_in(file.string(), text, begin + std::max<std::size_t>(reader.bytes, 1) - 1), "is not valid JSON",
+              kPutBack);
 }
 
 std::string to_json(const Tree& tree) {
   std::string out;
-  append(out, tree, "");
+  append(out, tree, "\n");
   return out + "\n";
+}
+
+std::string to_json_line(const Tree& tree) {
+  std::string out;
+  append(out, tree, "");
+  return out;
 }
 
 bool is_json(const std::string& text) { return Json::accept(text); }

@@ -31,8 +31,14 @@ JsonLines read_json_lines(const std::filesystem::path& file);
 /// comes back as it was. Throws Error.
 Tree read_json(const std::filesystem::path& file);
 
+/// The same of what lies from `begin` to `end` in the text of a file. Throws Error.
+Tree parse_json(const std::string& text, std::size_t begin, std::size_t end, const std::filesystem::path& file);
+
 /// A tree as indented JSON: unquoted scalars stand as they are (numbers, true, false), quoted ones become strings.
 std::string to_json(const Tree& tree);
+
+/// The same as one line without its end.
+std::string to_json_line(const Tree& tree);
 
 /// Whether `text` is valid JSON.
 bool is_json(const std::string& text);

@@ -2,8 +2,8 @@
 #include "record/recording.hpp"
 
 #include "record/fields.hpp"
-#include "record/json.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_files.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
@@ -105,7 +105,7 @@ using Seconds = std::array<double, kPhases>;
 /// The seconds by phase up to each tap, before the first one included.
 std::vector<Seconds> seconds_until(const fs::path& directory) {
   std::vector<Seconds> out(1);
-  for (const TapTimes& tap : read_timings(directory).taps) {
+  for (const TapTimes& tap : RunFiles(directory).timings().taps) {
     Seconds sum = out.back();
     for (std::size_t i = 0; i < kPhases; ++i) sum[i] += tap.seconds[i];
     out.push_back(sum);
@@ -142,13 +142,13 @@ bool Recording::truth_known() const { return rows.front().flag("true_on_surface"
 bool Recording::failed() const { return summary && summary->text("status") == "failed"; }
 
 Recording read_recording(const Workshop& workshop, const fs::path& directory) {
-  const fs::path file = directory / "taps.jsonl";
+  const RunFiles files(directory);
   Recording out{directory, load_run(workshop.host, directory), {}, {}, {}};
-  for (Row& row : read_json_lines(file).rows) {
+  for (Row& row : files.taps()) {
     if (!is_intent(row)) out.rows.push_back(std::move(row));
   }
   if (out.rows.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
-  out.taps = past_taps(out.rows, file);
+  out.taps = past_taps(out.rows, files.taps_file());
   out.summary = read_summary(directory);
   if (out.summary) check_complete(*out.summary, static_cast<int>(out.rows.size()), directory);
   return out;
@@ -213,7 +213,8 @@ std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Rec
   const auto made = static_cast<int>(recording.rows.size());
   for (const Occasion& one : occasions) {
     if (one.taps().value_or(0) <= made) continue;
-    throw Error(recording.directory.string(), "its taps.jsonl holds fewer taps than its summary says",
+    const std::string file = RunFiles(recording.directory).taps_file().filename().string();
+    throw Error(recording.directory.string(), "its " + file + " holds fewer taps than its summary says",
                 "the file is damaged, run the job again");
   }
   const std::vector<Seconds> seconds = seconds_until(recording.directory);

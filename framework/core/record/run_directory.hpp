@@ -6,6 +6,7 @@
 #include "record/files.hpp"
 #include "record/resolved.hpp"
 #include "record/row.hpp"
+#include "record/run_files.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -64,33 +65,36 @@ class RunDirectory final : public Journal {
 
   const std::filesystem::path& path() const { return path_; }
 
+  /// All of the record but config, summary and tables.
+  HeldFiles& files() { return files_; }
+
   /// Reads the recorded taps and cuts off what a kill left behind: half a line, or an intent without its result, which
   /// becomes a tap of outcome `unknown`. Throws Error for a damaged file.
   std::vector<PastTap> recover();
 
-  /// Opens taps.jsonl and timings.csv for what follows. With `announce` each tap is announced before it is made;
-  /// with `sync` lines are forced to disk.
+  /// Opens the log for what follows. With `announce` each tap is announced before it is made; with `sync` lines are
+  /// forced to disk.
   void open(bool announce, bool sync);
 
   /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
-  void check_in_place() const;
+  void check_in_place() const { files_.check_in_place(); }
 
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 
-  /// The rows of taps.jsonl, recovered ones included.
+  /// The rows of all taps, recovered ones included.
   const std::vector<Row>& rows() const { return rows_; }
 
-  /// Seconds by phase of all taps in timings.csv, earlier processes included.
+  /// Seconds by phase of all taps, those of earlier processes included.
   std::array<double, kPhases> total_seconds() const { return total_; }
 
   void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text, sync_); }
+  void write_manifest(const Tree& manifest) { files_.set_manifest(manifest, sync_); }
+  void write_objects(const std::vector<Row>& objects) { files_.set_objects(objects, sync_); }
 
  private:
   std::filesystem::path path_;
-  FileLock lock_;
-  AppendFile taps_;
-  AppendFile timings_;
+  HeldFiles files_;
   std::vector<Row> rows_;
   std::array<double, kPhases> total_{};
   bool announce_ = false;

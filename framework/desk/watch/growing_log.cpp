@@ -3,6 +3,7 @@
 
 #include "record/files.hpp"
 #include "record/json.hpp"
+#include "record/run_files.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
@@ -25,7 +26,9 @@ std::vector<Row> GrowingLog::read(bool& anew) {
   std::vector<Row> rows;
   for (std::size_t begin = anew ? 0 : known_.size(), end = 0; begin < text.size(); begin = end + 1) {
     end = text.find('\n', begin);
-    std::optional<Row> row = parse_json_row(text.substr(begin, end - begin));
+    const std::optional<std::string> tap = tap_in_line(std::string_view(text).substr(begin, end - begin));
+    if (!tap) continue;
+    std::optional<Row> row = parse_json_row(*tap);
     if (!row) {
       known_.clear();
       throw Error(file_.string(), "has a line that is no JSON object", "the file is damaged");

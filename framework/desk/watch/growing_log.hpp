@@ -12,11 +12,13 @@
 
 namespace palpate {
 
-/// taps.jsonl as it grows. A line counts once it has its end, so half a line, which a kill leaves behind and `palpate
-/// resume` cuts off, is never seen.
+/// The taps of a run as they grow: taps.jsonl, or of a job record.jsonl. A line counts once it has its end, so half a
+/// line, which a kill leaves behind and `palpate resume` cuts off, is never seen.
 class GrowingLog {
  public:
   explicit GrowingLog(std::filesystem::path file) : file_(std::move(file)) {}
+
+  const std::filesystem::path& file() const { return file_; }
 
   /// The taps that were recorded since the last call; announcements are left out. `anew` becomes true where the file no
   /// longer begins with what was read before, or is gone: then the taps are all that it has now. Throws Error for a

@@ -3,6 +3,7 @@
 
 #include "config/trouble.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_files.hpp"
 #include "record/session.hpp"
 #include "record/tap_row.hpp"
 #include "report/page/page.hpp"
@@ -40,7 +41,7 @@ Position parse_position(const std::string& at) {
 }  // namespace
 
 RunFollower::RunFollower(const Workshop& workshop, fs::path directory)
-    : workshop_(workshop), directory_(std::move(directory)), log_(directory_ / "taps.jsonl") {}
+    : workshop_(workshop), directory_(std::move(directory)), log_(taps_file_to_come(directory_)) {}
 
 bool RunFollower::goes_on() const { return is_running(directory_); }
 
@@ -93,7 +94,7 @@ void RunFollower::take_in() {
   if (!recording_) {
     recording_ = std::make_unique<Recording>(Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}});
   }
-  recording_->taps.push_back(past_taps({pending_.front()}, directory_ / "taps.jsonl").front());
+  recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();
   if (!grower_) grower_ = std::make_unique<HistoryGrower>(workshop_, *recording_);

@@ -4,8 +4,8 @@
 #include "config/trouble.hpp"
 #include "record/build_info.hpp"
 #include "record/files.hpp"
-#include "record/json.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_files.hpp"
 
 #include <palpate/error.hpp>
 
@@ -14,7 +14,6 @@
 
 #include <chrono>
 #include <optional>
-#include <sstream>
 
 #include <unistd.h>
 
@@ -24,16 +23,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kAttempts = "attempts.jsonl";
-
 /// Who tried when, and how it ended: a line at the beginning, another at the end.
 class Attempt {
  public:
-  Attempt(const fs::path& directory, int taps) : number_(attempts_of(directory) + 1) {
-    const fs::path file = directory / kAttempts;
-    // A kill or a full disk may have left half a line, of the first attempt, too.
-    if (is_there(file)) cut_file(file, read_json_lines(file).bytes);
-    log_ = AppendFile(file);
+  Attempt(HeldFiles& files, int taps) : files_(files), number_(files.attempts() + 1) {
     note({{{"after_tap", std::int64_t{taps}}, {"host", host_name()}, {"pid", std::int64_t{::getpid()}}}});
   }
 
@@ -45,10 +38,10 @@ class Attempt {
     row.add("attempt", number_);
     row.add("at", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now())));
     row.fields.insert(row.fields.end(), what.fields.begin(), what.fields.end());
-    log_.append(to_json_line(row) + "\n", false);
+    files_.add_attempt(row);
   }
 
-  AppendFile log_;
+  HeldFiles& files_;
   int number_;
 };
 
@@ -78,7 +71,7 @@ JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig(
   std::optional<Attempt> attempt;
   const std::optional<Error> trouble = trouble_in([&] {
     const ResolvedConfig config = config_of();
-    attempt.emplace(directory, read_record(directory).taps);
+    attempt.emplace(held.files(), read_record(directory).taps);
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   });
   if (trouble) {  // ends the job alone, not the sweep
@@ -111,17 +104,7 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
 // A damaged summary is an end, too: a failure.
 bool has_ended(const fs::path& directory) { return is_there(directory / "summary.json"); }
 
-int attempts_of(const fs::path& directory) {
-  if (!is_there(directory / kAttempts)) return 0;
-  int attempts = 0;
-  std::istringstream lines(read_file(directory / kAttempts));
-  // A damaged line was one, too: asking how often is no time to fail.
-  for (std::string line; std::getline(lines, line) && !lines.eof();) {
-    const std::optional<Row> row = parse_json_row(line);
-    attempts += row && row->find("end") != nullptr ? 0 : 1;
-  }
-  return attempts;
-}
+int attempts_of(const fs::path& directory) { return RunFiles(directory).attempts(); }
 
 void record_failure(const fs::path& directory, const std::string& reason) {
   if (const std::optional<RunDirectory> held = hold(directory)) write_failure(directory, reason);

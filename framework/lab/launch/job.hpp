@@ -34,7 +34,7 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
 /// Whether the job is done or has failed.
 bool has_ended(const std::filesystem::path& directory);
 
-/// How often the job has been begun: lines of its attempts.jsonl that say so.
+/// How often the job has been begun, as its record says.
 int attempts_of(const std::filesystem::path& directory);
 
 /// Ends the job as failed, unless it has ended or somebody has it in hand: for processes that died over it.

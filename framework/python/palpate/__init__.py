@@ -122,8 +122,8 @@ class Run:
 
     @property
     def manifest(self) -> dict | None:
-        """manifest.json: program, build, plugins, command line."""
-        return _json_file(_os.path.join(self.directory, "manifest.json"))
+        """Program, build, plugins, command line; None where nothing is recorded of them."""
+        return self._record.manifest()
 
     @property
     def taps(self) -> _np.ndarray:

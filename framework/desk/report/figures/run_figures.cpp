@@ -2,6 +2,7 @@
 #include "analysis/gnuplot.hpp"
 #include "analysis/readable.hpp"
 #include "record/fields.hpp"
+#include "record/run_files.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figures.hpp"
 #include "report/figures/sheet.hpp"
@@ -137,7 +138,7 @@ Figure curves_figure(const Recording& recording, const History& history) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;
-  if (const std::optional<Error> trouble = read_timings(recording.directory).trouble) throw Error(*trouble);
+  if (const std::optional<Error> trouble = RunFiles(recording.directory).timings().trouble) throw Error(*trouble);
   const RunResult& last = history.moments.back().result;
   const auto [panels, constants] = curves_of(recording, history);
   const int count = static_cast<int>(panels.size());
