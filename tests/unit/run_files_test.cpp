@@ -118,12 +118,13 @@ TEST_F(Files, OfARunAreOneForEachPartAndOfAJobOneForAll) {
 TEST_F(Files, OfAJobWithFilesForItsPartsStayThose) {
   for (const char* name : {"lock", "attempts.jsonl", "manifest.json", "taps.jsonl"}) {
     folder_.write("sweep/jobs/0123456789ab/" + std::string(name), "");
-    EXPECT_EQ(RunFiles(job()).taps_file().filename(), "taps.jsonl") << name;
+    EXPECT_EQ(taps_file_to_come(job()).filename(), "taps.jsonl") << name;
     fs::remove(job() / name);
   }
-  EXPECT_EQ(RunFiles(job() / "").taps_file().filename(), "record.jsonl") << "before it was begun";
+  for (const fs::path& directory : {job(), job() / ""})
+    EXPECT_EQ(taps_file_to_come(directory).filename(), "record.jsonl") << "before it was begun";
   folder_.write("elsewhere/record.jsonl", "");
-  EXPECT_EQ(RunFiles(folder_.path() / "elsewhere").taps_file().filename(), "record.jsonl") << "a job that was moved";
+  EXPECT_EQ(taps_file_to_come(folder_.path() / "elsewhere").filename(), "record.jsonl") << "a job that was moved";
 }
 
 TEST_F(Files, OfAJobAreItsLockAndTellHowFarItIs) {

@@ -118,7 +118,7 @@ std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
 std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes) {
   const auto refuse = [&] { throw Error(file.string(), "cannot be read"); };
   const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (!in && !is_there(file)) return std::nullopt;
+  if (!in && (errno == ENOENT || !is_there(file))) return std::nullopt;
   struct stat what {};
   if (!in || ::fstat(in.number(), &what) != 0) refuse();
   const auto bytes = static_cast<std::uintmax_t>(what.st_size);
@@ -137,7 +137,12 @@ std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t mo
 }
 
 AppendFile::AppendFile(const fs::path& file)
-    : file_(file), descriptor_(open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {}
+    : file_(file), descriptor_(open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {
+  struct stat open {};
+  if (::fstat(descriptor_.number(), &open) != 0) fail(file, "cannot be opened");
+  device_ = open.st_dev;
+  inode_ = open.st_ino;
+}
 
 void AppendFile::append(const std::string& text, bool sync) {
   if (!write_all(descriptor_, text)) fail(file_, "cannot be written");
@@ -146,9 +151,7 @@ void AppendFile::append(const std::string& text, bool sync) {
 
 bool AppendFile::is_in_place() const {
   struct stat named {};
-  struct stat open {};
-  return ::stat(file_.c_str(), &named) == 0 && ::fstat(descriptor_.number(), &open) == 0 &&
-         named.st_dev == open.st_dev && named.st_ino == open.st_ino;
+  return ::stat(file_.c_str(), &named) == 0 && named.st_dev == device_ && named.st_ino == inode_;
 }
 
 FileLock::FileLock(const fs::path& file) : descriptor_(open_lock(file)) {

@@ -81,6 +81,8 @@ class AppendFile {
  private:
   std::filesystem::path file_;
   Descriptor descriptor_;
+  std::uint64_t device_ = 0;  ///< with the next, which file it is
+  std::uint64_t inode_ = 0;
 };
 
 /// A lock of the kernel on a file: it ends when the process does, however it ends, and children do not inherit it. It

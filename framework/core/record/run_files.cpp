@@ -159,9 +159,8 @@ Timings RunFiles::timings() const {
 
 std::optional<Tree> RunFiles::manifest() const {
   const fs::path from = file(kManifest);
-  if (!is_there(from)) return std::nullopt;
-  if (!packed_) return read_json(from);
-  const std::string text = read_file(from);
+  if (!packed_) return is_there(from) ? std::optional(read_json(from)) : std::nullopt;
+  const std::string text = read_if_there(from).value_or("");
   std::optional<std::pair<std::size_t, std::size_t>> last;
   for_lines(text, [&](std::string_view line, std::size_t begin) {
     if (begins_with(line, kManifestLine)) last.emplace(begin, begin + line.size());

@@ -72,7 +72,8 @@ void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
     }
     text += known.yaml;
   }
-  write_file(directory / "config.yaml", text);
+  // In its place at once: nobody looks here before the whole folder gets its name.
+  AppendFile(directory / "config.yaml").append(text, false);
 }
 
 void SweepDraft::replace_lost(const Sweep& sweep) const {
