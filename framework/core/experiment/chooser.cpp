@@ -13,6 +13,10 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       acquisition_(context.create<Acquisition>(options.acquisition)),
       initial_(initial_design(options.initial, candidates, context.scene.area(), context.seed)),
       allowed_(static_cast<std::size_t>(candidates.size())) {
+  if (!acquisition_->from_above()) {
+    throw Error("acquisition", options.acquisition.type + " scores approaches from any side alone",
+                "choose another, or a scene with touch: any");
+  }
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
   if (auto motions = context.factory.motions(options.backend, context.scene))

@@ -29,7 +29,7 @@ struct Wish {
 /// it is thought now.
 class Chooser {
  public:
-  /// All must outlive it. Throws Error for an acquisition that cannot be made.
+  /// All must outlive it. Throws Error for an acquisition that cannot be made, or scores no taps from above.
   Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context);
 
   /// Whether the next tap is the initial design's. A search is over once a hit is believed, or when it has looked

@@ -2,6 +2,7 @@
 // A run whose taps somebody else makes.
 #pragma once
 
+#include "experiment/from_above.hpp"
 #include "record/session.hpp"
 
 #include <palpate/types.hpp>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "simulator/arm.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <limits>
 
 namespace palpate::backends {
 namespace {
@@ -17,17 +20,17 @@ constexpr int kRings = 8;
 constexpr int kSpokes = 24;
 constexpr double kFinest = 1e-8;  ///< metres
 
-/// The largest height(x + dx, y + dy) - rise(distance) over a disc, or `least` if none is larger. `rise` is how much
-/// higher than its lowest point the tool is at a distance from its axis; it never falls.
-template <class Rise>
-double search(const Scene& scene, double x, double y, double radius, double least, Rise rise) {
+/// The largest height(dx, dy) - rise(distance) over a disc, or `least` if none is larger. `rise` is how much further
+/// back than its foremost point the tool is at a distance from its axis; it never falls.
+template <class Height, class Rise>
+double search(Height height, double radius, double least, Rise rise) {
   double best = least;
   double at_x = 0.0;
   double at_y = 0.0;
   const auto attempt = [&](double dx, double dy) {
     const double distance = std::hypot(dx, dy);
     if (distance > radius) return false;
-    const double value = scene.height(x + dx, y + dy) - rise(distance);
+    const double value = height(dx, dy) - rise(distance);
     if (!(value > best)) return false;
     best = value;
     at_x = dx;
@@ -85,19 +88,42 @@ void Arm::follow(double set_point) {
   velocity_ = from_deviation_[1] * deviation + from_velocity_[1] * velocity_;
 }
 
-double contact_height(const Scene& scene, const Effects& effects, double x, double y) {
-  double height = scene.height(x, y);
+namespace {
+
+/// Where the foremost point of the tool is when any of it touches, given the height of what is at (dx, dy) from its
+/// axis, of which none is more than `highest`.
+template <class Height>
+double touched(const Effects& effects, double highest, const Height& height_at) {
+  double height = height_at(0.0, 0.0);
   if (effects.tip_radius) {
     const double radius = effects.tip_radius->radius;
-    height = search(scene, x, y, radius, height, [radius](double distance) {
+    height = search(height_at, radius, height, [radius](double distance) {
       return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
     });
   }
   // The look at the highest is cheaper than a search, and nearly always enough: nothing is that tall.
-  if (effects.shaft && scene.highest() - effects.shaft->length > height) {
-    height = search(scene, x, y, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
-  }
+  if (effects.shaft && highest - effects.shaft->length > height)
+    height = search(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
   return height;
+}
+
+}  // namespace
+
+double contact_height(const Scene& scene, const Effects& effects, double x, double y) {
+  return touched(effects, scene.highest(), [&](double dx, double dy) { return scene.height(x + dx, y + dy); });
+}
+
+double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
+  const Eigen::Vector3d one = line.direction.unitOrthogonal();
+  const Eigen::Vector3d other = line.direction.cross(one);
+  const double down = line.direction.z();
+  // Against its way, what it meets is high.
+  return -touched(effects, 0.0, [&](double dx, double dy) {
+    const Line beside{line.origin + dx * one + dy * other, line.direction};
+    const double to_desk =
+        down < 0.0 ? (scene.desk() - beside.origin.z()) / down : std::numeric_limits<double>::infinity();
+    return -std::min(scene.first_hit(beside), to_desk);
+  });
 }
 
 double outlier(const Outliers& effect, std::uint64_t seed, double x, double y) {

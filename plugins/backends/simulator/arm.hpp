@@ -64,6 +64,10 @@ class Arm {
 /// scene is smooth or has one edge there; details smaller than an eighth of the radius may be missed.
 double contact_height(const Scene& scene, const Effects& effects, double x, double y);
 
+/// The same of a tool that comes along a line, its shaft straight behind it: how far along its foremost point is when
+/// any of it first meets an object or the desk, metres; infinity if nothing does.
+double contact_along(const Scene& scene, const Effects& effects, const Line& line);
+
 /// What lies at (x, y) beside the scene, metres of height: 0 nearly everywhere. A function of seed and place alone.
 double outlier(const Outliers& effect, std::uint64_t seed, double x, double y);
 

@@ -31,10 +31,10 @@ Simulator::Simulator(const Options& options, const Context& context)
 }
 
 Contact Simulator::tap(const TapRequest& request) {
-  if (request.approach) return tap_along(request);
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
 #ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
+  if (request.approach) return tap_along(request);
   if (!perfect_) {
     if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
     return imperfect_tap(request, down, pushed_ ? *pushed_ : scene_);
@@ -46,23 +46,19 @@ Contact Simulator::tap(const TapRequest& request) {
   return paced(std::move(contact));
 }
 
-bool Simulator::reaches(const Approach& approach) const { return approach.line.origin.z() > scene_.desk(); }
-
-/// Along its approach the arm does what it does above a place: what is left of the way stands for the height.
-Contact Simulator::tap_along(const TapRequest& request) const {
-  const tapping::MotionOptions& motion = options_.motion.of_request(request);
-  const auto& [line, length] = *request.approach;
-  const double down = line.direction.z();
-  const double to_desk =
-      down < 0.0 ? (scene_.desk() - line.origin.z()) / down : std::numeric_limits<double>::infinity();
-  const double along = std::min(scene_.first_hit(line), to_desk);
-  const Descending way{motion, {length, length, 0.0}};
-  Contact contact = ideal_tap(way, std::max(0.0, length - along));
-  if (along > length) contact.outcome = Outcome::no_contact;
-  contact.along = std::min(along, length);
-  contact.height = line.origin.z() + *contact.along * down;
-  contact.seconds += tapping::travel_seconds(motion, request);
-  return paced(std::move(contact));
+/// The tool begins clear of the desk: of its wide part, which has no end behind it, all.
+bool Simulator::reaches(const Approach& approach) const {
+  const Effects& effects = scene_.effects();
+  const auto& [line, length] = approach;
+  const double above = line.origin.z() - scene_.desk();
+  if (above <= (effects.tip_radius ? effects.tip_radius->radius : 0.0)) return false;
+  if (effects.reach && std::hypot(line.origin.x() - effects.reach->base[0], line.origin.y() - effects.reach->base[1]) >
+                           effects.reach->radius) {
+    return false;
+  }
+  if (!effects.shaft) return true;
+  const double level = std::sqrt(std::max(0.0, 1.0 - line.direction.z() * line.direction.z()));
+  return line.direction.z() <= 0.0 && above > effects.shaft->radius * level;
 }
 
 Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
@@ -73,6 +69,38 @@ Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
 }
 
 #ifndef PALPATE_WITHOUT_EFFECTS
+/// Along its approach the arm does what it does above a place: what is left of the way stands for the height. Where the
+/// tool is other than the arm thinks, it meets things elsewhere.
+Contact Simulator::tap_along(const TapRequest& request) const {
+  const tapping::MotionOptions& motion = options_.motion.of_request(request);
+  const Effects& effects = scene_.effects();
+  const auto& [line, length] = *request.approach;
+  Line true_line = line;
+  if (effects.pose_noise) {
+    Normal normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
+    true_line.origin.x() += effects.pose_noise->lateral * normal();
+    true_line.origin.y() += effects.pose_noise->lateral * normal();
+    true_line.origin.z() += effects.pose_noise->vertical * normal();
+  }
+  if (effects.height_offset)
+    true_line.origin.z() -= effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
+  const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
+  const Scene& scene = pushed ? *pushed : scene_;
+  double along = contact_along(scene, effects, true_line);
+  const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
+  if (effects.outliers) along -= outlier(*effects.outliers, context_.seed, met.x(), met.y());
+  const Descending way{motion, {length, length, 0.0}};
+  const bool desk = met.z() <= scene_.desk();
+  const bool met_any = along <= length;
+  const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
+  Contact contact = moves_ ? simulated_tap(request.number, way, left, desk) : ideal_tap(way, std::max(0.0, left));
+  if (!moves_ && !met_any && contact.outcome == Outcome::contact) contact.outcome = Outcome::no_contact;
+  contact.along = contact.outcome == Outcome::contact ? length - contact.height : std::min(along, length);
+  contact.height = line.origin.z() + *contact.along * line.direction.z();
+  contact.seconds += tapping::travel_seconds(motion, request);
+  return paced(std::move(contact));
+}
+
 Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
   const Effects& effects = scene_.effects();
   const Target& target = request.target;
