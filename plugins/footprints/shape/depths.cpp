@@ -4,7 +4,7 @@
 #include "clones.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstring>
 
 namespace palpate::footprints {
@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kFar = 1e3;  // metres
 constexpr int kRound = Places::kRound;
+constexpr int kWord = Places::kWord;
 
 using Bytes = LabelModel::Step __attribute__((vector_size(kRound)));
+using Word = LabelModel::Step __attribute__((vector_size(kWord)));
 
 PALPATE_INLINE void load(const LabelModel::Step* from, Bytes& out) { std::memcpy(&out, from, sizeof(out)); }
 
@@ -30,52 +32,186 @@ PALPATE_INLINE bool any(const Bytes& bytes) {
   return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
 }
 
-// Written out for each family and way to look, so that the loops are without branches.
-PALPATE_INLINE void depths_in(const Form& form, bool exact, const double* __restrict xs, const double* __restrict ys,
-                              int count, double* __restrict out) {
-  Form box = form;
-  Form ellipse = form;
-  box.family = Form::Family::box;
-  ellipse.family = Form::Family::ellipse;
+// Four places at a time. By reference, as these vectors are passed otherwise from one set of instructions to another.
+using Four = double __attribute__((vector_size(32)));
+using FourBits = std::int64_t __attribute__((vector_size(32)));
+
+PALPATE_INLINE void root(Four& x) {
+  double parts[4];
+  std::memcpy(parts, &x, sizeof(x));
+  for (double& part : parts) part = std::sqrt(part);
+  std::memcpy(&x, parts, sizeof(x));
+}
+
+PALPATE_INLINE void magnitude(Four& x) {
+  FourBits bits;
+  std::memcpy(&bits, &x, sizeof(x));
+  bits &= 0x7fffffffffffffff;
+  std::memcpy(&x, &bits, sizeof(x));
+}
+
+/// From the centre, along the axes.
+PALPATE_INLINE void in_axes(const Form& form, const Four& x, const Four& y, Four& u, Four& v) {
+  u = form.cosine * (x - form.x) + form.sine * (y - form.y);
+  v = form.cosine * (y - form.y) - form.sine * (x - form.x);
+}
+
+/// As Form::contains, all bits of those within.
+PALPATE_INLINE void contained_in(const Form& form, const Four& x, const Four& y, FourBits& out) {
+  Four u, v;
+  in_axes(form, x, y, u, v);
   if (form.family == Form::Family::box) {
-    if (exact) {
-      for (int i = 0; i < count; ++i) out[i] = box.contains(xs[i], ys[i]) ? 1.0 : -1.0;
-    } else {
-      for (int i = 0; i < count; ++i) out[i] = box.depth(xs[i], ys[i]);
-    }
-  } else if (exact) {
-    for (int i = 0; i < count; ++i) out[i] = ellipse.contains(xs[i], ys[i]) ? 1.0 : -1.0;
+    magnitude(u);
+    magnitude(v);
+    out = (u <= form.a) & (v <= form.b);
   } else {
-    for (int i = 0; i < count; ++i) out[i] = ellipse.depth(xs[i], ys[i]);
+    out = u * u * (form.b * form.b) + v * v * (form.a * form.a) <= form.a * form.a * (form.b * form.b);
   }
 }
 
-/// Of kRound places; all but the first `count`, a multiple of 4, are outside.
-PALPATE_CLONES void steps_in(const Piece& piece, bool exact, LabelModel::Steps steps, const double* xs,
-                             const double* ys, int count, LabelModel::Step* __restrict out) {
-  double depths[kRound];
-  for (int i = count; i < kRound; ++i) depths[i] = -kFar;
-  depths_in(piece.form, exact, xs, ys, count, depths);
+/// As Form::depth, to the last bit.
+PALPATE_INLINE void depths_in(const Form& form, const Four& x, const Four& y, Four& out) {
+  const double a = form.a;
+  const double b = form.b;
+  Four u, v;
+  in_axes(form, x, y, u, v);
+  if (form.family == Form::Family::box) {
+    magnitude(u);
+    magnitude(v);
+    const Four along = a - u;
+    const Four across = b - v;
+    Four beyond = along * along + across * across;
+    root(beyond);
+    const Four least = across < along ? across : along;
+    const Four most = along < across ? across : along;
+    out = most < 0.0 ? -beyond : least;
+    return;
+  }
+  u *= u;
+  v *= v;
+  Four q = u * (b * b) + v * (a * a);
+  Four slope = u * (b * b * b * b) + v * (a * a * a * a);
+  Four distance = u + v;
+  root(q);
+  root(slope);
+  root(distance);
+  q /= a * b;
+  slope /= a * a * b * b;
+  const Four to_rim = q * (1.0 - q) / slope;
+  const Four in_circle = a - distance;
+  const Four centre = Four{} + b;
+  out = in_circle < to_rim ? in_circle : to_rim;
+  out = slope > 0.0 ? out : centre;
+}
+
+/// As Steps::of how deep places lie in a piece.
+PALPATE_INLINE void steps_in(const Piece& piece, bool exact, LabelModel::Steps steps, const Four& x, const Four& y,
+                             FourBits& out) {
+  if (exact) {
+    contained_in(piece.form, x, y, out);
+    if (piece.hollow) {
+      FourBits in_hole;
+      contained_in(piece.hole, x, y, in_hole);
+      out &= ~in_hole;
+    }
+    static_assert(LabelModel::kOutside == 0);
+    out &= LabelModel::kInside;
+    return;
+  }
+  Four depth;
+  depths_in(piece.form, x, y, depth);
   if (piece.hollow) {
-    double of_hole[kRound];
-    depths_in(piece.hole, exact, xs, ys, count, of_hole);
-    for (int i = 0; i < count; ++i) depths[i] = std::min(depths[i], -of_hole[i]);
+    Four of_hole;
+    depths_in(piece.hole, x, y, of_hole);
+    depth = -of_hole < depth ? -of_hole : depth;
   }
-  // As Steps::of: four at a time, of which then bytes are made.
-  using Four = double __attribute__((vector_size(32)));
+  depth = depth * steps.per_metre + 0.5 * LabelModel::kSteps;
+  constexpr double kMost = LabelModel::kSteps;
+  const Four least = Four{} - 1.0;
+  const Four most = Four{} + kMost;
+  depth = depth > least ? depth : least;
+  depth = depth < most ? depth : most;
   using Whole = std::int32_t __attribute__((vector_size(16)));
-  std::int32_t wholes[kRound];
-  for (int i = 0; i < kRound; i += 4) {
-    Four four;
-    std::memcpy(&four, depths + i, sizeof(four));
-    four = four * steps.per_metre + 0.5 * LabelModel::kSteps;
-    four = four < -1.0 ? Four{-1.0, -1.0, -1.0, -1.0} : four;
-    constexpr double kMost = LabelModel::kSteps;
-    four = four > kMost ? Four{kMost, kMost, kMost, kMost} : four;
-    const Whole whole = __builtin_convertvector(four + 1.0, Whole);
-    std::memcpy(wholes + i, &whole, sizeof(whole));
+  out = __builtin_convertvector(__builtin_convertvector(depth + 1.0, Whole), FourBits);
+}
+
+/// Of a word of places.
+PALPATE_INLINE void steps_in(const Piece& piece, bool exact, LabelModel::Steps steps, const double* xs,
+                             const double* ys, LabelModel::Step* out) {
+  static_assert(kWord == 8);
+  Four x, y;
+  FourBits first, second;
+  std::memcpy(&x, xs, sizeof(x));
+  std::memcpy(&y, ys, sizeof(y));
+  steps_in(piece, exact, steps, x, y, first);
+  std::memcpy(&x, xs + 4, sizeof(x));
+  std::memcpy(&y, ys + 4, sizeof(y));
+  steps_in(piece, exact, steps, x, y, second);
+  // Each goes to its byte.
+  const FourBits parts = (first | second << 32) << FourBits{0, 8, 16, 24};
+  const std::int64_t word = parts[0] | parts[1] | parts[2] | parts[3];
+  std::memcpy(out, &word, sizeof(word));
+}
+
+/// The deepest steps of some rows, of a word of them.
+PALPATE_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, int from, Word& out) {
+  out = Word{};
+  for (int row = 0; row < count; ++row) {
+    Word steps;
+    std::memcpy(&steps, rows[row] + from, sizeof(steps));
+    out = steps > out ? steps : out;
   }
-  for (int i = 0; i < kRound; ++i) out[i] = static_cast<LabelModel::Step>(wholes[i]);
+}
+
+PALPATE_CLONES void all_steps(const Piece& piece, bool exact, LabelModel::Steps steps, const double* xs,
+                              const double* ys, int count, LabelModel::Step* out) {
+  for (int from = 0; from < count; from += kWord) steps_in(piece, exact, steps, xs + from, ys + from, out + from);
+}
+
+PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const double* xs, const double* ys) {
+  using Step = LabelModel::Step;
+  const LabelModel& labels = *change.labels;
+  const LabelModel& labels_before = *change.labels_before;
+  const bool exact = !labels.blurs();
+  const LabelModel::Steps steps = labels.steps();
+  const std::uint64_t in_any_case = &labels == &labels_before ? 0 : ~std::uint64_t{0};
+  const int pieces = change.outline->size();
+  double loss = 0.0;
+  double loss_before = 0.0;
+  int mistakes = 0;
+  std::uint64_t any = 0;
+  for (int from = change.until - kWord; from >= change.since; from -= kWord) {
+    for (int k = 0; k < change.changes; ++k) {
+      const int i = change.changed[static_cast<std::size_t>(k)];
+      steps_in((*change.outline)[i], exact, steps, xs + from, ys + from, change.to[static_cast<std::size_t>(k)] + from);
+    }
+    Word deepest;
+    deepest_in(change.rows.data(), pieces, from, deepest);
+    std::uint64_t left;
+    std::uint64_t before;
+    std::memcpy(&left, &deepest, sizeof(left));
+    std::memcpy(&before, change.deepest_before + from, sizeof(before));
+    std::memcpy(change.deepest + from, &left, sizeof(left));
+    left = (left ^ before) | in_any_case;
+    any |= left;
+    while (left != 0) {
+      const auto bit = 63U - static_cast<unsigned>(__builtin_clzll(left));
+      left &= ~(std::uint64_t{0xFF} << (bit & ~7U));
+      const int touch = from + static_cast<int>(bit / 8);
+      const bool on = change.objects[touch] != 0;
+      const Step step = change.deepest[touch];
+      const Step step_before = change.deepest_before[touch];
+      loss += labels.loss(step, on);
+      if (loss > most) return false;
+      loss_before += labels_before.loss(step_before, on);
+      mistakes += (labels.mistake(step, on) ? 1 : 0) - (labels_before.mistake(step_before, on) ? 1 : 0);
+    }
+  }
+  change.loss = loss;
+  change.loss_before = loss_before;
+  change.mistakes = mistakes;
+  change.labelled_otherwise = any != 0;
+  return true;
 }
 
 PALPATE_CLONES void carry(const Push& push, int count, const double* __restrict xs, const double* __restrict ys,
@@ -111,18 +247,11 @@ void Places::seen_after(const Push& push, Places& out) const {
   carry(push, push.before, xs_.data(), ys_.data(), out.xs_.data(), out.ys_.data());
 }
 
-void Places::steps(const Piece& piece, const LabelModel& labels, int since, int until, LabelModel::Step* row) const {
-  constexpr int kVector = 4;  // what is asked for is rounded to
-  const int end = (until + kVector - 1) / kVector * kVector;
-  const bool all = since == 0 && until == size_;
-  std::array<LabelModel::Step, kRound> some;
-  for (int from = since / kVector * kVector; from < end; from += kRound) {
-    const int count = std::min(kRound, end - from);
-    steps_in(piece, !labels.blurs(), labels.steps(), xs_.data() + from, ys_.data() + from, count,
-             all ? row + from : some.data());
-    if (!all) std::copy_n(some.data(), count, row + from);
-  }
+void Places::steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const {
+  all_steps(piece, !labels.blurs(), labels.steps(), xs_.data(), ys_.data(), length(), row);
 }
+
+bool Places::weigh(Change& change, double most) const { return weigh_change(change, most, xs_.data(), ys_.data()); }
 
 void Depths::grow_to(int length) {
   if (length <= length_) return;
@@ -139,21 +268,12 @@ std::uint16_t Depths::holders(std::size_t touch, int pieces) const {
   return static_cast<std::uint16_t>(out);
 }
 
-PALPATE_CLONES bool deepest_of(const LabelModel::Step* const* rows, int count, int length,
-                               const LabelModel::Step* before, LabelModel::Step* out) {
-  Bytes steps;
-  Bytes differing{};
-  for (int from = 0; from < length; from += kRound) {
-    Bytes deepest{};
-    for (int row = 0; row < count; ++row) {
-      load(rows[row] + from, steps);
-      deepest = steps > deepest ? steps : deepest;
-    }
-    load(before + from, steps);
-    differing |= deepest ^ steps;
+void deepest_of(const LabelModel::Step* const* rows, int count, int length, LabelModel::Step* out) {
+  for (int from = 0; from < length; from += kWord) {
+    Word deepest;
+    deepest_in(rows, count, from, deepest);
     std::memcpy(out + from, &deepest, sizeof(deepest));
   }
-  return any(differing);
 }
 
 PALPATE_CLONES bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other,

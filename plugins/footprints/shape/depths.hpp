@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 namespace palpate::footprints {
@@ -19,6 +18,8 @@ class Places {
  public:
   /// Rows of something about each touch are whole multiples of this long: places that are no touches are far away.
   static constexpr int kRound = 32;
+  /// So many steps are a word.
+  static constexpr int kWord = 8;
 
   int size() const { return size_; }
   int length() const { return static_cast<int>(xs_.size()); }
@@ -26,9 +27,31 @@ class Places {
   /// `out` becomes these, as seen after a push.
   void seen_after(const Push& push, Places& out) const;
 
-  /// The steps of the places from `since` on, and before `until`, in a row, by how deep they lie in a piece; perhaps of
-  /// a few beside them, too.
-  void steps(const Piece& piece, const LabelModel& labels, int since, int until, LabelModel::Step* row) const;
+  /// The steps of all places in a row, by how deep they lie in a piece.
+  void steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const;
+
+  /// What the labels say of some pieces, of which a few are others than before.
+  struct Change {
+    const Outline* outline;
+    std::array<const LabelModel::Step*, Outline::kMost> rows;  ///< of steps, of each piece
+    std::array<int, Outline::kMost> changed;                   ///< pieces whose rows are to be made
+    int changes = 0;
+    std::array<LabelModel::Step*, Outline::kMost> to;  ///< these rows
+    int since, until;  ///< the touches of which anything may be otherwise; multiples of kWord
+    const LabelModel* labels;
+    const LabelModel* labels_before;
+    const LabelModel::Step* objects;
+    const LabelModel::Step* deepest_before;
+    LabelModel::Step* deepest;  ///< to be made, between `since` and `until`
+
+    // What comes of it: of the touches of which the deepest step is another, or of all where the model of labels is.
+    bool labelled_otherwise = false;
+    double loss = 0.0;
+    double loss_before = 0.0;
+    int mistakes = 0;  ///< more of them
+  };
+  /// Looks at the touches from the latest on, until there is more loss than `most`: then it returns false.
+  bool weigh(Change& change, double most) const;
 
  private:
   int size_ = 0;
@@ -63,9 +86,8 @@ class Depths {
   std::vector<Step> steps_;
 };
 
-/// The deepest steps of some rows. Returns whether they are other than those before.
-bool deepest_of(const LabelModel::Step* const* rows, int count, int length, const LabelModel::Step* before,
-                LabelModel::Step* out);
+/// The deepest steps of some rows.
+void deepest_of(const LabelModel::Step* const* rows, int count, int length, LabelModel::Step* out);
 
 /// Who holds the touches, by such rows.
 void holders_of(const LabelModel::Step* const* rows, int count, int length, std::uint16_t* out);
@@ -75,23 +97,5 @@ bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int 
 /// Whether it holds others of them than another row.
 bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
                        int length);
-
-/// Calls visit(touch) for each of which two rows say otherwise, the latest first; false where it has said so and the
-/// rest was left out.
-template <class Visit>
-bool all_differences(const LabelModel::Step* one, const LabelModel::Step* other, int length, const Visit& visit) {
-  for (int from = length - 8; from >= 0; from -= 8) {
-    std::uint64_t left = 0;
-    std::uint64_t of_other = 0;
-    std::memcpy(&left, one + from, sizeof(left));
-    std::memcpy(&of_other, other + from, sizeof(of_other));
-    for (left ^= of_other; left != 0;) {
-      const int byte = 7 - __builtin_clzll(left) / 8;
-      left &= (std::uint64_t{1} << (8 * byte)) - 1;
-      if (!visit(from + byte)) return false;
-    }
-  }
-  return true;
-}
 
 }  // namespace palpate::footprints

@@ -50,6 +50,8 @@ class Outline {
   const Piece* begin() const { return pieces_.data(); }
   const Piece* end() const { return pieces_.data() + size_; }
 
+  /// Those that are new are as they were left.
+  void resize(int size) { size_ = size; }
   /// At most kMost of them.
   void add(const Piece& piece) { (*this)[size_++] = piece; }
   /// The last one takes its place.

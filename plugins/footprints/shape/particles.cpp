@@ -4,7 +4,10 @@
 #include "lattice_counts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -12,6 +15,7 @@ namespace palpate::footprints {
 namespace {
 
 constexpr double kPushMoves = 0.1;  // share of the moves
+constexpr double kLogOfTwo = 0.69314718055994531;
 
 /// How deep a place lies in a piece. Most pieces are elsewhere, where how far away they are makes no difference.
 double depth_of(const Piece& piece, const Target& place, double reach) {
@@ -21,6 +25,17 @@ double depth_of(const Piece& piece, const Target& place, double reach) {
   if (dx * dx + dy * dy > 2.0 * (form.a * form.a + form.b * form.b + reach * reach)) return -1.0;
   return std::max(-1.0, piece.depth(place.x, place.y));
 }
+
+/// The logarithm of a number above 0, or up to 0.06 more: between the powers of two that of base two is above a line,
+/// and by less than kAboveLine.
+double log_above(double x) {
+  constexpr double kAboveLine = 0.0861;
+  std::int64_t bits;
+  std::memcpy(&bits, &x, sizeof(bits));
+  return (static_cast<double>(bits) * 0x1p-52 - (1023.0 - kAboveLine)) * kLogOfTwo;
+}
+/// The same or up to 0.06 less.
+double log_below(double x) { return log_above(x) - 0.06; }
 
 }  // namespace
 
@@ -133,7 +148,11 @@ bool Particles::all_touched(const LabelModel::Step* const* rows, int pieces) con
 
 const Places& Particles::seen_after(const Push& push) {
   if (!push) return places_;
-  places_.seen_after(push, pushed_places_);
+  // Most moves of an outline leave its push as it is.
+  if (pushed_places_.size() != places_.size() || !(pushed_by_ == push)) {
+    places_.seen_after(push, pushed_places_);
+    pushed_by_ = push;
+  }
   return pushed_places_;
 }
 
@@ -177,6 +196,7 @@ double Particles::add(const Touch& touch) {
   const int moves = std::min(settings_.most_moves,
                              static_cast<int>(std::ceil(settings_.moves * std::max(1.0, 0.5 * mean_pieces()) / left)));
   for (Particle& particle : particles_) {
+    proposal_.begin(particle);
     for (int i = 0; i < moves; ++i) move(particle);
   }
   constexpr int kAsked = 8;
@@ -195,8 +215,8 @@ void Particles::find(std::size_t number, const Unseen::Holding& unseen, double s
     Depths& depths = particle.depths;
     const int one = particle.outline.size();
     particle.outline.add(unseen.draw(random_));
-    seen_after(particle.push).steps(particle.outline[one], labels, 0, places_.size(), depths.row(one));
-    deepest_of(depths.rows().data(), one + 1, places_.length(), depths.row(one), depths.deepest());
+    seen_after(particle.push).steps(particle.outline[one], labels, depths.row(one));
+    deepest_of(depths.rows().data(), one + 1, places_.length(), depths.deepest());
     particle.mistakes = 0;
     particle.labels = 0.0;
     for (std::size_t i = 0; i <= number; ++i) {
@@ -234,7 +254,6 @@ void Particles::move(Particle& particle) {
   ++tried_;
   constexpr double kChangesBlur = 0.02;
   Proposal& proposal = proposal_;
-  proposal.begin(particle);
   bool blurred = particle.blurred;
   if (settings_.blur > 0.0 && random_.uniform() < kChangesBlur) {
     blurred = !blurred;
@@ -246,6 +265,7 @@ void Particles::move(Particle& particle) {
     propose(proposal, prior_, touches_, random_);
   }
   if (proposal.correction > 0.0 && weigh(particle, proposal, blurred)) ++moved_;
+  proposal.begin_again(particle);
 }
 
 /// Metropolis and Hastings, in two steps, of which the first is quick: by the labels, then by the heights (delayed
@@ -254,76 +274,64 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
   const LabelModel& labels = this->labels(blurred);
   const LabelModel& labels_before = this->labels(particle.blurred);
   const double ratio = proposal.correction / (1.0 - random_.uniform());
-  if (particle.labels == 0.0 && ratio < 1.0) return false;  // without the logarithm
-  // So much more loss is allowed.
-  const double allowed = std::log(ratio);
-  if (allowed + particle.labels < 0.0) return false;
+  // So much more loss is allowed, at most: the logarithm itself is asked for last, where this does not tell.
+  const double allowed = log_above(ratio);
+  const double most = allowed + particle.labels;
+  if (most < 0.0 || (particle.labels == 0.0 && ratio < 1.0)) return false;
+  // Which pieces hold other touches than before, and of which touches that is asked.
   const Outline& outline = proposal.outline;
-  const int length = places_.length();
   const bool seen_otherwise = proposal.since < proposal.until;
-  Depths::Rows rows;
-  bool held_otherwise = outline.size() != particle.outline.size();
-  const Places& places = seen_after(proposal.push);
+  bool any_new = false;
+  Places::Change change;
+  change.outline = &outline;
   for (int i = 0; i < outline.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const int was = proposal.was[at];
-    rows[at] = was == Proposal::kNew ? depths_.row(i) : particle.depths.row(was);
+    any_new = any_new || was == Proposal::kNew;
+    change.rows[at] = particle.depths.row(was);
     if (was != Proposal::kNew && !seen_otherwise) continue;
-    if (was == Proposal::kNew) {
-      places.steps(outline[i], labels, 0, places.size(), depths_.row(i));
-    } else {
-      std::copy_n(rows[at], length, depths_.row(i));
-      rows[at] = depths_.row(i);
-      places.steps(outline[i], labels, proposal.since, proposal.until, depths_.row(i));
-    }
-    held_otherwise = held_otherwise || differ_in_holding(rows[at], particle.depths.row(i), objects_.data(), length);
+    change.rows[at] = change.to[static_cast<std::size_t>(change.changes)] = depths_.row(i);
+    change.changed[static_cast<std::size_t>(change.changes++)] = i;
   }
-  const LabelModel::Step* now = depths_.deepest();
-  const LabelModel::Step* before = particle.depths.deepest();
-  const bool labelled_otherwise = deepest_of(rows.data(), outline.size(), length, before, depths_.deepest());
-  // The latest touches are the nearest to the edge: most outlines are given up at these.
-  double loss = 0.0;
-  double loss_before = 0.0;
-  const double most = allowed + particle.labels;
-  const auto weigh_touch = [&](int touch) {
-    const bool on = objects_[static_cast<std::size_t>(touch)] != 0;
-    loss += labels.loss(now[touch], on);
-    loss_before += labels_before.loss(before[touch], on);
-    return loss <= most;
-  };
-  if (blurred != particle.blurred) {
-    for (int touch = places.size(); touch-- > 0;) {
-      if (!weigh_touch(touch)) return false;
-    }
-  } else if (labelled_otherwise && !all_differences(now, before, length, weigh_touch)) {
-    return false;
+  const auto up = [](int touch) { return (touch + Places::kWord - 1) / Places::kWord * Places::kWord; };
+  const bool some = seen_otherwise && !any_new;
+  change.since = some ? proposal.since / Places::kWord * Places::kWord : 0;
+  change.until = up(some ? proposal.until : places_.size());
+  change.labels = &labels;
+  change.labels_before = &labels_before;
+  change.objects = objects_.data();
+  change.deepest_before = particle.depths.deepest();
+  change.deepest = depths_.deepest();
+  if (!seen_after(proposal.push).weigh(change, most)) return false;
+  const double more = change.loss - change.loss_before;
+  if (more > allowed || (more > log_below(ratio) && more > std::log(ratio))) return false;
+  const int length = places_.length();
+  bool held_otherwise = outline.size() != particle.outline.size();
+  for (int k = 0; k < change.changes; ++k) {
+    LabelModel::Step* const row = change.to[static_cast<std::size_t>(k)];
+    const LabelModel::Step* const before = particle.depths.row(change.changed[static_cast<std::size_t>(k)]);
+    std::copy(before, before + change.since, row);
+    std::copy(before + change.until, before + length, row + change.until);
+    held_otherwise = held_otherwise || differ_in_holding(row, before, objects_.data(), length);
   }
-  if (loss - loss_before > allowed) return false;
   double heights = particle.heights;
   if (held_otherwise) {
     // A piece that holds no touch of an object would be one that was not seen.
-    if (!all_touched(rows.data(), outline.size())) return false;
-    heights = evidence(rows.data(), outline.size());
+    if (!all_touched(change.rows.data(), outline.size())) return false;
+    heights = evidence(change.rows.data(), outline.size());
     if (heights < particle.heights && std::log(1.0 - random_.uniform()) > heights - particle.heights) return false;
   }
-  if (labelled_otherwise || blurred != particle.blurred) {
-    for (int touch = 0; touch < places.size(); ++touch) {
-      if (now[touch] == before[touch] && blurred == particle.blurred) continue;
-      const bool on = objects_[static_cast<std::size_t>(touch)] != 0;
-      particle.mistakes +=
-          (labels.mistake(now[touch], on) ? 1 : 0) - (labels_before.mistake(before[touch], on) ? 1 : 0);
-    }
-  }
-  particle.labels += loss - loss_before;
+  particle.mistakes += change.mistakes;
+  particle.labels += more;
   particle.heights = heights;
   particle.blurred = blurred;
-  particle.push = proposal.push;
-  particle.outline = outline;
+  proposal.take(particle);
   for (int i = 0; i < outline.size(); ++i) {
-    if (rows[static_cast<std::size_t>(i)] != particle.depths.row(i))
-      std::copy_n(rows[static_cast<std::size_t>(i)], length, particle.depths.row(i));
+    const LabelModel::Step* const row = change.rows[static_cast<std::size_t>(i)];
+    if (row != particle.depths.row(i)) std::copy_n(row, length, particle.depths.row(i));
   }
-  std::copy_n(now, length, particle.depths.deepest());
+  if (change.labelled_otherwise)
+    std::copy(change.deepest + change.since, change.deepest + change.until, particle.depths.deepest() + change.since);
   return true;
 }
 

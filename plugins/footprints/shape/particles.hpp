@@ -117,7 +117,8 @@ class Particles {
   // What moves work with, kept so that it need not be made for each of them.
   Proposal proposal_;
   Depths depths_;
-  Places pushed_places_;
+  Places pushed_places_;  ///< by the push that follows
+  Push pushed_by_;
   std::vector<std::uint16_t> holders_;
 };
 

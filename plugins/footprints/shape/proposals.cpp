@@ -167,14 +167,13 @@ bool draw_about(Piece& out, const State& state, const OutlinePrior& prior, const
 }
 
 /// Touches of the desk within a form.
-std::vector<Target> wrongly_held(const State& state, const std::vector<Touch>& touches, const Form& form) {
-  std::vector<Target> out;
+void wrongly_held(const State& state, const std::vector<Touch>& touches, const Form& form, std::vector<Target>& out) {
+  out.clear();
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (touches[i].on) continue;
     const Target place = seen_from(state, touches, i);
     if (form.contains(place.x, place.y)) out.push_back(place);
   }
-  return out;
 }
 
 void add_piece(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
@@ -207,7 +206,9 @@ void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const std:
   const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
   Piece& piece = out.outline[one];
   if (piece.hollow == adds || piece.form.a < prior.settings().smallest) return;
-  const std::vector<Target> near = wrongly_held(out, touches, piece.form);
+  std::vector<Target>& near = out.near;
+  wrongly_held(out, touches, piece.form, near);
+  out.changes(one);
   if (adds) {
     piece.hole = prior.draw_hole(piece.form, random);
     draw_near(piece.hole, near, random);
@@ -217,7 +218,6 @@ void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const std:
   if (!(by_prior > 0.0)) return;
   const double correction = odds * correction_near(by_prior, near, piece.hole);
   out.correction = adds ? correction : 1.0 / correction;
-  out.changes(one);
   piece.hollow = adds;
   piece.density = prior.density(piece);
 }

@@ -35,6 +35,7 @@ struct Proposal : State {
   /// Touches from `since` on, and before `until`, are seen otherwise, or by another model of labels: of these, what any
   /// piece holds may have changed.
   int since = 0, until = 0;
+  std::vector<Target> near;  ///< what proposing works with
 
   /// It is this state, so far, and there is no way.
   void begin(const State& from) {
@@ -42,6 +43,29 @@ struct Proposal : State {
     correction = 0.0;
     since = until = 0;
     for (int i = 0; i < outline.size(); ++i) was[static_cast<std::size_t>(i)] = i;
+  }
+  /// It is this state again, from which it began, or that has become what it was.
+  void begin_again(const State& from) {
+    if (kind == Kind::push) return begin(from);
+    for (int i = 0; i < from.outline.size(); ++i) {
+      if (i < outline.size() && was[static_cast<std::size_t>(i)] == i) continue;
+      outline[i] = from.outline[i];
+      was[static_cast<std::size_t>(i)] = i;
+    }
+    outline.resize(from.outline.size());
+    correction = 0.0;
+    since = until = 0;
+  }
+  /// Another state becomes this one, which began as that.
+  void take(State& to) const {
+    if (kind == Kind::push) {
+      to = *this;
+      return;
+    }
+    to.outline.resize(outline.size());
+    for (int i = 0; i < outline.size(); ++i) {
+      if (was[static_cast<std::size_t>(i)] != i) to.outline[i] = outline[i];
+    }
   }
   void changes(int piece) { was[static_cast<std::size_t>(piece)] = kNew; }
   void add(const Piece& piece) {

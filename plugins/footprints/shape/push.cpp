@@ -36,7 +36,7 @@ Push some_push(const Area& area, Random& random) {
 }  // namespace
 
 void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double rate, Random& random) {
-  const State from = out;
+  const Push from = out.push;
   out.kind = Proposal::Kind::push;
   const bool stays_before = random.uniform() < 0.5;
   if (random.uniform() < 0.5) {
@@ -46,19 +46,19 @@ void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double 
     const auto odds = [&](int before) {
       return rate / (0.5 / (touches - 1) + (before >= touches - lately ? 0.5 / lately : 0.0));
     };
-    if (from.push) {
-      if (stays_before) out.outline = from.push.then(from.outline);
+    if (from) {
+      if (stays_before) from.carry_then(out.outline);
       out.push = Push();
-      out.correction = 1.0 / odds(from.push.before);
+      out.correction = 1.0 / odds(from.before);
     } else {
       out.push = some_push(prior.settings().area, random);
       const int among = random.uniform() < 0.5 ? lately : touches - 1;
       out.push.before = touches - 1 - static_cast<int>(random.index(static_cast<std::size_t>(among)));
-      if (stays_before) out.outline = out.push.now(from.outline);
+      if (stays_before) out.push.carry_now(out.outline);
       out.correction = odds(out.push.before);
     }
   } else {
-    if (!from.push) return;
+    if (!from) return;
     if (random.uniform() < 0.25) {
       constexpr int kFar = 3;
       out.push.before += static_cast<int>(random.index(2 * kFar + 1)) - kFar;
@@ -67,25 +67,28 @@ void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double 
       const double scale = some_scale(random);
       out.push.dx += 2.0 * kPushed * scale * either_way(random);
       out.push.dy += 2.0 * kPushed * scale * either_way(random);
-      const double angle = from.push.angle() + 2.0 * kTurned * scale * either_way(random);
+      const double angle = from.angle() + 2.0 * kTurned * scale * either_way(random);
       out.push.cosine = std::cos(angle);
       out.push.sine = std::sin(angle);
-      if (stays_before) out.outline = out.push.now(from.push.then(from.outline));
+      if (stays_before) {
+        from.carry_then(out.outline);
+        out.push.carry_now(out.outline);
+      }
     }
-    out.correction = density(out.push) / density(from.push);
+    out.correction = density(out.push) / density(from);
   }
   // An outline that moves along with the touches before is to them what it was, one that stays to those after.
-  out.since = std::max(out.push.before, from.push.before);
+  out.since = std::max(out.push.before, from.before);
   out.until = touches;
-  if (out.push && from.push && out.push.before != from.push.before) {
-    out.until = std::exchange(out.since, std::min(out.push.before, from.push.before));
+  if (out.push && from && out.push.before != from.before) {
+    out.until = std::exchange(out.since, std::min(out.push.before, from.before));
   } else if (!stays_before) {
     out.until = std::exchange(out.since, 0);
   }
-  for (int i = 0; i < out.outline.size(); ++i) {
-    Piece& piece = out.outline[i];
-    piece.density = prior.density(piece);
-    out.correction *= piece.density / from.outline[i].density;
+  if (!stays_before) return;
+  for (Piece& piece : out.outline) {
+    const double before = std::exchange(piece.density, prior.density(piece));
+    out.correction *= piece.density / before;
   }
 }
 

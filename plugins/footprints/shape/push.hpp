@@ -19,6 +19,10 @@ struct Push {
   double cosine = 1.0, sine = 0.0;        ///< of the turn from x to y
 
   explicit operator bool() const { return before > 0; }
+  bool operator==(const Push& other) const {
+    return before == other.before && dx == other.dx && dy == other.dy && cosine == other.cosine && sine == other.sine &&
+           origin_x == other.origin_x && origin_y == other.origin_y;
+  }
   double angle() const { return std::atan2(sine, cosine); }
 
   /// Where a place on the object, as it stood before, is now.
@@ -34,13 +38,12 @@ struct Push {
     return {origin_x + cosine * x + sine * y, origin_y - sine * x + cosine * y};
   }
 
-  Outline now(Outline outline) const {
+  /// The same of outlines.
+  void carry_now(Outline& outline) const {
     each(outline, [this](Form& form) { carry(form, now(Target{form.x, form.y}), cosine, sine); });
-    return outline;
   }
-  Outline then(Outline outline) const {
+  void carry_then(Outline& outline) const {
     each(outline, [this](Form& form) { carry(form, then(Target{form.x, form.y}), cosine, -sine); });
-    return outline;
   }
 
  private:
@@ -53,7 +56,7 @@ struct Push {
   static void each(Outline& outline, const Carry& carry) {
     for (Piece& piece : outline) {
       carry(piece.form);
-      carry(piece.hole);
+      if (piece.hollow) carry(piece.hole);
     }
   }
 };

@@ -14,7 +14,7 @@ namespace {
 /// A form drawn about another, family by the prior.
 class About {
  public:
-  explicit About(const Form& fit) : fit_(fit), shift_(0.25 * std::sqrt(fit.a * fit.b)) {}
+  explicit About(const Form& fit) : fit_(fit), shift_(kShift * std::sqrt(fit.a * fit.b)) {}
 
   Form draw(const OutlinePrior& prior, Random& random) const {
     Form out = fit_;
@@ -29,34 +29,49 @@ class About {
 
   /// In centre, angle and logarithms of the half axes. Those whose half axes are not in order are never taken.
   double density(const OutlinePrior& prior, const Form& form) const {
-    const double sine = fit_.cosine * form.sine - fit_.sine * form.cosine;
-    const double cosine = fit_.cosine * form.cosine + fit_.sine * form.sine;
-    const double angle = std::atan(sine / cosine);  // directions have no sign
-    const double family =
-        form.family == Form::Family::ellipse ? prior.settings().ellipses : 1.0 - prior.settings().ellipses;
     const auto square = [](double x) { return x * x; };
     const double apart = square((form.x - fit_.x) / shift_) + square((form.y - fit_.y) / shift_) +
                          square(std::log(form.a / fit_.a) / kSize) + square(std::log(form.b / fit_.b) / kSize);
-    const double turned = square(angle / kAngle);
-    const double other_way = square((std::abs(angle) - kPi) / kAngle);
-    constexpr double kNormals = 0.010105326013811644;  // (2 pi)^-5/2
-    return family * kNormals / (shift_ * shift_ * kSize * kSize * kAngle) *
-           (std::exp(-0.5 * (apart + turned)) + std::exp(-0.5 * (apart + other_way)));
+    return factor(prior, form) / (fit_.a * fit_.b) *
+           turned(fit_.cosine * form.sine - fit_.sine * form.cosine,
+                  fit_.cosine * form.cosine + fit_.sine * form.sine) *
+           std::exp(-0.5 * apart);
   }
 
+  // The parts of this density, for one about many forms. How much of it the family has, times a density's factor but
+  // for the product of the half axes.
+  static double factor(const OutlinePrior& prior, const Form& form) {
+    constexpr double kNormals = 0.010105326013811644;  // (2 pi)^-5/2
+    const double ellipses = prior.settings().ellipses;
+    const double family = form.family == Form::Family::ellipse ? ellipses : 1.0 - ellipses;
+    return family * kNormals / (kShift * kShift * kSize * kSize * kAngle);
+  }
+  /// Of an angle that has such a sine and cosine: directions have no sign.
+  static double turned(double sine, double cosine) {
+    const double angle = std::atan(sine / cosine);
+    const double there = angle / kAngle;
+    const double other_way = (std::abs(angle) - kPi) / kAngle;
+    return std::exp(-0.5 * there * there) + std::exp(-0.5 * other_way * other_way);
+  }
+
+  static constexpr double kShift = 0.25;  // of the mean half axis
+  static constexpr double kSize = 0.3;    // of a logarithm
+  static constexpr double kAngle = 0.3;   // radians
+
  private:
-  static constexpr double kSize = 0.3;
-  static constexpr double kAngle = 0.3;  // radians
   Form fit_;
   double shift_;
 };
 
 /// The halves, or unequal parts, of a form that is cut across one of its axes; the ways to do so are equally probable.
 constexpr int kCuts = 12;
+constexpr std::array<double, 3> kShares{0.3, 0.5, 0.7};
+double share_of(int way) { return kShares[static_cast<std::size_t>(way % 3)]; }
+bool is_along(int way) { return (way / 3) % 2 == 0; }
+
 std::pair<Form, Form> cut(const Form& form, int way) {
-  constexpr std::array<double, 3> kShares{0.3, 0.5, 0.7};
-  const double share = kShares[static_cast<std::size_t>(way % 3)];
-  const bool along = (way / 3) % 2 == 0;
+  const double share = share_of(way);
+  const bool along = is_along(way);
   const double sign = way / 6 == 0 ? 1.0 : -1.0;  // so that the two may be named either way round
   std::pair<Form, Form> out(form, form);
   const double half = along ? form.a : form.b;
@@ -103,37 +118,101 @@ Form joined(const Form& first, const Form& second) {
 }
 
 /// How probable it is that two of the pieces are those that are merged: one of them is any, the other near it.
-double choice_of_pair(const Outline& outline, int first, int second) {
-  constexpr double kClose = 0.05;  // metres
-  const auto wish = [&](int a, int b) {
-    return std::exp(-std::hypot(outline[a].form.x - outline[b].form.x, outline[a].form.y - outline[b].form.y) / kClose);
-  };
-  const auto given = [&](int a, int b) {
-    double sum = 0.0;
-    for (int i = 0; i < outline.size(); ++i) sum += i == a ? 0.0 : wish(a, i);
-    return wish(a, b) / sum;
-  };
-  return (given(first, second) + given(second, first)) / outline.size();
-}
-
-std::pair<int, int> choose_pair(const Outline& outline, Random& random) {
-  double left = random.uniform();
-  std::pair<int, int> out;
-  for (int i = 0; i < outline.size(); ++i) {
-    for (int k = 0; k < i; ++k) {
-      out = {k, i};
-      if ((left -= choice_of_pair(outline, k, i)) < 0.0) return out;
+class Pairs {
+ public:
+  explicit Pairs(const Outline& outline) : size_(outline.size()) {
+    constexpr double kClose = 0.05;  // metres
+    for (int a = 0; a < size_; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const Form& one = outline[a].form;
+        const Form& other = outline[b].form;
+        wish(a, b) = wish(b, a) = std::exp(-std::hypot(one.x - other.x, one.y - other.y) / kClose);
+      }
+      wish(a, a) = 0.0;
+    }
+    for (int a = 0; a < size_; ++a) {
+      for (int b = 0; b < size_; ++b) sums_[static_cast<std::size_t>(a)] += wish(a, b);
     }
   }
-  return out;
-}
+
+  double probability(int a, int b) {
+    return (wish(a, b) / sums_[static_cast<std::size_t>(a)] + wish(b, a) / sums_[static_cast<std::size_t>(b)]) / size_;
+  }
+
+  std::pair<int, int> choose(Random& random) {
+    double left = random.uniform();
+    std::pair<int, int> out;
+    for (int i = 0; i < size_; ++i) {
+      for (int k = 0; k < i; ++k) {
+        out = {k, i};
+        if ((left -= probability(k, i)) < 0.0) return out;
+      }
+    }
+    return out;
+  }
+
+ private:
+  double& wish(int a, int b) { return wishes_[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]; }
+
+  int size_;
+  std::array<std::array<double, Outline::kMost>, Outline::kMost> wishes_;
+  std::array<double, Outline::kMost> sums_{};
+};
+
+/// A part as About has it for all cuts of a whole, so that logarithms and angles are asked for once.
+class Part {
+ public:
+  Part(const OutlinePrior& prior, const Form& whole, const Form& part)
+      : whole_(whole),
+        part_(part),
+        along_(std::log(part.a / whole.a)),
+        across_(std::log(part.b / whole.b)),
+        slender_(std::log(whole.a / whole.b)),
+        factor_(About::factor(prior, part) / (whole.a * whole.b)) {
+    const double sine = whole.cosine * part.sine - whole.sine * part.cosine;
+    const double cosine = whole.cosine * part.cosine + whole.sine * part.sine;
+    turned_[0] = About::turned(sine, cosine);
+    turned_[1] = About::turned(-cosine, sine);
+  }
+
+  /// Its density is a factor times e to minus half of something.
+  struct Density {
+    double factor, exponent;
+  };
+  /// About a form that has such a share of the whole, of whose axes the long or the short one is cut.
+  Density about(const Form& fit, double share, double log_share, bool along) const {
+    // Axes are named anew where the long one has become the shorter.
+    const bool swapped = along && whole_.a * share < whole_.b;
+    const double a = (swapped ? along_ + slender_ : along_ - (along ? log_share : 0.0)) / About::kSize;
+    const double b = (swapped ? across_ - slender_ - log_share : across_ - (along ? 0.0 : log_share)) / About::kSize;
+    const double dx = part_.x - fit.x;
+    const double dy = part_.y - fit.y;
+    const double square = About::kShift * About::kShift * share * whole_.a * whole_.b;
+    return {factor_ / share * turned_[swapped ? 1 : 0], (dx * dx + dy * dy) / square + a * a + b * b};
+  }
+
+ private:
+  Form whole_;
+  Form part_;
+  double along_, across_;  ///< logarithms of its half axes over those of the whole
+  double slender_;         ///< of the whole
+  double factor_;
+  double turned_[2];
+};
 
 /// The density of two parts, whichever comes first, as split() draws them.
 double density_of_split(const OutlinePrior& prior, const Form& whole, const Form& first, const Form& second) {
+  const Part one(prior, whole, first);
+  const Part other(prior, whole, second);
+  static const std::array<double, 3> logs{std::log(kShares[0]), std::log(kShares[1]), std::log(kShares[2])};
+  const auto log_of = [](int share) { return logs[static_cast<std::size_t>(share)]; };
   double out = 0.0;
   for (int way = 0; way < kCuts; ++way) {
     const auto [a, b] = cut(whole, way);
-    out += About(a).density(prior, first) * About(b).density(prior, second);
+    // What one part leaves to the other is a share, too.
+    const Part::Density of_one = one.about(a, share_of(way), log_of(way % 3), is_along(way));
+    const Part::Density of_other = other.about(b, 1.0 - share_of(way), log_of(2 - way % 3), is_along(way));
+    out += of_one.factor * of_other.factor * std::exp(-0.5 * (of_one.exponent + of_other.exponent));
   }
   return 2.0 * out / kCuts;
 }
@@ -144,7 +223,7 @@ double correction_of_split(const OutlinePrior& prior, const Outline& split, std:
   const Piece& first = split[parts.first];
   const Piece& second = split[parts.second];
   const double way_there = density_of_split(prior, whole.form, first.form, second.form) / pieces;
-  const double way_back = choice_of_pair(split, parts.first, parts.second) *
+  const double way_back = Pairs(split).probability(parts.first, parts.second) *
                           About(joined(first.form, second.form)).density(prior, whole.form);
   return prior.settings().expected * first.density * second.density / whole.density * way_back / way_there;
 }
@@ -176,20 +255,19 @@ void propose_split(Proposal& out, const OutlinePrior& prior, Random& random) {
 void propose_merge(Proposal& out, const OutlinePrior& prior, Random& random) {
   const int pieces = out.outline.size();
   if (pieces < 2) return;
-  const Outline before = out.outline;
-  const std::pair<int, int> parts = choose_pair(before, random);
-  const Form& first = before[parts.first].form;
-  const Form& second = before[parts.second].form;
-  if (before[parts.first].hollow || before[parts.second].hollow) return;
+  const std::pair<int, int> parts = Pairs(out.outline).choose(random);
+  const Piece& first = out.outline[parts.first];
+  const Piece& second = out.outline[parts.second];
+  if (first.hollow || second.hollow) return;
   Piece whole;
-  whole.form = About(joined(first, second)).draw(prior, random);
+  whole.form = About(joined(first.form, second.form)).draw(prior, random);
   if (!in_order(whole.form)) return;
   whole.density = prior.density(whole);
   if (whole.density <= 0.0) return;
+  out.correction = 1.0 / correction_of_split(prior, out.outline, parts, whole, pieces - 1);
   out.outline[parts.first] = whole;
   out.changes(parts.first);
   out.remove(parts.second);
-  out.correction = 1.0 / correction_of_split(prior, before, parts, whole, pieces - 1);
 }
 
 }  // namespace palpate::footprints
