@@ -104,6 +104,12 @@ PALPATE_INLINE void depths_in(const Form& form, const Four& x, const Four& y, Fo
   out = slope > 0.0 ? out : centre;
 }
 
+PALPATE_INLINE void to_bytes(const FourBits& first, const FourBits& second, LabelModel::Step* out) {
+  const FourBits parts = (first | second << 32) << FourBits{0, 8, 16, 24};
+  const std::int64_t word = parts[0] | parts[1] | parts[2] | parts[3];
+  std::memcpy(out, &word, sizeof(word));
+}
+
 /// As Steps::of how deep places lie in a piece.
 PALPATE_INLINE void steps_in(const Piece& piece, bool exact, LabelModel::Steps steps, const Four& x, const Four& y,
                              FourBits& out) {
@@ -147,10 +153,7 @@ PALPATE_INLINE void steps_in(const Piece& piece, bool exact, LabelModel::Steps s
   std::memcpy(&x, xs + 4, sizeof(x));
   std::memcpy(&y, ys + 4, sizeof(y));
   steps_in(piece, exact, steps, x, y, second);
-  // Each goes to its byte.
-  const FourBits parts = (first | second << 32) << FourBits{0, 8, 16, 24};
-  const std::int64_t word = parts[0] | parts[1] | parts[2] | parts[3];
-  std::memcpy(out, &word, sizeof(word));
+  to_bytes(first, second, out);
 }
 
 /// The deepest steps of some rows, of a word of them.
@@ -166,6 +169,21 @@ PALPATE_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, i
 PALPATE_CLONES void all_steps(const Piece& piece, bool exact, LabelModel::Steps steps, const double* xs,
                               const double* ys, int count, LabelModel::Step* out) {
   for (int from = 0; from < count; from += kWord) steps_in(piece, exact, steps, xs + from, ys + from, out + from);
+}
+
+PALPATE_CLONES void all_contained(const Form& form, const double* xs, const double* ys, int count,
+                                  LabelModel::Step* out) {
+  for (int from = 0; from < count; from += kWord) {
+    Four x, y;
+    FourBits first, second;
+    std::memcpy(&x, xs + from, sizeof(x));
+    std::memcpy(&y, ys + from, sizeof(y));
+    contained_in(form, x, y, first);
+    std::memcpy(&x, xs + from + 4, sizeof(x));
+    std::memcpy(&y, ys + from + 4, sizeof(y));
+    contained_in(form, x, y, second);
+    to_bytes(first & 0xFF, second & 0xFF, out + from);
+  }
 }
 
 PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const double* xs, const double* ys) {
@@ -249,6 +267,10 @@ void Places::seen_after(const Push& push, Places& out) const {
 
 void Places::steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const {
   all_steps(piece, !labels.blurs(), labels.steps(), xs_.data(), ys_.data(), length(), row);
+}
+
+void Places::contained(const Form& form, LabelModel::Step* row) const {
+  all_contained(form, xs_.data(), ys_.data(), (size_ + kWord - 1) / kWord * kWord, row);
 }
 
 bool Places::weigh(Change& change, double most) const { return weigh_change(change, most, xs_.data(), ys_.data()); }

@@ -23,12 +23,16 @@ class Places {
 
   int size() const { return size_; }
   int length() const { return static_cast<int>(xs_.size()); }
+  Target operator[](int i) const { return {xs_[static_cast<std::size_t>(i)], ys_[static_cast<std::size_t>(i)]}; }
   void add(const Target& place);
   /// `out` becomes these, as seen after a push.
   void seen_after(const Push& push, Places& out) const;
 
   /// The steps of all places in a row, by how deep they lie in a piece.
   void steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const;
+
+  /// Sets all bits of the bytes that belong to places which a form contains, and none of the others.
+  void contained(const Form& form, LabelModel::Step* row) const;
 
   /// What the labels say of some pieces, of which a few are others than before.
   struct Change {
@@ -56,6 +60,13 @@ class Places {
  private:
   int size_ = 0;
   std::vector<double> xs_, ys_;
+};
+
+/// Touches, as they are seen after a push or without one.
+struct Seen {
+  const Places& places;
+  const LabelModel::Step* objects;  ///< all bits of the bytes of those that are of an object
+  int of_objects;                   ///< so many are
 };
 
 /// A row of steps for each piece of an outline, and one that has the deepest of each touch.

@@ -162,6 +162,7 @@ double Particles::add(const Touch& touch) {
   places_.add(touch.place);
   objects_.resize(static_cast<std::size_t>(places_.length()), 0);
   objects_[number] = touch.on ? 0xFF : 0;
+  of_objects_ += touch.on ? 1 : 0;
   depths_.grow_to(places_.length());
   if (touch.on) heights_.add(touch, number);
   const Unseen::Holding unseen = unseen_.holding(touch.place);
@@ -262,7 +263,7 @@ void Particles::move(Particle& particle) {
   } else if (settings_.pushes > 0.0 && touches_.size() > 1 && random_.uniform() < kPushMoves) {
     propose_push(proposal, prior_, places_.size(), settings_.pushes, random_);
   } else {
-    propose(proposal, prior_, touches_, random_);
+    propose(proposal, prior_, {seen_after(particle.push), objects_.data(), of_objects_}, random_);
   }
   if (proposal.correction > 0.0 && weigh(particle, proposal, blurred)) ++moved_;
   proposal.begin_again(particle);

@@ -113,6 +113,7 @@ class Particles {
 
   Places places_;                          ///< of the touches, as made
   std::vector<LabelModel::Step> objects_;  ///< of each touch: all bits where it is of an object, or none
+  int of_objects_ = 0;
 
   // What moves work with, kept so that it need not be made for each of them.
   Proposal proposal_;

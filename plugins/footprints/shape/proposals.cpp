@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <utility>
 
 namespace palpate::footprints {
@@ -117,45 +119,49 @@ void draw_near(Form& form, const std::vector<Target>& near, Random& random) {
   form.y = place.y + kNear * normal(random);
 }
 
-/// Where a touch is seen by a state.
-Target seen_from(const State& state, const std::vector<Touch>& touches, std::size_t touch) {
-  const Target& place = touches[touch].place;
-  return static_cast<int>(touch) < state.push.before ? state.push.now(place) : place;
+/// Which touches a form contains, by bytes of all bits.
+const LabelModel::Step* held_by(const Form& form, const Seen& seen, Proposal& out) {
+  out.held.resize(static_cast<std::size_t>(seen.places.length()));
+  seen.places.contained(form, out.held.data());
+  return out.held.data();
+}
+
+std::uint64_t word_of(const LabelModel::Step* row, int from) {
+  std::uint64_t out;
+  std::memcpy(&out, row + from, sizeof(out));
+  return out;
+}
+
+/// How many bytes of a word have all bits, where the others have none.
+int count_of(std::uint64_t word) {
+  constexpr std::uint64_t kOnes = 0x0101010101010101;
+  return static_cast<int>((word & kOnes) * kOnes >> 56U);
 }
 
 /// The density of a centre so that a touch of an object, any of them, lies anywhere in the form: per square metre.
-double density_about_touches(const State& state, const std::vector<Touch>& touches, const Form& form) {
-  int all = 0;
+double density_about_touches(const Seen& seen, const Form& form, Proposal& out) {
+  const LabelModel::Step* const row = held_by(form, seen, out);
   int held = 0;
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    if (!touches[i].on) continue;
-    ++all;
-    const Target place = seen_from(state, touches, i);
-    held += form.contains(place.x, place.y) ? 1 : 0;
-  }
-  return held / (all * form.extent());
+  for (int from = 0; from < seen.places.length(); from += Places::kWord)
+    held += count_of(word_of(row, from) & word_of(seen.objects, from));
+  return held / (seen.of_objects * form.extent());
 }
 
 /// How much more often the prior has the centre of a form than it is drawn about a touch.
-double correction_about(const State& state, const OutlinePrior& prior, const std::vector<Touch>& touches,
-                        const Form& form) {
-  const double drawn = density_about_touches(state, touches, form);
+double correction_about(const Seen& seen, const OutlinePrior& prior, const Form& form, Proposal& out) {
+  const double drawn = density_about_touches(seen, form, out);
   return drawn > 0.0 ? prior.centre_density(form) / drawn : 0.0;
 }
 
 /// A piece without a hole about a touch of an object; false where there is none.
-bool draw_about(Piece& out, const State& state, const OutlinePrior& prior, const std::vector<Touch>& touches,
-                Random& random) {
-  std::size_t all = 0;
-  for (const Touch& touch : touches) all += touch.on ? 1 : 0;
-  if (all == 0) return false;
-  std::size_t one = random.index(all);
-  std::size_t number = 0;
-  for (;; ++number) {
-    if (touches[number].on && one-- == 0) break;
-  }
+bool draw_about(Piece& out, const Seen& seen, const OutlinePrior& prior, Random& random) {
+  if (seen.of_objects == 0) return false;
+  auto before = static_cast<int>(random.index(static_cast<std::size_t>(seen.of_objects)));
+  int number = 0;
+  for (int count; before >= (count = count_of(word_of(seen.objects, number))); number += Places::kWord) before -= count;
+  while (seen.objects[number] == 0 || before-- > 0) ++number;
   out = prior.draw_piece(random);
-  const Target place = seen_from(state, touches, number);
+  const Target place = seen.places[number];
   Form about = out.form;
   about.x = place.x;
   about.y = place.y;
@@ -167,47 +173,49 @@ bool draw_about(Piece& out, const State& state, const OutlinePrior& prior, const
 }
 
 /// Touches of the desk within a form.
-void wrongly_held(const State& state, const std::vector<Touch>& touches, const Form& form, std::vector<Target>& out) {
-  out.clear();
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    if (touches[i].on) continue;
-    const Target place = seen_from(state, touches, i);
-    if (form.contains(place.x, place.y)) out.push_back(place);
+const std::vector<Target>& wrongly_held(const Seen& seen, const Form& form, Proposal& out) {
+  const LabelModel::Step* const row = held_by(form, seen, out);
+  out.near.clear();
+  for (int from = 0; from < seen.places.length(); from += Places::kWord) {
+    for (std::uint64_t left = word_of(row, from) & ~word_of(seen.objects, from); left != 0;) {
+      const int byte = __builtin_ctzll(left) / 8;
+      left &= ~(std::uint64_t{0xFF} << (8 * byte));
+      out.near.push_back(seen.places[from + byte]);
+    }
   }
+  return out.near;
 }
 
-void add_piece(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
+void add_piece(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
   const int pieces = out.outline.size();
   if (pieces >= prior.settings().most) return;
   Piece piece;
-  if (!draw_about(piece, out, prior, touches, random)) return;
+  if (!draw_about(piece, seen, prior, random)) return;
   // Pieces with a hole come by way of a piece without.
   out.correction = prior.settings().expected / (pieces + 1) * prior.whole(piece.form) *
-                   correction_about(out, prior, touches, piece.form);
+                   correction_about(seen, prior, piece.form, out);
   out.add(piece);
 }
 
-void remove_piece(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
+void remove_piece(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
   const int pieces = out.outline.size();
   if (pieces == 0) return;
   const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
   const Piece piece = out.outline[one];
   if (piece.hollow) return;
-  const double way_back = prior.whole(piece.form) * correction_about(out, prior, touches, piece.form);
+  const double way_back = prior.whole(piece.form) * correction_about(seen, prior, piece.form, out);
   if (!(way_back > 0.0)) return;
   out.correction = pieces / (prior.settings().expected * way_back);
   out.remove(one);
 }
 
-void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const std::vector<Touch>& touches,
-                 Random& random) {
+void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const Seen& seen, Random& random) {
   const int pieces = out.outline.size();
   if (pieces == 0) return;
   const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
   Piece& piece = out.outline[one];
   if (piece.hollow == adds || piece.form.a < prior.settings().smallest) return;
-  std::vector<Target>& near = out.near;
-  wrongly_held(out, touches, piece.form, near);
+  const std::vector<Target>& near = wrongly_held(seen, piece.form, out);
   out.changes(one);
   if (adds) {
     piece.hole = prior.draw_hole(piece.form, random);
@@ -259,16 +267,16 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
 }
 
 /// Takes a new piece for one of them.
-void replace(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
+void replace(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
   const int pieces = out.outline.size();
   if (pieces == 0) return;
   const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
   Piece& piece = out.outline[one];
   if (piece.hollow) return;
-  const double before = prior.whole(piece.form) * correction_about(out, prior, touches, piece.form);
+  const double before = prior.whole(piece.form) * correction_about(seen, prior, piece.form, out);
   out.changes(one);
-  if (!(before > 0.0) || !draw_about(piece, out, prior, touches, random)) return;
-  out.correction = prior.whole(piece.form) * correction_about(out, prior, touches, piece.form) / before;
+  if (!(before > 0.0) || !draw_about(piece, seen, prior, random)) return;
+  out.correction = prior.whole(piece.form) * correction_about(seen, prior, piece.form, out) / before;
 }
 
 // Shares of the moves that are not of a form. What leads there is proposed as often as what leads back.
@@ -276,27 +284,31 @@ constexpr double kAddOrRemove = 0.06;  // each
 constexpr double kHoleOrFill = 0.04;
 constexpr double kSplitOrMerge = 0.02;
 constexpr double kReplace = 0.02;
-constexpr double kForm = 1.0 - 2.0 * (kAddOrRemove + kHoleOrFill + kSplitOrMerge) - kReplace;
+constexpr double kOthers = 2.0 * (kAddOrRemove + kHoleOrFill + kSplitOrMerge) + kReplace;  // in sum
 
 }  // namespace
 
-void propose(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
+void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
   using Kind = Proposal::Kind;
   double which = random.uniform();
+  if (which >= kOthers) {
+    out.kind = Kind::change_form;
+    const int touches = seen.places.size();
+    const Target here = touches == 0 ? Target{} : seen.places[touches - 1];
+    return change_form(out, prior, here, (which - kOthers) / (1.0 - kOthers), random);
+  }
   const auto falls = [&](Kind kind, double share) {
     out.kind = kind;
     return (which -= share) < 0.0;
   };
-  if (falls(Kind::replace, kReplace)) return replace(out, prior, touches, random);
-  if (falls(Kind::add, kAddOrRemove)) return add_piece(out, prior, touches, random);
-  if (falls(Kind::remove, kAddOrRemove)) return remove_piece(out, prior, touches, random);
-  if (falls(Kind::make_hole, kHoleOrFill)) return change_hole(out, true, prior, touches, random);
-  if (falls(Kind::fill_hole, kHoleOrFill)) return change_hole(out, false, prior, touches, random);
+  if (falls(Kind::replace, kReplace)) return replace(out, prior, seen, random);
+  if (falls(Kind::add, kAddOrRemove)) return add_piece(out, prior, seen, random);
+  if (falls(Kind::remove, kAddOrRemove)) return remove_piece(out, prior, seen, random);
+  if (falls(Kind::make_hole, kHoleOrFill)) return change_hole(out, true, prior, seen, random);
+  if (falls(Kind::fill_hole, kHoleOrFill)) return change_hole(out, false, prior, seen, random);
   if (falls(Kind::split, kSplitOrMerge)) return propose_split(out, prior, random);
-  if (falls(Kind::merge, kSplitOrMerge)) return propose_merge(out, prior, random);
-  out.kind = Kind::change_form;
-  const Target here = touches.empty() ? Target{} : touches.back().place;
-  change_form(out, prior, here, which / kForm, random);
+  out.kind = Kind::merge;
+  propose_merge(out, prior, random);
 }
 
 }  // namespace palpate::footprints

@@ -3,6 +3,7 @@
 // (between outlines of unlike numbers of pieces: Green 1995; splitting and merging: Richardson and Green 1997).
 #pragma once
 
+#include "depths.hpp"
 #include "outline.hpp"
 #include "push.hpp"
 
@@ -35,7 +36,9 @@ struct Proposal : State {
   /// Touches from `since` on, and before `until`, are seen otherwise, or by another model of labels: of these, what any
   /// piece holds may have changed.
   int since = 0, until = 0;
-  std::vector<Target> near;  ///< what proposing works with
+  // What proposing works with, kept so that it need not be made for each.
+  std::vector<LabelModel::Step> held;
+  std::vector<Target> near;
 
   /// It is this state, so far, and there is no way.
   void begin(const State& from) {
@@ -82,8 +85,8 @@ struct Proposal : State {
 /// a hole or fills it, splits a piece or merges two, or draws one anew. A piece is added where the prior would have it
 /// or, one time in two, about a touch of an object that no piece holds, a hole about one of the desk that the piece
 /// holds: there they may set a label right. Pieces near the latest touch are moved more often, as they know least of
-/// it. `out` has just begun.
-void propose(Proposal& out, const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random);
+/// it. `out` has just begun, from a state by whose push the touches are `seen`.
+void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random);
 
 /// Two of the moves of propose(): a piece is split into two, or two that are near each other are merged.
 void propose_split(Proposal& out, const OutlinePrior& prior, Random& random);
