@@ -150,6 +150,31 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
   }
 }
 
+TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
+  constexpr int kRows = 3;
+  constexpr int kWidth = kPanelLines * kLine;
+  constexpr int kColumns = 61;
+  const Lines cells = drawn(kRows * kWidth);
+  const Reading reading{-0.25, 0.375, 0.1, 0.3};
+  for (int count = 0; count <= kWidth; ++count) {
+    for (const bool mirrored : {false, true}) {
+      std::vector<double> to(kRows * kColumns, 7.0);
+      std::vector<double> expected = to;
+      const int first = mirrored ? kWidth : 1;
+      for (int row = 0; row < kRows; ++row) {
+        for (int i = 0; i < count; ++i) {
+          // Two roundings, which no compiler makes one of.
+          const volatile double product =
+              std::min(std::max(cells.data()[row * kWidth + i], reading.least), reading.most) * reading.scale;
+          expected[static_cast<std::size_t>(row * kColumns + first + (mirrored ? -i : i))] = product + reading.offset;
+        }
+      }
+      table().read({cells.data(), kWidth, to.data() + first, kColumns, kRows, count, mirrored}, reading);
+      ASSERT_EQ(to, expected) << count << (mirrored ? " mirrored" : "");
+    }
+  }
+}
+
 TEST_P(Loops, SolveATriangleOfAnySize) {
   for (const int n : {0, 1, 2, 7, 8, 9, 16, 40, 61}) {
     Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(n, n);

@@ -60,15 +60,31 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   return design;
 }
 
+constexpr Eigen::Index kBlock = 64;
+
+/// Of a block: by several at once, as each comparison waits for the one before.
+double largest(const double* block) {
+  constexpr Eigen::Index kAtOnce = 16;
+  std::array<double, kAtOnce> most;
+  std::copy_n(block, kAtOnce, most.data());
+  for (Eigen::Index first = kAtOnce; first < kBlock; first += kAtOnce) {
+    for (Eigen::Index i = 0; i < kAtOnce; ++i) {
+      const double one = block[first + i];
+      const double before = most[static_cast<std::size_t>(i)];
+      most[static_cast<std::size_t>(i)] = one > before ? one : before;
+    }
+  }
+  return *std::max_element(most.begin(), most.end());
+}
+
 /// Visits the allowed candidates, in their order, whose score is worth it, which no lower one then is: by blocks, of
 /// which most have none.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Worth& worth,
                  const Visit& visit) {
-  constexpr Eigen::Index kBlock = 64;
   for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
     const Eigen::Index count = std::min(kBlock, scores.size() - first);
-    if (!worth(scores.segment(first, count).maxCoeff())) continue;
+    if (count == kBlock && !worth(largest(scores.data() + first))) continue;
     for (Eigen::Index i = first; i < first + count; ++i) {
       if (worth(scores(i)) && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
     }

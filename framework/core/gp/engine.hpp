@@ -15,7 +15,6 @@
 #pragma once
 
 #include "gp/maps.hpp"
-#include "gp/workers.hpp"
 
 #include <palpate/kernel.hpp>
 
@@ -23,12 +22,6 @@
 #include <string>
 
 namespace palpate {
-
-/// What the loops run on.
-struct Machine {
-  const simd::Table* loops = &simd::fastest();
-  std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
-};
 
 /// One row of the factor, for the tap in the last row of `places`.
 struct FactorRow {
@@ -69,7 +62,7 @@ class Engine {
  protected:
   Engine(const char* name, const Machine& machine, const Kernel& kernel, const Candidates& candidates,
          const Tiling& tiling)
-      : name_(name), machine_(machine), kernel_(kernel), candidates_(candidates), maps_(tiling) {}
+      : name_(name), machine_(machine), kernel_(kernel), candidates_(candidates), maps_(tiling, machine) {}
 
   /// Forgets all rows.
   virtual void clear() = 0;

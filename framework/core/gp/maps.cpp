@@ -35,11 +35,11 @@ void Tiling::tile(int columns) {
   tiled_columns_ = columns;
   padded_ = simd::round_up(columns, simd::kLine);
   width_ = simd::kPanelLines * simd::kLine;
-  tiles_per_strip_ = (padded_ + width_ - 1) / width_;
   strip_size_ = static_cast<std::size_t>(padded_) * simd::kStripRows;
 }
 
-Maps::Maps(const Tiling& tiling) : tiling_(tiling), variance_(tiling.size()) {}
+Maps::Maps(const Tiling& tiling, const Machine& machine)
+    : tiling_(tiling), machine_(machine), variance_(tiling.size()) {}
 
 void Maps::restart(int means, const VectorView& prior) {
   means_ = means;
@@ -50,10 +50,13 @@ void Maps::restart(int means, const VectorView& prior) {
   }
   const bool same = prior.size() == 1;
   std::fill_n(variance_.data(), variance_.size(), 0.0);
-  for (int tile = 0; tile < tiling_.tiles(); ++tile) {
-    tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
-      for (int i = 0; i < count; ++i)
-        variance_.data()[cell + static_cast<std::size_t>(i)] = prior(same ? 0 : candidate + step * i);
+  for (int strip = 0; strip < tiling_.strips(); ++strip) {
+    tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
+      for (int row = 0; row < block.rows; ++row) {
+        double* const to = variance_.data() + block.cell + static_cast<std::ptrdiff_t>(row) * block.width;
+        const int first = block.candidate + row * block.columns;
+        for (int i = 0; i < block.count; ++i) to[i] = prior(same ? 0 : first + (block.mirrored ? -i : i));
+      }
     });
   }
 }
@@ -70,25 +73,22 @@ simd::Update Maps::update(int strip, const double* coefficients) {
   return out;
 }
 
-void Maps::read(const simd::Lines& map, VectorOut out) const {
-  for (int tile = 0; tile < tiling_.tiles(); ++tile) {
-    tiling_.for_runs(tile, [&](int candidate, int step, std::size_t cell, int count) {
-      const double* const from = map.data() + cell;
-      double* const to = &out(candidate);
-      // A loop for each direction, as only steps that a compiler knows become moves of whole registers.
-      if (step > 0) {
-        for (int i = 0; i < count; ++i) to[i] = from[i];
-      } else {
-        for (int i = 0; i < count; ++i) to[-i] = from[i];
-      }
+void Maps::read(const simd::Lines& map, const simd::Reading& reading, double* out) const {
+  machine_.workers->for_each(tiling_.strips(), [&](int strip, int) {
+    tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
+      machine_.loops->read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows,
+                            block.count, block.mirrored},
+                           reading);
     });
-  }
+  });
 }
 
 // A view goes by value although it is written through. NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_mean(int k, VectorOut out) const { read(mean_[static_cast<std::size_t>(k)], out); }
+void Maps::read_mean(int k, const simd::Reading& reading, VectorOut out) const {
+  read(mean_[static_cast<std::size_t>(k)], reading, out.data());
+}
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_variance(VectorOut out) const { read(variance_, out); }
+void Maps::read_variance(const simd::Reading& reading, VectorOut out) const { read(variance_, reading, out.data()); }
 
 }  // namespace palpate

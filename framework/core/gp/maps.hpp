@@ -5,14 +5,22 @@
 
 #include "gp/candidates.hpp"
 #include "gp/simd/panels.hpp"
+#include "gp/workers.hpp"
 
 #include <palpate/types.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 
 namespace palpate {
+
+/// What the loops run on.
+struct Machine {
+  const simd::Table* loops = &simd::fastest();
+  std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
+};
 
 /// Where the candidates lie in a map. A map is a sequence of strips, which are what one call updates; a strip is
 /// a sequence of tiles, one a panel of the columns.
@@ -27,7 +35,6 @@ class Tiling {
   static Tiling mirrored_grid(const Candidates& candidates);
 
   int strips() const { return strips_; }
-  int tiles() const { return strips_ * tiles_per_strip_; }
   /// Cells in a strip and in all, padding included.
   std::size_t strip_size() const { return strip_size_; }
   std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
@@ -35,24 +42,35 @@ class Tiling {
   /// From the cells of a tile to those of its mirror image; 0 if there is none.
   std::ptrdiff_t mirror() const { return mirror_; }
 
-  /// Calls visit(candidate, step, cell, count) for each run of cells of the tile: the candidates candidate,
-  /// candidate + step, ... lie in the cells from `cell` on.
+  /// Part of a tile: rows of `count` cells, `width` apart from `cell` on, in which the candidates candidate,
+  /// candidate + 1, ... lie, of mirror images candidate, candidate - 1, ...; each row begins `columns` candidates after
+  /// the one before.
+  struct Block {
+    int candidate;
+    int columns;
+    bool mirrored;
+    std::size_t cell;
+    int width;
+    int rows;
+    int count;
+  };
+  /// Calls visit(block) for the blocks of a strip.
   template <class Visit>
-  void for_runs(int tile, const Visit& visit) const {
-    const int strip = tile / tiles_per_strip_;
-    const int first = tile % tiles_per_strip_ * width_;
-    const int width = std::min(width_, padded_ - first);
-    const int columns = std::min(width, tiled_columns_ - first);
-    std::size_t cell =
-        static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
-    const int end = std::min((strip + 1) * rows_per_strip_, rows_);
-    for (int row = strip * rows_per_strip_; row < end; ++row) {
+  void for_blocks(int strip, const Visit& visit) const {
+    const int row = strip * rows_per_strip_;
+    const int rows = std::min(rows_per_strip_, rows_ - row);
+    for (int first = 0; first < padded_; first += width_) {
+      const int width = std::min(width_, padded_ - first);
+      const int columns = std::min(width, tiled_columns_ - first);
+      const std::size_t cell =
+          static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
       const int candidate = row * columns_ + first;
-      visit(candidate, 1, cell, std::min(columns, candidates_ - candidate));
+      visit(Block{candidate, columns_, false, cell, width, rows, std::min(columns, candidates_ - candidate)});
+      if (mirror_ == 0) continue;
       // A column in the middle is its own image and was visited.
       const int images = std::min(columns, columns_ - tiled_columns_ - first);
-      if (mirror_ > 0) visit((row + 1) * columns_ - 1 - first, -1, cell + static_cast<std::size_t>(mirror_), images);
-      cell += static_cast<std::size_t>(width);
+      visit(Block{(row + 1) * columns_ - 1 - first, columns_, true, cell + static_cast<std::size_t>(mirror_), width,
+                  rows, images});
     }
   }
 
@@ -68,7 +86,6 @@ class Tiling {
   int width_ = 0;   ///< of a tile, in columns
   int rows_per_strip_ = 1;
   int strips_ = 0;
-  int tiles_per_strip_ = 1;
   std::size_t strip_size_ = 0;
   std::ptrdiff_t mirror_ = 0;
 };
@@ -76,7 +93,7 @@ class Tiling {
 /// Maps of means and of the variance as they stand, all in units of the prior.
 class Maps {
  public:
-  explicit Maps(const Tiling& tiling);
+  Maps(const Tiling& tiling, const Machine& machine);
 
   /// Back to the prior: `means` maps of 0, and the variance, one number if it is the same at all candidates.
   void restart(int means, const VectorView& prior);
@@ -84,16 +101,17 @@ class Maps {
   /// What the loops need to take a row with such coefficients into the cells of a strip.
   simd::Update update(int strip, const double* coefficients);
 
-  /// The mean number k, and the variance, at all candidates.
-  void read_mean(int k, VectorOut out) const;
-  void read_variance(VectorOut out) const;
+  /// The mean number k, and the variance, at all candidates, each number as `reading` has it.
+  void read_mean(int k, const simd::Reading& reading, VectorOut out) const;
+  void read_variance(const simd::Reading& reading, VectorOut out) const;
 
   const Tiling& tiling() const { return tiling_; }
 
  private:
-  void read(const simd::Lines& map, VectorOut out) const;
+  void read(const simd::Lines& map, const simd::Reading& reading, double* out) const;
 
   Tiling tiling_;
+  Machine machine_;
   int means_ = 0;
   std::array<simd::Lines, simd::kMeans> mean_;
   simd::Lines variance_;

@@ -8,12 +8,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace palpate {
 namespace {
 
 constexpr double kLogTwoPi = 1.83787706640934548356;
+
+constexpr double kUnbound = std::numeric_limits<double>::infinity();
+constexpr simd::Reading kAsItIs{-kUnbound, kUnbound, 1.0, 0.0};
 
 }  // namespace
 
@@ -267,35 +271,41 @@ void Process::with_prior(const Use& use) const {
 
 void Process::read_mean(int output, Eigen::VectorXd& out) const {
   out.resize(candidates_.size());
-  maps().read_mean(output, out);
-  if (with_constant()) {
-    Eigen::VectorXd explained(out.size());
-    maps().read_mean(shown_, explained);
-    out.array() += constant_mean() * (1.0 - explained.array());
-  }
-  out.array() = settings(output).signal * out.array() + settings(output).mean;
+  const double signal = settings(output).signal;
+  const double mean = settings(output).mean;
+  if (!with_constant()) return maps().read_mean(output, {-kUnbound, kUnbound, signal, mean}, out);
+  maps().read_mean(output, kAsItIs, out);
+  Eigen::VectorXd explained(out.size());
+  maps().read_mean(shown_, kAsItIs, explained);
+  out.array() = signal * (out.array() + constant_mean() * (1.0 - explained.array())) + mean;
 }
 
 void Process::read_standard_variance(Eigen::VectorXd& out) const {
   out.resize(candidates_.size());
-  maps().read_variance(out);
+  maps().read_variance(kAsItIs, out);
   if (with_constant()) {
     Eigen::VectorXd explained(out.size());
-    maps().read_mean(shown_, explained);
+    maps().read_mean(shown_, kAsItIs, explained);
     out.array() += (1.0 - explained.array()).square() / constant_precision();
   }
 }
 
-void Process::read_variance(int output, Eigen::VectorXd& out) const {
-  const double signal = settings(output).signal;
+void Process::read_bound_variance(double scale, Eigen::VectorXd& out) const {
+  if (same_prior_ && !with_constant()) {
+    out.resize(candidates_.size());
+    return maps().read_variance({0.0, prior_(0), scale, 0.0}, out);
+  }
   read_standard_variance(out);
-  with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) * (signal * signal); });
+  with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) * scale; });
+}
+
+void Process::read_variance(int output, Eigen::VectorXd& out) const {
+  read_bound_variance(settings(output).signal * settings(output).signal, out);
 }
 
 void Process::read_relative_variance(Eigen::VectorXd& out) const {
-  read_standard_variance(out);
+  read_bound_variance(1.0, out);
   with_prior([&](const auto& prior) {
-    out.array() = out.array().max(0.0).min(prior);
     if (!same_prior_ || prior(0) != 1.0) out.array() /= prior;  // dividing takes longest, and most priors are 1
   });
 }

@@ -139,6 +139,8 @@ class Process {
   /// Posterior mean of the constant in signals.
   double constant_mean() const;
   void read_standard_variance(Eigen::VectorXd& out) const;
+  /// The same in [0, prior], times `scale`.
+  void read_bound_variance(double scale, Eigen::VectorXd& out) const;
   /// Calls use(prior variance with that of the constant, at each candidate).
   template <class Use>
   void with_prior(const Use& use) const;

@@ -59,6 +59,28 @@ struct DenseRow {
   double pivot;
 };
 
+/// What becomes of a number of a map as it is read: bound to [least, most], times scale, plus offset. The product is
+/// rounded by itself, so that all instruction sets read the same.
+struct Reading {
+  double least;
+  double most;
+  double scale;
+  double offset;
+};
+
+/// Rows of a map's cells, `width` apart, the first number of each on a line, and where they are read to: `count`
+/// numbers of each, rows `columns` apart; of mirror images each further one a place before the last. Need not be
+/// aligned there.
+struct Cells {
+  const double* from;
+  std::ptrdiff_t width;
+  double* to;
+  std::ptrdiff_t columns;
+  int rows;
+  int count;
+  bool mirrored;
+};
+
 struct Table {
   const char* name;
   /// c = A B.
@@ -67,6 +89,7 @@ struct Table {
   void (*absorb_product)(const Product&, const Update&);
   void (*absorb_mirrored)(const MirroredProduct&, const Update&);
   void (*absorb_dense)(const DenseRow&, const Update&);
+  void (*read)(const Cells&, const Reading&);
   // L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
   // matrix goes. Both work in place on n numbers, with room up to a line.
   void (*solve_lower)(const double* lower, int n, double* x);             ///< x = L^-1 x
