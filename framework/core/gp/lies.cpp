@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
+#include <cstdint>
 #include <limits>
-#include <map>
 #include <vector>
 
 namespace palpate {
@@ -16,17 +14,6 @@ namespace {
 
 /// A suspicion of 0 or 1 would settle a tap for good, whatever the others say.
 constexpr double kLeastSuspicion = 1e-9;
-
-using Set = std::vector<int>;  ///< of taps, ascending
-
-/// What is left when a set is left out.
-struct Rest {
-  Eigen::MatrixXd rows;     ///< A_S:, |S| x n
-  Eigen::MatrixXd removed;  ///< (A_SS)^-1 A_S:
-  Eigen::VectorXd heights;  ///< A' y
-  Eigen::VectorXd ones;     ///< A' 1
-  double log_weight = 0.0;  ///< of the set, but for what the constant adds
-};
 
 /// What the unknown constant has to do with it: its precision, its mean, and what it adds to a set's weight.
 struct Constant {
@@ -57,31 +44,11 @@ class Court {
   int taps() const { return static_cast<int>(heights_.size()); }
   double signal() const { return signal_; }
   const Eigen::MatrixXd& inverse() const { return inverse_; }
-
-  Rest without(const Set& liars) const {
-    Rest out{{}, {}, heights_, ones_, log_evidence_};
-    const auto count = static_cast<Eigen::Index>(liars.size());
-    if (count == 0) return out;
-    out.rows.resize(count, taps());
-    Eigen::MatrixXd own(count, count);
-    Eigen::MatrixXd of_both(count, 2);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const int liar = liars[static_cast<std::size_t>(i)];
-      out.rows.row(i) = inverse_.row(liar);
-      of_both(i, 0) = heights_(liar);
-      of_both(i, 1) = ones_(liar);
-      out.log_weight += log_odds_(liar);
-    }
-    for (Eigen::Index i = 0; i < count; ++i) own.col(i) = out.rows.col(liars[static_cast<std::size_t>(i)]);
-    const Eigen::LLT<Eigen::MatrixXd> factor(own);
-    out.removed = factor.solve(out.rows);
-    out.heights -= out.removed.transpose() * of_both.col(0);
-    out.ones -= out.removed.transpose() * of_both.col(1);
-    for (const int liar : liars) out.heights(liar) = out.ones(liar) = 0.0;
-    out.log_weight +=
-        0.5 * of_both.col(0).dot(factor.solve(of_both.col(0))) - factor.matrixLLT().diagonal().array().log().sum();
-    return out;
-  }
+  const Eigen::VectorXd& heights() const { return heights_; }
+  const Eigen::VectorXd& ones() const { return ones_; }
+  double log_evidence() const { return log_evidence_; }
+  const Eigen::ArrayXd& log_odds() const { return log_odds_; }
+  double level() const { return level_; }
 
   /// `ones` and `heights`: 1^T A' 1 and 1^T A' y.
   Constant constant(double ones, double heights) const {
@@ -91,23 +58,6 @@ class Court {
     out.precision = 1.0 / prior + ones;
     out.mean = heights / out.precision;
     out.log_weight = 0.5 * (out.mean * heights - std::log(out.precision * prior));
-    return out;
-  }
-  Constant constant(const Rest& rest) const { return constant(rest.ones.sum(), rest.heights.sum()); }
-
-  /// Log weights of the set of `rest` with each other tap; those of its own mean nothing.
-  Eigen::VectorXd neighbours(const Rest& rest) const {
-    const double ones = rest.ones.sum();
-    const double heights = rest.heights.sum();
-    Eigen::VectorXd own = inverse_.diagonal();
-    if (rest.rows.rows() > 0) own -= rest.rows.cwiseProduct(rest.removed).colwise().sum().transpose();
-    Eigen::VectorXd out(taps());
-    for (int i = 0; i < taps(); ++i) {
-      const double h = rest.heights(i);
-      const double o = rest.ones(i);
-      out(i) = rest.log_weight + log_odds_(i) + 0.5 * (h * h / own(i) - std::log(own(i))) +
-               constant(ones - o * o / own(i), heights - o * h / own(i)).log_weight;
-    }
     return out;
   }
 
@@ -121,64 +71,203 @@ class Court {
   Eigen::ArrayXd log_odds_;    ///< of a lie against the truth, but for what the others say of its height
 };
 
-struct Sets {
-  std::map<Set, double> log_weights;
-  double most = 0.0;  ///< of them
-  double next = 0.0;  ///< see Judgement
-};
-
-Sets likeliest(const Court& court, const Effort& effort) {
-  const double hopeless = std::log(effort.hopeless);
-  const double negligible = std::log(effort.negligible);
-  Sets out;
-  std::multimap<double, Set, std::greater<>> waiting;
-  const auto add = [&](Set set, double weight) {
-    if (!out.log_weights.emplace(set, weight).second) return;
-    out.most = std::max(out.most, weight);
-    waiting.emplace(weight, std::move(set));
+/// The likeliest sets of one court, found by their neighbours. A set has one tap i more than another one, and with A'
+/// and p = A'_ii of that one its own is A' - u u^T, u = A'_:i / sqrt(p): a set's A' is A less one such column for each
+/// of its taps, which it has in common with those that it came from.
+class Sets {
+ public:
+  struct One {
+    int of = -1;   ///< the set that it has one tap more than; -1: it is empty
+    int tap = -1;  ///< that tap
+    int rest = -1;
+    double log_weight = 0.0;
   };
-  const Rest all = court.without({});
-  out.most = all.log_weight + court.constant(all).log_weight;
-  add({}, out.most);
-  for (int look = 0; !waiting.empty(); ++look) {
-    const auto first = waiting.begin();
-    if (first->first - out.most < hopeless) return out;
-    if (look == effort.looks) {
-      out.next = std::exp(first->first - out.most);
-      return out;
+
+  Sets(const Court& court, const Effort& effort)
+      : court_(court),
+        words_((static_cast<std::size_t>(court.taps()) + kBits - 1) / kBits),
+        rests_(court.taps(), Eigen::Index{kParts} * (effort.looks + 1)),
+        log_weights_(static_cast<std::size_t>(effort.looks) + 1),
+        spare_(effort.looks) {
+    find(effort);
+  }
+
+  const std::vector<One>& all() const { return all_; }
+  double most() const { return most_; }  ///< of their log weights
+  double next() const { return next_; }  ///< see Judgement
+  int looks() const { return spare_; }
+
+  /// What is left without a set: the place of its parts, until it is asked about another set that was not looked at.
+  int rest_of(const One& one) {
+    if (one.rest >= 0) return one.rest;
+    leave_out(one, spare_);
+    return spare_;
+  }
+  auto column(int rest) const { return part(rest, 0); }   ///< u of the set's own tap
+  auto heights(int rest) const { return part(rest, 1); }  ///< A' y
+  auto ones(int rest) const { return part(rest, 2); }     ///< A' 1
+
+ private:
+  static constexpr int kParts = 4;
+  static constexpr std::size_t kBits = 64;
+
+  Eigen::MatrixXd::ColXpr part(int rest, int which) { return rests_.col(Eigen::Index{kParts} * rest + which); }
+  Eigen::MatrixXd::ConstColXpr part(int rest, int which) const {
+    return rests_.col(Eigen::Index{kParts} * rest + which);
+  }
+  auto diagonal(int rest) const { return part(rest, 3); }  ///< of A'
+
+  void leave_out(const One& one, int to) {
+    double& log_weight = log_weights_[static_cast<std::size_t>(to)];
+    auto u = part(to, 0);
+    if (one.of < 0) {
+      part(to, 1) = court_.heights();
+      part(to, 2) = court_.ones();
+      part(to, 3) = court_.inverse().diagonal();
+      log_weight = court_.log_evidence();
+      return;
     }
-    const Set set = std::move(first->second);
-    waiting.erase(first);
-    const auto to_come = static_cast<std::size_t>(effort.looks - look);
-    const Eigen::VectorXd weights = court.neighbours(court.without(set));
-    for (int i = 0; i < court.taps(); ++i) {
-      const double weight = weights(i);
-      if (!(weight - out.most >= hopeless)) continue;
-      // What is not summed is of use only where its neighbours come to be looked at.
-      if (weight - out.most < negligible && waiting.size() >= to_come && weight <= std::prev(waiting.end())->first)
-        continue;
-      const auto place = std::lower_bound(set.begin(), set.end(), i);
-      if (place != set.end() && *place == i) continue;
-      Set more = set;
-      more.insert(more.begin() + (place - set.begin()), i);
-      add(std::move(more), weight);
-      if (waiting.size() > to_come) waiting.erase(std::prev(waiting.end()));
+    const int before = all_[static_cast<std::size_t>(one.of)].rest;
+    u = court_.inverse().col(one.tap);
+    for (int k = one.of; all_[static_cast<std::size_t>(k)].of >= 0; k = all_[static_cast<std::size_t>(k)].of) {
+      const auto earlier = column(all_[static_cast<std::size_t>(k)].rest);
+      u -= earlier(one.tap) * earlier;
+    }
+    for (int k = one.of; all_[static_cast<std::size_t>(k)].of >= 0; k = all_[static_cast<std::size_t>(k)].of)
+      u(all_[static_cast<std::size_t>(k)].tap) = 0.0;
+    const double root = std::sqrt(u(one.tap));
+    u /= root;
+    const double height = heights(before)(one.tap) / root;
+    part(to, 1) = heights(before) - height * u;
+    part(to, 2) = ones(before) - ones(before)(one.tap) / root * u;
+    part(to, 3) = diagonal(before) - u.cwiseAbs2();
+    part(to, 1)(one.tap) = part(to, 2)(one.tap) = 0.0;
+    log_weight = log_weights_[static_cast<std::size_t>(before)] + court_.log_odds()(one.tap) + 0.5 * height * height -
+                 std::log(root);
+  }
+
+  /// Log weights of the set with each other tap; those of its own mean nothing.
+  void weigh_neighbours(int rest, Eigen::ArrayXd& out) const {
+    const auto h = heights(rest).array();
+    const auto o = ones(rest).array();
+    const auto own = diagonal(rest).array();
+    out = court_.log_odds() + log_weights_[static_cast<std::size_t>(rest)];
+    if (!(court_.level() > 0.0)) {
+      out += 0.5 * (h.square() / own - own.log());
+      return;
+    }
+    const double prior = court_.level() * court_.level();
+    const double all_heights = h.sum();
+    const double without_any = 1.0 / prior + o.sum();
+    // With q = precision of the constant times `own`, one logarithm does.
+    out += 0.5 * ((h.square() + (all_heights * own - o * h).square() / (without_any * own - o.square())) / own -
+                  ((without_any * own - o.square()) * prior).log());
+  }
+
+  void add(const One& one, const std::uint64_t* bits) {
+    all_.push_back(one);
+    bits_.insert(bits_.end(), bits, bits + words_);
+    most_ = std::max(most_, one.log_weight);
+    const auto later = [&](double weight, int other) { return weight > weight_of(other); };
+    waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), one.log_weight, later),
+                    static_cast<int>(all_.size()) - 1);
+  }
+
+  bool known(const std::uint64_t* bits) const {
+    for (std::size_t first = 0; first < bits_.size(); first += words_) {
+      if (bits_[first] == bits[0] && std::equal(bits, bits + words_, &bits_[first])) return true;
+    }
+    return false;
+  }
+
+  double weight_of(int set) const { return all_[static_cast<std::size_t>(set)].log_weight; }
+
+  void find(const Effort& effort) {
+    const double hopeless = std::log(effort.hopeless);
+    const double negligible = std::log(effort.negligible);
+    std::vector<std::uint64_t> bits(words_, 0);
+    most_ = court_.log_evidence() + court_.constant(court_.ones().sum(), court_.heights().sum()).log_weight;
+    add({-1, -1, -1, most_}, bits.data());
+    Eigen::ArrayXd weights(court_.taps());
+    for (int look = 0; !waiting_.empty(); ++look) {
+      const int first = waiting_.front();
+      if (weight_of(first) - most_ < hopeless) return;
+      if (look == effort.looks) {
+        next_ = std::exp(weight_of(first) - most_);
+        return;
+      }
+      waiting_.erase(waiting_.begin());
+      const auto to_come = static_cast<std::size_t>(effort.looks - look);
+      leave_out(all_[static_cast<std::size_t>(first)], look);
+      all_[static_cast<std::size_t>(first)].rest = look;
+      weigh_neighbours(look, weights);
+      for (int i = 0; i < court_.taps(); ++i) {
+        const double weight = weights(i);
+        if (!(weight - most_ >= hopeless)) continue;
+        // What is not summed is of use only where its neighbours come to be looked at.
+        if (weight - most_ < negligible && waiting_.size() >= to_come && weight <= weight_of(waiting_.back())) continue;
+        std::copy_n(&bits_[static_cast<std::size_t>(first) * words_], words_, bits.begin());
+        const std::uint64_t bit = std::uint64_t{1} << static_cast<std::size_t>(i) % kBits;
+        std::uint64_t& word = bits[static_cast<std::size_t>(i) / kBits];
+        if ((word & bit) != 0) continue;
+        word |= bit;
+        if (known(bits.data())) continue;
+        add({first, i, -1, weight}, bits.data());
+        if (waiting_.size() > to_come) waiting_.pop_back();
+      }
     }
   }
-  return out;
-}
+
+  const Court& court_;
+  std::size_t words_;  ///< of a set: a bit a tap
+  std::vector<One> all_;
+  std::vector<std::uint64_t> bits_;
+  std::vector<int> waiting_;         ///< the likeliest first
+  Eigen::MatrixXd rests_;            ///< parts of what is left without each set that was looked at
+  std::vector<double> log_weights_;  ///< of these, but for what the constant adds
+  int spare_;
+  double most_ = 0.0;
+  double next_ = 0.0;
+};
+
+/// Sums of w v v^T over many v, which are kept until they are summed up together.
+class Squares {
+ public:
+  explicit Squares(Eigen::Index size) : sum_(Eigen::MatrixXd::Zero(size, size)), kept_(size, kTogether) {}
+
+  auto next() { return kept_.col(count_); }
+  /// Takes what next() was made.
+  void take() {
+    if (++count_ == kTogether) settle();
+  }
+  /// The lower half.
+  Eigen::MatrixXd& sum() {
+    settle();
+    return sum_;
+  }
+
+ private:
+  static constexpr Eigen::Index kTogether = 64;
+  void settle() {
+    if (count_ > 0) sum_.selfadjointView<Eigen::Lower>().rankUpdate(kept_.leftCols(count_));
+    count_ = 0;
+  }
+  Eigen::MatrixXd sum_, kept_;
+  Eigen::Index count_ = 0;
+};
 
 }  // namespace
 
 Judgement judge(const Testimony& testimony, const Effort& effort) {
   std::vector<Court> courts;
+  courts.reserve(testimony.signals.size() * testimony.noises.size());
   std::vector<Sets> sets;
+  sets.reserve(courts.capacity());
   double most = -std::numeric_limits<double>::infinity();
   for (const double signal : testimony.signals) {
     for (const double noise : testimony.noises) {
-      courts.emplace_back(testimony, signal, noise);
-      sets.push_back(likeliest(courts.back(), effort));
-      most = std::max(most, sets.back().most);
+      sets.emplace_back(courts.emplace_back(testimony, signal, noise), effort);
+      most = std::max(most, sets.back().most());
     }
   }
   const Eigen::Index n = testimony.heights.size();
@@ -188,37 +277,60 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
   out.b = Eigen::MatrixXd::Zero(1 + 2 * n, 1 + 2 * n);
   const double broad = testimony.broad_signal * testimony.broad_signal;
   double sum = 0.0;
-  Eigen::VectorXd one(n + 1);
-  for (std::size_t i = 0; i < courts.size(); ++i) {
-    const Court& court = courts[i];
+  std::vector<double> with(static_cast<std::size_t>(effort.looks));
+  for (std::size_t first = 0; first < courts.size(); first += testimony.noises.size()) {
     // Over (1, c), c the covariances of this signal with the broad one.
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(n + 1);
-    Eigen::MatrixXd form = Eigen::MatrixXd::Zero(n + 1, n + 1);
-    double all = 0.0;
-    for (const auto& [set, log_weight] : sets[i].log_weights) {
-      const double weight = std::exp(log_weight - most);
-      if (weight < effort.negligible) continue;
-      const Rest rest = court.without(set);
-      const Constant constant = court.constant(rest);
-      all += weight;
-      ++out.sets;
-      for (const int liar : set) out.doubt(liar) += weight;
-      one << constant.mean, rest.heights - constant.mean * rest.ones;
-      mean += weight * one;
-      form += weight * one * one.transpose();
-      if (!set.empty()) form.bottomRightCorner(n, n) += weight * rest.rows.transpose() * rest.removed;
-      if (constant.precision > 0.0) {
-        one << 1.0, -rest.ones;
-        form += weight / constant.precision * one * one.transpose();
+    Squares squares(n + 1);
+    double of_signal = 0.0;
+    for (std::size_t i = first; i < first + testimony.noises.size(); ++i) {
+      const Court& court = courts[i];
+      double all = 0.0;
+      std::fill(with.begin(), with.end(), 0.0);  // weight of the sets that have a column
+      for (const Sets::One& set : sets[i].all()) {
+        const double weight = std::exp(set.log_weight - most);
+        if (weight < effort.negligible) continue;
+        const int rest = sets[i].rest_of(set);
+        const auto ones = sets[i].ones(rest);
+        const auto heights = sets[i].heights(rest);
+        const Constant constant = court.constant(ones.sum(), heights.sum());
+        all += weight;
+        ++out.sets;
+        auto one = squares.next();
+        one << constant.mean, heights - constant.mean * ones;
+        mean += weight * one;
+        one *= std::sqrt(weight);
+        squares.take();
+        if (constant.precision > 0.0) {
+          squares.next() << 1.0, -ones;
+          squares.next() *= std::sqrt(weight / constant.precision);
+          squares.take();
+        }
+        if (set.rest < 0) {
+          squares.next() << 0.0, std::sqrt(weight) * sets[i].column(rest);
+          squares.take();
+        }
+        for (const Sets::One* its = &set; its->of >= 0; its = &sets[i].all()[static_cast<std::size_t>(its->of)]) {
+          out.doubt(its->tap) += weight;
+          if (its->rest >= 0) with[static_cast<std::size_t>(its->rest)] += weight;
+        }
       }
+      out.next = std::max(out.next, sets[i].next() * std::exp(sets[i].most() - most));
+      for (int rest = 0; rest < sets[i].looks(); ++rest) {
+        const double weight = with[static_cast<std::size_t>(rest)];
+        if (!(weight > 0.0)) continue;
+        squares.next() << 0.0, std::sqrt(weight) * sets[i].column(rest);
+        squares.take();
+      }
+      of_signal += all;
+      if (all > 0.0) squares.sum().bottomRightCorner(n, n).triangularView<Eigen::Lower>() -= all * court.inverse();
     }
-    out.next = std::max(out.next, sets[i].next * std::exp(sets[i].most - most));
-    if (!(all > 0.0)) continue;
-    form.bottomRightCorner(n, n) -= all * court.inverse();
-    const double signal = court.signal() * court.signal();
+    if (!(of_signal > 0.0)) continue;
+    const Eigen::MatrixXd form = squares.sum().selfadjointView<Eigen::Lower>();
+    const double signal = courts[first].signal() * courts[first].signal();
     const double shares[] = {signal, broad};
-    out.s2 += all * (signal + broad);
-    sum += all;
+    out.s2 += of_signal * (signal + broad);
+    sum += of_signal;
     out.a(0) += mean(0);
     out.b(0, 0) += form(0, 0);
     for (int k = 0; k < 2; ++k) {
@@ -234,7 +346,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
   out.a /= sum;
   out.b /= sum;
   out.s2 /= sum;
-  out.b -= out.a * out.a.transpose();
+  out.b.noalias() -= out.a * out.a.transpose();
   return out;
 }
 
