@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 namespace palpate::acquisitions {
@@ -25,7 +26,7 @@ namespace {
 using Words = Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// How many outlines hold each place.
-std::vector<int> count(const Words& holds) {
+PALPATE_COUNTS_BITS std::vector<int> count(const Words& holds) {
   std::vector<int> out(static_cast<std::size_t>(holds.cols()), 0);
   for (Eigen::Index i = 0; i < holds.cols(); ++i) {
     for (Eigen::Index word = 0; word < holds.rows(); ++word)
@@ -56,18 +57,19 @@ struct Others {
   std::vector<double> held_by;      ///< outlines
 };
 
-/// The sum of the squares of the covariances of one place with others, times the number of outlines.
-PALPATE_COUNTS_BITS double squares(const std::uint64_t* here, int held, int outlines, const Others& others) {
+/// See squares(). Of so many words: a number that the compiler knows is a loop less.
+template <class Count>
+__attribute__((always_inline)) inline double squares_of(const std::uint64_t* here, double share, const Others& others,
+                                                        Count words) {
   using Bits = std::uint64_t __attribute__((vector_size(8 * Others::kAtOnce)));
   using Reals = double __attribute__((vector_size(8 * Others::kAtOnce)));
   constexpr int kWords = 16;  // of so many the bits of a byte are counted within a byte
-  const double share = static_cast<double>(held) / outlines;
   Reals sum{};
   for (int from = 0; from < others.length; from += Others::kAtOnce) {
     Bits both{};
-    for (int first = 0; first < others.words; first += kWords) {
+    for (int first = 0; first < words; first += kWords) {
       Bits bytes{};
-      for (int word = first; word < std::min(first + kWords, others.words); ++word) {
+      for (int word = first; word < std::min<int>(first + kWords, words); ++word) {
         Bits bits;
         std::memcpy(&bits, others.bits.data() + static_cast<std::ptrdiff_t>(word) * others.length + from, sizeof(bits));
         bits &= here[word];
@@ -89,6 +91,14 @@ PALPATE_COUNTS_BITS double squares(const std::uint64_t* here, int held, int outl
     sum += covariance * covariance;
   }
   return sum[0] + sum[1] + (sum[2] + sum[3]);
+}
+
+/// The sum of the squares of the covariances of one place with others, times the number of outlines.
+PALPATE_COUNTS_BITS double squares(const std::uint64_t* here, int held, int outlines, const Others& others) {
+  const double share = static_cast<double>(held) / outlines;
+  constexpr int kUsual = 4;  // words
+  if (others.words == kUsual) return squares_of(here, share, others, std::integral_constant<int, kUsual>());
+  return squares_of(here, share, others, others.words);
 }
 
 /// At most so many, evenly among all.

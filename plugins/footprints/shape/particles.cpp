@@ -340,8 +340,8 @@ void Particles::probability(const PointsView& places, VectorOut out) {
   Eigen::VectorXd rates(places.rows());
   unseen_.rates(places, rates);
   if (std::optional<LatticeCounts> counts = LatticeCounts::over(places)) {
-    for (const Particle& particle : particles_) counts->add(particle.outline);
-    counts->sum(out);
+    for (const Particle& particle : particles_) counts->count(particle.outline);
+    counts->counted(out);
   } else {
     out.setZero();
     for (const Particle& particle : particles_) {
@@ -354,36 +354,39 @@ void Particles::probability(const PointsView& places, VectorOut out) {
 
 void Particles::sample(const PointsView& places, int count, OutlineSample& out) const {
   out.count = count;
-  out.holds.setZero(count / 64, places.rows());
+  out.holds.resize(count / 64, places.rows());
   std::optional<LatticeCounts> lattice = LatticeCounts::over(places);
+  if (!lattice) out.holds.setZero();
+  std::vector<std::uint64_t> edges;
   Random random(touches_.size(), "sample");
   const std::vector<const Outline*> outlines = some(count);
   const std::vector<Outline> unseen = unseen_.draw(count, random);
-  for (std::size_t k = 0; k < outlines.size(); ++k) {
-    Outline outline = *outlines[k];
-    for (const Piece& piece : unseen[k]) {
-      const auto meets = [&](const Piece& known) { return meet(known.form, piece.form); };
-      if (outline.size() < Outline::kMost && std::any_of(outlines[k]->begin(), outlines[k]->end(), meets))
-        outline.add(piece);
+  for (Eigen::Index word = 0; word < out.holds.rows(); ++word) {
+    // Where in a row of places each outline begins and ends.
+    if (lattice) edges.assign(static_cast<std::size_t>((lattice->columns() + 1) * lattice->rows()), 0);
+    for (std::size_t k = 0; k < 64; ++k) {
+      const std::size_t number = static_cast<std::size_t>(word) * 64 + k;
+      const Outline& known = *outlines[number];
+      Outline outline = known;
+      for (const Piece& piece : unseen[number]) {
+        const auto meets = [&](const Piece& one) { return meet(one.form, piece.form); };
+        if (outline.size() < Outline::kMost && std::any_of(known.begin(), known.end(), meets)) outline.add(piece);
+      }
+      const std::uint64_t bit = std::uint64_t{1} << k;
+      if (lattice) {
+        lattice->for_each_edge(outline, [&](int at) { edges[static_cast<std::size_t>(at)] ^= bit; });
+        continue;
+      }
+      for (Eigen::Index i = 0; i < places.rows(); ++i) {
+        if (outline.contains(places(i, 0), places(i, 1))) out.holds(word, i) |= bit;
+      }
     }
-    const auto word = static_cast<Eigen::Index>(k / 64);
-    const std::uint64_t bit = std::uint64_t{1} << (k % 64);
-    if (lattice) {
-      // Where a row of places begins and ends; what lies between is filled in below.
-      lattice->for_each_run(outline, [&](int row, const Cells& cells) {
-        const int first = row * lattice->columns();
-        out.holds(word, first + cells.begin) ^= bit;
-        if (cells.end < lattice->columns()) out.holds(word, first + cells.end) ^= bit;
-      });
-      continue;
+    Eigen::Index place = 0;
+    const std::uint64_t* edge = edges.data();
+    for (int row = 0; lattice && row < lattice->rows(); ++row, ++edge) {
+      std::uint64_t held = 0;
+      for (int column = 0; column < lattice->columns(); ++column) out.holds(word, place++) = held ^= *edge++;
     }
-    for (Eigen::Index i = 0; i < places.rows(); ++i) {
-      if (outline.contains(places(i, 0), places(i, 1))) out.holds(word, i) |= bit;
-    }
-  }
-  for (Eigen::Index i = 1; lattice && i < places.rows(); ++i) {
-    if (i % lattice->columns() == 0) continue;
-    for (Eigen::Index word = 0; word < out.holds.rows(); ++word) out.holds(word, i) ^= out.holds(word, i - 1);
   }
   out.to_find.resize(places.rows());
   unseen_.to_find(places, out.to_find);

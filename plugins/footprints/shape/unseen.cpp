@@ -30,11 +30,13 @@ Unseen::Unseen(const OutlinePrior& prior, Random& random)
   }
 }
 
-const Piece& Unseen::Holding::draw(Random& random) const {
-  const auto at = static_cast<std::uint64_t>(static_cast<double>(reached_.back()) * random.uniform());
-  const auto one = std::upper_bound(reached_.begin(), reached_.end(), at) - reached_.begin();
-  return *pieces_[std::min(static_cast<std::size_t>(one), pieces_.size() - 1)];
+std::size_t Unseen::Holding::draw(const std::vector<std::uint64_t>& reached, Random& random) {
+  const auto at = static_cast<std::uint64_t>(static_cast<double>(reached.back()) * random.uniform());
+  const auto one = std::upper_bound(reached.begin(), reached.end(), at) - reached.begin();
+  return std::min(static_cast<std::size_t>(one), reached.size() - 1);
 }
+
+const Piece& Unseen::Holding::draw(Random& random) const { return *pieces_[draw(reached_, random)]; }
 
 Unseen::Holding Unseen::holding(const Target& place) const {
   Holding out;
@@ -167,20 +169,16 @@ void Unseen::to_find(const PointsView& places, VectorOut out) const {
 }
 
 std::vector<Outline> Unseen::draw(int count, Random& random) const {
-  Holding all;
+  std::vector<std::uint64_t> reached(pieces_.size());
   std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (weights_[i] == 0) continue;
-    all.pieces_.push_back(&pieces_[i]);
-    all.reached_.push_back(sum += weights_[i]);
-  }
+  for (std::size_t i = 0; i < pieces_.size(); ++i) reached[i] = sum += weights_[i];
   std::vector<Outline> out(static_cast<std::size_t>(count));
   for (Outline& outline : out) {
     // Poisson: as many as fit into the unit of time.
     const auto pause = [&] { return -std::log(1.0 - random.uniform()); };
     const double time = unit_ * static_cast<double>(sum);
     for (double at = pause(); at < time && outline.size() < Outline::kMost; at += pause())
-      outline.add(all.draw(random));
+      outline.add(pieces_[Holding::draw(reached, random)]);
   }
   return out;
 }

@@ -35,6 +35,7 @@ class Unseen {
 
    private:
     friend class Unseen;
+    static std::size_t draw(const std::vector<std::uint64_t>& reached, Random& random);
     std::vector<const Piece*> pieces_;
     std::vector<std::uint64_t> reached_;  ///< sums of the weights up to each
     double rate_ = 0.0;
