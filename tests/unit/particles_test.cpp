@@ -52,7 +52,7 @@ TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTh
   touches.insert(touches.begin() + 2, test::touch_at(0.115, 0.115, true));
   for (const Touch& touch : touches) {
     belief.add(touch);
-    for (const auto& [columns, rows] : {std::pair{31, 31}, {31, 7}, {1, 40}, {40, 1}, {1, 1}}) {
+    for (const auto& [columns, rows] : {std::pair{31, 31}, {31, 7}, {64, 5}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
       const Points places = test::lattice(columns, rows);
       Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
       belief.probability(places, inside);
@@ -78,7 +78,7 @@ TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
   const std::vector<Touch> touches{test::touch_at(0.08, 0.08, true), test::touch_at(0.03, 0.10, false),
                                    test::touch_at(0.09, 0.14, false), test::touch_at(0.12, 0.05, false)};
   for (const Touch& touch : touches) belief.add(touch);
-  for (const Points& where : {test::lattice(23, 23), test::scattered(200)}) {
+  for (const Points& where : {test::lattice(23, 23), test::lattice(130, 4), test::scattered(200)}) {
     OutlineSample sample;
     belief.sample(where, kSample, sample);
     ASSERT_EQ(sample.count, kSample);

@@ -23,12 +23,22 @@ double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * std::erfc
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 
+// Without SSE4.1 std::ceil and std::floor are calls.
+int rounded_up(double t) {
+  const int whole = static_cast<int>(t);
+  return whole + (whole < t ? 1 : 0);
+}
+int rounded_down(double t) {
+  const int whole = static_cast<int>(t);
+  return whole - (whole > t ? 1 : 0);
+}
+
 /// The first and the last of `count` places, `step` apart from `start` on, in [low, high]; the last is before the first
 /// where there is none.
 struct Span {
   Span(double low, double high, double start, double step, int count)
-      : first(std::max(0, static_cast<int>(std::ceil((low - start) / step)))),
-        last(std::min(count - 1, static_cast<int>(std::floor((high - start) / step)))) {}
+      : first(std::max(0, rounded_up((low - start) / step))),
+        last(std::min(count - 1, rounded_down((high - start) / step))) {}
   int first, last;
 };
 

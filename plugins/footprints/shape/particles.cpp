@@ -361,13 +361,14 @@ void Particles::sample(const PointsView& places, int count, OutlineSample& out) 
   Random random(touches_.size(), "sample");
   const std::vector<const Outline*> outlines = some(count);
   const std::vector<Outline> unseen = unseen_.draw(count, random);
+  Outline outline;
   for (Eigen::Index word = 0; word < out.holds.rows(); ++word) {
     // Where in a row of places each outline begins and ends.
     if (lattice) edges.assign(static_cast<std::size_t>((lattice->columns() + 1) * lattice->rows()), 0);
     for (std::size_t k = 0; k < 64; ++k) {
       const std::size_t number = static_cast<std::size_t>(word) * 64 + k;
       const Outline& known = *outlines[number];
-      Outline outline = known;
+      outline = known;
       for (const Piece& piece : unseen[number]) {
         const auto meets = [&](const Piece& one) { return meet(one.form, piece.form); };
         if (outline.size() < Outline::kMost && std::any_of(known.begin(), known.end(), meets)) outline.add(piece);
