@@ -93,7 +93,7 @@ class LatticeCounts {
     const Eigen::ArrayXd xs =
         Eigen::ArrayXd::NullaryExpr(columns, [&](Eigen::Index i) { return x.at(static_cast<int>(i)); });
     for (int row = 0; row < y.count; ++row) {
-      const auto here = places.middleRows(row * columns, columns).array();
+      const auto here = places.middleRows(Eigen::Index{row} * columns, columns).array();
       if (!((here.col(0) - xs).abs().maxCoeff() <= kLeast * x.step) ||
           !((here.col(1) - y.at(row)).abs().maxCoeff() <= kLeast * y.step))
         return std::nullopt;
@@ -135,6 +135,9 @@ class LatticeCounts {
       if (before != 0) visit(first + words_ * 64);
     }
   }
+
+  /// So many are the places where an edge may be.
+  std::size_t edges() const { return static_cast<std::size_t>(marks_.size()); }
 
   /// One outline more is counted.
   void count(const Outline& outline) {

@@ -364,7 +364,7 @@ void Particles::sample(const PointsView& places, int count, OutlineSample& out) 
   Outline outline;
   for (Eigen::Index word = 0; word < out.holds.rows(); ++word) {
     // Where in a row of places each outline begins and ends.
-    if (lattice) edges.assign(static_cast<std::size_t>((lattice->columns() + 1) * lattice->rows()), 0);
+    if (lattice) edges.assign(lattice->edges(), 0);
     for (std::size_t k = 0; k < 64; ++k) {
       const std::size_t number = static_cast<std::size_t>(word) * 64 + k;
       const Outline& known = *outlines[number];
