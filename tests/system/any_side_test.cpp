@@ -13,6 +13,8 @@ namespace {
 
 class AnySide : public Shell {
  protected:
+  /// The meshes of the scenes are in the folder that they name.
+  void SetUp() override { fs::create_directory_symlink(test::source_folder() / "configs", here() / "configs"); }
   static std::string config() { return (test::source_folder() / "configs/any_side.yaml").string(); }
   fs::path touched(const Words& more) const {
     return ran(Words{"scene=any_bowl", "space.approaches=200", "space.moves=100"} + more, config());
@@ -21,7 +23,7 @@ class AnySide : public Shell {
 
 TEST_F(AnySide, ARunTellsOfEachTapWhereItBeganInWhichDirectionAndHowFarItWent) {
   const fs::path run = touched("taps=12");
-  const std::vector<Row> rows = rows_of(run);
+  const std::vector<Row> rows = rows_of(run, "taps.jsonl");
   ASSERT_EQ(rows.size(), 12U);
   int on = 0;
   for (const Row& row : rows) {
@@ -61,7 +63,7 @@ TEST_F(AnySide, ARunIsPlayedAgainToTheLastBit) {
 TEST_F(AnySide, EachRuleTakesApproachesOfItsOwnAfterTheSameFirstOnes) {
   std::vector<std::vector<Row>> runs;
   for (const char* rule : {"random", "uncertainty", "contrast"})
-    runs.push_back(rows_of(touched({std::string("acquisition=") + rule, "taps=6"})));
+    runs.push_back(rows_of(touched({std::string("acquisition=") + rule, "taps=6"}), "taps.jsonl"));
   for (std::size_t i = 0; i < 6; ++i) {
     const auto start = [&](std::size_t run) { return runs[run][i].number("x").value(); };
     EXPECT_EQ(start(0) == start(1), i < 3) << i;

@@ -52,9 +52,9 @@ TEST_F(Expect, WhatIsFulfilledIsCountedAndEndsWith0) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
   EXPECT_THAT(ended.out, EndsWith("expected: 3 of 3\n"));
-  const Ended json = run_gate("--json");
-  EXPECT_EQ(json.status, 0);
-  EXPECT_EQ(json.out, text_of(directory() / "summary.json")) << "the summary and nothing else";
+  const Ended as_json = run_gate("--json");
+  EXPECT_EQ(as_json.status, 0);
+  EXPECT_EQ(as_json.out, text_of(directory() / "summary.json")) << "the summary and nothing else";
   const Ended quiet = run_gate();
   EXPECT_EQ(quiet.status, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");

@@ -123,8 +123,8 @@ TEST(Piece, IsPassedByALineThatIsMovedAsFarAsideAsItSays) {
     for (int k = 0; k < 360; ++k) {
       const double angle = 3.14159265358979323846 * k / 180;
       const Vector3d across = std::cos(angle) * one + std::sin(angle) * other;
-      clear = clear || piece.first_hit({line.origin + (aside + 1e-3) * across, line.direction}) == kNoHit;
-      EXPECT_LT(piece.first_hit({line.origin + 0.7 * aside * across, line.direction}), kNoHit);
+      clear = clear || piece.first_hit({line.origin + (1.01 * aside + 5e-4) * across, line.direction}) == kNoHit;
+      EXPECT_LT(piece.first_hit({line.origin + 0.95 * aside * across, line.direction}), kNoHit);
     }
     EXPECT_TRUE(clear);
   }

@@ -172,13 +172,23 @@ double Piece::aside(const Line& line) const {
     }
     return least;
   }
+  // The direction in which it is least, from twelve and then between them.
   constexpr int kDirections = 12;
   const Vector3d one = along.unitOrthogonal();
   const Vector3d other = along.cross(one);
-  for (int k = 0; k < kDirections; ++k) {
-    const double angle = 2.0 * kHalfTurn * k / kDirections;
+  double best = 0.0;
+  const auto attempt = [&](double angle) {
     const Vector3d across = std::cos(angle) * one + std::sin(angle) * other;
-    least = std::min(least, reach(across) - across.dot(from));
+    const double room = reach(across) - across.dot(from);
+    if (!(room < least)) return;
+    least = room;
+    best = angle;
+  };
+  for (int k = 0; k < kDirections; ++k) attempt(2.0 * kHalfTurn * k / kDirections);
+  for (double step = kHalfTurn / kDirections; step > 0.01; step /= 2.0) {
+    const double middle = best;
+    attempt(middle - step);
+    attempt(middle + step);
   }
   return least;
 }

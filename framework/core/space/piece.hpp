@@ -46,7 +46,7 @@ struct Piece {
   double first_hit(const Line& line) const;
 
   /// By how much a line that passes through would have to be moved aside to pass by, metres, whatever is hollow: 0 or
-  /// less where it does pass by. From a few directions: an upper bound, except for boxes.
+  /// less where it does pass by. An upper bound, of boxes exact, of others nearly.
   double aside(const Line& line) const;
 
   /// About how far a point is outside (or, negative, inside), metres: exact at the surface, of one sign on either side
