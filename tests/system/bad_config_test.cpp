@@ -72,7 +72,8 @@ std::vector<Case> cases() {
       line("TypoInANestedKey", "initial: {desing: grid}", "10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
            "10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, weight, "
-           "prior, surface, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, tie_tolerance, "
+           "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
+           "tie_tolerance, "
            "accuracy, threads, instruction_set, stop, scene, backend, log, format, defaults, strategy, sweep, expect"),
       line("DottedKeyInAFile", "weight.clip: yes", "10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",

@@ -95,7 +95,8 @@ TEST_F(Completion, OfAPluginsOptionsIsThatOfThePluginThatIsChosen) {
 }
 
 TEST_F(Completion, OfValuesHasChoicesFlagsAndTheItemsOfLists) {
-  EXPECT_THAT(keys("surface="), UnorderedElementsAre(Key("surface=single"), Key("surface=two_part")));
+  EXPECT_THAT(keys("surface="),
+              UnorderedElementsAre(Key("surface=single"), Key("surface=two_part"), Key("surface=implicit")));
   EXPECT_THAT(keys("log.maps="), UnorderedElementsAre(Key("log.maps=true"), Key("log.maps=false")));
   EXPECT_THAT(keys("scene.objects."), UnorderedElementsAre(Key("scene.objects.0.")));
   EXPECT_THAT(keys("scene.objects.0.amp"), UnorderedElementsAre(Key("scene.objects.0.amplitude=")));

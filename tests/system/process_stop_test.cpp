@@ -143,7 +143,7 @@ except BrokenPipeError:
     pass
 time.sleep(60)  # and does not care that its run is gone
 )",
-                             "taps=100000 backend.start=2s acquisition=random");
+                             "taps=100000 candidates.count=300 backend.start=2s acquisition=random");
   const auto child = begin(words);
   ASSERT_TRUE(eventually([&] { return lines(notes()) == 2; })) << child->err();
   ASSERT_TRUE(eventually([&] { return lines(text_of(directory() / "taps.jsonl")) > 4; }));

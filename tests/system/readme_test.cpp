@@ -138,7 +138,8 @@ INSTANTIATE_TEST_SUITE_P(Every, Document,
                                            Page{"framework/docs/results.md", 1}, Page{"framework/docs/sweeps.md", 0},
                                            Page{"framework/docs/comparing.md", 3}, Page{"framework/docs/scenes.md", 1},
                                            Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
-                                           Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 0}),
+                                           Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 0},
+                                           Page{"framework/docs/any_side.md", 0}),
                          [](const auto& one) { return fs::path(one.param.name).stem().string(); });
 
 TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
@@ -152,7 +153,7 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
     EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
   }
   // The examples of python.md run in tests/python.
-  EXPECT_EQ(pages, 10) << "a new page needs its test above";
+  EXPECT_EQ(pages, 11) << "a new page needs its test above";
 }
 
 TEST(Documents, LinkToFilesThatAreThere) {
