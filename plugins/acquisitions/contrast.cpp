@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From any side, tap where what is believed falls apart: of each pair of compositions how far their surfaces are apart
-// times the probability that the tap tells which of them is wrong; and a share of how uncertain the surface is there.
+// times the probability that the tap tells which of them is wrong; and, along normals, how far from all touches that
+// is.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -10,12 +11,14 @@ namespace palpate::acquisitions {
 
 struct ContrastOptions : Options {
   double sharpness = 0.004;
-  double skin = 0.1;
+  double skin = 1.0;
   void list(Fields& fields) override {
     fields.real(
         sharpness,
         Field("sharpness", "difference of two meetings that a tap tells apart in most cases").in(Unit::metre).above(0));
-    fields.real(skin, Field("skin", "weight of the standard deviation of the surface where it is met").at_least(0));
+    fields.real(skin, Field("skin", "what the most uncertain place is worth, where it is poked along its normal")
+                          .in(Unit::metre)
+                          .at_least(0));
   }
 };
 
@@ -37,7 +40,10 @@ class Contrast final : public Acquisition {
     const Eigen::Index count = meetings.cols();
     const double pairs = 0.5 * static_cast<double>(count * (count - 1));
     const double scale = 0.5 / (options_.sharpness * options_.sharpness);
-    out = options_.skin * belief.deviation().cwiseProduct(belief.squareness());
+    const double most = belief.deviation().maxCoeff();
+    constexpr double kAlong = 0.999;
+    const double weight = most > 0.0 ? options_.skin / most : 0.0;
+    out = (belief.squareness().array() > kAlong).select(weight * belief.deviation().array(), 0.0);
     for (Eigen::Index k = 0; k < count; ++k) {
       for (Eigen::Index j = 0; j < k; ++j) {
         const double worth = differences(k, j) / pairs;

@@ -58,14 +58,16 @@ TEST(Piece, IsWithinALineExactlyWhereItHoldsThePointsOfTheLine) {
   for (int i = 0; i < 300; ++i) {
     const Piece piece = random_piece(random);
     const Line line = through(piece, random);
-    const auto spans = piece.inside(line);
-    met += spans[0].empty() ? 0 : 1;
-    EXPECT_EQ(piece.first_hit(line), spans[0].empty() ? kNoHit : spans[0].begin);
+    const auto chords = piece.inside(line);
+    met += chords[0].empty() ? 0 : 1;
+    EXPECT_EQ(piece.first_hit(line), chords[0].empty() ? kNoHit : chords[0].begin);
     for (int k = 0; k < 400; ++k) {
       const double x = 0.8 * (k + random.uniform()) / 400;
-      const auto margin = [&](const Span& span) { return std::min(std::abs(x - span.begin), std::abs(x - span.end)); };
-      if (std::min(margin(spans[0]), margin(spans[1])) < 1e-9) continue;
-      const bool inside = (x > spans[0].begin && x < spans[0].end) || (x > spans[1].begin && x < spans[1].end);
+      const auto margin = [&](const Chord& chord) {
+        return std::min(std::abs(x - chord.begin), std::abs(x - chord.end));
+      };
+      if (std::min(margin(chords[0]), margin(chords[1])) < 1e-9) continue;
+      const bool inside = (x > chords[0].begin && x < chords[0].end) || (x > chords[1].begin && x < chords[1].end);
       ASSERT_EQ(inside, holds(piece, line.origin + x * line.direction)) << i << " at " << x;
     }
   }
@@ -96,15 +98,15 @@ TEST(Piece, SaysWhatAngleALineMeetsItAt) {
   for (int i = 0; i < 300; ++i) {
     const Piece piece = random_piece(random);
     const Line line = through(piece, random);
-    const Span span = piece.inside(line)[0];
-    if (span.empty()) continue;
-    const Vector3d at = line.origin + span.begin * line.direction;
+    const Chord chord = piece.inside(line)[0];
+    if (chord.empty()) continue;
+    const Vector3d at = line.origin + chord.begin * line.direction;
     Vector3d slope;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Vector3d step = 1e-7 * Vector3d::Unit(k);
       slope(k) = piece.distance(at + step) - piece.distance(at - step);
     }
-    EXPECT_NEAR(span.begin_cosine, std::abs(slope.normalized().dot(line.direction)), 1e-4);
+    EXPECT_NEAR(chord.begin_cosine, std::abs(slope.normalized().dot(line.direction)), 1e-4);
   }
 }
 

@@ -73,7 +73,7 @@ struct LowrankOptions : Options {
 struct SpaceOptions : Options {
   std::int64_t approaches = 2000;
   std::int64_t compositions = 24;
-  std::int64_t moves = 300;
+  std::int64_t moves = 1000;
   double misfit = 0.002;  ///< metres
   void list(Fields& fields) override;
 };

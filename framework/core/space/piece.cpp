@@ -11,39 +11,39 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Keeps of `span` what lies between two of its distances.
-void keep(double begin, double begin_cosine, double end, double end_cosine, Span& span) {
-  if (begin > span.begin) span.begin = begin, span.begin_cosine = begin_cosine;
-  if (end < span.end) span.end = end, span.end_cosine = end_cosine;
+/// Keeps of `chord` what lies between two of its distances.
+void keep(double begin, double begin_cosine, double end, double end_cosine, Chord& chord) {
+  if (begin > chord.begin) chord.begin = begin, chord.begin_cosine = begin_cosine;
+  if (end < chord.end) chord.end = end, chord.end_cosine = end_cosine;
 }
 
-/// Clips `span` to low <= origin + slope x <= high.
-void clip(double origin, double slope, double low, double high, Span& span) {
+/// Clips `chord` to low <= origin + slope x <= high.
+void clip(double origin, double slope, double low, double high, Chord& chord) {
   if (slope == 0.0) {
-    if (origin < low || origin > high) span = {};
+    if (origin < low || origin > high) chord = {};
     return;
   }
   const double one = (low - origin) / slope;
   const double other = (high - origin) / slope;
-  keep(std::min(one, other), std::abs(slope), std::max(one, other), std::abs(slope), span);
+  keep(std::min(one, other), std::abs(slope), std::max(one, other), std::abs(slope), chord);
 }
 
-/// Clips `span` to where the weighted norm of from + x along is at most 1; `along` has the length of its part of a
+/// Clips `chord` to where the weighted norm of from + x along is at most 1; `along` has the length of its part of a
 /// direction of unit length.
 template <class Vector>
-void clip_round(const Vector& from, const Vector& along, const Vector& half, Span& span) {
+void clip_round(const Vector& from, const Vector& along, const Vector& half, Chord& chord) {
   const Vector p = from.cwiseQuotient(half);
   const Vector u = along.cwiseQuotient(half);
   const double a = u.squaredNorm();
   const double c = p.squaredNorm() - 1.0;
   if (a < 1e-12) {
-    if (c > 0.0) span = {};
+    if (c > 0.0) chord = {};
     return;
   }
   const double b = p.dot(u);
   const double discriminant = b * b - a * c;
   if (discriminant < 0.0) {
-    span = {};
+    chord = {};
     return;
   }
   const double root = std::sqrt(discriminant);
@@ -53,13 +53,13 @@ void clip_round(const Vector& from, const Vector& along, const Vector& half, Spa
   };
   const double begin = (-b - root) / a;
   const double end = (-b + root) / a;
-  keep(begin, begin > span.begin ? cosine(begin) : 1.0, end, end < span.end ? cosine(end) : 1.0, span);
+  keep(begin, begin > chord.begin ? cosine(begin) : 1.0, end, end < chord.end ? cosine(end) : 1.0, chord);
 }
 
 /// Of a line in the frame of a form with these half extents, the part within it and between two heights.
-Span within(Piece::Form form, const Vector3d& half, const Vector3d& from, const Vector3d& along, double low,
-            double top) {
-  Span out{-kNoHit, kNoHit};
+Chord within(Piece::Form form, const Vector3d& half, const Vector3d& from, const Vector3d& along, double low,
+             double top) {
+  Chord out{-kNoHit, kNoHit};
   clip(from.z(), along.z(), low, top, out);
   switch (form) {
     case Piece::Form::box:
@@ -120,22 +120,22 @@ double Piece::volume() const {
   return box * kHalfTurn / (hollow() ? 12.0 : 6.0);
 }
 
-std::array<Span, 2> Piece::inside(const Line& line) const {
+std::array<Chord, 2> Piece::inside(const Line& line) const {
   const Vector3d from = turn.transpose() * (line.origin - centre);
   const Vector3d along = turn.transpose() * line.direction;
   const bool bowl = form == Form::ellipsoid && hollow();
   const double top = bowl ? 0.0 : half.z();
-  const Span outer = within(form, half, from, along, -half.z(), top);
+  const Chord outer = within(form, half, from, along, -half.z(), top);
   if (!hollow() || outer.empty()) return {outer, {}};
   const Vector3d inner = (half.array() - wall).max(1e-4).matrix();
-  Span hollow;
+  Chord hollow;
   if (bowl) {
     hollow = within(form, inner, from, along, -kNoHit, kNoHit);
   } else {
     hollow = within(form, inner, from, along, wall - half.z(), kNoHit);
   }
   if (hollow.empty() || hollow.end <= outer.begin || hollow.begin >= outer.end) return {outer, {}};
-  std::array<Span, 2> out;
+  std::array<Chord, 2> out;
   std::size_t count = 0;
   if (hollow.begin > outer.begin) out[count++] = {outer.begin, hollow.begin, outer.begin_cosine, hollow.begin_cosine};
   if (hollow.end < outer.end) out[count] = {hollow.end, outer.end, hollow.end_cosine, outer.end_cosine};
@@ -143,8 +143,8 @@ std::array<Span, 2> Piece::inside(const Line& line) const {
 }
 
 double Piece::first_hit(const Line& line) const {
-  const std::array<Span, 2> spans = inside(line);
-  return spans[0].empty() ? kNoHit : spans[0].begin;
+  const std::array<Chord, 2> chords = inside(line);
+  return chords[0].empty() ? kNoHit : chords[0].begin;
 }
 
 double Piece::reach(const Vector3d& own) const {

@@ -17,7 +17,7 @@ inline constexpr double kHalfTurn = 3.14159265358979323846;
 
 /// The part of a line between two distances from its origin, metres; empty where `begin` > `end`. Beside each the
 /// cosine between line and surface normal there, without its sign.
-struct Span {
+struct Chord {
   double begin = std::numeric_limits<double>::infinity();
   double end = -std::numeric_limits<double>::infinity();
   double begin_cosine = 1.0;
@@ -41,7 +41,7 @@ struct Piece {
   double reach(const Eigen::Vector3d& own) const;  ///< of what it encloses, the hollow included, cubic metres
 
   /// Which parts of a line lie in the solid, in their order: none, one or, where it passes through the hollow, two.
-  std::array<Span, 2> inside(const Line& line) const;
+  std::array<Chord, 2> inside(const Line& line) const;
   /// Where a line first meets it, infinity where it does not.
   double first_hit(const Line& line) const;
 

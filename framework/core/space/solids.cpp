@@ -27,7 +27,7 @@ Matrix3d about(const Vector3d& axis, double angle) { return Eigen::AngleAxisd(an
 double depth_of(const Piece& piece, const SurfaceTouch& touch) {
   const Vector3d to = piece.centre - touch.line.origin;
   if ((to - to.dot(touch.line.direction) * touch.line.direction).squaredNorm() > piece.half.squaredNorm()) return 0.0;
-  const Span first = piece.inside(touch.line)[0];
+  const Chord first = piece.inside(touch.line)[0];
   if (first.empty() || first.begin >= touch.length) return 0.0;
   const double back = (touch.length - first.begin) * first.begin_cosine;
   return back < 1e-4 ? back : std::min(back, piece.aside(touch.line));
