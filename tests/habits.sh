@@ -11,7 +11,7 @@ found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
-folders="children config plugin scene view gp experiment record sweep launch analysis calibrate report watch cli"
+folders="children config plugin scene view gp experiment space record sweep launch analysis calibrate report watch cli"
 for file in $(git ls-files 'framework/core/*.[ch]pp' 'framework/lab/*.[ch]pp' 'framework/desk/*.[ch]pp' 'framework/cli/*.[ch]pp'); do
   [ ! -f "$file" ] || sed -n "s|^#include \"\([a-z_]*\)/.*|$file \1|p" "$file"
 done | awk -v folders="$folders" '
@@ -20,7 +20,7 @@ done | awk -v folders="$folders" '
     if (!($2 in rank)) print $1 ": includes " $2 "/, which is no folder of the framework"
     else if (rank[$2] > rank[from]) print $1 ": " from " knows nothing of " $2 ", which stands below it" }' >"$found/arrows"
 # Plugins see what their authors see, and each other's folders.
-git grep -nE '^#include "(config|plugin|scene|view|gp|experiment|record|sweep|launch|analysis|report|watch|cli)/' -- plugins |
+git grep -nE '^#include "(config|plugin|scene|view|gp|experiment|space|record|sweep|launch|analysis|report|watch|cli)/' -- plugins |
   sed 's|:.*"\(.*\)"|: a plugin includes \1, which is not for plugins|' >"$found/plugins" || true
 
 if [ "${1:-}" = --all ]; then

@@ -16,9 +16,10 @@ TEST_F(Scenes, ThatAreShippedRunWithinThePapersBudget) {
     const std::string name = entry.path().stem().string();
     const bool any_side = text_of(entry.path()).find("touch: any") != std::string::npos;
     // From the folder of the sources, where the path of the shipped mesh starts.
-    const Ended ended = test::palpate({"run", any_side ? config("any_side.yaml") : paper(), "taps=17", "scene=" + name,
-                                       "--quiet", "--runs", here().string()},
-                                      test::source_folder());
+    Words words{"run",          any_side ? config("any_side.yaml") : paper(), "scene=" + name, "--quiet", "--runs",
+                here().string()};
+    if (any_side) words = words + "taps=6 space.moves=50";
+    const Ended ended = test::palpate(words, test::source_folder());
     EXPECT_EQ(ended.status, 0) << entry.path() << ended.err;
   }
 }

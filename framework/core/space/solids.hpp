@@ -18,7 +18,7 @@ namespace palpate {
 
 struct SolidsSettings {
   int count = 24;           ///< compositions
-  int moves = 1000;          ///< of each, after a touch
+  int moves = 1000;         ///< of each, after a touch
   double misfit = 0.002;    ///< by how much a touch is off the simple solids, metres: they are but nearly the objects
   double pieces = 5.0;      ///< what one piece more has to explain, nats
   double smallest = 0.002;  ///< half the least extent, metres
