@@ -42,7 +42,8 @@ class FromAnySide final : public Experiment {
   void update() override;
   std::optional<std::string> stop_rule(Source source) override;
   void read(TapRecord& tap) override;
-  bool starting() const { return result_.taps < options_.initial.count; }
+  /// Until an object is hit there is no surface to poke: what is believed then is anywhere.
+  bool starting() const { return result_.taps < options_.initial.count || !result_.first_hit_tap; }
   /// The scene's own surface; empty where another world is tapped.
   const Cloud& truth();
 

@@ -35,7 +35,7 @@ double depth_of(const Piece& piece, const SurfaceTouch& touch) {
 
 /// Upright, lying or in between.
 Matrix3d stance(Random& random) {
-  const Matrix3d turned = about(Vector3d::UnitZ(), between(0.0, 2.0 * kHalfTurn, random));
+  Matrix3d turned = about(Vector3d::UnitZ(), between(0.0, 2.0 * kHalfTurn, random));
   const double how = random.uniform();
   if (how < 0.65) return turned;
   if (how < 0.85) return turned * about(Vector3d::UnitY(), kHalfTurn / 2);

@@ -81,7 +81,7 @@ Line SpaceBelief::random_line(Random& random) const {
     const Vector3d aside = direction.unitOrthogonal();
     const Vector3d nearest = region_.centre + away * (std::cos(turn) * aside + std::sin(turn) * direction.cross(aside));
     const double back = std::sqrt(region_.outside() * region_.outside() - away * away);
-    const Line out{nearest - back * direction, direction};
+    Line out{nearest - back * direction, direction};
     if (out.origin.z() > 0.0) return out;
   }
 }
@@ -97,7 +97,7 @@ std::optional<Line> SpaceBelief::along_normal(Random& random) const {
   const double towards = (region_.centre - at).dot(inwards);
   const double aside = (region_.centre - at).squaredNorm() - towards * towards;
   const double back = std::sqrt(std::max(0.0, region_.outside() * region_.outside() - aside)) - towards;
-  const Line out{at - back * inwards, inwards};
+  Line out{at - back * inwards, inwards};
   return out.origin.z() > 0.0 ? std::optional(out) : std::nullopt;
 }
 

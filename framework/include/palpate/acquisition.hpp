@@ -30,7 +30,8 @@ class Acquisition {
   /// What score_approaches() reads of what only a SurfaceBelief has.
   virtual Quantities reads_of_approaches() const { return {}; }
 
-  /// Scores all approaches at once, by the laws of score(); `out` has N elements.
+  /// Scores all approaches at once, by the laws of score(); `out` has N elements. Views go by value, as in score().
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
   virtual void score_approaches(const SurfaceBelief& /*belief*/, VectorOut /*out*/) const {}
 
   /// The size of a typical score before any tap: the unit in which ties are judged when scores become small.
