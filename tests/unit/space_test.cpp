@@ -245,7 +245,10 @@ TEST(Skin, KeepsWhatIsLearntOfOneSideOfAWallFromTheOther) {
 TEST(Solids, FindABoxFromTouchesOfIt) {
   const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   Random random(7, "test/solids");
-  Solids solids({0.26, 0.26}, {}, Random(7, "solids"));
+  SolidsSettings settings;
+  settings.count = 12;
+  settings.moves = 200;
+  Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
   for (int i = 0; i < 60; ++i) {
     Vector3d direction = random_direction(random);
     direction.z() = -std::abs(direction.z());
@@ -271,6 +274,7 @@ TEST(Solids, KeepWhatTheySumUpTrueThroughAllMoves) {
   Random random(8, "test/solids");
   SolidsSettings settings;
   settings.count = 6;
+  settings.moves = 200;
   Solids solids({0.26, 0.26}, settings, Random(8, "solids"));
   std::vector<SurfaceTouch> touches;
   for (int i = 0; i < 15; ++i) {
