@@ -117,28 +117,6 @@ void Solids::look(Composition::Part& part, std::size_t from) const {
   }
 }
 
-/// Log likelihood of all touches: of heavy tails, because the simple solids are not the objects.
-double Solids::likelihood_of(const Composition& one) const {
-  constexpr double kTails = 3.0;
-  constexpr double kFarthest = 0.3;
-  constexpr std::size_t kAtOnce = 8;  // as many factors have one logarithm
-  const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
-  double out = 0.0;
-  double product = 1.0;
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    double reach = kFarthest;
-    double depth = 0.0;
-    for (const Composition::Part& part : one.parts) {
-      reach = std::min(reach, part.reach[i]);
-      depth = std::max(depth, part.depth[i]);
-    }
-    if (!touches_[i].contact || touches_[i].desk) reach = 0.0;
-    product *= 1.0 + scale * (reach * reach + depth * depth);
-    if (i % kAtOnce == kAtOnce - 1) out += std::log(product), product = 1.0;
-  }
-  return -0.5 * (kTails + 1.0) * (out + std::log(product));
-}
-
 const Composition& Solids::best() const {
   return *std::max_element(all_.begin(), all_.end(), [](const Composition& one, const Composition& other) {
     return one.posterior() < other.posterior();
@@ -167,11 +145,13 @@ std::optional<Piece> Solids::unseen(const Composition& one, Random& random) cons
 void Solids::add(const std::vector<SurfaceTouch>& touches) {
   const std::size_t before = touches_.size();
   touches_.insert(touches_.end(), touches.begin(), touches.end());
+  order_.resize(touches_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::vector<double> weights;
   for (Composition& one : all_) {
     const double was = one.likelihood;
     for (Composition::Part& part : one.parts) look(part, before);
-    one.likelihood = likelihood_of(one);
+    one.likelihood = likelihood_with(one, one.parts.size(), nullptr, -kNoHit);
     weights.push_back(one.likelihood - was);
   }
   resample(weights);
@@ -201,10 +181,11 @@ void Solids::resample(const std::vector<double>& weights) {
   all_ = std::move(drawn);
 }
 
+/// Of heavy tails, because the simple solids are not the objects.
 double Solids::likelihood_with(const Composition& one, std::size_t which, const Piece* piece, double least) {
   constexpr double kTails = 3.0;
   constexpr double kFarthest = 0.3;
-  constexpr std::size_t kAtOnce = 8;
+  constexpr std::size_t kAtOnce = 8;  // as many factors have one logarithm
   const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
   const double most = std::exp(std::min(700.0, -2.0 * least / (kTails + 1.0)));
   scratch_.reach.resize(touches_.size());
@@ -261,7 +242,7 @@ void Solids::move(Composition& one) {
     const std::size_t which = random_.index(one.parts.size());
     Composition::Part& part = one.parts[which];
     Piece piece = part.piece;
-    if (!change(one, piece)) continue;
+    if (!change(piece)) continue;
     const double prior = prior_of(piece);
     if (!(prior > -kNoHit)) continue;
     const double least = one.likelihood + part.prior - prior + std::log(1.0 - random_.uniform());
@@ -347,7 +328,7 @@ bool Solids::fit_to_contact(Piece& piece) {
 }
 
 /// Changes a piece; false where that makes none.
-bool Solids::change(const Composition&, Piece& piece) {
+bool Solids::change(Piece& piece) {
   const double kind = random_.uniform();
   const double size = std::exp(between(std::log(0.0005), std::log(0.03), random_));
   const auto axis = static_cast<Eigen::Index>(random_.index(3));

@@ -59,7 +59,6 @@ class Solids {
  private:
   double prior_of(const Piece& piece) const;
   void look(Composition::Part& part, std::size_t from) const;
-  double likelihood_of(const Composition& one) const;
   /// The log likelihood of `one` with `piece` (null: none) in the place of its part `which`, its number of parts for
   /// one more; -infinity as soon as it is sure to be below `least`. Leaves what each touch is to the piece in scratch_.
   double likelihood_with(const Composition& one, std::size_t which, const Piece* piece, double least);
@@ -67,7 +66,7 @@ class Solids {
   void move(Composition& one);
   bool give_birth(Composition& one);
   bool take_away(Composition& one);
-  bool change(const Composition& one, Piece& piece);
+  bool change(Piece& piece);
   bool fit_to_contact(Piece& piece);
 
   Area area_;
