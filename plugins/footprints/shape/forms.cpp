@@ -48,6 +48,13 @@ PALPATE_CLONES void mark(const Form& other, const double* __restrict xs, const d
   }
 }
 
+PALPATE_CLONES void add_up(const std::uint8_t* __restrict more, std::size_t count, std::uint8_t* __restrict sums) {
+  for (std::size_t from = 0; from < count; from += Forms::kRound) {
+    for (std::size_t k = 0; k < Forms::kRound; ++k)
+      sums[from + k] = static_cast<std::uint8_t>(sums[from + k] + more[from + k]);
+  }
+}
+
 }  // namespace
 
 void Forms::clear() {
@@ -72,6 +79,11 @@ void Forms::mark_met(const Form& other, std::vector<std::uint8_t>& met) const {
   met.resize(x_.size(), 0);
   mark(other, x_.data(), y_.data(), a_.data(), b_.data(), cosine_.data(), sine_.data(), ellipse_.data(), x_.size(),
        met.data());
+}
+
+void Forms::count_met(const std::vector<std::uint8_t>& met, std::vector<std::uint8_t>& times) {
+  times.resize(met.size(), 0);
+  add_up(met.data(), met.size(), times.data());
 }
 
 }  // namespace palpate::footprints

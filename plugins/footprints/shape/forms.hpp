@@ -20,6 +20,8 @@ class Forms {
   /// kRound.
   static constexpr std::size_t kRound = 32;
   void mark_met(const Form& other, std::vector<std::uint8_t>& met) const;
+  /// Adds up what was marked so; up to 255 times.
+  static void count_met(const std::vector<std::uint8_t>& met, std::vector<std::uint8_t>& times);
 
  private:
   std::size_t count_ = 0;

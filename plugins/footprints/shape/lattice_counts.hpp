@@ -122,6 +122,17 @@ class LatticeCounts {
   /// a place more than the lattice.
   template <class Visit>
   void for_each_edge(const Outline& outline, const Visit& visit) {
+    if (outline.size() == 1 && !outline[0].hollow) {
+      // As most are: what is cut of them is all there is.
+      const Cells rows = cut(outline[0].form, 0);
+      const Ends ends = ends_of(0);
+      for (int row = rows.begin; row < rows.end; ++row) {
+        if (ends.begins[row] >= ends.ends[row]) continue;
+        visit(row * (x_.count + 1) + ends.begins[row]);
+        visit(row * (x_.count + 1) + ends.ends[row]);
+      }
+      return;
+    }
     const Cells rows = hold(outline);
     for (int row = rows.begin; row < rows.end; ++row) {
       const int first = row * (x_.count + 1);

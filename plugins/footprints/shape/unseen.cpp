@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "unseen.hpp"
 
-#include "forms.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -111,22 +109,28 @@ void Unseen::rates(const PointsView& places, VectorOut out) {
 }
 
 void Unseen::lie_apart_from(const std::vector<const Outline*>& known) {
-  Forms there;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (weights_[i] > 0) there.add(pieces_[i].form);
+  // Of those that are not there any more some are asked about, too, until they are many.
+  const auto left =
+      static_cast<std::size_t>(std::count_if(weights_.begin(), weights_.end(), [](Weight w) { return w > 0; }));
+  if (there_.empty() || 5 * left < 4 * there_.size()) {
+    there_.clear();
+    forms_.clear();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (weights_[i] == 0) continue;
+      there_.push_back(i);
+      forms_.add(pieces_[i].form);
+    }
   }
-  std::vector<int> apart(there.size(), 0);  // from so many outlines
   std::vector<std::uint8_t> met;
+  std::vector<std::uint8_t> times;  // that each meets an outline
   for (const Outline* outline : known) {
     met.clear();
-    for (const Piece& piece : *outline) there.mark_met(piece.form, met);
-    met.resize(there.size(), 0);
-    for (std::size_t k = 0; k < apart.size(); ++k) apart[k] += met[k] == 0 ? 1 : 0;
+    for (const Piece& piece : *outline) forms_.mark_met(piece.form, met);
+    if (!met.empty()) Forms::count_met(met, times);
   }
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (weights_[i] > 0) apart_[i] = static_cast<float>(apart[next++]) / static_cast<float>(known.size());
-  }
+  times.resize(std::max(times.size(), there_.size()), 0);
+  const auto all = static_cast<float>(known.size());
+  for (std::size_t k = 0; k < there_.size(); ++k) apart_[there_[k]] = (all - static_cast<float>(times[k])) / all;
 }
 
 double Unseen::apart(double size) const {

@@ -7,6 +7,7 @@
 // Kingman 1993). So nothing has to be drawn to know how probable it is that a tap finds something new.
 #pragma once
 
+#include "forms.hpp"
 #include "labels.hpp"
 #include "lattice_counts.hpp"
 #include "outline.hpp"
@@ -78,6 +79,8 @@ class Unseen {
   std::vector<Piece> pieces_;
   std::vector<Weight> weights_;
   std::vector<float> apart_;        ///< share of the outlines of what is known that each lies apart from
+  std::vector<std::size_t> there_;  ///< most of those that are there, or may have been lately
+  Forms forms_;                     ///< theirs
   Eigen::ArrayXf xs_, ys_, radii_;  ///< of their forms, to see quickly which are near
   double unit_;                     ///< what one in kWhole of a piece is expected to be there as often as
   std::optional<LatticeCounts> counts_;
