@@ -6,6 +6,7 @@ namespace palpate::kernels {
 
 struct Matern32Shape : PlainShape {
   using PlainShape::PlainShape;
+  static constexpr bool kSlopes = true;
 
   PALPATE_INLINE double value(double r2) const {
     const double s = std::sqrt(3.0 * r2);
@@ -16,6 +17,10 @@ struct Matern32Shape : PlainShape {
     const double falling = simd::exp(-s);
     k = (1.0 + s) * falling;
     return 3.0 * falling;
+  }
+  double bend(double r2) const {
+    const double s = std::sqrt(3.0 * r2);
+    return 3.0 * (1.0 - s) * simd::exp(-s);
   }
 };
 

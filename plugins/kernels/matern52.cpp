@@ -6,6 +6,7 @@ namespace palpate::kernels {
 
 struct Matern52Shape : PlainShape {
   using PlainShape::PlainShape;
+  static constexpr bool kSlopes = true;
 
   PALPATE_INLINE double value(double r2) const {
     const double s = std::sqrt(5.0 * r2);
@@ -16,6 +17,10 @@ struct Matern52Shape : PlainShape {
     const double falling = simd::exp(-s);
     k = (1.0 + s + s * s / 3.0) * falling;
     return (5.0 / 3.0) * (1.0 + s) * falling;
+  }
+  double bend(double r2) const {
+    const double s = std::sqrt(5.0 * r2);
+    return (5.0 / 3.0) * (1.0 + s - s * s) * simd::exp(-s);
   }
 };
 

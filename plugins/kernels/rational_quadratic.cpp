@@ -25,6 +25,7 @@ class RationalQuadraticShape {
   static constexpr double kFarthest = 1e300;
   static constexpr bool kSeparable = false;
   static constexpr bool kOwn = true;
+  static constexpr bool kSlopes = false;
   explicit RationalQuadraticShape(const Options& options) : alpha_(options.alpha) {}
 
   double value(double r2) const { return std::pow(1.0 + bounded_t(r2), -alpha_); }

@@ -45,6 +45,8 @@ struct StationaryOptions : Options {
 ///     static constexpr bool kOwn;                one parameter beyond the length scales, or none, and of that
 ///     double own_slope(r2, k) const;              dk/d log parameter
 ///     static constexpr bool kSeparable;          f(a + b) = f(a) f(b)
+///     static constexpr bool kSlopes;             f has two derivatives by r everywhere, and of these
+///     double bend(r2) const;                     -d^2 f / dr^2, its limit at r = 0; slope(0) is finite, too
 template <class Shape>
 class Stationary final : public Kernel {
  public:
@@ -89,6 +91,21 @@ class Stationary final : public Kernel {
     shape_.set_parameters(values.tail(values.size() - axes()));
   }
 
+  bool has_slopes() const override { return Shape::kSlopes && !per_axis_; }
+
+  void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
+    if constexpr (Shape::kSlopes) {
+      const double per_length = std::min(1.0 / along_x_, kLargestWithSquare);
+      for (Eigen::Index i = 0; i < distances.size(); ++i) {
+        const double scaled = std::min(distances(i) * per_length, kLargestWithSquare);
+        const double r2 = std::min(scaled * scaled, Shape::kFarthest);
+        double value = 0.0;
+        across(i) = shape_.slope(r2, value) * per_length * per_length;
+        along(i) = shape_.bend(r2) * per_length * per_length;
+      }
+    }
+  }
+
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     const Eigen::Index m = b.rows();
     const Columns along(slopes);
@@ -129,6 +146,7 @@ class Stationary final : public Kernel {
   };
   /// Of a length scale so small that it has no reciprocal.
   static constexpr double kLargest = std::numeric_limits<double>::max();
+  static constexpr double kLargestWithSquare = 1e150;
 
   /// What is written to.
   struct Columns {
@@ -153,6 +171,7 @@ struct PlainShape {
   static constexpr double kFarthest = 1e8;
   static constexpr bool kSeparable = false;
   static constexpr bool kOwn = false;
+  static constexpr bool kSlopes = false;
   explicit PlainShape(const Options&) {}
   std::vector<KernelParameter> parameters() const { return {}; }
   void set_parameters(const VectorView&) {}

@@ -179,6 +179,76 @@ TEST_P(KernelDerivatives, BelongToParametersOfDifferentNames) {
 INSTANTIATE_TEST_SUITE_P(Every, KernelDerivatives, testing::ValuesIn(kernel_cases()),
                          [](const auto& one) { return one.param.name; });
 
+class KernelSlopes : public testing::TestWithParam<KernelCase> {
+ protected:
+  void SetUp() override {
+    for (const auto& kernel : variants(GetParam())) {
+      if (kernel->has_slopes()) kernels_.push_back(kernel);
+    }
+    if (kernels_.empty()) GTEST_SKIP() << "kernel/" << GetParam().type << " says that it has none";
+  }
+
+  static double scale_of(const Kernel& kernel) { return kernel.parameters().front().value; }
+  /// Whether squares of a length scale are numbers that have a reciprocal.
+  static bool has_squares(double scale) { return scale > 1e-100 && scale < 1e100; }
+
+  struct Found {
+    Eigen::VectorXd across, along;
+  };
+  static Found slopes(const Kernel& kernel, const Eigen::VectorXd& distances) {
+    Found out{Eigen::VectorXd(distances.size()), Eigen::VectorXd(distances.size())};
+    kernel.slope_covariance(distances, out.across, out.along);
+    return out;
+  }
+
+  std::vector<std::shared_ptr<Kernel>> kernels_;
+};
+
+TEST_P(KernelSlopes, EqualFiniteDifferences) {
+  for (const auto& kernel : kernels_) {
+    const double scale = scale_of(*kernel);
+    if (!has_squares(scale)) continue;
+    const double step = 1e-4 * scale;
+    const auto value = [&](double r) {
+      Points b(1, 2);
+      b << r, 0.0;
+      return covariance(*kernel, Points::Zero(1, 2), b)(0, 0);
+    };
+    const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(30, 0.01, 5.0) * scale;
+    const Found found = slopes(*kernel, at);
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
+      const double first = (value(at(i) + step) - value(at(i) - step)) / (2 * step);
+      const double second = (value(at(i) + step) - 2 * value(at(i)) + value(at(i) - step)) / (step * step);
+      EXPECT_NEAR(found.across(i) * scale * scale, -first / at(i) * scale * scale, 1e-5);
+      EXPECT_NEAR(found.along(i) * scale * scale, -second * scale * scale, 1e-5);
+    }
+  }
+}
+
+TEST_P(KernelSlopes, AreAlikeInAllDirectionsAtOnePlaceAndTheLimitBesideIt) {
+  for (const auto& kernel : kernels_) {
+    const double scale = scale_of(*kernel);
+    if (!has_squares(scale)) continue;
+    const Found found = slopes(*kernel, Eigen::Vector2d(0.0, 1e-9 * scale));
+    EXPECT_EQ(found.across(0), found.along(0));
+    EXPECT_GT(found.across(0), 0.0);
+    EXPECT_NEAR(found.across(1), found.across(0), 1e-8 * found.across(0));
+    EXPECT_NEAR(found.along(1), found.along(0), 1e-8 * found.across(0));
+  }
+}
+
+TEST_P(KernelSlopes, AreFiniteAtEveryDistance) {
+  for (const auto& kernel : kernels_) {
+    const Found found =
+        slopes(*kernel, (Eigen::VectorXd(7) << 0.0, 1e-308, 1e-150, 1e-8, 1.0, 1e160, 1.7e308).finished());
+    EXPECT_TRUE(found.across.allFinite());
+    EXPECT_TRUE(found.along.allFinite());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, KernelSlopes, testing::ValuesIn(kernel_cases()),
+                         [](const auto& one) { return one.param.name; });
+
 TEST(ShippedKernel, IsDifferentiableWhicheverItIs) {
   const std::vector<KernelCase> cases = kernel_cases();
   int shipped = 0;

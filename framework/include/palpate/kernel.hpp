@@ -58,6 +58,16 @@ class Kernel {
   /// slopes(i, p m + j) = d k(a_i, b_j) / d log parameter p. `value` equals covariance(a, b) within 8 ulp; the slopes
   /// are finite for all finite points. Never throws.
   virtual void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const;
+
+  /// Whether it is a function f of the distance alone, with two derivatives everywhere: then what it describes has a
+  /// slope at every place, and the method below is implemented too. A belief over space needs it where normals are
+  /// felt.
+  virtual bool has_slopes() const { return false; }
+
+  /// How alike slopes are at two places so far apart: `along` of those along the line between both, -f''(r), `across`
+  /// of those at right angles to it, -f'(r) / r. At r = 0 both are -f''(0). `distances` n, not negative, and n each.
+  /// Finite for all finite distances. Never throws.
+  virtual void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const;
 };
 
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
@@ -65,5 +75,7 @@ inline void Kernel::axis_covariance(int, const VectorView&, const VectorView&, M
 inline void Kernel::set_parameters(const VectorView&) {}
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
 inline void Kernel::derivatives(const PointsView&, const PointsView&, MatrixOut, MatrixOut) const {}
+// Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
+inline void Kernel::slope_covariance(const VectorView&, VectorOut, VectorOut) const {}
 
 }  // namespace palpate
