@@ -58,6 +58,16 @@ class Compound final : public Shape {
     return first;
   }
 
+  std::vector<Stretch> stretches(const Line& line) const override {
+    std::vector<Stretch> all;
+    for (const Part& part : parts_) {
+      const std::vector<Stretch> one =
+          part.shape->stretches({part.turned(line.origin - part.at), part.turned(line.direction)});
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return joined(std::move(all));
+  }
+
   double support(const Vector3d& direction) const override {
     double most = -kInfinity;
     for (const Part& part : parts_) {

@@ -18,6 +18,7 @@ class Plugin final : public Shape {
   Plugin(const Options& options, const Context& context) : shape_(context.create<const Shape>(options.shape)) {}
 
   double first_hit(const Line& line) const override { return shape_->first_hit(line); }
+  std::vector<Stretch> stretches(const Line& line) const override { return shape_->stretches(line); }
   double support(const Eigen::Vector3d& direction) const override { return shape_->support(direction); }
   double top(double s, double t) const override { return shape_->top(s, t); }
 

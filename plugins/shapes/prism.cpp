@@ -61,6 +61,25 @@ double Prism::first_hit(const Line& line) const {
   return wall;
 }
 
+std::vector<Stretch> Prism::stretches(const Line& line) const {
+  Interval between;
+  between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
+  const Point direction{line.direction.x(), line.direction.y()};
+  if (between.empty() || std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) return Shape::stretches(line);
+  std::vector<double> crossings;
+  const auto visit = [&](double x) { crossings.push_back(x); };
+  const Point origin{line.origin.x(), line.origin.y()};
+  visit_crossings(outline_, origin, direction, visit);
+  if (!hole_.empty()) visit_crossings(hole_, origin, direction, visit);
+  std::sort(crossings.begin(), crossings.end());
+  std::vector<Stretch> out;
+  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+    const Stretch stretch{std::max(between.begin, crossings[i]), std::min(between.end, crossings[i + 1])};
+    if (stretch.begin < stretch.end) out.push_back(stretch);
+  }
+  return out;
+}
+
 double Prism::support(const Eigen::Vector3d& direction) const {
   double best = -kInfinity;
   for (const Point& p : outline_) best = std::max(best, direction.x() * p[0] + direction.y() * p[1]);

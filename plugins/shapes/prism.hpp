@@ -49,6 +49,7 @@ class Prism : public Shape {
   double top(double s, double t) const final;
   double first_hit(const Line& line) const final;
   double support(const Eigen::Vector3d& direction) const final;
+  std::vector<Stretch> stretches(const Line& line) const final;
 
  private:
   Outline outline_, hole_;

@@ -28,6 +28,7 @@ struct RandomOutlineOptions : Options {
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
 constexpr double kLowestTop = 0.015;   ///< metres: well above what counts as desk
 constexpr double kCore = 0.01;         ///< metres: radius of a disk that every outline has within
+constexpr double kClear = 1e-9;        ///< metres: a line that has come in is in so far behind
 constexpr std::size_t kCorners = 240;  ///< edges of 2 mm at 14 cm
 
 /// Uniform between the two.
@@ -120,17 +121,32 @@ class RandomOutline final : public Shape {
       if (line.direction.z() > 0.0) return height > 0.0 ? begin : kInfinity;
       return (height - line.origin.z()) / line.direction.z();
     }
-    // Seen from above, it is within the outline between the first and the second crossing, the third and the fourth,
-    // ...
-    std::array<double, kCorners> crossings{};
-    std::size_t count = 0;
-    visit_crossings(outline_, {line.origin.x(), line.origin.y()}, direction, [&](double x) { crossings[count++] = x; });
-    std::sort(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(count));
-    for (std::size_t i = 0; i + 1 < count; i += 2) {
-      const double hit = descend(line, std::max(begin, crossings[i]), std::min(end, crossings[i + 1]));
+    for (const Stretch& seen : seen_from_above(line)) {
+      const double hit = change(line, std::max(begin, seen.begin), std::min(end, seen.end), 1.0);
       if (hit < kInfinity) return hit;
     }
     return kInfinity;
+  }
+
+  std::vector<Stretch> stretches(const Line& line) const override {
+    Interval between;
+    between.clip(line.origin.z(), line.direction.z(), 0.0, middle_ + relief_);
+    if (between.empty() || std::abs(line.direction.x()) + std::abs(line.direction.y()) < 1e-12)
+      return Shape::stretches(line);
+    std::vector<Stretch> all;
+    for (const Stretch& seen : seen_from_above(line)) {
+      const double end = std::min(between.end, seen.end);
+      double from = std::max(between.begin, seen.begin);
+      while (from < end) {
+        const double in = change(line, from, end, 1.0);
+        if (!(in < end)) break;
+        // Where it comes out: looked for a little behind, or where it came in would be found again.
+        const double out = std::min(end, change(line, in + kClear, end, -1.0));
+        if (out > in) all.push_back({in, out});
+        from = out + kClear;
+      }
+    }
+    return joined(std::move(all));
   }
 
   /// Across the wave the top is straight, so that no point reaches farther than one on the outline does.
@@ -178,19 +194,32 @@ class RandomOutline final : public Shape {
   /// Of the wave of the top.
   double phase(double s, double t) const { return wave_[0] * s + wave_[1] * t + phase_; }
 
-  /// Where the line, within the outline between the two, is first not above the top; infinity if nowhere. Each step
-  /// goes to where a parabola with the greatest curvature of all is down, so that none goes too far; behind a crossing
-  /// of the top they are as quick as Newton's.
-  double descend(const Line& line, double from, double to) const {
+  /// Where the line, seen from above, is within the outline: between the first and the second crossing, the third and
+  /// the fourth, ...
+  std::vector<Stretch> seen_from_above(const Line& line) const {
+    std::array<double, kCorners> crossings{};
+    std::size_t count = 0;
+    visit_crossings(outline_, {line.origin.x(), line.origin.y()}, {line.direction.x(), line.direction.y()},
+                    [&](double x) { crossings[count++] = x; });
+    std::sort(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(count));
+    std::vector<Stretch> out;
+    for (std::size_t i = 0; i + 1 < count; i += 2) out.push_back({crossings[i], crossings[i + 1]});
+    return out;
+  }
+
+  /// Where the line, within the outline between the two, is first not above the top (`sign` 1) or not below it (-1);
+  /// infinity if nowhere. Each step goes to where a parabola with the greatest curvature of all is down, so that none
+  /// goes too far; behind a crossing of the top they are as quick as Newton's.
+  double change(const Line& line, double from, double to, double sign) const {
     const Vector3d& u = line.direction;
     const double rate = wave_[0] * u.x() + wave_[1] * u.y();
     const double curvature = swell_ * rate * rate;
     for (double x = from; x <= to;) {
       const Vector3d p = line.origin + x * u;
       const double at = phase(p.x(), p.y());
-      const double clear = p.z() - (middle_ + slope_[0] * p.x() + slope_[1] * p.y() + swell_ * std::cos(at));
+      const double clear = sign * (p.z() - (middle_ + slope_[0] * p.x() + slope_[1] * p.y() + swell_ * std::cos(at)));
       if (clear <= 0.0) return x;
-      const double slope = u.z() - slope_[0] * u.x() - slope_[1] * u.y() + swell_ * rate * std::sin(at);
+      const double slope = sign * (u.z() - slope_[0] * u.x() - slope_[1] * u.y() + swell_ * rate * std::sin(at));
       if (slope >= 0.0 && curvature == 0.0) return kInfinity;
       const double root = std::sqrt(slope * slope + 2 * curvature * clear);
       const double next = x + (slope < 0.0 ? 2 * clear / (root - slope) : (root + slope) / curvature);

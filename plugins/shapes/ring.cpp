@@ -34,6 +34,19 @@ class Ring final : public Round {
     return solid.first();
   }
 
+  std::vector<Stretch> stretches(const Line& line) const override {
+    const Interval solid = inside(line);
+    Interval hole;
+    inner_.clip(line, hole);
+    std::vector<Stretch> out;
+    if (hole.empty()) hole.begin = hole.end = kInfinity;
+    const Stretch before{solid.begin, std::min(solid.end, hole.begin)};
+    const Stretch behind{std::max(solid.begin, hole.end), solid.end};
+    if (before.begin < before.end) out.push_back(before);
+    if (behind.begin < behind.end) out.push_back(behind);
+    return out;
+  }
+
   double support(const Vector3d& direction) const override {
     return disk_support(direction, radius_) + std::max(0.0, direction.z() * height_);
   }

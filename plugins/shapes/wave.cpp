@@ -50,6 +50,24 @@ class Wave final : public Shape {
     return kInfinity;
   }
 
+  std::vector<Stretch> stretches(const Line& line) const override {
+    Interval box;
+    box.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
+    box.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
+    box.clip(line.origin.z(), line.direction.z(), 0.0, o_.height + o_.amplitude);
+    std::vector<Stretch> all;
+    for (double from = box.begin; from < box.end;) {
+      const double to = std::min(box.end, next_turn(line, from));
+      const bool within = clearance(line, from) <= 0.0;
+      const bool stays = clearance(line, to) <= 0.0;
+      const double between = within == stays ? to : within ? crossing(line, to, from) : crossing(line, from, to);
+      if (within) all.push_back({from, between});
+      if (stays && !within) all.push_back({between, to});
+      from = to;
+    }
+    return joined(std::move(all));
+  }
+
   double support(const Eigen::Vector3d& direction) const override {
     return std::abs(direction.y()) * half_width_ + profile_support(direction.x(), direction.z());
   }
@@ -77,17 +95,17 @@ class Wave final : public Shape {
     return from + (std::min(after(turn), after(kPi - turn)) - phase) / rate;
   }
 
-  /// Where the clearance, which falls from positive to negative between two turns, is 0: halving steps beside Newton's.
+  /// Where the clearance, which falls or rises between two turns, is 0: halving steps beside Newton's.
   double crossing(const Line& line, double above, double below) const {
     double x = 0.5 * (above + below);
-    for (int i = 0; i < 100 && below - above > 1e-16; ++i) {
+    for (int i = 0; i < 100 && std::abs(below - above) > 1e-16; ++i) {
       const double clear = clearance(line, x);
       (clear > 0.0 ? above : below) = x;
       const double s = line.origin.x() + x * line.direction.x();
       const double slope = line.direction.z() + o_.amplitude * k_ * line.direction.x() * std::sin(k_ * s);
       const double next = x - clear / slope;
       if (std::abs(next - x) < 1e-15) return next;
-      x = next > above && next < below ? next : 0.5 * (above + below);
+      x = next > std::min(above, below) && next < std::max(above, below) ? next : 0.5 * (above + below);
     }
     return x;
   }

@@ -5,7 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace palpate::test {
 namespace {
@@ -89,6 +91,37 @@ void check_shape_laws(const Shape& shape) {
       EXPECT_LE(there, -back + 1e-6 * size) << "of a solid that begins behind its end";
     }
   }
+
+  // What lies in the solid on a line begins and ends there; and a point that is within on one line is within on
+  // another.
+  int points = 0;
+  int within = 0;
+  int agree = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Line line = random_line(shape, random, false);
+    const std::vector<Stretch> stretches = shape.stretches(line);
+    if (!stretches.empty()) {
+      EXPECT_NEAR(stretches.front().begin, shape.first_hit(line), 1e-6 * size);
+      EXPECT_NEAR(stretches.back().end, -shape.first_hit({line.origin, -line.direction}), 1e-5 * size);
+    }
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+      EXPECT_LE(stretches[k].begin, stretches[k].end);
+      EXPECT_TRUE(k == 0 || stretches[k].begin > stretches[k - 1].end);
+    }
+    const auto holds = [&](const Vector3d& point, const Vector3d& direction) {
+      const std::vector<Stretch> through = shape.stretches({point, direction});
+      return std::any_of(through.begin(), through.end(), [](const Stretch& s) { return s.begin < 0.0 && s.end > 0.0; });
+    };
+    const double first = stretches.empty() ? 0.0 : stretches.front().begin;
+    const double last = stretches.empty() ? 0.0 : stretches.back().end;
+    const Vector3d point = line.origin + (first + (last - first) * random.uniform()) * line.direction;
+    ++points;
+    const bool inside = holds(point, random_direction(random));
+    within += inside ? 1 : 0;
+    agree += inside == holds(point, random_direction(random)) ? 1 : 0;
+  }
+  EXPECT_GT(within, 10);
+  EXPECT_GE(agree, points - 2) << "a rounding may decide on the surface";
 
   for (int i = 0; i < 300; ++i) {
     const Line line = random_line(shape, random, true);

@@ -62,6 +62,7 @@ struct BrokenBackend final : Backend {
 
 struct BrokenShape final : Shape {
   double first_hit(const Line&) const override { fail(); }
+  std::vector<Stretch> stretches(const Line&) const override { fail(); }
   double support(const Eigen::Vector3d&) const override { fail(); }
   double top(double, double) const override { fail(); }
 };
@@ -115,6 +116,7 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
 
   const auto shape = broken<BrokenShape, Shape>();
   EXPECT_EQ(error_of([&] { shape->first_hit({}); }), "shape/mine: it broke");
+  EXPECT_EQ(error_of([&] { shape->stretches({}); }), "shape/mine: it broke");
   EXPECT_EQ(error_of([&] { shape->support({}); }), "shape/mine: it broke");
   EXPECT_EQ(error_of([&] { shape->top(0.0, 0.0); }), "shape/mine: it broke");
 }

@@ -107,6 +107,11 @@ class NamedKernel final : public Named<Kernel> {
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     call(&Kernel::derivatives, a, b, value, slopes);
   }
+  bool has_slopes() const override { return call(&Kernel::has_slopes); }
+  // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
+  void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
+    call(&Kernel::slope_covariance, distances, across, along);
+  }
 };
 
 class NamedAcquisition final : public Named<Acquisition> {
@@ -162,6 +167,7 @@ class NamedShape final : public Named<Shape> {
  public:
   using Named::Named;
   double first_hit(const Line& line) const override { return call(&Shape::first_hit, line); }
+  std::vector<Stretch> stretches(const Line& line) const override { return call(&Shape::stretches, line); }
   double support(const Eigen::Vector3d& direction) const override { return call(&Shape::support, direction); }
   double top(double s, double t) const override { return call(&Shape::top, s, t); }
 };

@@ -35,13 +35,17 @@ double Body::height(double x, double y) const {
   return std::max(0.0, -shape_->first_hit(line));
 }
 
-double Body::first_hit(const Line& line) const {
+Line Body::own(const Line& line) const {
   const Eigen::Vector3d from = line.origin - Eigen::Vector3d(x_, y_, lift_);
   const auto turned = [&](const Eigen::Vector3d& v) {
     return untilted(cosine_ * v.x() + sine_ * v.y(), cosine_ * v.y() - sine_ * v.x(), v.z());
   };
-  return shape_->first_hit({turned(from), turned(line.direction)});
+  return {turned(from), turned(line.direction)};
 }
+
+double Body::first_hit(const Line& line) const { return shape_->first_hit(own(line)); }
+
+std::vector<Stretch> Body::stretches(const Line& line) const { return shape_->stretches(own(line)); }
 
 double Body::highest() const { return shape_->support(untilted(0.0, 0.0, 1.0)) + lift_; }
 

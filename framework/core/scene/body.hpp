@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <vector>
 
 namespace palpate {
 
@@ -24,6 +25,9 @@ class Body {
   /// Where a line first meets it, metres from the line's origin; +infinity if it does not.
   double first_hit(const Line& line) const;
 
+  /// Which parts of a line lie in it, in their order.
+  std::vector<Stretch> stretches(const Line& line) const;
+
   /// Of its highest point, above the desk.
   double highest() const;
 
@@ -35,6 +39,8 @@ class Body {
   double rotation() const { return std::atan2(sine_, cosine_); }
 
  private:
+  /// A line in the frame of the shape.
+  Line own(const Line& line) const;
   /// A vector of the frame that is not tilted, in that of the shape.
   Eigen::Vector3d untilted(double along, double across, double up) const;
 

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -51,6 +53,16 @@ class Desk final : public Scene {
     double first = std::numeric_limits<double>::infinity();
     for (const Body& body : bodies_) first = std::min(first, body.first_hit(above));
     return first;
+  }
+
+  std::vector<Stretch> stretches(const Line& line) const override {
+    const Line above{line.origin - Eigen::Vector3d(0.0, 0.0, desk_), line.direction};
+    std::vector<Stretch> all;
+    for (const Body& body : bodies_) {
+      const std::vector<Stretch> one = body.stretches(above);
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return joined(std::move(all));
   }
 
   double highest() const override {

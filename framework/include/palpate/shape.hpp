@@ -6,7 +6,30 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <vector>
+
 namespace palpate {
+
+/// A part of a line, between two distances from its origin, metres.
+struct Stretch {
+  double begin = 0.0;
+  double end = 0.0;
+};
+
+/// The parts of a line that lie in any of `stretches`: in their order, none meeting another.
+inline std::vector<Stretch> joined(std::vector<Stretch> stretches) {
+  std::sort(stretches.begin(), stretches.end(), [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
+  std::vector<Stretch> out;
+  for (const Stretch& stretch : stretches) {
+    if (out.empty() || stretch.begin > out.back().end) {
+      out.push_back(stretch);
+    } else {
+      out.back().end = std::max(out.back().end, stretch.end);
+    }
+  }
+  return out;
+}
 
 /// A bounded solid in a frame of its own: the first coordinate along its length, the second across, the third up,
 /// metres. It rests on the plane 0 of the third, and the rectangle that bounds its outline, seen from above, is centred
@@ -33,6 +56,16 @@ class Shape {
   /// Height of the upright solid over (s, t) of its own frame; -infinity beside it. Law: what first_hit() says of the
   /// vertical line there. Overridden where there is a quicker way.
   virtual double top(double s, double t) const { return -first_hit({{s, t, 0.0}, {0.0, 0.0, -1.0}}); }
+
+  /// Which parts of the line lie in the solid, in their order: of what is hollow those within its walls. As it is here
+  /// it is right for what no line leaves and meets again; other shapes override it. Asked only to compare volumes.
+  /// Laws: the first begins at first_hit(), the last ends where the line the other way round first meets the solid;
+  /// whether a point is within does not depend on the line through it.
+  virtual std::vector<Stretch> stretches(const Line& line) const {
+    const double begin = first_hit(line);
+    const double end = -first_hit({line.origin, -line.direction});
+    return begin < end ? std::vector<Stretch>{{begin, end}} : std::vector<Stretch>{};
+  }
 };
 
 }  // namespace palpate

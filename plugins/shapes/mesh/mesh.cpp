@@ -10,8 +10,10 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #if PALPATE_EMBREE == 3
@@ -63,32 +65,36 @@ class Mesh final : public Shape {
   /// Which triangle is met is found in single precision around the middle of the mesh, within 1e-6 of its size; where
   /// on that triangle is computed in double precision.
   double first_hit(const Line& line) const override {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    // The ray begins where the line enters a ball around the mesh, so that its numbers are small.
-    const double begin = (centre_ - line.origin).dot(line.direction) - radius_;
-    const Eigen::Vector3f from = (line.origin + begin * line.direction - centre_).cast<float>();
-    const Eigen::Vector3f along = line.direction.cast<float>();
-    const auto length = static_cast<float>(2.1 * radius_);
-    RTCRayHit ray{{from.x(), from.y(), from.z(), 0, along.x(), along.y(), along.z(), 0, length, ~0U, 0, 0}, {}};
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if PALPATE_EMBREE == 3
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_.get(), &context, &ray);
-#else
-    rtcIntersect1(scene_.get(), &ray);
-#endif
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kInfinity;
+    const RTCRayHit ray = cast(line, 0.0F);
+    return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : meeting(line, ray.hit.primID).at;
+  }
 
-    const auto& triangle = mesh_.corners[ray.hit.primID];
-    const Vector3d a = mesh_.points[triangle[0]] - line.origin;
-    const Vector3d b = mesh_.points[triangle[1]] - line.origin;
-    const Vector3d c = mesh_.points[triangle[2]] - line.origin;
-    const Vector3d normal = (b - a).cross(c - a);
-    // A triangle along the line, a wall, has no single point on it, but the hit lies between its ends.
-    const auto [least, most] = std::minmax({a.dot(line.direction), b.dot(line.direction), c.dot(line.direction)});
-    const double slope = normal.dot(line.direction);
-    return slope == 0.0 ? least : std::clamp(normal.dot(a) / slope, least, most);
+  /// Parts of a mesh may reach into each other: inside is where more surfaces were entered than left. Where the order
+  /// of corners does not tell which is which, each second meeting leads out.
+  std::vector<Stretch> stretches(const Line& line) const override {
+    std::call_once(looked_at_, [this] { oriented_ = is_oriented(); });
+    // Triangles that share an edge are met within rounding of each other: one step lies over all of them.
+    const auto step = static_cast<float>(4e-6 * radius_);
+    std::vector<Meeting> met;
+    int balance = 0;
+    for (float from = 0.0F;;) {
+      const RTCRayHit ray = cast(line, from);
+      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
+      met.push_back(meeting(line, ray.hit.primID));
+      balance += met.back().enters ? 1 : -1;
+      from = ray.ray.tfar + step;
+    }
+    std::vector<Stretch> out;
+    int depth = 0;
+    for (const Meeting& one : met) {
+      const bool was = depth != 0;
+      // Not balanced where a step has passed over one side of a wedge.
+      depth = oriented_ && balance == 0 ? depth + (one.enters ? 1 : -1) : 1 - depth;
+      if (!was) out.push_back({one.at, one.at});
+      if (depth == 0) out.back().end = one.at;
+    }
+    if (depth != 0) out.pop_back();
+    return out;
   }
 
   /// Without looking at all points: the box around a few tells whether one of them can be the best.
@@ -106,6 +112,60 @@ class Mesh final : public Shape {
   }
 
  private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  /// What a ray meets first that begins where the line enters a ball around the mesh, so that its numbers are small,
+  /// and `from` behind that.
+  RTCRayHit cast(const Line& line, float from) const {
+    const double begin = (centre_ - line.origin).dot(line.direction) - radius_;
+    const Eigen::Vector3f origin = (line.origin + begin * line.direction - centre_).cast<float>();
+    const Eigen::Vector3f along = line.direction.cast<float>();
+    const auto length = static_cast<float>(2.1 * radius_);
+    RTCRayHit ray{{origin.x(), origin.y(), origin.z(), from, along.x(), along.y(), along.z(), 0, length, ~0U, 0, 0},
+                  {}};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if PALPATE_EMBREE == 3
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_.get(), &context, &ray);
+#else
+    rtcIntersect1(scene_.get(), &ray);
+#endif
+    return ray;
+  }
+
+  /// Whether each edge is passed as often one way as the other.
+  bool is_oriented() const {
+    std::vector<std::uint64_t> forth, back;
+    for (const auto& triangle : mesh_.corners) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint64_t a = triangle[i];
+        const std::uint64_t b = triangle[(i + 1) % 3];
+        forth.push_back(a << 32 | b);
+        back.push_back(b << 32 | a);
+      }
+    }
+    std::sort(forth.begin(), forth.end());
+    std::sort(back.begin(), back.end());
+    return forth == back;
+  }
+
+  struct Meeting {
+    double at;
+    bool enters;  ///< if corners are numbered counter-clockwise, seen from outside
+  };
+  Meeting meeting(const Line& line, unsigned number) const {
+    const auto& triangle = mesh_.corners[number];
+    const Vector3d a = mesh_.points[triangle[0]] - line.origin;
+    const Vector3d b = mesh_.points[triangle[1]] - line.origin;
+    const Vector3d c = mesh_.points[triangle[2]] - line.origin;
+    const Vector3d normal = (b - a).cross(c - a);
+    // A triangle along the line, a wall, has no single point on it, but the hit lies between its ends.
+    const auto [least, most] = std::minmax({a.dot(line.direction), b.dot(line.direction), c.dot(line.direction)});
+    const double slope = normal.dot(line.direction);
+    return {slope == 0.0 ? least : std::clamp(normal.dot(a) / slope, least, most), slope < 0.0};
+  }
+
   void check_embree() const {
     const RTCError code = rtcGetDeviceError(device_.get());
     if (code == RTC_ERROR_NONE) return;
@@ -119,6 +179,8 @@ class Mesh final : public Shape {
   std::vector<Box> boxes_;  ///< around each kFew points that follow one another
   Vector3d centre_;
   double radius_;  ///< of a ball around all points
+  mutable std::once_flag looked_at_;
+  mutable bool oriented_ = false;
   std::shared_ptr<RTCDeviceTy> device_;
   std::shared_ptr<RTCSceneTy> scene_;
 };
