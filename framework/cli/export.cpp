@@ -31,15 +31,21 @@ int export_run(Program& program, const std::string& directory, const std::string
   const Recording recording = read_recording(program, directory);
   Playback playback(program, recording);
   playback.advance_to(static_cast<int>(recording.taps.size()));
-  const ReconstructedSurface surface = reconstruct(playback.from_above());
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
+  auto* const any_side = dynamic_cast<FromAnySide*>(&playback.experiment());
+  const std::string surface =
+      any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
   const fs::path folder = to.empty() ? make_inner_folder(recording.directory / "export") : make_folder(to);
+  if (any_side != nullptr && fs::equivalent(folder, recording.directory)) {
+    throw Error(folder.string(), "has the surface.ply of the record, which nothing is written over",
+                "choose another folder");
+  }
   mention_state(recording);
   const auto write = [&](const char* name, const std::string& text) {
     write_file(folder / name, text);
     fmt::print("{}\n", (folder / name).string());
   };
-  write("surface.ply", surface_ply(surface, run));
+  write("surface.ply", surface);
   write("taps.ply", taps_ply(recording, run));
   return kDone;
 }

@@ -52,8 +52,16 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) fmt::print("{}\n", picture.string());
 }
 
+/// Throws Error for a run from any side, of which there is no `what`.
+void check_from_above(const Recording& recording, const std::string& what) {
+  if (recording.config.options.scene.touch != SceneOptions::Touch::any) return;
+  throw Error(recording.directory.string(), "is a run from any side, and " + what + " of runs from above",
+              "'palpate report' with nothing else makes its page");
+}
+
 void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
   const Recording recording = read_recording(workshop, arguments.directories.front());
+  if (arguments.figures || arguments.paper) check_from_above(recording, "--figures and --paper are");
   Patience patience("taps");
   const History history = make_history(workshop, recording, std::ref(patience));
   write_page(to / "report.html", run_page(recording, history, std::ref(patience)));
@@ -97,6 +105,7 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
     if (is_sweep(directory))
       refuse(directory + " is a sweep, and several runs stand side by side", "give its jobs: SWEEP/jobs/ID");
     Recording recording = read_recording(workshop, directory);
+    check_from_above(recording, "pages of several are");
     History history = make_history(workshop, recording, Patience("taps"));
     name += "_" + recording.config.id;
     runs.push_back({std::move(recording), std::move(history)});

@@ -17,7 +17,9 @@ class Uncertainty final : public Acquisition {
   Quantities reads_of_approaches() const override { return Quantity::deviation; }
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
     constexpr double kAlong = 0.999;
-    out = (belief.squareness().array() > kAlong).select(belief.deviation().array().square(), 0.0);
+    const double most = belief.deviation().maxCoeff();
+    const double scale = most > 0.0 ? 1.0 / most : 0.0;  // so that scores are of the size that ties are judged by
+    out = (belief.squareness().array() > kAlong).select((scale * belief.deviation().array()).square(), 0.0);
   }
   double prior_scale() const override { return 1.0; }
 };

@@ -84,6 +84,63 @@ TEST_P(AcquisitionContract, HasAScale) {
   EXPECT_GE(acquisition_->prior_scale(), 0.0);
 }
 
+/// Beliefs from any side: the usual, nothing met, nothing to find, all of it known.
+std::vector<WrittenSurface> surfaces() {
+  std::vector<WrittenSurface> out(4);
+  Random random(5, "contract/surface");
+  for (WrittenSurface& one : out) {
+    const auto draw = [&](double most) -> Eigen::VectorXd {
+      return Eigen::VectorXd::NullaryExpr(20, [&] { return most * random.uniform(); });
+    };
+    one.count = 7;
+    one.lines.resize(20);
+    one.found = draw(0.001);
+    one.sigma = draw(0.006);
+    one.square = draw(1.0);
+    for (Eigen::Index i = 1; i < 20; i += 2) one.square(i) = 1.0;
+  }
+  out[1].sigma.setZero();
+  out[1].square.setZero();
+  out[2].found.setZero();
+  out[3].sigma.setZero();
+  return out;
+}
+
+Eigen::VectorXd score(const Acquisition& acquisition, const SurfaceBelief& belief) {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(20, std::numeric_limits<double>::quiet_NaN());
+  acquisition.score_approaches(belief, out);
+  return out;
+}
+
+TEST_P(AcquisitionContract, FromAnySideIsFinitePureAndReadsWhatItSays) {
+  EXPECT_TRUE(acquisition_->from_above() || acquisition_->any_side());
+  if (!acquisition_->any_side()) return;
+  Quantities read;
+  for (const WrittenSurface& belief : surfaces()) {
+    const Eigen::VectorXd scores = score(*acquisition_, belief);
+    EXPECT_TRUE(scores.allFinite());
+    EXPECT_TRUE(same_bytes(score(*make<Acquisition>(contract_host(), GetParam()), belief), scores));
+    read = read | belief.read;
+  }
+  EXPECT_TRUE(read == acquisition_->reads_of_approaches()) << "models that it does not read were built for it";
+}
+
+TEST(Acquisitions, FromAnySideTakeTheLargestVarianceAlongTheNormalOrWhereMostIsExpectedToBeFound) {
+  const std::vector<WrittenSurface> all = surfaces();
+  const auto best = [](const Eigen::VectorXd& values) {
+    Eigen::Index at = 0;
+    values.maxCoeff(&at);
+    return at;
+  };
+  const std::shared_ptr<Acquisition> uncertainty = make<Acquisition>(contract_host(), "uncertainty");
+  const Eigen::VectorXd square = (all[0].square.array() == 1.0).select(all[0].sigma.array(), 0.0);
+  EXPECT_EQ(best(score(*uncertainty, all[0])), best(square));
+  const std::shared_ptr<Acquisition> discovery = make<Acquisition>(contract_host(), "discovery");
+  EXPECT_EQ(best(score(*discovery, all[1])), best(all[1].found)) << "nothing is met";
+  EXPECT_EQ(best(score(*discovery, all[2])), best((all[2].square.array() == 1.0).select(all[2].sigma.array(), 0.0)));
+  EXPECT_NEAR((score(*discovery, all[0]) - all[0].found - 0.01 * square).norm(), 0.0, 1e-15);
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, AcquisitionContract, testing::ValuesIn(plugins_under_contract("acquisition")),
                          [](const auto& one) { return test_name(one.param); });
 

@@ -161,6 +161,27 @@ TEST(History, TakesOnlySomeCellsOfFineMaps) {
   EXPECT_NEAR(history.x(1) - history.x(0), 2 * 0.23 / 150, 1e-12);
 }
 
+TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
+  const Recorded run("any_side.yaml",
+                     {"scene=object_i", "scene.touch=any", "taps=9", "space.approaches=200", "space.moves=100"});
+  const Recording recording = run.recording();
+  const History history = run.history();
+  ASSERT_EQ(history.surfaces.size(), 10U);
+  EXPECT_TRUE(history.maps.empty());
+  EXPECT_GT(history.true_points.size(), 500U);
+  const auto hit = static_cast<int>(recording.summary.value().number("first_hit_tap").value());
+  EXPECT_LE(hit, 9);
+  for (int taps = 0; taps <= 9; ++taps) {
+    const Moment& moment = history.moments[static_cast<std::size_t>(taps)];
+    EXPECT_EQ(history.surfaces[static_cast<std::size_t>(taps)].vertices.empty(), taps < hit);
+    ASSERT_TRUE(moment.next && moment.next->approach && moment.next_along);
+    EXPECT_LE(*moment.next_along, moment.next->approach->length);
+    if (taps == 9) continue;
+    EXPECT_EQ(moment.next->approach->line.origin, recording.taps[static_cast<std::size_t>(taps)].approach->line.origin);
+  }
+  EXPECT_EQ(history.moments.back().result.errors.nearest, recording.summary->number("nearest_m"));
+}
+
 TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{}, {"taps=60"}, {"taps=200"}, {"taps=40", "candidates.count=128"}}) {

@@ -5,6 +5,7 @@
 #include <palpate/belief.hpp>
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
+#include <palpate/surface_belief.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -44,6 +45,27 @@ class WrittenBelief final : public Belief {
   const Eigen::VectorXd& seen(Quantity one, const Eigen::VectorXd& map) const {
     read = read | one;
     return map;
+  }
+};
+
+/// A belief from any side that is written down, and what was read of it.
+class WrittenSurface final : public SurfaceBelief {
+ public:
+  int count = 0;  ///< of taps
+  std::vector<Approach> lines;
+  Eigen::VectorXd found, sigma, square;
+  mutable Quantities read;
+
+  const std::vector<Approach>& approaches() const override { return lines; }
+  int taps() const override { return count; }
+  const Eigen::VectorXd& unseen() const override { return seen(Quantity::unseen, found); }
+  const Eigen::VectorXd& deviation() const override { return seen(Quantity::deviation, sigma); }
+  const Eigen::VectorXd& squareness() const override { return seen(Quantity::deviation, square); }
+
+ private:
+  const Eigen::VectorXd& seen(Quantity one, const Eigen::VectorXd& of) const {
+    read = read | one;
+    return of;
   }
 };
 

@@ -3,10 +3,19 @@
 // what is refused.
 #include "record/json.hpp"
 #include "support/programs.hpp"
+#include "support/sanitizers.hpp"
 #include "system/shell.hpp"
 
+#include <assimp/scene.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <assimp/Importer.hpp>
+
+#include <sstream>
+
+#include <cmath>
+#include <string>
 
 namespace palpate {
 namespace {
@@ -42,7 +51,85 @@ TEST_F(AnySide, ARunTellsOfEachTapWhereItBeganInWhichDirectionAndHowFarItWent) {
   EXPECT_LT(summary.number("nearest_m").value(), 0.05);
   EXPECT_GE(summary.number("rmse_m").value(), summary.number("nearest_m").value());
   EXPECT_GT(summary.number("f_score").value(), 0.0);
-  EXPECT_EQ(text_of(run / "surface.ply").rfind("ply\nformat ascii 1.0\n", 0), 0U);
+  EXPECT_GT(summary.number("volume_iou").value(), 0.0);
+  EXPECT_LE(summary.number("volume_iou").value(), 1.0);
+  EXPECT_GT(summary.number("surface_coverage_95").value(), 0.3);
+  EXPECT_LE(summary.number("surface_coverage_95").value(), 1.0);
+}
+
+TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
+  const fs::path run = touched("taps=12");
+  EXPECT_THAT(text_of(run / "surface.ply").substr(0, 400),
+              testing::AllOf(testing::StartsWith("ply\nformat binary_little_endian 1.0\n"),
+                             testing::HasSubstr("property float standard_deviation\n")));
+  const Ended ended = palpate({"export", run});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, (run / "export/surface.ply").string() + "\n" + (run / "export/taps.ply").string() + "\n");
+  EXPECT_THAT(text_of(run / "export/surface.ply").substr(0, 400), testing::HasSubstr("property float quality\n"));
+  for (const fs::path& file : {run / "surface.ply", run / "export/surface.ply"}) {
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(file.string(), 0);
+    ASSERT_TRUE(scene != nullptr) << importer.GetErrorString();
+    ASSERT_EQ(scene->mNumMeshes, 1U);
+    const aiMesh& mesh = *scene->mMeshes[0];
+    ASSERT_TRUE(mesh.HasNormals());
+    EXPECT_GT(mesh.mNumVertices, 1000U);
+    EXPECT_GT(mesh.mNumFaces, 2 * mesh.mNumVertices - 200);
+  }
+  // From where the tool came to where it stopped.
+  std::istringstream points(text_of(run / "export/taps.ply"));
+  for (std::string line; line != "end_header";) std::getline(points, line);
+  int contacts = 0;
+  for (const Row& row : rows_of(run, "taps.jsonl")) {
+    if (row.text("outcome") != "contact") continue;
+    double x = 0, y = 0, z = 0, nx = 0, ny = 0, nz = 0;
+    int tap = 0, on = 0;
+    points >> x >> y >> z >> nx >> ny >> nz >> tap >> on;
+    const double along = row.number("along").value();
+    EXPECT_NEAR(x + along * nx, row.number("x").value(), 1e-12);
+    EXPECT_NEAR(z, row.number("height").value(), 1e-12);
+    EXPECT_EQ(tap, row.number("tap"));
+    EXPECT_EQ(on == 1, row.flag("on_surface"));
+    ++contacts;
+  }
+  EXPECT_GT(contacts, 5);
+  EXPECT_THAT(refused({"run", config(), "--dry-run", "prior={depth: " + (run / "export/taps.ply").string() + "}"}),
+              testing::HasSubstr("prior: is of taps from above"));
+  EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("nothing is written over"));
+}
+
+TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
+  const fs::path run = touched("taps=12");
+  const std::vector<Row> rows = rows_of(run, "taps.jsonl");
+  int places = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Ended ended = palpate({"explain", run, std::to_string(i + 1)});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    std::string text = ended.out;
+    for (auto at = text.find("\n    "); at != std::string::npos; at = text.find("\n    ")) text.replace(at, 5, " ");
+    const auto says = [&](const std::string& words) { EXPECT_THAT(text, testing::HasSubstr(words)) << i + 1; };
+    says(fmt::format("from x {:.2f} cm, y {:.2f} cm, z {:.2f} cm, ", 100 * rows[i].number("x").value(),
+                     100 * rows[i].number("y").value(), 100 * rows[i].number("z").value()));
+    says(fmt::format("What was believed after {} tap", i));
+    says("24 compositions of ");
+    says("Expected, by the most probable composition: ");
+    says("Error of the surface: over the scene ");
+    if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; all of the way is free.");
+    if (rows[i].text("source") == "initial") {
+      says("anywhere through the region");
+      continue;
+    }
+    says("The acquisition chose it: discovery");
+    says("Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to find ");
+    says(fmt::format("Its score is {:.6g}, the best of 200 approaches", rows[i].number("score").value()));
+    says("Runner-up: from x ");
+    says(fmt::format("with a score of {:.6g}, ", rows[i].number("runner_up.score").value()));
+    const bool met = text.find("by the most probable composition: an object after") != std::string::npos;
+    says(met ? "the skin knows it along its normal with a standard deviation of "
+             : "By the most probable composition no object is there.");
+    places += met ? 1 : 0;
+  }
+  EXPECT_GT(places, 0);
 }
 
 TEST_F(AnySide, ARunThatWasBrokenOffEndsAsTheUnbrokenOneDoes) {
@@ -60,10 +147,66 @@ TEST_F(AnySide, ARunIsPlayedAgainToTheLastBit) {
   EXPECT_THAT(ended.out, testing::HasSubstr("all equal"));
 }
 
+TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedRunAndAReplayHaveTheSameView) {
+  const Words seen{"taps=4", "space.view={}", "space.moves=20"};
+  const fs::path whole = touched(seen + "name=whole");
+  for (const Row& row : rows_of(whole, "taps.jsonl")) EXPECT_EQ(row.text("source"), "acquisition");
+  const fs::path broken = touched(seen + "name=broken");
+  break_off(broken);
+  ASSERT_EQ(resume(broken).status, 0);
+  EXPECT_EQ(text_of(broken / "taps.csv"), text_of(whole / "taps.csv"));
+  const Ended replayed = palpate({"replay", whole});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_THAT(replayed.out, testing::HasSubstr("all equal"));
+  // From another side another first tap; without a view the first one is drawn.
+  const fs::path other = touched(
+      Words{"taps=4", "space.view={azimuth: 10 deg, elevation: 50 deg, rays: 225}", "space.moves=20", "name=other"});
+  EXPECT_NE(rows_of(other, "taps.jsonl")[0].number("x"), rows_of(whole, "taps.jsonl")[0].number("x"));
+  EXPECT_EQ(rows_of(touched("taps=1 space.moves=20 name=none initial.count=1"), "taps.jsonl")[0].text("source"),
+            "initial");
+}
+
+TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes) {
+  if (test::kSanitized) GTEST_SKIP() << "a program in Python over the one that is tested elsewhere";
+  const fs::path mesh = test::source_folder() / "configs/scene/solids/mug.stl";
+  const fs::path folder = here() / "downloaded/asus_scanner_models";
+  for (const char* name : {"jug", "mugD"}) {
+    fs::create_directories(folder / name);
+    fs::copy_file(mesh, folder / name / (std::string(name) + ".stl"));
+  }
+  const auto published = [&](const std::string& objects) {
+    return test::run_program(
+        {"python3", "-B", (test::source_folder() / "tests/benchmark/published_objects.py").string(),
+         (here() / "downloaded").string(), "--palpate", test::program_file().string(), "--objects", objects, "taps=3",
+         "seed=1", "acquisition=uncertainty", "space.approaches=50", "space.moves=10"},
+        here());
+  };
+  const Ended ended = published("jug,mugD");
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, testing::HasSubstr("published_jug"));
+  EXPECT_THAT(ended.out, testing::HasSubstr("published_mugD"));
+  EXPECT_EQ(lines(text_of(here() / "published_objects.sha256")), 2);
+
+  const auto refusal = [&](const std::string& objects) {
+    const Ended refused = published(objects);
+    EXPECT_EQ(refused.status, 2);
+    return refused.err;
+  };
+  EXPECT_THAT(refusal("bowlA"), testing::HasSubstr("no file bowlA.stl, .ply or .obj below"));
+  write("downloaded/pot/pot_cloud.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+        "z\nend_header\n0 0 0\n");
+  EXPECT_THAT(refusal("pot"), testing::HasSubstr("pot_cloud.ply is a cloud of points, and a scene needs a mesh"));
+  EXPECT_THAT(refusal("spoon"), testing::HasSubstr("spoon is none of"));
+  fs::copy_file(test::source_folder() / "configs/scene/solids/jug.stl", folder / "jug/jug.stl",
+                fs::copy_options::overwrite_existing);
+  EXPECT_THAT(refusal("jug"), testing::HasSubstr("at first use it was"));
+}
+
 TEST_F(AnySide, EachRuleTakesApproachesOfItsOwnAfterTheSameFirstOnes) {
   std::vector<std::vector<Row>> runs;
   for (const Words& rule : {Words("acquisition=random"), Words("acquisition=uncertainty"),
-                            Words("acquisition=contrast acquisition.skin=0m")}) {
+                            Words("acquisition=discovery acquisition.share=0")}) {
     runs.push_back(rows_of(touched(rule + "taps=12"), "taps.jsonl"));
   }
   // The first ones go on until an object is hit, which happens to all of them at the same tap.
@@ -83,7 +226,7 @@ TEST_F(AnySide, EachRuleTakesApproachesOfItsOwnAfterTheSameFirstOnes) {
 
 TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
   const fs::path sweep = swept(
-      {"acquisition=random,contrast", "scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=8"}, config());
+      {"acquisition=random,discovery", "scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=8"}, config());
   const Ended ended =
       palpate({"compare", sweep, "--by", "acquisition", "--metric", "nearest_m", "--at", "5", "--table"});
   EXPECT_EQ(ended.status, 0) << ended.err;
@@ -93,8 +236,19 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
                       config()) /
                   "summary.json"))
           .value();
-  const std::string shown = std::to_string(1e3 * alone.number("nearest_m").value());
-  EXPECT_THAT(ended.out, testing::HasSubstr("| random | 5 | " + shown.substr(0, shown.find('.'))));
+  const std::string shown = std::to_string(std::lround(1e3 * alone.number("nearest_m").value()));
+  EXPECT_THAT(ended.out, testing::HasSubstr("| random | 5 | " + shown + " |"));
+}
+
+TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
+  const fs::path run = touched("taps=4");
+  replace(run / "taps.jsonl", "\"z\": ", "\"lost\": ");
+  for (const Words& command : {Words{"report", run}, Words{"export", run}, Words{"explain", run, "1"}}) {
+    const Ended ended = palpate(command);
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_THAT(ended.err,
+                testing::HasSubstr("a tap of a run from any side has no z and no direction, its record is damaged"));
+  }
 }
 
 TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
@@ -103,11 +257,48 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
               testing::HasSubstr("surface: implicit is for a scene with touch: any"));
   EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side has it"));
-  EXPECT_THAT(refused({"run", paper(), "acquisition=contrast"}),
-              testing::HasSubstr("contrast scores approaches from any side alone"));
+  EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
+              testing::HasSubstr("discovery scores approaches from any side alone"));
+  EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
+              testing::HasSubstr("kernel: is not one of the distance alone"));
   const fs::path run = touched("taps=4");
-  EXPECT_THAT(refused({"export", run}), testing::HasSubstr("is a run from any side"));
-  EXPECT_THAT(refused({"report", run}), testing::HasSubstr("is a run from any side"));
+  EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, and --figures"));
+  EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, and pages of several"));
+}
+
+TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
+  for (const char* const key : {"candidates.count=60",
+                                "candidates.spacing=5mm",
+                                "height.lies=0.1",
+                                "height.systematic={}",
+                                "height.kernel={type: rbf}",
+                                "height.fitting={type: fixed}",
+                                "weight.signal=2",
+                                "weight.noise=0.3",
+                                "weight.prior_mean=1",
+                                "weight.clip=true",
+                                "weight.hyperparameters=shared",
+                                "weight.kernel={type: rbf}",
+                                "weight.fitting={type: fixed}",
+                                "posterior=dense",
+                                "lowrank.tolerance=1e-9",
+                                "footprint={type: shape, kernel: {type: rbf}}",
+                                "fitting.type=ceres",
+                                "fallback=none",
+                                "repeat=allow",
+                                "accuracy=1e-6",
+                                "stop.max_standard_deviation=1cm",
+                                "stop.expected_rmse=1cm",
+                                "log.maps=true"}) {
+    const std::string word(key);
+    EXPECT_THAT(refused({"run", config(), "--dry-run", word}),
+                testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
+                               testing::HasSubstr(": is of taps from above and means nothing from any side, take it "
+                                                  "away")));
+  }
+  EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47"})
+                .status,
+            0);
 }
 
 }  // namespace

@@ -2,14 +2,20 @@
 // The room of surfaces in space: solids against their definition as sets of points, clouds against all pairs, the skin
 // against its formula written out in long double.
 #include "space/cloud.hpp"
+#include "space/from_any_side.hpp"
 #include "space/piece.hpp"
 #include "space/skin.hpp"
 #include "space/solids.hpp"
+#include "space/view.hpp"
+#include "space/volume.hpp"
+#include "support/runs.hpp"
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"
 #include "support/testing.hpp"
 
 #include <Eigen/Geometry>
+
+#include <gmock/gmock.h>
 
 #include <vector>
 
@@ -130,6 +136,22 @@ TEST(Piece, IsPassedByALineThatIsMovedAsFarAsideAsItSays) {
     }
     EXPECT_TRUE(clear);
   }
+}
+
+TEST(Piece, IsAsFarAsideUpToALimitAsWithoutOne) {
+  Random random(14, "test/piece");
+  int limited = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Piece piece = random_piece(random);
+    for (double& half : piece.half) half = 0.004 * std::pow(30.0, random.uniform());
+    const Line line{piece.centre + 0.02 * random_direction(random) - 0.4 * piece.turn.col(2), piece.turn.col(2)};
+    const double aside = piece.aside(line);
+    const double most = 0.02 * random.uniform();
+    EXPECT_EQ(piece.aside(line, most), std::min(aside, most));
+    limited += aside > most ? 1 : 0;
+  }
+  EXPECT_GT(limited, 500);
+  EXPECT_LT(limited, 2900);
 }
 
 TEST(Cloud, FindsTheNearestAmongAllPoints) {
@@ -270,6 +292,67 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
   EXPECT_GT(compare_clouds(thinned(believed, 0.003), thinned(truth, 0.003)).f_score, 0.95);
 }
 
+/// What a camera would see of a piece on the desk, as touches.
+std::vector<SurfaceTouch> seen(const Piece& piece) {
+  std::vector<SurfaceTouch> out;
+  const Vector3d eye(0.6, 0.13, 0.4);
+  for (int i = 0; i < 13; ++i) {
+    for (int j = 0; j < 13; ++j) {
+      const Vector3d at(0.13, 0.13 + 0.02 * (i - 6), 0.03 + 0.015 * (j - 6));
+      const Line line{eye, (at - eye).normalized()};
+      const double desk = line.direction.z() < 0 ? -eye.z() / line.direction.z() : kNoHit;
+      const double hit = piece.first_hit(line);
+      out.push_back({line, std::min({hit, desk, 1.0}), std::min(hit, desk) < 1.0, desk <= hit});
+    }
+  }
+  return out;
+}
+
+TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
+  const Piece bowl{Piece::Form::ellipsoid, {0.13, 0.13, 0.07}, Eigen::Matrix3d::Identity(), {0.08, 0.08, 0.07}, 0.004};
+  SolidsSettings settings;
+  settings.count = 8;
+  int hollow = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    Solids solids({0.26, 0.26}, settings, Random(seed, "solids"));
+    solids.look(seen(bowl));
+    const Composition& best = solids.best();
+    hollow += std::abs(best.distance({0.13, 0.13, 0.002})) < 0.008 && best.distance({0.13, 0.13, 0.05}) > 0.02 ? 1 : 0;
+  }
+  EXPECT_GE(hollow, 3) << "the rest may have stayed in a mode that is wrong";
+}
+
+TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
+  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  SolidsSettings settings;
+  settings.count = 4;
+  settings.moves = 100;
+  Solids solids({0.26, 0.26}, settings, Random(9, "solids"));
+  Random random(9, "test/unseen");
+  std::vector<SurfaceTouch> touches;
+  std::size_t before = 300;
+  for (int i = 0; i < 40; ++i) {
+    Vector3d direction = random_direction(random);
+    direction.z() = -std::abs(direction.z());
+    const Line line{box.centre + 0.08 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
+    const double desk = -line.origin.z() / direction.z();
+    touches.push_back({line, std::min(box.first_hit(line), desk), true, desk <= box.first_hit(line)});
+    solids.add({touches.back()});
+    if (i % 13 != 12) continue;
+    const std::vector<Piece> unseen = solids.unseen(solids.best(), 300, random);
+    EXPECT_LT(unseen.size(), before) << "the more was touched, the less is left";
+    before = unseen.size();
+    EXPECT_GT(before, 0U);
+    for (const Piece& piece : unseen) {
+      for (const SurfaceTouch& touch : touches) {
+        const Chord first = piece.inside(touch.line)[0];
+        if (first.empty() || first.begin >= touch.length) continue;
+        EXPECT_LT(std::min((touch.length - first.begin) * first.begin_cosine, piece.aside(touch.line)), 0.001);
+      }
+    }
+  }
+}
+
 TEST(Solids, KeepWhatTheySumUpTrueThroughAllMoves) {
   Random random(8, "test/solids");
   SolidsSettings settings;
@@ -305,6 +388,182 @@ TEST(Solids, KeepWhatTheySumUpTrueThroughAllMoves) {
     }
     EXPECT_NEAR(one.likelihood, likelihood, 1e-9);
   }
+}
+
+/// A cup: 8 cm wide, 6 cm deep, its wall 1 cm, its bottom open, in the middle of an area of 26 cm.
+std::vector<std::string> cup() {
+  return {"scene.touch=any", "scene.area={width: 26 cm, depth: 26 cm}", "scene.desk=2 cm",
+          "scene.objects=[{type: ring, outer: 8 cm, inner: 6 cm, height: 6 cm, at: [13 cm, 13 cm]}]"};
+}
+const Vector3d kMiddle(0.13, 0.13, 0.08);
+
+std::unique_ptr<const Scene> scene_of_cup() {
+  return build_scene(shipped_config("any_side.yaml", cup()).options.scene, 1, shared_host());
+}
+
+TEST(SideView, IsFreeUpToWhereTheSceneIsFirstMetAndKnowsObjectFromDesk) {
+  const auto scene = scene_of_cup();
+  SideViewOptions options;
+  options.azimuth = 0.5;
+  const std::vector<SurfaceTouch> view = side_view(options, *scene, kMiddle, 0.12, Random(1, "view"));
+  ASSERT_EQ(view.size(), 400U);
+  EXPECT_TRUE(shows_object(view));
+  int on = 0, desk = 0, nothing = 0;
+  for (const SurfaceTouch& ray : view) {
+    EXPECT_NEAR((ray.line.origin - kMiddle).norm(), 0.6, 1e-12);
+    EXPECT_NEAR((ray.line.origin - kMiddle).z(), 0.6 * std::sin(options.elevation), 1e-12);
+    const double hit = scene->first_hit({ray.line.origin + Vector3d(0, 0, 0.02), ray.line.direction});
+    if (ray.contact && !ray.desk) {
+      ++on;
+      EXPECT_EQ(ray.length, hit);
+    } else {
+      EXPECT_LT(ray.length, hit);
+      ++(ray.desk ? desk : nothing);
+      EXPECT_NEAR(ray.desk ? ray.end().z() : 0.0, 0.0, 1e-12);
+    }
+  }
+  EXPECT_GT(on, 20);
+  EXPECT_GT(desk, 100);
+  // From level some rays meet nothing.
+  options.elevation = 0.0;
+  for (const SurfaceTouch& ray : side_view(options, *scene, kMiddle, 0.12, Random(1, "view")))
+    nothing += ray.contact ? 0 : 1;
+  EXPECT_GT(nothing, 50);
+}
+
+TEST(SideView, IsFromWhereTheSeedSaysUnlessTheConfigDoes) {
+  const auto scene = scene_of_cup();
+  SideViewOptions options;
+  const auto eye = [&](std::uint64_t seed) {
+    return side_view(options, *scene, kMiddle, 0.12, Random(seed, "view")).front().line.origin;
+  };
+  EXPECT_EQ(eye(1), eye(1));
+  EXPECT_GT((eye(1) - eye(2)).norm(), 1e-3);
+  options.azimuth = 1.0;
+  EXPECT_EQ(eye(1), eye(2));
+  options.elevation = kHalfTurn / 2;  // from above, too
+  EXPECT_NEAR((eye(1) - kMiddle - Vector3d(0, 0, 0.6)).norm(), 0.0, 1e-12);
+}
+
+TEST(SideView, IsThinnedToRaysOfEachKindOfWhichThoseOnTheObjectLieApart) {
+  const auto scene = scene_of_cup();
+  SideViewOptions options;
+  options.azimuth = 0.5;
+  options.rays = 3600;
+  const std::vector<SurfaceTouch> view = side_view(options, *scene, kMiddle, 0.12, Random(1, "view"));
+  const std::vector<SurfaceTouch> few = thinned_view(view, 160);
+  EXPECT_LE(few.size(), 160U);
+  EXPECT_GT(few.size(), 120U);
+  Cloud ends;
+  int others = 0;
+  for (const SurfaceTouch& ray : few) {
+    EXPECT_TRUE(std::any_of(view.begin(), view.end(), [&](const SurfaceTouch& one) {
+      return one.line.direction == ray.line.direction && one.length == ray.length && one.desk == ray.desk;
+    }));
+    if (ray.contact && !ray.desk) ends.push_back(ray.end());
+    others += ray.desk || !ray.contact ? 1 : 0;
+  }
+  EXPECT_GT(ends.size(), 60U);
+  EXPECT_LE(ends.size(), 96U);
+  EXPECT_GT(others, 40);
+  EXPECT_GT(thinned(ends, 0.006).size(), ends.size() * 9 / 10) << "the cubes may be a little larger";
+  // Where all that is seen is desk, some of that is kept.
+  std::vector<SurfaceTouch> desk = view;
+  for (SurfaceTouch& ray : desk) ray.desk = true;
+  EXPECT_EQ(thinned_view(desk, 160).size(), 160U);
+}
+
+TEST(SideView, IsRefusedWhereAnotherWorldIsTappedThanTheScene) {
+  class Elsewhere final : public Backend {
+   public:
+    Contact tap(const TapRequest&) override { return {}; }
+    bool repeatable() const override { return true; }
+    bool reaches(const Approach&) const override { return true; }
+    bool scene_is_truth() const override { return false; }
+  };
+  std::vector<std::string> words = cup();
+  words.emplace_back("space.view={}");
+  const ResolvedConfig config = shipped_config("any_side.yaml", words);
+  try {
+    FromAnySide(config.options, shared_host(), nullptr, std::make_shared<Elsewhere>());
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("space.view: is made of the scene of the config"));
+  }
+}
+
+TEST(Cubes, HoldWhatIsSolidAndNotWhatItEncloses) {
+  const auto scene = scene_of_cup();
+  const Cubes cubes(kMiddle, 0.18, 0.004);
+  const Cubes::Held truth = cubes.of(*scene);
+  const auto volume = [](const Cubes::Held& held) {
+    return 0.004 * 0.004 * 0.004 * static_cast<double>(std::count(held.begin(), held.end(), true));
+  };
+  EXPECT_NEAR(volume(truth), kHalfTurn * (0.04 * 0.04 - 0.03 * 0.03) * 0.06, 9e-6)
+      << "of 132 cubic centimetres, to what cubes of 4 mm make of it";
+  EXPECT_EQ(intersection_over_union(truth, truth), 1.0);
+  EXPECT_EQ(intersection_over_union(truth, Cubes::Held(truth.size())), 0.0);
+  EXPECT_EQ(intersection_over_union(Cubes::Held(truth.size()), Cubes::Held(truth.size())), 1.0);
+}
+
+TEST(Cubes, OfACompositionAreThoseWhoseCentresThePiecesHold) {
+  Random random(9, "test/cubes");
+  const Skin nothing(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005});
+  const Cubes cubes({0.0, 0.0, 0.1}, 0.12, 0.006);
+  for (int i = 0; i < 10; ++i) {
+    Composition one;
+    for (int k = 0; k < 2; ++k) {
+      Piece piece = random_piece(random);
+      piece.centre.z() += 0.1;
+      one.parts.push_back({piece, {}, {}, 0.0});
+    }
+    const Cubes::Held held = cubes.of(one, nothing);
+    std::size_t index = 0;
+    int count = 0;
+    for (int x = 0; x < 40; ++x) {
+      for (int y = 0; y < 40; ++y) {
+        for (int z = 0; z < 37; ++z, ++index) {
+          const Vector3d at(-0.117 + 0.006 * x, -0.117 + 0.006 * y, 0.003 + 0.006 * z);
+          const bool within = holds(one.parts[0].piece, at) || holds(one.parts[1].piece, at);
+          count += held[index] == within ? 0 : 1;
+        }
+      }
+    }
+    ASSERT_EQ(index, held.size());
+    EXPECT_EQ(count, 0);
+  }
+}
+
+TEST(Cubes, AreFewerOrMoreByWhatTheSkinAdds) {
+  Composition ball;
+  ball.parts.push_back(
+      {{Piece::Form::ellipsoid, {0, 0, 0.1}, Eigen::Matrix3d::Identity(), {0.05, 0.05, 0.05}, 0.0}, {}, {}, 0.0});
+  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 8 cm}"), {0.006, 0.0005});
+  std::vector<SurfaceTouch> touches;  // 4 mm outside all around
+  Random random(10, "test/cubes");
+  for (int i = 0; i < 150; ++i) {
+    const Vector3d out = random_direction(random);
+    touches.push_back({{Vector3d(0, 0, 0.1) + 0.154 * out, -out}, 0.1, true, false});
+  }
+  skin.fit(ball, touches);
+  const Cubes::Held held = Cubes({0, 0, 0.1}, 0.12, 0.003).of(ball, skin);
+  const double volume = 2.7e-8 * static_cast<double>(std::count(held.begin(), held.end(), true));
+  EXPECT_NEAR(std::cbrt(volume * 3 / (4 * kHalfTurn)), 0.054, 5e-4);
+}
+
+TEST(Scene, TellsWhichPartsOfALineLieInItsObjectsAlsoWhereTheyOverlap) {
+  const auto scene = scene_of_cup();
+  const std::vector<Stretch> across = scene->stretches({{0.0, 0.13, 0.05}, {1.0, 0.0, 0.0}});
+  ASSERT_EQ(across.size(), 2U);
+  EXPECT_NEAR(across[0].begin, 0.09, 1e-12);
+  EXPECT_NEAR(across[0].end, 0.10, 1e-12);
+  EXPECT_NEAR(across[1].begin, 0.16, 1e-12);
+  EXPECT_NEAR(across[1].end, 0.17, 1e-12);
+  EXPECT_TRUE(scene->stretches({{0.0, 0.13, 0.09}, {1.0, 0.0, 0.0}}).empty());
+  const std::vector<Stretch> all = joined({{0.3, 0.4}, {0.0, 0.1}, {0.05, 0.2}, {0.1, 0.12}});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].end, 0.2);
+  EXPECT_EQ(all[1].begin, 0.3);
 }
 
 }  // namespace

@@ -15,6 +15,40 @@ namespace {
 constexpr double kLeastSignal = 1e-12;
 constexpr double kMostSignal = 1e12;
 
+constexpr std::int64_t kPaperCount = 47;
+
+/// Resolved configs have every key: what nobody asked for is at its default.
+void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields) {
+  const ExperimentOptions usual;
+  const auto only = [&](const char* key, bool untouched) {
+    fields.require(untouched, key, "is of taps from above and means nothing from any side, take it away");
+  };
+  only("candidates.spacing", !options.candidates.spacing);
+  only("candidates.count", options.candidates.count == kPaperCount);
+  only("height.kernel", !options.height.kernel);
+  only("height.fitting", !options.height.fitting);
+  only("height.lies", !options.height.lies);
+  only("height.systematic", !options.height.systematic);
+  only("weight.signal", options.weight.signal == usual.weight.signal);
+  only("weight.noise", options.weight.noise == usual.weight.noise);
+  only("weight.prior_mean", options.weight.prior_mean == usual.weight.prior_mean);
+  only("weight.clip", options.weight.clip == usual.weight.clip);
+  only("weight.hyperparameters", options.weight.hyperparameters == usual.weight.hyperparameters);
+  only("weight.kernel", !options.weight.kernel);
+  only("weight.fitting", !options.weight.fitting);
+  only("posterior", options.posterior == usual.posterior);
+  only("lowrank.tolerance", options.lowrank.tolerance == usual.lowrank.tolerance);
+  only("fitting.type", options.fitting.type == usual.fitting.type);
+  only("footprint.type", options.footprint.type == usual.footprint.type);
+  only("fallback", options.fallback == usual.fallback);
+  only("repeat", options.repeat == usual.repeat);
+  only("accuracy", options.accuracy == usual.accuracy);
+  only("stop.max_standard_deviation", !options.stop.max_standard_deviation);
+  only("stop.expected_rmse", !options.stop.expected_rmse);
+  only("log.maps", options.log.maps == usual.log.maps);
+  only("prior", !options.prior);
+}
+
 }  // namespace
 
 void InitialOptions::list(Fields& fields) {
@@ -32,7 +66,6 @@ void InitialOptions::list(Fields& fields) {
 }
 
 void CandidateOptions::list(Fields& fields) {
-  constexpr std::int64_t kPaperCount = 47;
   fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
   // The default belongs into the resolved config, unless spacing takes its place.
   if (!spacing && !count) count = kPaperCount;
@@ -112,6 +145,20 @@ void LowrankOptions::list(Fields& fields) {
   fields.choice(precision, Field("precision", "of the maps over the candidates"), {{"double", "the only one", {}}});
 }
 
+void SideViewOptions::list(Fields& fields) {
+  constexpr double kUpright = 3.14159265358979323846 / 2;
+  fields.real(azimuth, Field("azimuth",
+                             "where the camera is, seen from the middle of the area, counter-clockwise from x; not "
+                             "given, drawn from the seed")
+                           .in(Unit::radian));
+  fields.real(elevation, Field("elevation", "how far it is above the horizon, seen from there")
+                             .in(Unit::radian)
+                             .at_least(0)
+                             .at_most(kUpright * (1 + 1e-12)));
+  fields.integer(
+      rays, Field("rays", "of its picture, a square: the square number that is nearest").at_least(16).at_most(40000));
+}
+
 void SpaceOptions::list(Fields& fields) {
   fields.integer(
       approaches,
@@ -122,6 +169,9 @@ void SpaceOptions::list(Fields& fields) {
   fields.integer(
       moves, Field("moves", "of each, after a tap, by which it is fitted to the touches").at_least(0).at_most(100000));
   fields.real(misfit, Field("misfit", "by how much objects are off the simple solids").in(Unit::metre).above(0));
+  fields.section(view, Field("view",
+                             "what a camera 60 cm away sees of the scene, from one side, before the first tap; for "
+                             "backend: simulator; not given, nothing"));
 }
 
 void StopOptions::list(Fields& fields) {
@@ -235,6 +285,7 @@ void ExperimentOptions::list(Fields& fields) {
                           : "implicit is for a scene with touch: any");
   fields.require(!any_side || initial.design == InitialOptions::Design::random, "initial.design",
                  "from any side the first taps are random");
+  if (any_side) refuse_what_is_from_above(*this, fields);
   fields.require(
       std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
       fmt::format("cuts the area into {} x {} cells, at most {} a side are possible", columns, rows, kMaxCellsPerSide));

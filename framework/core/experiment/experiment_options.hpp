@@ -69,12 +69,21 @@ struct LowrankOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// What a camera saw before the first tap, where the tool comes from any side: see space/view.hpp.
+struct SideViewOptions : Options {
+  std::optional<double> azimuth;  ///< radians; absent: drawn from the seed
+  double elevation = 35.0 / 180.0 * 3.14159265358979323846;
+  std::int64_t rays = 400;
+  void list(Fields& fields) override;
+};
+
 /// Of `surface: implicit`: see space/.
 struct SpaceOptions : Options {
   std::int64_t approaches = 2000;
   std::int64_t compositions = 24;
   std::int64_t moves = 1000;
   double misfit = 0.002;  ///< metres
+  std::optional<SideViewOptions> view;
   void list(Fields& fields) override;
 };
 

@@ -67,6 +67,18 @@ const std::vector<ErrorField>& error_list() {
            .more()
            .called("F-score at 5 mm"),
        &Errors::f_score, true},
+      {RecordField(
+           "surface_coverage_95",
+           "from any side: share of the reconstructed surface whose distance to the true one is within 1.96 of its "
+           "standard deviations: 0.95 where these are as large as they should be")
+           .called("coverage of 95 % intervals"),
+       &Errors::coverage, true},
+      {RecordField("volume_iou",
+                   "from any side: what is solid as it is reconstructed against what truly is, hollows left out: "
+                   "intersection over union of cubes of 4 mm by their centres")
+           .more()
+           .called("volume IoU"),
+       &Errors::volume_iou, true},
   };
   return list;
 }

@@ -2,13 +2,13 @@
 #include "space/from_any_side.hpp"
 
 #include "experiment/policy.hpp"
+#include "space/view.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace palpate {
 namespace {
@@ -18,6 +18,8 @@ namespace {
 constexpr int kDirections = 150;
 constexpr double kPitch = 0.006;
 constexpr double kSide = 0.003;
+// Of cubes so large a wall of 3 mm holds those whose centres it holds, too many here and too few there.
+constexpr double kCube = 0.004;
 
 }  // namespace
 
@@ -27,13 +29,29 @@ FromAnySide::FromAnySide(const ExperimentOptions& options, const PluginFactory& 
     : Experiment(options, factory, interrupted, std::move(backend), directory),
       belief_(options_, context_, *backend_),
       acquisition_(context_.create<Acquisition>(options.acquisition)),
-      bundle_(belief_.region().centre, belief_.region().outside(), kDirections, kPitch) {
+      bundle_(belief_.region().centre, belief_.region().outside(), kDirections, kPitch),
+      cubes_(belief_.region().centre, belief_.region().outside(), kCube) {
   if (!acquisition_->any_side()) {
     throw Error("acquisition", fmt::format("{} scores taps from above alone", options.acquisition.type),
-                "choose one that scores approaches: contrast, uncertainty, random");
+                "choose one that scores approaches: discovery, uncertainty, random");
   }
   result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
                            {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
+  if (options_.space->view) look();
+}
+
+void FromAnySide::look() {
+  if (!backend_->scene_is_truth()) {
+    throw Error(
+        "space.view",
+        fmt::format("is made of the scene of the config, and backend {} taps another world", options_.backend.type),
+        "take it away, or choose backend=simulator");
+  }
+  constexpr std::size_t kMost = 160;  // rays that are kept: what a touch costs grows with them
+  const std::vector<SurfaceTouch> view = side_view(*options_.space->view, *scene_, belief_.region().centre,
+                                                   belief_.region().radius, context_.random("space/view"));
+  object_seen_ = shows_object(view);
+  belief_.look(thinned_view(view, kMost));
 }
 
 void FromAnySide::update() {
@@ -45,6 +63,17 @@ void FromAnySide::update() {
 
 std::optional<std::string> FromAnySide::stop_rule(Source) { return std::nullopt; }
 
+Eigen::VectorXd FromAnySide::scores() {
+  update();
+  Eigen::VectorXd out(static_cast<Eigen::Index>(belief_.approaches().size()));
+  acquisition_->score_approaches(belief_, out);
+  if (!all_finite(out)) {
+    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+                Error::Kind::run);
+  }
+  return out;
+}
+
 std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   update();
   const PhaseClock::Scope acquire(clock_, Phase::acquire);
@@ -52,13 +81,7 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   tap.number = result_.taps + 1;
   tap.source = starting() ? Source::initial : Source::acquisition;
   if (!starting()) {
-    Eigen::VectorXd scores(static_cast<Eigen::Index>(belief_.approaches().size()));
-    acquisition_->score_approaches(belief_, scores);
-    if (!all_finite(scores)) {
-      throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
-                  Error::Kind::run);
-    }
-    const Pick picked = pick_best(scores, std::vector<bool>(belief_.approaches().size(), true),
+    const Pick picked = pick_best(scores(), std::vector<bool>(belief_.approaches().size(), true),
                                   acquisition_->prior_scale(), options_.tie_tolerance);
     tap.candidate = picked.candidate;
     tap.score = picked.score;
@@ -78,7 +101,7 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
 void FromAnySide::read(TapRecord& tap) { tap.on_surface = tap.contact.height > scene_->desk() + 0.0015; }
 
 void FromAnySide::observe(const PastTap& tap) {
-  belief_.observe(tap.approach.value(), tap.contact);
+  belief_.observe(approach_of(tap), tap.contact);
   previous_ = tap.target;
   ++result_.taps;
   result_.robot_seconds += tap.contact.seconds;
@@ -92,40 +115,64 @@ void FromAnySide::observe(const PastTap& tap) {
 }
 
 void FromAnySide::resume(const std::vector<PastTap>& past) {
+  update();
   for (const PastTap& tap : past) {
     observe(tap);
     update();
   }
 }
 
-const Cloud& FromAnySide::truth() {
+const FromAnySide::TrueSurface& FromAnySide::truth() {
   if (truth_) return *truth_;
   truth_.emplace();
   if (!backend_->scene_is_truth()) return *truth_;
+  Cloud& fine = truth_->fine;
   const Eigen::Vector3d desk(0.0, 0.0, scene_->desk());
   for (const Line& line : bundle_.lines) {
     const double hit = scene_->first_hit({line.origin + desk, line.direction});
-    if (hit < belief_.desk_along(line)) truth_->push_back(line.origin + hit * line.direction);
+    if (hit < belief_.desk_along(line)) fine.push_back(line.origin + hit * line.direction);
   }
-  return *truth_ = thinned(*truth_, kSide);
+  fine = thinned(fine, kFineSide / 2);
+  truth_->cloud = thinned(fine, kSide);
+  truth_->cubes = cubes_.of(*scene_);
+  return *truth_;
 }
 
 Errors FromAnySide::errors() {
-  if (truth().empty()) return {};
+  if (truth().cloud.empty()) return {};
   update();
-  Cloud believed;
-  for (const SpaceBelief::SurfacePoint& point : belief_.surface(bundle_, kSide)) believed.push_back(point.at);
-  const CloudErrors errors = compare_clouds(believed, truth());
+  const Cloud surface = belief_.surface(bundle_, kSide);
+  const CloudErrors errors = compare_clouds(surface, truth().cloud);
   Errors out;
   out.rmse = errors.rms;
   out.rmse_on_surface = errors.rms_of_truth;
   out.nearest = errors.mean;
   out.f_score = errors.f_score;
+  out.coverage = coverage(surface);
+  out.volume_iou = intersection_over_union(cubes_.of(belief_.solids().best(), belief_.skin()), truth().cubes);
   return out;
 }
 
+std::optional<double> FromAnySide::coverage(const Cloud& surface) {
+  if (surface.empty()) return std::nullopt;
+  constexpr double kOf95Percent = 1.96;
+  const Cloud points = thinned(surface, 2.0 * kSide);
+  const Eigen::VectorXd deviations = belief_.uncertainty(points);
+  const std::vector<double> distances = nearest_distances(points, truth().fine);
+  const auto within =
+      Eigen::Map<const Eigen::ArrayXd>(distances.data(), deviations.size()) <= kOf95Percent * deviations.array();
+  return within.cast<double>().mean();
+}
+
 RunResult FromAnySide::result() {
+  update();
   RunResult out = result_;
+  const Skin& skin = belief_.skin();
+  out.jitter_max = skin.jitter() * skin.signal() * skin.signal();
+  out.interventions["jitter"] = skin.jitter_raised();
+  out.interventions["pivoted"] = skin.pivoted();
+  out.interventions["set_aside"] = skin.set_aside();
+  out.interventions["variance_clamped"] = belief_.variances_clamped();
   out.interrupted = out.stop_reason == kStoppedByUser;
   out.errors = errors();
   return out;
@@ -137,20 +184,24 @@ std::vector<ModelReader> FromAnySide::readers() const {
   return {{"compositions", "surface: implicit"}, {"skin", "surface: implicit"}};
 }
 
-std::string FromAnySide::surface_ply() {
+Crossings FromAnySide::crossings(double side) {
   update();
-  const std::vector<SpaceBelief::SurfacePoint> points = belief_.surface(bundle_, kSide);
-  std::string out = fmt::format(
-      "ply\nformat ascii 1.0\ncomment metres, in the frame of the area\nelement vertex {}\nproperty float x\nproperty "
-      "float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float "
-      "standard_deviation\nend_header\n",
-      points.size());
-  for (const SpaceBelief::SurfacePoint& point : points) {
-    fmt::format_to(std::back_inserter(out), "{:.6f} {:.6f} {:.6f} {:.4f} {:.4f} {:.4f} {:.6f}\n", point.at.x(),
-                   point.at.y(), point.at.z() + scene_->desk(), point.normal.x(), point.normal.y(), point.normal.z(),
-                   point.deviation);
-  }
+  Crossings out = cross_surface(belief_.solids().best(), belief_.skin(), belief_.touches(), side);
+  Cloud points;
+  for (const Crossings::Vertex& vertex : out.vertices) points.push_back(vertex.at);
+  const Eigen::VectorXd deviations = belief_.uncertainty(points);
+  for (std::size_t i = 0; i < points.size(); ++i) out.vertices[i].deviation = deviations(static_cast<Eigen::Index>(i));
   return out;
+}
+
+std::string FromAnySide::surface_ply() {
+  return mesh_ply(close_mesh(crossings(kFineSide)), scene_->desk(), "standard_deviation",
+                  "metres, in the frame of the area");
+}
+
+const Approach& approach_of(const PastTap& tap) {
+  if (tap.approach) return *tap.approach;
+  throw Error("", "a tap of a run from any side has no z and no direction", "its record is damaged", Error::Kind::run);
 }
 
 std::unique_ptr<Experiment> make_experiment(const ExperimentOptions& options, const PluginFactory& factory,

@@ -5,7 +5,9 @@
 #include "experiment/experiment.hpp"
 #include "experiment/from_above.hpp"
 #include "space/cloud.hpp"
+#include "space/mesh.hpp"
 #include "space/space_belief.hpp"
+#include "space/volume.hpp"
 
 #include <palpate/acquisition.hpp>
 
@@ -35,25 +37,43 @@ class FromAnySide final : public Experiment {
   std::vector<ModelReader> readers() const override;
 
   const SpaceBelief& belief() const { return belief_; }
-  /// The surface as points with normals and standard deviations, a PLY file in ASCII.
+  /// Whether an object was seen or hit: before that the surface is anywhere.
+  bool knows_object() const { return object_seen_ || result_.first_hit_tap; }
+  /// What the acquisition gives each of the approaches among which the next tap would be chosen.
+  Eigen::VectorXd scores();
+  /// The surface that is believed, for a mesh of such cubes.
+  Crossings crossings(double side);
+  /// Its finest mesh with normals and standard deviations, a PLY file.
   std::string surface_ply();
+  /// What is truly there, relative to the desk; empty where another world is tapped.
+  struct TrueSurface {
+    Cloud cloud, fine;  ///< the surface, points of about 3 and of 1 mm
+    Cubes::Held cubes;  ///< what is solid
+  };
+  const TrueSurface& truth();
 
  private:
   void update() override;
   std::optional<std::string> stop_rule(Source source) override;
   void read(TapRecord& tap) override;
-  /// Until an object is hit there is no surface to poke: what is believed then is anywhere.
-  bool starting() const { return result_.taps < options_.initial.count || !result_.first_hit_tap; }
-  /// The scene's own surface; empty where another world is tapped.
-  const Cloud& truth();
+  /// Until an object is seen or hit there is no surface to poke: what is believed then is anywhere.
+  bool starting() const { return !object_seen_ && (result_.taps < options_.initial.count || !knows_object()); }
+  void look();
+  /// Of the 95 % intervals of such a surface.
+  std::optional<double> coverage(const Cloud& surface);
 
   SpaceBelief belief_;
   std::shared_ptr<Acquisition> acquisition_;
-  Bundle bundle_;  ///< by which surfaces are compared
-  std::optional<Cloud> truth_;
+  bool object_seen_ = false;  ///< in a view before the first tap
+  Bundle bundle_;             ///< by which surfaces are compared
+  Cubes cubes_;               ///< by which volumes are
+  std::optional<TrueSurface> truth_;
   RunResult result_;
   int updated_ = -1;  ///< taps that the belief has taken in
 };
+
+/// The line of a tap from any side. Throws Error where a record has lost it.
+const Approach& approach_of(const PastTap& tap);
 
 /// The experiment that a config asks for.
 std::unique_ptr<Experiment> make_experiment(const ExperimentOptions& options, const PluginFactory& factory,

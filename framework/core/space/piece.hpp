@@ -36,9 +36,9 @@ struct Piece {
   double wall = 0.0;                                       ///< thickness; 0 where it is whole
 
   bool hollow() const { return wall > 0.0; }
-  double volume() const;
-  /// How far what it encloses reaches from its centre, along a direction of its own frame.
-  double reach(const Eigen::Vector3d& own) const;  ///< of what it encloses, the hollow included, cubic metres
+  double volume() const;  ///< of what it encloses, the hollow included, cubic metres
+  /// How far that reaches from its centre, along a direction of its own frame.
+  double reach(const Eigen::Vector3d& own) const;
 
   /// Which parts of a line lie in the solid, in their order: none, one or, where it passes through the hollow, two.
   std::array<Chord, 2> inside(const Line& line) const;
@@ -46,8 +46,8 @@ struct Piece {
   double first_hit(const Line& line) const;
 
   /// By how much a line that passes through would have to be moved aside to pass by, metres, whatever is hollow: 0 or
-  /// less where it does pass by. An upper bound, of boxes exact, of others nearly.
-  double aside(const Line& line) const;
+  /// less where it does pass by; `most` if it is more. An upper bound, of boxes exact, of others nearly.
+  double aside(const Line& line, double most = kNoHit) const;
 
   /// About how far a point is outside (or, negative, inside), metres: exact at the surface, of one sign on either side
   /// of it, and of a whole box or cylinder exact everywhere; never more than the distance but for ellipsoids.

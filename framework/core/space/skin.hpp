@@ -4,18 +4,32 @@
 //     f(x) = m(x) - g(x),   g ~ GP(0, s^2 k(|x - x'|) (1 + n(x) . n(x')) / 2)
 //
 // m is the distance to the composition, n its gradient of unit length; the surface is where f is 0. The factor of the
-// normals, a linear kernel, keeps what is learnt of one side of a thin wall from the other.
+// normals, one half of a constant and of a linear kernel, keeps what is learnt of one side of a thin wall from the
+// other. As a product of kernels of space and of the normals it is positive definite wherever k is so in space.
+//
+// What is known of g, in the order of the rows:
+//
+//     a contact             f = 0:  g = m(x), with the noise of a contact
+//     a normal felt there   f rises along it alone: t . grad g = t . grad m for two directions t across it, with the
+//                           normals of the composition held
+//     a free way            f >= 0: g <= m(x), at a few points; one that would be broken holds as a contact does, the
+//                           others say nothing
+//
+// So the mean is the most probable g where a free point that lies inside by d costs d^2 / 2 noise^2, as a contact that
+// is off by d does, and one outside costs nothing: the optimum of a strictly convex problem, found exactly. The
+// variance is that of a process which knows contacts and normals alone: what a free way takes off it is less than a
+// contact in its place would, and where it is none, nothing.
 #pragma once
 
+#include "gp/simd/table.hpp"
 #include "space/solids.hpp"
 
 #include <palpate/kernel.hpp>
+#include <palpate/types.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -23,38 +37,104 @@ namespace palpate {
 struct SkinSettings {
   double most = 0.006;    ///< largest signal, metres: it is that of the touches, if that is less
   double noise = 0.0005;  ///< of a contact, metres
+  double tilt = 0.02;     ///< noise of a normal that is felt, radian
 };
 
 class Skin {
  public:
-  /// The kernel is asked for places on the desk, as far apart as those in space: it has to be one of the distance
-  /// alone.
-  Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings)
-      : kernel_(std::move(kernel)), settings_(settings) {}
+  /// The kernel is asked for places on the desk, as far apart as those in space. Throws Error where it is not one of
+  /// the distance alone.
+  Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops = simd::fastest());
 
-  /// The process over `solids`, which must outlive it, after these touches.
+  /// The process over `solids`, which must outlive it, after these touches. Throws Error where one has a normal and the
+  /// kernel no slopes.
   void fit(const Composition& solids, const std::vector<SurfaceTouch>& touches);
 
   struct Place {
     Eigen::Vector3d at, normal;
   };
+  using Places = std::vector<Place>;
+
   /// By how much the surface lies outside the composition's, near such a place of it, metres.
   double mean(const Place& place) const;
   double variance(const Place& place) const;
   double signal() const { return signal_; }
 
+  // Of many at once, which is much quicker.
+  Eigen::VectorXd means(const Places& places) const;
+  struct Posterior {
+    Eigen::VectorXd mean, variance;
+    int clamped = 0;  ///< variances that rounding had taken below 0, and that are 0
+  };
+  Posterior posterior(const Places& places) const;
+
+  /// A row of what is known: of g itself or, where `along` is not 0, of its slope in that direction.
+  struct Row {
+    Place place;
+    Eigen::Vector3d along;
+    double target;
+    double noise;  ///< standard deviation
+    bool free;     ///< a point of a free way
+  };
+  /// Those that hold and are not set aside.
+  const std::vector<Row>& rows() const { return known_.rows; }
+  /// Free points that were found inside the surface at some time; those that hold are among the rows.
+  const std::vector<Row>& free_points() const { return free_; }
+
+  /// What is added to the diagonal by need, as a share of each entry, and how often that was raised, all fits together;
+  /// how often the matrix was singular even so, and how many rows do not enter now for that.
+  double jitter() const { return jitter_; }
+  int jitter_raised() const { return jitter_raised_; }
+  int pivoted() const { return pivoted_; }
+  int set_aside() const { return set_aside_; }
+
   static Eigen::Vector3d normal(const Composition& solids, const Eigen::Vector3d& at);
 
  private:
-  /// Of a place with each of the touches.
-  Eigen::VectorXd covariances(const Place& place, std::size_t count) const;
+  /// Rows side by side: places, normals, and directions of slopes, one in each row.
+  struct Table {
+    Eigen::MatrixX3d at, normal, along;
+    bool slopes = false;
+  };
+  static Table table_of(const std::vector<Row>& rows);
+  Eigen::MatrixXd covariances(const Table& a, const Table& b) const;
+  /// Into `out`, whose columns follow each other; `apart` has room for a row a pair, of which the second number is 0.
+  void covariances(const Table& a, const Table& b, Points& apart, MatrixOut out) const;
+  /// Calls use(first place, count of places, their covariances with the rows), until all places had their turn.
+  template <class Use>
+  void for_pieces(const Places& places, const Use& use) const;
+
+  using Lower = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// Rows that were taken in, those of free ways last.
+  struct Known {
+    std::vector<Row> rows;
+    Eigen::Index certain = 0;  ///< of the others
+    Table table;
+    Lower lower;  ///< the Cholesky factor of their covariance, noise included
+    Eigen::VectorXd weights;
+  };
+  /// With the jitter so far, or what more it takes. `already_aside`: of the touches, rows that are not among these.
+  void take_in(std::vector<Row> rows, int already_aside);
+  std::vector<Row> contacts_of(const Composition& solids, const std::vector<SurfaceTouch>& touches) const;
+  struct Passage;
+  /// The points of free ways near or in the composition.
+  std::vector<Passage> passages(const Composition& solids, const std::vector<SurfaceTouch>& touches) const;
+  /// Of each way the point that is deepest inside the surface now.
+  std::vector<Row> broken(std::vector<Passage>& passages) const;
+  /// Those of free_ that hold in the optimum, with all contacts.
+  std::vector<Row> holding(const Known& contacts) const;
 
   std::shared_ptr<const Kernel> kernel_;
   SkinSettings settings_;
+  const simd::Table& loops_;
+  double unit_ = 1.0;  ///< variance of the kernel
   double signal_ = 0.0;
-  std::vector<Place> places_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
-  Eigen::VectorXd weights_;
+  Known known_;
+  std::vector<Row> free_;
+  double jitter_ = 0.0;
+  int jitter_raised_ = 0;
+  int pivoted_ = 0;
+  int set_aside_ = 0;
 };
 
 }  // namespace palpate

@@ -18,6 +18,12 @@ double normal(Random& random) {
   return radius * std::cos(2.0 * kHalfTurn * random.uniform());
 }
 
+Vector3d normal3(Random& random) {
+  Vector3d out;
+  for (double& one : out) one = normal(random);
+  return out;
+}
+
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
 Matrix3d about(const Vector3d& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
@@ -30,7 +36,7 @@ double depth_of(const Piece& piece, const SurfaceTouch& touch) {
   const Chord first = piece.inside(touch.line)[0];
   if (first.empty() || first.begin >= touch.length) return 0.0;
   const double back = (touch.length - first.begin) * first.begin_cosine;
-  return back < 1e-4 ? back : std::min(back, piece.aside(touch.line));
+  return back < 1e-4 ? back : piece.aside(touch.line, back);
 }
 
 /// Upright, lying or in between.
@@ -75,13 +81,12 @@ double Composition::distance(const Vector3d& point) const {
   return least;
 }
 
-Solids::Solids(const Area& area, const SolidsSettings& settings, Random random)
-    : area_(area), settings_(settings), random_(random) {
+Solids::Solids(const Area& area, const SolidsSettings& settings, Random random) : settings_(settings), random_(random) {
   const double middle = std::min(area.width, area.depth);
   for (int i = 0; i < settings.count; ++i) {
     Composition one;
-    const Vector3d near(area.width / 2 + 0.1 * middle * normal(random_),
-                        area.depth / 2 + 0.1 * middle * normal(random_), between(0.0, 0.1, random_));
+    Vector3d near = Vector3d(area.width / 2, area.depth / 2, 0.0) + 0.1 * middle * normal3(random_);
+    near.z() = between(0.0, 0.1, random_);
     Composition::Part part{draw(near, random_), {}, {}, 0.0};
     while (!(prior_of(part.piece) > -kNoHit)) part.piece = draw(near, random_);
     part.prior = one.prior = prior_of(part.piece);
@@ -123,26 +128,45 @@ const Composition& Solids::best() const {
   });
 }
 
-std::optional<Piece> Solids::unseen(const Composition& one, Random& random) const {
-  constexpr int kDraws = 12;
+std::vector<Piece> Solids::unseen(const Composition& one, int draws, Random& random) const {
   constexpr double kClear = 0.001;
-  for (int i = 0; i < kDraws && !one.parts.empty(); ++i) {
+  // Nats beside those of any piece, for stance, size and wall: more has what reaches into the desk.
+  constexpr double kUnlikely = 6.0;
+  std::vector<Piece> out;
+  for (int i = 0; i < draws && !one.parts.empty(); ++i) {
     const Piece& held = one.parts[random.index(one.parts.size())].piece;
     Vector3d at;
     for (Eigen::Index k = 0; k < 3; ++k) at(k) = held.half(k) * between(-1.0, 1.0, random);
-    at(static_cast<Eigen::Index>(random.index(3))) = 0.0;
     const auto side = static_cast<Eigen::Index>(random.index(3));
     at(side) = std::copysign(held.half(side), at(side));
     const Piece piece = draw(held.centre + held.turn * at, random);
-    if (!(prior_of(piece) > -settings_.pieces - 6.0)) continue;
+    if (!(prior_of(piece) > -settings_.pieces - kUnlikely)) continue;
     const bool clear = std::all_of(touches_.begin(), touches_.end(),
                                    [&](const SurfaceTouch& touch) { return depth_of(piece, touch) < kClear; });
-    if (clear) return piece;
+    if (clear) out.push_back(piece);
   }
-  return std::nullopt;
+  return out;
 }
 
 void Solids::add(const std::vector<SurfaceTouch>& touches) {
+  take_in(touches);
+  move_all();
+}
+
+void Solids::look(const std::vector<SurfaceTouch>& view) {
+  constexpr int kRounds = 15;
+  constexpr int kCooling = 10;
+  constexpr double kFlat = 0.05;
+  last_power_ = kFlat;
+  take_in(view);
+  seen_ = touches_.size();
+  for (int i = 0; i < kRounds; ++i) {
+    last_power_ = std::min(1.0, std::pow(kFlat, 1.0 - static_cast<double>(i) / kCooling));
+    move_all();
+  }
+}
+
+void Solids::take_in(const std::vector<SurfaceTouch>& touches) {
   const std::size_t before = touches_.size();
   touches_.insert(touches_.end(), touches.begin(), touches.end());
   order_.resize(touches_.size());
@@ -152,10 +176,17 @@ void Solids::add(const std::vector<SurfaceTouch>& touches) {
     const double was = one.likelihood;
     for (Composition::Part& part : one.parts) look(part, before);
     one.likelihood = likelihood_with(one, one.parts.size(), nullptr, -kNoHit);
-    weights.push_back(one.likelihood - was);
+    weights.push_back(last_power_ * (one.likelihood - was));
   }
   resample(weights);
+}
+
+void Solids::move_all() {
   for (Composition& one : all_) move(one);
+}
+
+double Solids::least_likelihood(const Composition& one, double prior_gained) {
+  return one.likelihood + (std::log(1.0 - random_.uniform()) - prior_gained) / power_;
 }
 
 void Solids::resample(const std::vector<double>& weights) {
@@ -229,7 +260,14 @@ void Solids::move(Composition& one) {
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::reverse(order_.begin(), order_.end());
-  for (int i = 0; i < settings_.moves; ++i) {
+  // Every touch costs as much as the 40th at most: what is known moves little.
+  constexpr double kFullSweeps = 40.0;
+  const auto single = static_cast<double>(touches_.size() - seen_);
+  const int moves = static_cast<int>(settings_.moves * std::min(1.0, kFullSweeps / std::max(1.0, single)));
+  constexpr double kFlat = 0.3;
+  constexpr double kCooling = 0.6;
+  for (int i = 0; i < moves; ++i) {
+    power_ = last_power_ * std::min(1.0, std::pow(kFlat, 1.0 - i / (kCooling * moves)));
     const double kind = random_.uniform();
     if (kind < kBirths || one.parts.empty()) {
       give_birth(one);
@@ -245,7 +283,7 @@ void Solids::move(Composition& one) {
     if (!change(piece)) continue;
     const double prior = prior_of(piece);
     if (!(prior > -kNoHit)) continue;
-    const double least = one.likelihood + part.prior - prior + std::log(1.0 - random_.uniform());
+    const double least = least_likelihood(one, prior - part.prior);
     const double likelihood = likelihood_with(one, which, &piece, least);
     if (!(likelihood > -kNoHit)) continue;
     part.piece = piece;
@@ -258,9 +296,9 @@ void Solids::move(Composition& one) {
 }
 
 /// One piece more, at one of the touches that are explained worst.
-bool Solids::give_birth(Composition& one) {
+void Solids::give_birth(Composition& one) {
   constexpr std::size_t kMost = 7;
-  if (one.parts.size() >= kMost || touches_.empty()) return false;
+  if (one.parts.size() >= kMost || touches_.empty()) return;
   const auto reach = [&](std::size_t i) {
     if (!touches_[i].contact || touches_[i].desk) return -1.0;
     double least = kNoHit;
@@ -272,31 +310,29 @@ bool Solids::give_birth(Composition& one) {
     const std::size_t other = random_.index(touches_.size());
     if (reach(other) > reach(worst)) worst = other;
   }
-  if (reach(worst) < 0.0) return false;
+  if (reach(worst) < 0.0) return;
   Piece piece = draw(touches_[worst].end(), random_);
   fit_to_contact(piece);
   const double prior = prior_of(piece);
-  if (!(prior > -kNoHit)) return false;
-  const double least = one.likelihood - prior + std::log(1.0 - random_.uniform());
+  if (!(prior > -kNoHit)) return;
+  const double least = least_likelihood(one, prior);
   const double likelihood = likelihood_with(one, one.parts.size(), &piece, least);
-  if (!(likelihood > -kNoHit)) return false;
+  if (!(likelihood > -kNoHit)) return;
   one.parts.push_back({piece, scratch_.reach, scratch_.depth, prior});
   one.likelihood = likelihood;
   one.prior += prior;
-  return true;
 }
 
-bool Solids::take_away(Composition& one) {
-  if (one.parts.size() < 2) return false;
+void Solids::take_away(Composition& one) {
+  if (one.parts.size() < 2) return;
   const std::size_t which = random_.index(one.parts.size());
-  const double least = one.likelihood + one.parts[which].prior + std::log(1.0 - random_.uniform());
+  const double least = least_likelihood(one, -one.parts[which].prior);
   const double likelihood = likelihood_with(one, which, nullptr, least);
-  if (!(likelihood > -kNoHit)) return false;
+  if (!(likelihood > -kNoHit)) return;
   one.likelihood = likelihood;
   one.prior -= one.parts[which].prior;
   std::swap(one.parts[which], one.parts.back());
   one.parts.pop_back();
-  return true;
 }
 
 /// Moves the face that is nearest to one of the contacts there, its opposite face stays.
@@ -334,7 +370,7 @@ bool Solids::change(Piece& piece) {
   const auto axis = static_cast<Eigen::Index>(random_.index(3));
   if (kind < 0.3) return fit_to_contact(piece);
   if (kind < 0.4) {
-    piece.centre += size * Vector3d(normal(random_), normal(random_), normal(random_));
+    piece.centre += size * normal3(random_);
   } else if (kind < 0.6) {  // one face
     const double by = size * normal(random_);
     Vector3d grown = Vector3d::Zero();
@@ -351,11 +387,13 @@ bool Solids::change(Piece& piece) {
       piece.half(axis) *= factor;
     }
   } else if (kind < 0.82) {
-    const double angle = std::exp(between(std::log(0.01), std::log(1.0), random_)) * normal(random_);
+    double angle = std::exp(between(std::log(0.01), std::log(1.0), random_));
+    angle *= normal(random_);
     const double tilt = std::abs(piece.turn(2, 2));
     if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random_.uniform() < 0.7) {
-      const Vector3d axis_of(normal(random_), normal(random_), 0.0);
-      piece.turn = about(axis_of.normalized(), 0.3 * angle) * piece.turn;
+      Vector3d level = normal3(random_);
+      level.z() = 0.0;
+      piece.turn = about(level.normalized(), 0.3 * angle) * piece.turn;
     }
     piece.turn = about(Vector3d::UnitZ(), angle) * piece.turn;
   } else if (kind < 0.88) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is believed of the objects as a whole: some compositions of simple solids, about equally likely, moved by Markov
 // chain Monte Carlo after every touch. They say where a line that nobody has tried may meet something, and they are the
-// mean that the process of implicit.hpp corrects.
+// mean that the process of skin.hpp corrects.
 #pragma once
 
 #include "space/piece.hpp"
@@ -11,14 +11,13 @@
 #include <palpate/scene.hpp>
 
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace palpate {
 
 struct SolidsSettings {
   int count = 24;           ///< compositions
-  int moves = 1000;         ///< of each, after a touch
+  int moves = 1000;         ///< of each, after a touch; fewer after the 40th
   double misfit = 0.002;    ///< by how much a touch is off the simple solids, metres: they are but nearly the objects
   double pieces = 5.0;      ///< what one piece more has to explain, nats
   double smallest = 0.002;  ///< half the least extent, metres
@@ -46,13 +45,17 @@ class Solids {
  public:
   Solids(const Area& area, const SolidsSettings& settings, Random random);
 
-  /// Takes in touches made at once, one or many.
+  /// Takes in touches made at once, one or few.
   void add(const std::vector<SurfaceTouch>& touches);
+  /// Takes in a view before all touches: many at once, and as many rounds of moves as it would take to get there touch
+  /// by touch, the first of them with the likelihood to a small power, from which it cools: so that no mode stays
+  /// because it came first.
+  void look(const std::vector<SurfaceTouch>& view);
 
   const std::vector<Composition>& compositions() const { return all_; }
-  /// A piece that nobody touched, attached to a composition, which no touch so far contradicts; none where a few draws
-  /// from the prior find none.
-  std::optional<Piece> unseen(const Composition& one, Random& random) const;
+  /// Of so many draws of one piece more, attached to `one`, those that no touch so far contradicts: what nobody has
+  /// seen. The share that is left is what the touches leave of its prior probability.
+  std::vector<Piece> unseen(const Composition& one, int draws, Random& random) const;
   /// The one that is most probable.
   const Composition& best() const;
 
@@ -63,16 +66,23 @@ class Solids {
   /// one more; -infinity as soon as it is sure to be below `least`. Leaves what each touch is to the piece in scratch_.
   double likelihood_with(const Composition& one, std::size_t which, const Piece* piece, double least);
   void resample(const std::vector<double>& weights);
+  void take_in(const std::vector<SurfaceTouch>& touches);
+  void move_all();
   void move(Composition& one);
-  bool give_birth(Composition& one);
-  bool take_away(Composition& one);
+  /// The least likelihood with which a change is taken, if it gains so much in prior: by Metropolis's rule, the
+  /// likelihood to the power power_.
+  double least_likelihood(const Composition& one, double prior_gained);
+  void give_birth(Composition& one);
+  void take_away(Composition& one);
   bool change(Piece& piece);
   bool fit_to_contact(Piece& piece);
 
-  Area area_;
   SolidsSettings settings_;
   Random random_;
   std::vector<SurfaceTouch> touches_;
+  std::size_t seen_ = 0;     ///< of them, in a view
+  double last_power_ = 1.0;  ///< of the likelihood, at the end of a sweep of moves
+  double power_ = 1.0;       ///< now
   std::vector<Composition> all_;
   Composition::Part scratch_;
   std::vector<std::size_t> order_;  ///< of the touches: those that refused a proposal last come first

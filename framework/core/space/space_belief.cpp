@@ -17,6 +17,9 @@ using Eigen::Vector3d;
 /// Tools come level or from above, or from below by no more than 30 degrees.
 constexpr double kSteepestUp = 0.5;
 
+/// Of every two approaches the first goes anywhere, the second along a normal.
+constexpr Eigen::Index kKinds = 2;
+
 SolidsSettings settings_of(const SpaceOptions& options) {
   SolidsSettings out;
   out.count = static_cast<int>(options.compositions);
@@ -41,12 +44,23 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
       desk_(context.scene.desk()),
       count_(static_cast<std::size_t>(options.space->approaches)),
       solids_(context.scene.area(), settings_of(*options.space), context.random("space/solids")),
-      skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise}) {
+      skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise},
+            simd::table_of(context.lanes)) {
   draw_approaches();
 }
 
 double SpaceBelief::desk_along(const Line& line) const {
   return line.direction.z() < 0.0 ? -line.origin.z() / line.direction.z() : kNoHit;
+}
+
+double SpaceBelief::meeting(const Approach& approach, const Composition& composition) const {
+  const Line line = line_of(approach);
+  return std::max(0.0, std::min({approach.length, desk_along(line), composition.first_hit(line)}));
+}
+
+void SpaceBelief::look(const std::vector<SurfaceTouch>& seen) {
+  touches_ = seen;
+  seen_ = seen.size();
 }
 
 void SpaceBelief::observe(const Approach& approach, const Contact& contact) {
@@ -62,11 +76,16 @@ void SpaceBelief::observe(const Approach& approach, const Contact& contact) {
 }
 
 void SpaceBelief::update(Quantities reads) {
+  if (taken_in_ < seen_) {
+    solids_.look({touches_.begin(), touches_.begin() + static_cast<std::ptrdiff_t>(seen_)});
+    taken_in_ = seen_;
+  }
   for (; taken_in_ < touches_.size(); ++taken_in_) solids_.add({touches_[taken_in_]});
   skin_.fit(solids_.best(), touches_);
   draw_approaches();
-  if (reads.has(Quantity::meetings)) compare_compositions();
-  if (reads.has(Quantity::deviation)) look_where_met();
+  if (reads == Quantities{}) return;
+  look_where_met();
+  if (reads.has(Quantity::unseen)) look_for_unseen();
 }
 
 /// Of the lines that come from where a tool may, all alike.
@@ -112,71 +131,98 @@ void SpaceBelief::draw_approaches() {
                   "scene.touch: top is for arms that come from above");
     }
     std::optional<Line> line;
-    if (taps_ > 0 && approaches_.size() % 2 == 1) line = along_normal(random);
+    if ((taps_ > 0 || seen_ > 0) && approaches_.size() % kKinds == 1) line = along_normal(random);
     if (!line) line = random_line(random);
     const Approach approach{{line->origin + Vector3d(0.0, 0.0, desk_), line->direction}, 2.0 * region_.outside()};
     if (backend_.reaches(approach)) approaches_.push_back(approach);
   }
 }
 
-/// Beside what was touched there may be something that was not: half of the compositions are asked with a piece more.
-void SpaceBelief::compare_compositions() {
-  constexpr double kFarthest = 0.02;
-  std::vector<Composition> all = solids_.compositions();
-  Random random = context_.random("space/unseen", static_cast<std::uint64_t>(taps_));
-  for (Composition& one : all) {
-    if (random.uniform() < 0.5) continue;
-    if (std::optional<Piece> more = solids_.unseen(one, random)) one.parts.push_back({*more, {}, {}, 0.0});
-  }
-  const auto rows = static_cast<Eigen::Index>(approaches_.size());
-  const auto columns = static_cast<Eigen::Index>(all.size());
-  meetings_.resize(rows, columns);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const Approach& approach = approaches_[static_cast<std::size_t>(i)];
-    const Line line{approach.line.origin - Vector3d(0.0, 0.0, desk_), approach.line.direction};
-    const double end = std::min(approach.length, desk_along(line));
-    for (Eigen::Index k = 0; k < columns; ++k)
-      meetings_(i, k) = std::min(end, all[static_cast<std::size_t>(k)].first_hit(line));
-  }
-  differences_ = Eigen::MatrixXd::Zero(columns, columns);
-  for (Eigen::Index k = 0; k < columns; ++k) {
-    for (Eigen::Index j = 0; j < k; ++j) {
-      differences_(k, j) = differences_(j, k) =
-          (meetings_.col(k) - meetings_.col(j)).cwiseAbs().cwiseMin(kFarthest).mean();
-    }
-  }
+Line SpaceBelief::line_of(const Approach& approach) const {
+  return {approach.line.origin - Vector3d(0.0, 0.0, desk_), approach.line.direction};
 }
 
 void SpaceBelief::look_where_met() {
   const auto count = static_cast<Eigen::Index>(approaches_.size());
+  met_.resize(count);
   deviation_ = Eigen::VectorXd::Zero(count);
   squareness_ = Eigen::VectorXd::Zero(count);
   const Composition& best = solids_.best();
+  Skin::Places places;
+  std::vector<Eigen::Index> whose;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Approach& approach = approaches_[static_cast<std::size_t>(i)];
-    const Line line{approach.line.origin - Vector3d(0.0, 0.0, desk_), approach.line.direction};
+    const Line line = line_of(approach);
     const double hit = best.first_hit(line);
-    if (hit >= std::min(approach.length, desk_along(line))) continue;
+    met_(i) = std::min({hit, approach.length, desk_along(line)});
+    if (hit > met_(i)) continue;
     const Vector3d at = line.origin + hit * line.direction;
     const Vector3d normal = Skin::normal(best, at);
-    deviation_(i) = std::sqrt(skin_.variance({at, normal}));
+    places.push_back({at, normal});
+    whose.push_back(i);
     squareness_(i) = std::min(1.0, std::abs(normal.dot(line.direction)));
+  }
+  const Skin::Posterior posterior = skin_.posterior(places);
+  deviation_(whose) = posterior.variance.cwiseSqrt();
+  clamped_ = posterior.clamped;
+}
+
+void SpaceBelief::look_for_unseen() {
+  constexpr int kDraws = 1000;
+  constexpr double kClearly = 0.003;  // earlier than what is believed
+  constexpr double kFarthest = 0.03;  // that a line counts
+  unseen_ = Eigen::VectorXd::Zero(met_.size());
+  Random random = context_.random("space/unseen", static_cast<std::uint64_t>(taps_));
+  const std::vector<Piece> pieces = solids_.unseen(solids_.best(), kDraws, random);
+  std::vector<Eigen::Index> meets;
+  for (const Piece& piece : pieces) {
+    meets.clear();
+    double moves = 0.0;
+    for (Eigen::Index i = 0; i < met_.size(); ++i) {
+      const double earlier = met_(i) - piece.first_hit(line_of(approaches_[static_cast<std::size_t>(i)]));
+      if (earlier <= kClearly) continue;
+      meets.push_back(i);
+      if (i % kKinds == 0) moves += std::min(kFarthest, earlier);
+    }
+    // The mean over the lines from all sides: those that are not along normals.
+    const Eigen::Index from_all_sides = (met_.size() + kKinds - 1) / kKinds;
+    moves /= static_cast<double>(from_all_sides) * kDraws;
+    for (const Eigen::Index i : meets) unseen_(i) += moves;
   }
 }
 
-std::vector<SpaceBelief::SurfacePoint> SpaceBelief::surface(const Bundle& bundle, double side) const {
+Eigen::VectorXd SpaceBelief::uncertainty(const Cloud& surface) const {
+  constexpr double kFarthest = 0.02;
+  Skin::Places places;
+  for (const Vector3d& at : surface) places.push_back({at, Skin::normal(solids_.best(), at)});
+  Eigen::VectorXd squares = skin_.posterior(places).variance;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    double apart = 0.0;
+    const double off_best = solids_.best().distance(surface[i]);  // what the skin knows of
+    for (const Composition& one : solids_.compositions()) {
+      const double off = std::min(kFarthest, std::abs(one.distance(surface[i]) - off_best));
+      apart += off * off;
+    }
+    squares(static_cast<Eigen::Index>(i)) += apart / static_cast<double>(solids_.compositions().size());
+  }
+  return squares.cwiseSqrt();
+}
+
+Cloud SpaceBelief::surface(const Bundle& bundle, double side) const {
   const Composition& best = solids_.best();
   Cloud points;
   for (const Line& line : bundle.lines) {
     const double hit = best.first_hit(line);
     if (hit < desk_along(line)) points.emplace_back(line.origin + hit * line.direction);
   }
-  std::vector<SurfacePoint> out;
-  for (const Vector3d& at : thinned(points, side)) {
-    const Skin::Place place{at, Skin::normal(best, at)};
-    Vector3d moved = at + skin_.mean(place) * place.normal;
-    moved.z() = std::max(0.0, moved.z());
-    out.push_back({moved, place.normal, std::sqrt(skin_.variance(place))});
+  Skin::Places places;
+  for (const Vector3d& at : thinned(points, side)) places.push_back({at, Skin::normal(best, at)});
+  const Eigen::VectorXd means = skin_.means(places);
+  Cloud out;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Vector3d moved = places[i].at + means(static_cast<Eigen::Index>(i)) * places[i].normal;
+    moved.z() = std::max(0.0, moved.z());  // the desk is known, nothing is below it
+    out.push_back(moved);
   }
   return out;
 }

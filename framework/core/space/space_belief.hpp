@@ -33,40 +33,46 @@ class SpaceBelief final : public SurfaceBelief {
   /// reaches none.
   SpaceBelief(const ExperimentOptions& options, const Context& context, const Backend& backend);
 
+  /// Takes in what was seen before the first tap.
+  void look(const std::vector<SurfaceTouch>& seen);
+
   /// Takes in a tap. Of one that failed nothing is learnt.
   void observe(const Approach& approach, const Contact& contact);
 
-  /// Has the models take in what was observed, draws the approaches of the next tap, and says of them what of meetings
-  /// and deviation is in `reads`.
+  /// Has the models take in what was observed, draws the approaches of the next tap, and says of them what of
+  /// deviation and unseen is in `reads`.
   void update(Quantities reads);
 
   // SurfaceBelief, as of the last update().
   const std::vector<Approach>& approaches() const override { return approaches_; }
   int taps() const override { return taps_; }
-  const Eigen::MatrixXd& meetings() const override { return meetings_; }
-  const Eigen::MatrixXd& differences() const override { return differences_; }
+  const Eigen::VectorXd& unseen() const override { return unseen_; }
   const Eigen::VectorXd& deviation() const override { return deviation_; }
   const Eigen::VectorXd& squareness() const override { return squareness_; }
 
   const Region& region() const { return region_; }
   const Solids& solids() const { return solids_; }
   const Skin& skin() const { return skin_; }
+  /// How many variances of the last update() rounding had taken below 0.
+  int variances_clamped() const { return clamped_; }
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
   /// How far along a line the desk is, infinity where it is not.
   double desk_along(const Line& line) const;
+  /// How far a tool comes along an approach if a composition is the truth.
+  double meeting(const Approach& approach, const Composition& composition) const;
 
-  /// A point of the surface that is believed, its normal, and how uncertain it is along that.
-  struct SurfacePoint {
-    Eigen::Vector3d at, normal;
-    double deviation = 0.0;
-  };
-  /// The surface where lines from all sides first meet it, at most one point in a cube of `side`.
-  std::vector<SurfacePoint> surface(const Bundle& bundle, double side) const;
+  /// The surface where lines from all sides first meet it, at most one point in a cube of `side`; its mesh: mesh.hpp.
+  Cloud surface(const Bundle& bundle, double side) const;
+  /// By how much the surface may be off near such points of it, metres, standard deviations: what the skin leaves open,
+  /// and how far from the most probable composition the others have it there, none more than 2 cm.
+  Eigen::VectorXd uncertainty(const Cloud& surface) const;
 
  private:
   void draw_approaches();
-  void compare_compositions();
   void look_where_met();
+  void look_for_unseen();
+  /// An approach's line, above a desk at 0.
+  Line line_of(const Approach& approach) const;
   Line random_line(Random& random) const;
   std::optional<Line> along_normal(Random& random) const;
 
@@ -79,10 +85,12 @@ class SpaceBelief final : public SurfaceBelief {
   Skin skin_;
   std::vector<SurfaceTouch> touches_;
   int taps_ = 0;
+  std::size_t seen_ = 0;      ///< of the touches, before the first tap
   std::size_t taken_in_ = 0;  ///< of the touches, by the solids
   std::vector<Approach> approaches_;
-  Eigen::MatrixXd meetings_, differences_;
-  Eigen::VectorXd deviation_, squareness_;
+  Eigen::VectorXd met_;  ///< how far along each approach the most probable composition is met, or else the end is
+  Eigen::VectorXd deviation_, squareness_, unseen_;
+  int clamped_ = 0;
 };
 
 }  // namespace palpate

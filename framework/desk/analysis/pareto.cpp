@@ -16,8 +16,8 @@ namespace {
 
 Column make_key(const std::string& name, const std::vector<std::string>& columns, const char* option) {
   Column column = find_column(name, columns, option);
-  if (name == "coverage_95") {
-    throw Error("command line", fmt::format("{}: coverage_95 is best at 0.95, neither small nor large", option),
+  if (name == "coverage_95" || name == "surface_coverage_95") {
+    throw Error("command line", fmt::format("{}: {} is best at 0.95, neither small nor large", option, name),
                 "nlpd judges heights and intervals together");
   }
   return column;

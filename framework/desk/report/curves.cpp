@@ -130,6 +130,7 @@ std::string constant_words(const CurvePanel& panel) {
 }  // namespace
 
 Curves curves_of(const Recording& recording, const History& history) {
+  const bool any_side = !history.surfaces.empty();
   std::vector<CurvePanel> panels;
   const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});
@@ -152,10 +153,13 @@ Curves curves_of(const Recording& recording, const History& history) {
       shares.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
     }
   }
-  add("Error of the surface (rms)", "cm", CurveAxis::from_zero, std::move(lengths));
+  add(any_side ? "Error of the surface" : "Error of the surface (rms)", "cm", CurveAxis::from_zero, std::move(lengths));
   std::move(shares.begin(), shares.end(), std::back_inserter(panels));
-  add("Largest standard deviation of a height", "cm", CurveAxis::from_zero,
-      one([](const Moment& moment) { return 100.0 * moment.largest_deviation; }));
+  add(any_side ? "Largest standard deviation of the surface" : "Largest standard deviation of a height", "cm",
+      CurveAxis::from_zero, one([&](const Moment& moment) {
+        const bool drawn = !any_side || moment.largest_deviation > 0.0;
+        return drawn ? std::optional(100.0 * moment.largest_deviation) : std::nullopt;
+      }));
   add("Share of the taps on the object", "", CurveAxis::share, one([](const Moment& moment) {
         const RunResult& result = moment.result;
         return moment.taps > 0 ? std::optional(static_cast<double>(result.on_surface_taps) / moment.taps)

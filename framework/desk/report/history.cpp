@@ -74,6 +74,10 @@ std::string count_words(const RunResult& result) {
 
 HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recording)
     : recording_(recording), playback_(workshop, recording) {
+  if (auto* const any_side = dynamic_cast<FromAnySide*>(&playback_.experiment())) {
+    add_surface(*any_side);
+    return;
+  }
   const Candidates& all = playback_.from_above().candidates();
   stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
   grown_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
@@ -85,7 +89,26 @@ HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recordin
 
 void HistoryGrower::advance() {
   playback_.advance_to(playback_.taps() + 1);
-  add();
+  auto* const any_side = dynamic_cast<FromAnySide*>(&playback_.experiment());
+  any_side != nullptr ? add_surface(*any_side) : add();
+}
+
+void HistoryGrower::add_surface(FromAnySide& experiment) {
+  constexpr double kSide = 0.0025;  // walls of 3 mm are whole, most pages have all moments
+  Moment now;
+  now.taps = playback_.taps();
+  now.next = experiment.choose_next();
+  if (now.next) now.next_along = experiment.belief().meeting(*now.next->approach, experiment.belief().solids().best());
+  now.result = experiment.result();
+  grown_.surfaces.push_back(experiment.knows_object() ? experiment.crossings(kSide) : Crossings{});
+  for (const Crossings::Vertex& one : grown_.surfaces.back().vertices)
+    now.largest_deviation = std::max(now.largest_deviation, one.deviation);
+  if (grown_.true_points.empty()) grown_.true_points = experiment.truth().cloud;
+  grown_.shown.push_back(now.taps);
+  grown_.moments.push_back(now);
+  // More than a page can carry; of a thousand taps they would take gigabytes.
+  constexpr std::size_t kMost = 10'000'000;
+  thin(kMost);
 }
 
 void HistoryGrower::add() {
@@ -113,15 +136,22 @@ void HistoryGrower::thin(std::size_t most) {
     for (std::size_t i = last % 2; i <= last; i += 2) list[kept++] = std::move(list[i]);
     list.resize(kept);
   };
-  const auto cells = static_cast<std::size_t>(grown_.maps.front().frames.front().size());
-  if (grown_.shown.size() < 2 || grown_.shown.size() * grown_.maps.size() * cells <= most) return;
+  std::size_t numbers = 0;
+  for (const MapSeries& map : grown_.maps)
+    numbers += map.frames.size() * static_cast<std::size_t>(map.frames.front().size());
+  constexpr std::size_t kOfAVertex = 7;
+  for (const Crossings& one : grown_.surfaces) numbers += kOfAVertex * one.vertices.size() + one.inside.size() / 8;
+  if (grown_.shown.size() < 2 || numbers <= most) return;
   for (MapSeries& map : grown_.maps) drop(map.frames);
+  if (!grown_.surfaces.empty()) drop(grown_.surfaces);
   drop(grown_.shown);
 }
 
 History HistoryGrower::since(int moment) const {
   const auto first = std::lower_bound(grown_.shown.begin(), grown_.shown.end(), moment);
-  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y};
+  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_points};
+  if (!grown_.surfaces.empty())
+    out.surfaces = {grown_.surfaces.end() - (grown_.shown.end() - first), grown_.surfaces.end()};
   for (const MapSeries& map : grown_.maps)
     out.maps.push_back({map.name, {map.frames.end() - (grown_.shown.end() - first), map.frames.end()}});
   return finished(std::move(out));
@@ -130,6 +160,7 @@ History HistoryGrower::since(int moment) const {
 History HistoryGrower::take() { return finished(std::move(grown_)); }
 
 History HistoryGrower::finished(History history) const {
+  if (history.maps.empty()) return history;
   for (Eigen::VectorXf& frame : history.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
   if (!own_scores_) history.maps.pop_back();
   if (truth_) history.maps.push_back({"truth", {*truth_}});

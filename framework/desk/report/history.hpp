@@ -27,9 +27,10 @@ struct TapMark {
 /// A run after its first `taps` taps.
 struct Moment {
   int taps = 0;
-  RunResult result;                ///< what summary.json would say if the run had ended here
-  std::optional<TapRecord> next;   ///< what would be tapped next; absent if no candidate is left
-  double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres
+  RunResult result;                  ///< what summary.json would say if the run had ended here
+  std::optional<TapRecord> next;     ///< what would be tapped next; absent if no candidate is left
+  std::optional<double> next_along;  ///< of it, from any side: how far it would come by the most probable composition
+  double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres; from any side of the surface
   /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.
   std::optional<double> least_weight, most_weight;
 };
@@ -71,6 +72,10 @@ struct History {
   /// Last, where truth is known, "truth" in one frame, metres.
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row
+  /// Of a run from any side, in the place of maps: the surface at each moment that is shown, which of a long run are
+  /// not all; none before a tap has hit an object, when it is anywhere. And points of the true one, where it is known.
+  std::vector<Crossings> surfaces;
+  Cloud true_points;
 };
 
 /// Tells how many of all taps are done.
@@ -91,7 +96,7 @@ class HistoryGrower {
   bool has_own_scores() const { return own_scores_; }
   /// Takes in the next recorded tap, which must be there.
   void advance();
-  /// Where its maps hold more numbers than that, drops every second moment's but never the last one's.
+  /// Where its maps, or surfaces, hold more numbers than that, drops every second moment's but never the last one's.
   void thin(std::size_t most);
 
   /// The history so far, with the maps of the moments from `moment` on; equal to that of a run that ends here.
@@ -101,12 +106,13 @@ class HistoryGrower {
 
  private:
   void add();
+  void add_surface(FromAnySide& experiment);
   History finished(History history) const;
   Eigen::VectorXf shown(const Eigen::VectorXd& map);
 
   const Recording& recording_;
   Playback playback_;
-  int stride_;  ///< shown is every so-many-th column and row
+  int stride_ = 1;  ///< shown is every so-many-th column and row
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< as of now: what is pushed moves it
   double largest_ = 0.0;                  ///< standard deviation of the height process, of all moments

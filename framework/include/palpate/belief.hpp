@@ -19,7 +19,7 @@ enum class Quantity : unsigned {
   doubt = 16,       ///< which contacts are believed; nothing that a plugin reads
   outlines = 32,    ///< some of the outlines that p is the mean of
   // From any side, of a SurfaceBelief:
-  meetings = 64,   ///< meetings and differences
+  unseen = 64,     ///< unseen
   deviation = 128  ///< deviation and squareness
 };
 

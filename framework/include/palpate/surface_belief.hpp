@@ -12,7 +12,7 @@ namespace palpate {
 
 /// What is believed after the taps so far, over the approaches among which the next is chosen: N of them, drawn anew
 /// before every tap, half of them anywhere through the region, half along normals of the surface that is believed.
-/// K compositions of simple solids are believed in about equally. References stay valid until the next tap.
+/// References stay valid until the next tap.
 class SurfaceBelief {
  public:
   virtual ~SurfaceBelief() = default;
@@ -22,13 +22,11 @@ class SurfaceBelief {
   /// Taps made so far, failed ones included.
   virtual int taps() const = 0;
 
-  /// N x K: how far along each approach the tool would touch something, the desk included, if a composition were the
-  /// truth, metres; the length of the approach where it would meet nothing.
-  virtual const Eigen::MatrixXd& meetings() const = 0;
-
-  /// K x K, symmetric: how far the surfaces of two compositions are apart, metres: the mean over lines from all sides
-  /// of the difference of where they meet either, of which no line counts more than 2 cm.
-  virtual const Eigen::MatrixXd& differences() const = 0;
+  /// N: what a tap is expected to find that nobody has touched yet, metres, were one piece more expected a priori than
+  /// is believed: the probability that there is one which no touch so far contradicts and which the approach meets
+  /// before all that is believed, times how far it moves the surface: the mean over lines from all sides of how much
+  /// earlier they are met, of which no line counts more than 3 cm.
+  virtual const Eigen::VectorXd& unseen() const = 0;
 
   /// N: the standard deviation of the surface where the most probable composition has an approach meet it, along its
   /// normal there, metres; 0 where it meets no object.

@@ -88,21 +88,35 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
   return out;
 }
 
+std::string surface_ply(FromAnySide& experiment, const std::string& run) {
+  return mesh_ply(close_mesh(experiment.crossings(kFineSide)), experiment.scene().desk(), "quality",
+                  fmt::format("palpate, {}, metres, quality: standard deviation along the normal", header_text(run)));
+}
+
 std::string taps_ply(const Recording& recording, const std::string& run) {
   std::string points;
   int contacts = 0;
+  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const PastTap& tap = recording.taps[i];
     if (tap.contact.outcome != Outcome::contact) continue;
     const bool hit = recording.rows[i].flag("on_surface").value_or(false);
-    points += fmt::format("{} {} {} {} {}\n", tap.target.x, tap.target.y, tap.contact.height, i + 1, hit ? 1 : 0);
+    Eigen::Vector3d at(tap.target.x, tap.target.y, tap.contact.height);
+    std::string from;
+    if (any_side) {
+      const Line& line = approach_of(tap).line;
+      at = line.origin + tap.contact.along.value_or(0.0) * line.direction;
+      from = fmt::format(" {} {} {}", -line.direction.x(), -line.direction.y(), -line.direction.z());
+    }
+    points += fmt::format("{} {} {}{} {} {}\n", at.x(), at.y(), at.z(), from, i + 1, hit ? 1 : 0);
     ++contacts;
   }
   return fmt::format(
       "ply\nformat ascii 1.0\ncomment palpate, {}\ncomment lengths in metres; contacts only\nelement vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\nproperty int tap\nproperty uchar on_surface\n"
+      "property double x\nproperty double y\nproperty double z\n{}property int tap\nproperty uchar on_surface\n"
       "end_header\n{}",
-      header_text(run), contacts, points);
+      header_text(run), contacts, any_side ? "property double nx\nproperty double ny\nproperty double nz\n" : "",
+      points);
 }
 
 }  // namespace palpate

@@ -43,7 +43,11 @@ ReconstructedSurface reconstruct(FromAbove& experiment);
 /// and a grid of candidates is small. `run` names the run in a comment: what could break a header in it is replaced.
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run);
 
-/// The contacts as points: x, y, z, `tap` (its number), `on_surface` (1 or 0).
+/// The same of a run from any side: its finest closed mesh, as mesh_ply() has it.
+std::string surface_ply(FromAnySide& experiment, const std::string& run);
+
+/// The contacts as points: x, y, z, from any side nx, ny and nz, from where the tool came, `tap` (its number),
+/// `on_surface` (1 or 0).
 std::string taps_ply(const Recording& recording, const std::string& run);
 
 /// Text as a PLY header can hold it: one line of printable ASCII, at most 200 letters, without the word that ends it.

@@ -18,6 +18,7 @@ palpate_asset_common:
         .byte 0
 palpate_asset_run:
         .incbin "web/run_maps.js"
+        .incbin "web/run_space.js"
         .incbin "web/play.js"
         .incbin "web/run.js"
         .byte 0

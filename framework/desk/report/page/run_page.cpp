@@ -41,7 +41,8 @@ Json json_of_run(const Recording& recording) {
           {"width", options.scene.area.width},
           {"depth", options.scene.area.depth},
           {"desk", options.scene.desk},
-          {"truth", recording.truth_known()}};
+          {"truth", recording.truth_known()},
+          {"any_side", options.scene.touch == SceneOptions::Touch::any}};
 }
 
 /// The config as lines of path, value and origin: that of the manifest, which knows the files behind config.yaml.
@@ -86,6 +87,7 @@ static void to_json(Json& out, const Moment& moment) {
               {"on_surface_taps", result.on_surface_taps},
               {"off_surface_taps", result.off_surface_taps},
               {"failed_taps", result.failed_taps},
+              {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
@@ -97,6 +99,15 @@ static void to_json(Json& out, const Moment& moment) {
                    {"source", source_name(moment.next->source)},
                    {"score", moment.next->score},
                    {"ties", moment.next->ties}};
+    if (const auto& approach = moment.next->approach) {
+      const Line& line = approach->line;
+      out["next"].update({{"z", line.origin.z()},
+                          {"direction.x", line.direction.x()},
+                          {"direction.y", line.direction.y()},
+                          {"direction.z", line.direction.z()},
+                          {"along", moment.next_along},
+                          {"length", approach->length}});
+    }
   }
 }
 
@@ -139,6 +150,45 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   return out;
 }
 
+PackedSurface pack_surface(const Crossings& surface) {
+  constexpr double kMost = 255.0;
+  PackedSurface out;
+  for (std::size_t i = 0; i < surface.inside.size(); ++i) {
+    if (i % 8 == 0) out.bytes += '\0';
+    out.bytes.back() = static_cast<char>(static_cast<unsigned char>(out.bytes.back()) | surface.inside[i] << i % 8);
+  }
+  const auto [low, high] = std::minmax_element(
+      surface.vertices.begin(), surface.vertices.end(),
+      [](const Crossings::Vertex& a, const Crossings::Vertex& b) { return a.deviation < b.deviation; });
+  if (low == surface.vertices.end()) return out;
+  out.least = low->deviation;
+  out.most = high->deviation;
+  const double scale = out.most > out.least ? kMost / (out.most - out.least) : 0.0;
+  std::string deviations;
+  unsigned before = 0;
+  for (const Crossings::Vertex& one : surface.vertices) {
+    // Along two axes it lies on nodes, along the third between them.
+    const Eigen::Array3d along = (one.at - surface.origin).array() / surface.side;
+    Eigen::Index axis = 0;
+    (along - along.round()).abs().maxCoeff(&axis);
+    out.bytes += static_cast<char>(std::lround(kMost * (along(axis) - std::floor(along(axis)))));
+    const auto level = static_cast<unsigned>(std::lround(scale * (one.deviation - out.least)));
+    deviations += static_cast<char>(level - before);
+    before = level;
+  }
+  out.bytes += deviations;
+  return out;
+}
+
+/// Points of the true surface, x, y and z of each, in tenths of a millimetre.
+static std::vector<int> true_points_of(const History& history) {
+  std::vector<int> out;
+  for (const Eigen::Vector3d& point : history.true_points) {
+    for (const double one : point) out.push_back(static_cast<int>(std::lround(1e4 * one)));
+  }
+  return out;
+}
+
 /// What may change with every tap; `history` has at least one moment.
 static Json json_of_standing(const Recording& recording, const History& history) {
   // As read_status(), which counts the taps again.
@@ -164,13 +214,37 @@ static Json json_of_page(const Recording& recording, const History& history) {
                {"titles", map_titles(recording.config.options)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
+               {"true_points", true_points_of(history)},
                {"config", json_of_config(recording, manifest)},
                {"build", json_of_build(manifest)}});
   return data;
 }
 
+/// Every `stride`-th of the moments that are shown, counted from the last, with their surfaces.
+static std::string add_surfaces(Json& data, const History& history, std::size_t stride) {
+  std::vector<int> shown;
+  std::string bytes;
+  Json described = Json::array();
+  for (std::size_t last = history.shown.size() - 1, i = last % stride; i <= last; i += stride) {
+    const Crossings& one = history.surfaces[i];
+    const PackedSurface packed = pack_surface(one);
+    described.push_back({{"origin", {one.origin.x(), one.origin.y(), one.origin.z()}},
+                         {"side", one.side},
+                         {"nodes", one.nodes},
+                         {"vertices", one.vertices.size()},
+                         {"least", packed.least},
+                         {"most", packed.most}});
+    shown.push_back(history.shown[i]);
+    bytes += packed.bytes;
+  }
+  data["surfaces"] = described;
+  data["shown"] = shown;
+  return bytes;
+}
+
 /// Packs the maps of every `stride`-th of the moments that are shown, counted from the last, and describes them.
 static std::string add_maps(Json& data, const History& history, std::size_t stride) {
+  if (!history.surfaces.empty()) return add_surfaces(data, history, stride);
   std::vector<int> shown;
   std::string bytes;
   Json described = Json::array();

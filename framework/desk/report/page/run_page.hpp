@@ -40,4 +40,14 @@ struct PackedMaps {
 /// from cell to cell modulo 65536, first all their low bytes and then all their high bytes.
 PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
 
+/// A surface in two bytes a vertex and what its nodes take: a bit for each node, 1 inside, the first in the lowest;
+/// then, vertex by vertex, where it lies between the two nodes, in 255ths; then the steps of the deviation, modulo 256,
+/// from 0 for the least to 255 for the most.
+struct PackedSurface {
+  double least = 0.0;
+  double most = 0.0;
+  std::string bytes;
+};
+PackedSurface pack_surface(const Crossings& surface);
+
 }  // namespace palpate

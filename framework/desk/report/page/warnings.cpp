@@ -38,12 +38,19 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
   } else if (!recording.summary) {
     out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
   }
+  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
   if (last.on_surface_taps + last.off_surface_taps == 0) {
-    out.push_back("No tap touched anything: the maps show what was assumed.");
+    out.push_back(any_side ? "No tap touched anything." : "No tap touched anything: the maps show what was assumed.");
   } else if (last.on_surface_taps == 0) {
-    out.push_back("No tap touched an object: the maps show where it is not.");
+    out.push_back(any_side ? "No tap touched an object." : "No tap touched an object: the maps show where it is not.");
   }
-  tell(out, last.failed_taps, "tap", " brought no contact and did not reach the models.");
+  // From any side a way that met nothing tells something, too.
+  const auto broken_off =
+      std::count_if(recording.taps.begin(), recording.taps.begin() + last.taps, [](const PastTap& tap) {
+        return tap.contact.outcome != Outcome::contact && tap.contact.outcome != Outcome::no_contact;
+      });
+  tell(out, any_side ? static_cast<int>(broken_off) : last.failed_taps, "tap",
+       " brought no contact and did not reach the models.");
   tell(out, interventions(last, "height_refused"), "tap", " brought a height that is no number, and was refused.");
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explain.hpp"
 
-#include "record/fields.hpp"
 #include "record/tap_row.hpp"
+#include "report/words/explanation.hpp"
 #include "report/words/models.hpp"
 
 #include <palpate/error.hpp>
@@ -31,20 +31,17 @@ void explain_place(Page& page, const Row& row, const std::string& footprint) {
   if (!said.empty()) page.say(fmt::format("There {}.", fmt::join(said, ", ")));
 }
 
-class Explanation {
+class FromAboveExplained final : public Explanation {
  public:
-  Explanation(const Workshop& workshop, const Recording& recording, int tap)
-      : workshop_(workshop), recording_(recording), number_(tap) {}
+  using Explanation::Explanation;
 
-  std::string text() {
-    playback_.advance_to(number_ - 1);
+ private:
+  void explain() override {
     FromAbove& experiment = playback_.from_above();
     // What the choice read, and the height, which was expected whoever read it.
     experiment.ask(recorded_quantities(row_) | Quantity::height);
 
-    page_.heading(fmt::format("Tap {} of {}{}, run {} ({}): {}", number_, recording_.rows.size(),
-                              recording_.summary ? "" : " so far", options_.name, recording_.config.id,
-                              place_words(tap_.target.x, tap_.target.y)));
+    page_.heading(heading(place_words(tap_.target.x, tap_.target.y)));
     page_.heading("Why there");
     explain_choice();
     page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
@@ -55,12 +52,13 @@ class Explanation {
     explain_expectation();
     explain_outcome();
     page_.heading("What it changed");
-    explain_errors();
+    // The errors after the tap are recorded with the next one, or at the end of the run.
+    const bool last = number_ == static_cast<int>(recording_.rows.size());
+    explain_errors("Error of the surface (rms)", row_,
+                   !last ? recording_.rows[static_cast<std::size_t>(number_)] : recording_.summary.value_or(Row{}));
     explain_doubt();
-    return page_.text();
   }
 
- private:
   const RunResult& before() { return playback_.from_above().counts(); }
   int hits_before() { return before().on_surface_taps; }
 
@@ -115,12 +113,6 @@ class Explanation {
     page_.say(fmt::format("It is initial tap {} of {}, placed by the design before any model has a say ({}, seed {}).",
                           number_, options_.initial.count, kHow[static_cast<std::size_t>(options_.initial.design)],
                           options_.seed));
-  }
-
-  std::string acquisition_words() const {
-    const std::string& type = options_.acquisition.type;
-    const std::vector<PluginListing> found = workshop_.host.list("acquisition", type);
-    return found.empty() || found.front().summary.empty() ? type : fmt::format("{} ({})", type, found.front().summary);
   }
 
   double acquisition_scale() {
@@ -248,9 +240,7 @@ class Explanation {
     } else {
       explain_contact(contact, on_surface());
     }
-    if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
-    const std::string reason = recording_.summary->text("stop_reason");
-    page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
+    explain_failure();
   }
 
   bool on_surface() const { return row_.flag("on_surface").value_or(false); }
@@ -267,29 +257,6 @@ class Explanation {
     if (row_.flag("true_on_surface").value_or(on) != on)
       text += fmt::format(" In truth {} is there: the label is wrong.", on ? "the desk" : "an object");
     page_.say(text);
-  }
-
-  /// The errors after the tap are recorded with the next one, or at the end of the run.
-  void explain_errors() {
-    if (!recording_.truth_known())
-      return page_.say("The truth is not known, so nobody can say by how much the surface is off.");
-    const bool last = number_ == static_cast<int>(recording_.rows.size());
-    const Row then = !last ? recording_.rows[static_cast<std::size_t>(number_)] : recording_.summary.value_or(Row{});
-    std::vector<std::string> lengths;
-    std::vector<std::string> others;
-    for (const RecordField& error : error_fields()) {
-      const bool length = error.unit == Unit::metre;
-      const auto words = length ? length_words : plain_words;
-      const std::string from = number_words(row_, error.name, words);
-      const std::string to = number_words(then, error.name, words);
-      if (from.empty() || to.empty()) continue;
-      const std::string change = from == to ? "still " + to : fmt::format("from {} to {}", from, to);
-      (length ? lengths : others).push_back(fmt::format("{} {}", error.label, change));
-    }
-    if (!lengths.empty()) page_.say(fmt::format("Error of the surface (rms): {}.", fmt::join(lengths, ", ")));
-    for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
-    if (lengths.empty() && others.empty())
-      page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
   }
 
   /// Whether the tap is believed, right after it and by all that came later.
@@ -309,15 +276,7 @@ class Explanation {
     if (all > number_) page_.say(fmt::format("By all {} taps it {}.", all, said(all)));
   }
 
-  const Workshop& workshop_;
-  const Recording& recording_;
-  int number_;
-  const ExperimentOptions& options_ = recording_.config.options;
-  const Row& row_ = recording_.rows[static_cast<std::size_t>(number_ - 1)];
-  const PastTap& tap_ = recording_.taps[static_cast<std::size_t>(number_ - 1)];
-  Playback playback_{workshop_, recording_};
   std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
-  Page page_;
 };
 
 }  // namespace
@@ -328,7 +287,9 @@ std::string explain_tap(const Workshop& workshop, const Recording& recording, in
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
                 taps == 1 ? "ask for tap 1" : fmt::format("ask for one of 1 to {}", taps));
   }
-  return Explanation(workshop, recording, tap).text();
+  if (recording.config.options.scene.touch == SceneOptions::Touch::any)
+    return explain_approach(workshop, recording, tap);
+  return FromAboveExplained(workshop, recording, tap).text();
 }
 
 }  // namespace palpate

@@ -78,10 +78,10 @@ async function growRun(slider, news) {
   if (news.bytes) {
     const bytes = Uint8Array.from(atob(news.bytes), (c) => c.charCodeAt(0));
     const plain = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")));
-    const further = unpackMaps(new Uint8Array(await plain.arrayBuffer()), news.maps, data.x.length, data.y.length);
+    const further = unpackMoments(data, news, new Uint8Array(await plain.arrayBuffer()));
     data.shown.push(...news.shown);
     slider.grow(further);
-    if (data.shown.length * news.maps.length * data.x.length * data.y.length > kMostNumbers) thin([data.shown, ...slider.frameLists()]);
+    if (slider.numbers(news) > kMostNumbers) thin([data.shown, ...slider.frameLists()]);
   }
   input.max = data.moments.length - 1;
   if (newest) input.value = input.max;

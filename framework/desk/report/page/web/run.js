@@ -35,7 +35,7 @@ function facts(data) {
     [last.taps, ` of ${data.budget}`, "taps"],
     [last.on_surface_taps, "", "on the object"],
     [last.off_surface_taps, "", "on the desk"],
-    [last.failed_taps || kNothing, "", "failed"],
+    [last.failed_taps || kNothing, "", data.any_side ? "no contact" : "failed"],
     [shown(data.summary?.first_hit_tap), "", "first hit at tap"],
     ...errors,
     [shown(data.summary?.coverage_95, 3), "", "95 % coverage"],
@@ -47,7 +47,8 @@ function facts(data) {
 /// How the run stands: what changes with every tap of one that goes on.
 function standing(data) {
   const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.state;
-  const strategy = element("p", { class: "sub" }, "id ", data.id, `, seed ${data.seed}, acquisition `, foreign(data.acquisition), ", footprint ", foreign(data.footprint), ", ", foreign(state), ".");
+  const footprint = data.any_side ? [] : [", footprint ", foreign(data.footprint)];
+  const strategy = element("p", { class: "sub" }, "id ", data.id, `, seed ${data.seed}, acquisition `, foreign(data.acquisition), ...footprint, ", ", foreign(state), ".");
   return [strategy, facts(data), ...warningList(data.warnings.map((text) => [foreign(text)]))];
 }
 
@@ -61,6 +62,9 @@ function drawAllCurves(data) {
   return Promise.all(data.curves.map((one, i) => drawCurves(`curve_${i}`, one, data.moments.map((moment) => moment.taps))));
 }
 
+/// Where a tap went, as words.
+const whereTo = (tap) => (fromAnySide(tap) ? wayOf(tap) : `at ${place(tap)}`);
+
 const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback" };
 
 /// The moment in words.
@@ -72,7 +76,7 @@ function story(data, moment, drawn) {
     const touched = `touched ${tap.on_surface ? "the object" : "the desk"} at ${shown(tap.height * kCentimetres, 4)} cm`;
     const what = tap.on_surface === null ? `brought no contact (${tap.outcome}${reason})` : touched;
     const motion = tap.motion === undefined ? "" : `, by motion ${tap.motion}`;
-    out.push(`Tap ${tap.tap} at ${place(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}${motion}, ${what}.`);
+    out.push(`Tap ${tap.tap} ${whereTo(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}${motion}, ${what}.`);
   } else {
     out.push("Before the first tap.");
   }
@@ -80,7 +84,7 @@ function story(data, moment, drawn) {
   if (moment.next) {
     const score = moment.next.score === null ? "" : `, score ${shown(moment.next.score)}`;
     const ties = moment.next.ties > 1 ? `, one of ${moment.next.ties} that are tied` : "";
-    out.push(`Next: ${place(moment.next)}, by ${kChosenBy[moment.next.source]}${score}${ties}.`);
+    out.push(`Next: ${whereTo(moment.next)}, by ${kChosenBy[moment.next.source]}${score}${ties}.`);
   } else {
     out.push("No candidate is left.");
   }
@@ -89,7 +93,8 @@ function story(data, moment, drawn) {
   if (moment.least_weight < -1e-6 || moment.most_weight > 1 + 1e-6) {
     out.push(`w leaves [0, 1] here: ${shown(moment.least_weight, 3)} to ${shown(moment.most_weight, 3)}; its colours end at 0 and 1.`);
   }
-  if (drawn !== moment) out.push(`The maps are those after tap ${drawn.taps}.`);
+  if (data.any_side && !moment.surface_drawn) out.push("No tap has hit an object yet: it may be anywhere, and no surface is drawn.");
+  if (drawn !== moment) out.push(data.any_side ? `The surface is that after tap ${drawn.taps}.` : `The maps are those after tap ${drawn.taps}.`);
   return element("p", { class: "story", id: "story" }, foreign(out.join(" ")));
 }
 
@@ -97,10 +102,10 @@ function story(data, moment, drawn) {
 class Slider {
   constructor(data, maps) {
     this.data = data;
-    this.surface = new SurfaceView(data, maps);
-    [this.panels, this.constant] = mapPanels(data, maps);
+    this.surface = data.any_side ? new SpaceView(data, maps) : new SurfaceView(data, maps);
+    [this.panels, this.constant] = data.any_side ? [[], []] : mapPanels(data, maps);
     // The surface shows it by its colours, where there is one.
-    if (!this.surface.spatial) this.panels.unshift(this.surface.deviationPanel());
+    if (!this.surface.spatial && !data.any_side) this.panels.unshift(this.surface.deviationPanel());
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });
     this.truth = element("input", { type: "checkbox", id: "truth" });
@@ -119,12 +124,18 @@ class Slider {
 
   /// All lists that have an element for each moment that is shown.
   frameLists() {
-    return [this.surface.heights, this.surface.deviations, ...this.panels.map((panel) => panel.frames)];
+    return [...this.surface.lists(), ...this.panels.map((panel) => panel.frames)];
+  }
+
+  /// How many numbers the maps hold, or the surfaces, with as many maps as `news` tells of.
+  numbers(news) {
+    if (this.data.any_side) return 10 * this.surface.surfaces.reduce((sum, { x }) => sum + x.length, 0);
+    return this.data.shown.length * news.maps.length * this.data.x.length * this.data.y.length;
   }
 
   controls() {
     const out = element("div", { class: "controls" }, this.output, this.player.button, this.input, liveNote(this.data));
-    if (this.data.truth) out.append(element("label", {}, this.truth, this.surface.spatial ? " truth as wireframe" : " truth instead"));
+    if (this.data.truth) out.append(element("label", {}, this.truth, this.data.any_side ? " truth as points" : this.surface.spatial ? " truth as wireframe" : " truth instead"));
     return out;
   }
 
@@ -181,21 +192,34 @@ class Slider {
 /// A line about what is no plot because it never changes.
 const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "The same after every tap: ", foreign(texts.join("; ")), ".")] : []);
 
+/// The maps over the plane, of a run from above.
+function mapSection(slider) {
+  return [
+    element("h2", {}, "Maps"),
+    element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, foreign(title)))),
+    ...constants(slider.constant.map(({ title, value }) => `${title}: ${shown(value)} everywhere`)),
+  ];
+}
+
+/// What is drawn of the moments that `described` tells of, out of their bytes.
+function unpackMoments(data, described, bytes) {
+  if (data.any_side) return unpackSurfaces(bytes, described.surfaces, data.desk);
+  return unpackMaps(bytes, described.maps, data.x.length, data.y.length);
+}
+
 function drawRun(data, bytes) {
   if (data.waiting !== undefined) return drawWaiting(data);
-  const maps = unpackMaps(bytes, data.maps, data.x.length, data.y.length);
-  const slider = new Slider(data, maps);
-  const thinned = data.shown.length < data.moments.length ? ` There are maps of ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
+  const slider = new Slider(data, unpackMoments(data, data, bytes));
+  const what = data.any_side ? "surfaces" : "maps";
+  const thinned = data.shown.length < data.moments.length ? ` There are ${what} of ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
   const foreignTable = (header, rows) => table(header, rows.map((line) => line.map(foreign)));
   document.body.append(
     element("div", { id: "standing" }, ...standing(data)),
     slider.controls(),
     element("p", { class: "story", id: "story" }),
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),
-    element("h2", {}, "Maps"),
-    element("div", { class: "row", id: "maps_row" }, ...slider.panels.map(({ id, title }) => figure(`map_${id}`, foreign(title)))),
-    ...constants(slider.constant.map(({ title, value }) => `${title}: ${shown(value)} everywhere`)),
-    element("p", { class: "sub" }, `Discs: taps on the object, crosses: taps on the desk, squares: failed taps, star: the next tap. Arrow keys move the slider.${thinned}`),
+    ...(data.any_side ? [] : mapSection(slider)),
+    element("p", { class: "sub" }, `${data.any_side ? "" : "Discs: taps on the object, crosses: taps on the desk, squares: failed taps, star: the next tap. "}Arrow keys move the slider.${thinned}`),
     element("h2", {}, "By tap"),
     element("div", { class: "row small", id: "curves" }),
     element("div", { id: "curve_constants" }),

@@ -32,7 +32,8 @@ const product = (a, b) => a.map((line, row) => line.map((value, column) => value
 /// The taps up to `taps`: those on the object, those on the desk, and those that failed.
 const tapsUntil = (rows, taps) => [true, false, null].map((touched) => rows.slice(0, taps).filter((tap) => tap.on_surface === touched));
 
-const place = (tap) => `(${shown(tap.x * kCentimetres, 3)}, ${shown(tap.y * kCentimetres, 3)}) cm`;
+const centimetres = (...metres) => `(${metres.map((value) => shown(value * kCentimetres, 3)).join(", ")}) cm`;
+const place = (tap) => centimetres(tap.x, tap.y);
 
 function hover(tap) {
   const found = tap.on_surface === null ? tap.outcome : `${shown(tap.height * kCentimetres, 3)} cm`;
@@ -173,6 +174,11 @@ class SurfaceView {
     this.range = extent([...this.heights, this.truth ?? []].flat(2));
     // How far above their places the marks of taps are, or half of every mark would be inside of the surface.
     this.lift = 0.06 * (this.range[1] - this.range[0]);
+  }
+
+  /// Lists with an element for each moment that is shown.
+  lists() {
+    return [this.heights, this.deviations];
   }
 
   caption() {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "space/volume.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+
+namespace palpate {
+
+using Eigen::Vector3d;
+
+Cubes::Cubes(const Vector3d& centre, double radius, double side)
+    : lowest_(centre.x() - radius + side / 2, centre.y() - radius + side / 2, side / 2),
+      side_(side),
+      across_(static_cast<int>(std::ceil(2.0 * radius / side))),
+      up_(static_cast<int>(std::ceil((centre.z() + radius) / side))) {}
+
+Cubes::Held Cubes::of(const Scene& scene) const {
+  Held out(static_cast<std::size_t>(across_) * static_cast<std::size_t>(across_) * static_cast<std::size_t>(up_));
+  std::size_t column = 0;
+  for (int i = 0; i < across_; ++i) {
+    for (int k = 0; k < across_; ++k, column += static_cast<std::size_t>(up_)) {
+      const Line line{lowest_ + Vector3d(i * side_, k * side_, scene.desk()), Vector3d::UnitZ()};
+      for (const Stretch& stretch : scene.stretches(line)) {
+        const int last = std::min(up_ - 1, static_cast<int>(std::floor(stretch.end / side_)));
+        for (int n = std::max(0, static_cast<int>(std::ceil(stretch.begin / side_))); n <= last; ++n)
+          out[column + static_cast<std::size_t>(n)] = true;
+      }
+    }
+  }
+  return out;
+}
+
+namespace {
+
+struct Nearest {
+  double distance = kNoHit;  ///< to the composition
+  double clear = kNoHit;     ///< no surface is nearer
+  const Piece* piece = nullptr;
+};
+
+/// The share of what Piece::distance() says that is true at least: of what is round, and not equally in all
+/// directions, it is too much between the axes.
+double certain_share(const Piece& piece) {
+  if (piece.form == Piece::Form::box) return 1.0;
+  if (piece.form == Piece::Form::cylinder && piece.half.x() == piece.half.y()) return 1.0;
+  const auto axes = piece.form == Piece::Form::cylinder ? piece.half.head(2) : piece.half.head(3);
+  return std::max(1e-4, axes.minCoeff() - piece.wall) / axes.maxCoeff();
+}
+
+Vector3d normal(const Piece& piece, const Vector3d& at) {
+  constexpr double kStep = 1e-5;
+  Vector3d out;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    out(i) = piece.distance(at + kStep * Vector3d::Unit(i)) - piece.distance(at - kStep * Vector3d::Unit(i));
+  return out.stableNormalized();
+}
+
+/// What the skin adds, which changes slowly: asked for once in a few cubes for each of six directions of the normal.
+class SkinNearby {
+ public:
+  SkinNearby(const Skin& skin, double side) : skin_(skin), side_(kCubes * side) {}
+
+  double mean(const Piece& piece, const Vector3d& at) {
+    const Vector3d facing = normal(piece, at);
+    Eigen::Index axis = 0;
+    facing.cwiseAbs().maxCoeff(&axis);
+    const auto place = [&](Eigen::Index i) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at(i) / side_)) + (1 << 15));
+    };
+    const auto face = static_cast<std::uint64_t>(2 * axis + (facing(axis) < 0.0 ? 1 : 0));
+    const std::uint64_t key = ((place(0) << 16 | place(1)) << 16 | place(2)) << 3 | face;
+    const auto [found, is_new] = means_.try_emplace(key, 0.0);
+    if (is_new) found->second = skin_.mean({at, facing});
+    return found->second;
+  }
+
+ private:
+  static constexpr int kCubes = 3;
+  const Skin& skin_;
+  double side_;
+  std::unordered_map<std::uint64_t, double> means_;
+};
+
+}  // namespace
+
+Cubes::Held Cubes::of(const Composition& solids, const Skin& skin) const {
+  Held out(static_cast<std::size_t>(across_) * static_cast<std::size_t>(across_) * static_cast<std::size_t>(up_));
+  const double band = 2.0 * skin.signal();
+  SkinNearby nearby(skin, side_);
+  std::vector<double> shares, balls;
+  for (const Composition::Part& part : solids.parts) {
+    shares.push_back(certain_share(part.piece));
+    balls.push_back(part.piece.form == Piece::Form::ellipsoid ? part.piece.half.maxCoeff() : part.piece.half.norm());
+  }
+  const auto nearest = [&](const Vector3d& at) {
+    Nearest known;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const Piece& piece = solids.parts[i].piece;
+      const double distance = piece.distance(at);
+      const double to_ball = (at - piece.centre).norm() - balls[i];
+      const double clear = std::max(shares[i] * std::abs(distance), to_ball);
+      if (distance < 0.0) {  // whoever is inside of a piece has to leave that one
+        known.clear = known.distance < 0.0 ? std::max(known.clear, clear) : clear;
+      } else if (known.distance >= 0.0) {
+        known.clear = std::min(known.clear, clear);
+      }
+      if (distance < known.distance) known.distance = distance, known.piece = &piece;
+    }
+    return known;
+  };
+  // Blocks of cubes, halved until the surface is farther from their centre than their corners are.
+  const auto fill = [&](const auto& self, int x, int y, int z, int size) -> void {
+    if (x >= across_ || y >= across_ || z >= up_) return;
+    const Vector3d at = lowest_ + side_ * (Vector3d(x, y, z) + Vector3d::Constant(0.5 * (size - 1)));
+    const Nearest found = nearest(at);
+    if (size > 1 && found.clear <= band + 0.5 * std::sqrt(3.0) * (size - 1) * side_) {
+      const int half = size / 2;
+      for (int part = 0; part < 8; ++part)
+        self(self, x + (part & 1) * half, y + (part >> 1 & 1) * half, z + (part >> 2) * half, half);
+      return;
+    }
+    const bool near = size == 1 && std::abs(found.distance) < band;
+    if (!(found.distance - (near ? nearby.mean(*found.piece, at) : 0.0) < 0.0)) return;
+    for (int i = x; i < std::min(across_, x + size); ++i) {
+      for (int k = y; k < std::min(across_, y + size); ++k) {
+        const std::size_t column =
+            (static_cast<std::size_t>(i) * static_cast<std::size_t>(across_) + static_cast<std::size_t>(k)) *
+            static_cast<std::size_t>(up_);
+        for (int n = z; n < std::min(up_, z + size); ++n) out[column + static_cast<std::size_t>(n)] = true;
+      }
+    }
+  };
+  constexpr int kBlock = 16;
+  for (int x = 0; x < across_; x += kBlock) {
+    for (int y = 0; y < across_; y += kBlock) {
+      for (int z = 0; z < up_; z += kBlock) fill(fill, x, y, z, kBlock);
+    }
+  }
+  return out;
+}
+
+double intersection_over_union(const Cubes::Held& one, const Cubes::Held& other) {
+  std::size_t both = 0;
+  std::size_t either = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    both += one[i] && other[i] ? 1 : 0;
+    either += one[i] || other[i] ? 1 : 0;
+  }
+  return either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 1.0;
+}
+
+}  // namespace palpate

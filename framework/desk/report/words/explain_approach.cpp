@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// Why a run from any side made a tap along the line where it made it.
+#include "record/fields.hpp"
+#include "record/tap_row.hpp"
+#include "report/words/explanation.hpp"
+#include "report/words/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+/// "from (x 1.0, y 2.0, z 3.0) cm, coming down at 20 degrees"
+std::string line_words(const Line& line) {
+  const double degrees = 180.0 / kHalfTurn * std::asin(std::clamp(-line.direction.z(), -1.0, 1.0));
+  const std::string slope = degrees > 85.0            ? "straight down"
+                            : std::abs(degrees) < 3.0 ? "level"
+                                                      : fmt::format("coming {} at {:.0f} degrees",
+                                                                    degrees > 0.0 ? "down" : "up", std::abs(degrees));
+  const Vector3d from = 100.0 * line.origin;
+  return fmt::format("from x {:.2f} cm, y {:.2f} cm, z {:.2f} cm, {}", from.x(), from.y(), from.z(), slope);
+}
+
+std::string piece_words(const Piece& piece) {
+  constexpr const char* kForms[] = {"box", "cylinder", "ellipsoid"};  // by Piece::Form
+  const bool bowl = piece.form == Piece::Form::ellipsoid && piece.hollow();
+  const Vector3d extent = 200.0 * piece.half;
+  std::string out =
+      fmt::format("{} of {:.1f} x {:.1f} x {:.1f} cm", bowl ? "bowl" : kForms[static_cast<std::size_t>(piece.form)],
+                  extent.x(), extent.y(), bowl ? 0.5 * extent.z() : extent.z());
+  if (piece.hollow()) out += fmt::format(" with a wall of {}", length_words(piece.wall));
+  return out;
+}
+
+class ApproachExplained final : public Explanation {
+ public:
+  using Explanation::Explanation;
+
+ private:
+  void explain() override {
+    page_.heading(heading(line_words(approach_.line)));
+    page_.heading("Why there");
+    explain_choice();
+    explain_place();
+    page_.heading(fmt::format("What was believed after {}, {} of them on an object", counted(number_ - 1, "tap"),
+                              experiment_.counts().on_surface_taps));
+    explain_belief();
+    page_.heading("What was expected and what was found");
+    explain_expectation();
+    explain_outcome();
+    page_.heading("What it changed");
+    Row before;
+    add_errors(before, experiment_.errors());
+    playback_.advance_to(number_);
+    Row after;
+    add_errors(after, experiment_.errors());
+    explain_errors("Error of the surface", before, after);
+  }
+
+  void explain_choice() {
+    const std::optional<TapRecord> now = experiment_.choose_next();
+    if (tap_.source == Source::initial) {
+      page_.say(number_ <= options_.initial.count
+                    ? fmt::format("It is initial tap {} of {}, along a line anywhere through the region (seed {}).",
+                                  number_, options_.initial.count, options_.seed)
+                    : fmt::format("No tap had hit an object: until one does, lines go anywhere through the region "
+                                  "(seed {}).",
+                                  options_.seed));
+      return;
+    }
+    page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
+    if (!now || !now->approach || now->approach->line.origin != approach_.line.origin)
+      return page_.say(
+          "From the same taps this build would tap elsewhere: the run was made by another build or on "
+          "another instruction path, and what else was scored is not known.");
+    const Eigen::VectorXd scores = experiment_.scores();
+    const double score = scores(now->candidate);
+    std::string text =
+        fmt::format("Its score is {}, the best of {}", plain_words(score), fmt::format("{} approaches", scores.size()));
+    if (now->ties.value_or(1) > 1)
+      text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
+    page_.say(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
+    const Eigen::VectorXd& unseen = experiment_.belief().unseen();
+    if (unseen.size() == scores.size()) {
+      page_.say(fmt::format(
+          "Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to "
+          "find {}, as a mean over lines from all sides; the best of all finds {}.",
+          length_words(unseen(now->candidate)), length_words(unseen.maxCoeff())));
+    }
+    if (scores.size() < 2) return;
+    Eigen::Index second = now->candidate == 0 ? 1 : 0;
+    for (Eigen::Index i = 0; i < scores.size(); ++i)
+      if (i != now->candidate && scores(i) > scores(second)) second = i;
+    const double less = score - scores(second);
+    const std::string by = score == 0.0 ? "" : fmt::format("{:.3g} % ", 100.0 * std::abs(less / score));
+    page_.say(fmt::format("Runner-up: {}, with a score of {}, {}.",
+                          line_words(experiment_.belief().approaches()[static_cast<std::size_t>(second)].line),
+                          plain_words(scores(second)),
+                          less == 0.0 ? "the same" : by + (less > 0.0 ? "less" : "more, which is a tie")));
+  }
+
+  const Composition& best() const { return experiment_.belief().solids().best(); }
+
+  /// Whether a tool that comes so far is held by an object, and not by the desk or by nothing.
+  bool met(double along) const {
+    const Vector3d desk(0.0, 0.0, experiment_.scene().desk());
+    return along < approach_.length &&
+           along < experiment_.belief().desk_along({approach_.line.origin - desk, approach_.line.direction});
+  }
+
+  /// What rules read of the place where the surface is met.
+  void explain_place() {
+    const double along = experiment_.belief().meeting(approach_, best());
+    if (!met(along)) return page_.say("By the most probable composition no object is there.");
+    const Vector3d at =
+        approach_.line.origin + along * approach_.line.direction - Vector3d(0.0, 0.0, experiment_.scene().desk());
+    const Vector3d normal = Skin::normal(best(), at);
+    const double deviation = std::sqrt(experiment_.belief().skin().variance({at, normal}));
+    page_.say(fmt::format(
+        "Where it would meet the surface, the skin knows it along its normal with a standard deviation of {}, far from "
+        "all "
+        "touches with one of {}. The cosine between the line and the normal is {:.3f}: 1 is square onto the surface.",
+        length_words(deviation), length_words(experiment_.belief().skin().signal()),
+        std::abs(normal.dot(approach_.line.direction))));
+  }
+
+  void explain_belief() {
+    const std::vector<Composition>& all = experiment_.belief().solids().compositions();
+    const auto [least, most] = std::minmax_element(all.begin(), all.end(), [](const auto& one, const auto& other) {
+      return one.parts.size() < other.parts.size();
+    });
+    std::string pieces;
+    for (const Composition::Part& part : best().parts) pieces += (pieces.empty() ? "" : ", ") + piece_words(part.piece);
+    const std::string most_words = counted(static_cast<long>(most->parts.size()), "piece");
+    const bool alike = least->parts.size() == most->parts.size();
+    page_.say(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "composition"),
+                          alike ? most_words : fmt::format("{} to {}", least->parts.size(), most_words), pieces));
+  }
+
+  void explain_expectation() {
+    const std::vector<Composition>& all = experiment_.belief().solids().compositions();
+    const double along = experiment_.belief().meeting(approach_, best());
+    std::vector<double> hits;
+    for (const Composition& one : all) {
+      const double hit = experiment_.belief().meeting(approach_, one);
+      if (met(hit)) hits.push_back(hit);
+    }
+    const std::string what = met(along)                 ? fmt::format("an object after {}", length_words(along))
+                             : along < approach_.length ? fmt::format("the desk after {}", length_words(along))
+                                                        : fmt::format("nothing in {}", length_words(along));
+    std::string text = fmt::format("Expected, by the most probable composition: {}. ", what);
+    if (hits.empty()) {
+      text += fmt::format("None of {} has an object there.", all.size());
+    } else {
+      const auto count = static_cast<double>(hits.size());
+      const double mean = std::accumulate(hits.begin(), hits.end(), 0.0) / count;
+      double squares = 0.0;
+      for (const double one : hits) squares += (one - mean) * (one - mean);
+      text +=
+          fmt::format("{} of {} {} an object there, after {} with a standard deviation of {}.", hits.size(), all.size(),
+                      hits.size() == 1 ? "has" : "have", length_words(mean), length_words(std::sqrt(squares / count)));
+    }
+    page_.say(text);
+    if (met(along)) expected_ = along;
+  }
+
+  void explain_outcome() {
+    const Contact& contact = tap_.contact;
+    const double along = contact.along.value_or(approach_.length);
+    const std::string robot = fmt::format("{:.1f} s of the robot", contact.seconds);
+    if (contact.outcome == Outcome::no_contact) {
+      page_.say(fmt::format("Found: nothing in {}; all of the way is free. {}.", length_words(along), robot));
+    } else if (contact.outcome != Outcome::contact) {
+      page_.say(fmt::format("Found: nothing, the tap failed: {}{}. {}. No model learns from it.",
+                            outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, robot));
+    } else {
+      const bool on = row_.flag("on_surface").value_or(false);
+      std::string text = fmt::format("Found: contact after {}, at a height of {}, {}", length_words(along),
+                                     length_words(contact.height), on ? "on an object" : "on the desk");
+      if (on && expected_ && along != *expected_)
+        text += fmt::format(", {} {} than expected", length_words(std::abs(along - *expected_)),
+                            along > *expected_ ? "further" : "earlier");
+      text += fmt::format("; greatest force {:.3g} N, {}.", contact.force, robot);
+      if (row_.flag("true_on_surface").value_or(on) != on)
+        text += fmt::format(" In truth {} is there.", on ? "no object" : "an object");
+      page_.say(text);
+    }
+    explain_failure();
+  }
+
+  FromAnySide& experiment_ = dynamic_cast<FromAnySide&>(playback_.experiment());
+  const Approach approach_ = approach_of(tap_);
+  std::optional<double> expected_;  ///< how far to an object
+};
+
+}  // namespace
+
+std::string explain_approach(const Workshop& workshop, const Recording& recording, int tap) {
+  return ApproachExplained(workshop, recording, tap).text();
+}
+
+}  // namespace palpate

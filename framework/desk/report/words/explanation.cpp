@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "report/words/explanation.hpp"
+
+#include "record/fields.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+namespace palpate {
+
+std::string Explanation::text() {
+  playback_.advance_to(number_ - 1);
+  explain();
+  return page_.text();
+}
+
+std::string Explanation::heading(const std::string& where) const {
+  return fmt::format("Tap {} of {}{}, run {} ({}): {}", number_, recording_.rows.size(),
+                     recording_.summary ? "" : " so far", options_.name, recording_.config.id, where);
+}
+
+std::string Explanation::acquisition_words() const {
+  const std::string& type = options_.acquisition.type;
+  const std::vector<PluginListing> found = workshop_.host.list("acquisition", type);
+  return found.empty() || found.front().summary.empty() ? type : fmt::format("{} ({})", type, found.front().summary);
+}
+
+void Explanation::explain_failure() {
+  if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
+  const std::string reason = recording_.summary->text("stop_reason");
+  page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
+}
+
+void Explanation::explain_errors(const std::string& what, const Row& before, const Row& after) {
+  if (!recording_.truth_known())
+    return page_.say("The truth is not known, so nobody can say by how much the surface is off.");
+  std::vector<std::string> lengths;
+  std::vector<std::string> others;
+  for (const RecordField& error : error_fields()) {
+    const bool length = error.unit == Unit::metre;
+    const auto words = length ? length_words : plain_words;
+    const std::string from = number_words(before, error.name, words);
+    const std::string to = number_words(after, error.name, words);
+    if (from.empty() || to.empty()) continue;
+    const std::string change = from == to ? "still " + to : fmt::format("from {} to {}", from, to);
+    (length ? lengths : others).push_back(fmt::format("{} {}", error.label, change));
+  }
+  if (!lengths.empty()) page_.say(fmt::format("{}: {}.", what, fmt::join(lengths, ", ")));
+  for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
+  if (lengths.empty() && others.empty())
+    page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
+}
+
+}  // namespace palpate

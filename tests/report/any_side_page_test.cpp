@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// The page of a run from any side in a browser: the surface is the program's, taps are arrows, and it grows with its
+// run.
+#include "record/files.hpp"
+#include "record/recording.hpp"
+#include "report/browser.hpp"
+#include "report/history.hpp"
+#include "support/programs.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <utility>
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr int kTaps = 10;
+
+/// A run from any side; the meshes of its scene are in the folder that it names.
+fs::path touched(const test::TemporaryFolder& folder) {
+  fs::create_directory_symlink(test::source_folder() / "configs", folder.path() / "configs");
+  const test::Ended ran =
+      test::palpate({"run", (test::source_folder() / "configs/any_side.yaml").string(), "--quiet", "scene=any_bowl",
+                     fmt::format("taps={}", kTaps), "space.approaches=200", "space.moves=100"},
+                    folder.path());
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  return test::only_run(folder.path() / "runs");
+}
+
+class AnySidePage : public test::ReportsInBoth {};
+
+/// Of the mesh that is drawn: vertices, triangles, and its volume.
+const std::string kMesh =
+    "const {x, y, z, i, j, k} = document.getElementById('surface').data[0]; const at = (v) => [x[v], y[v], z[v]]; "
+    "let volume = 0; for (let t = 0; t < i.length; t += 1) { const [a, b, c] = [at(i[t]), at(j[t]), at(k[t])]; "
+    "volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * "
+    "c[0])) / 6; } return [x.length, i.length, volume]";
+const std::string kNames = "return document.getElementById('surface').data.map((trace) => trace.name)";
+const std::string kStory = "return document.getElementById('story').textContent";
+
+TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
+  const fs::path directory = touched(folder_);
+  const fs::path here = fs::current_path();
+  fs::current_path(folder_.path());  // from where the mesh of the scene is named
+  report(directory);
+  const Browsed seen = browse(
+      directory,
+      {drawn(kTaps), GetParam() ? kMesh : "return null", kNames, kStory, "key ARROW_LEFT", drawn(kTaps - 1),
+       GetParam() ? kMesh : "return null", "return Plotly.toImage('surface', {format: 'png', width: 400, height: 300})",
+       "document.getElementById('truth').click()",
+       "await document.getElementById('surface').data.some((trace) => trace.name === 'truth')",
+       "const s = document.getElementById('slider'); s.value = 0; s.dispatchEvent(new Event('input'));", drawn(0),
+       kStory, "return document.querySelectorAll('#curves .plot').length",
+       "return document.getElementById('maps_row') === null",
+       "return document.getElementById('standing').textContent"});
+  ASSERT_EQ(seen.values.size(), 11U);
+  if (GetParam()) {
+    // The page makes the triangles itself, from what the program has of the crossings alone.
+    const Installation installation;
+    const Workshop workshop{test::shared_host(), installation, {}, nullptr};
+    const Recording recording = read_recording(workshop, directory);
+    const History history = make_history(workshop, recording, [](int, int) {});
+    ASSERT_EQ(history.surfaces.size(), 1U + kTaps);
+    for (const auto& [value, taps] : {std::pair(0, kTaps), std::pair(3, kTaps - 1)}) {
+      const ClosedMesh mesh = close_mesh(history.surfaces[static_cast<std::size_t>(taps)]);
+      double volume = 0.0;
+      for (const auto& [a, b, c] : mesh.triangles) {
+        const auto at = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)].at; };
+        volume += at(a).dot(at(b).cross(at(c))) / 6.0;
+      }
+      const json& drawn_mesh = seen.values.at(static_cast<std::size_t>(value));
+      EXPECT_GT(mesh.vertices.size(), 500U);
+      EXPECT_EQ(drawn_mesh.at(0), mesh.vertices.size());
+      EXPECT_EQ(drawn_mesh.at(1), mesh.triangles.size());
+      EXPECT_NEAR(drawn_mesh.at(2).get<double>(), 1e6 * volume, 1e4 * volume);
+    }
+  }
+  fs::current_path(here);
+  const auto names = seen.values.at(1).get<std::vector<std::string>>();
+  EXPECT_THAT(names, testing::IsSupersetOf({"surface", "on the object", "next"}));
+  EXPECT_THAT(seen.values.at(2).get<std::string>(), HasSubstr(fmt::format("Tap {} from (", kTaps)));
+  EXPECT_THAT(seen.values.at(2).get<std::string>(), HasSubstr("Next: from ("));
+  EXPECT_GT(seen.values.at(4).get<std::string>().size(), 5000U);
+  EXPECT_THAT(seen.values.at(7).get<std::string>(), HasSubstr("it may be anywhere"));
+  EXPECT_GT(seen.values.at(8), 3);
+  EXPECT_EQ(seen.values.at(9), true);
+  EXPECT_THAT(seen.values.at(10).get<std::string>(), HasSubstr("error to the nearest point"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Browser, AnySidePage, ::testing::Bool(), test::webgl_name);
+
+class AnySideLive : public test::Reports {};
+
+TEST_F(AnySideLive, ThePageGrowsWithItsRun) {
+  const fs::path directory = touched(folder_);
+  const std::string taps = text_of(directory / "taps.jsonl");
+  const fs::path whole = folder_.path() / "taps.jsonl";
+  fs::rename(directory / "taps.jsonl", whole);
+  fs::remove(directory / "summary.json");
+  std::size_t end = 0;
+  for (int i = 0; i < 6; ++i) end = taps.find('\n', end) + 1;
+  write_file(directory / "taps.jsonl", taps.substr(0, end));
+  test::Child server({test::program_file().string(), "watch", directory.string()}, folder_.path());
+  ASSERT_TRUE(test::eventually([&] { return server.out().find('\n') != std::string::npos || !server.running(); }));
+  const std::string line = server.out();
+  const Browsed live = test::browse(
+      line.substr(0, line.find('\n')),
+      {drawn(6), "window.mark = 1",
+       fmt::format("shell sed -n 7,{}p {} >> {}", kTaps, whole.string(), (directory / "taps.jsonl").string()),
+       drawn(kTaps), "return window.mark", kMesh},
+      true);
+  ASSERT_EQ(live.trouble, "");
+  EXPECT_THAT(live.severe, IsEmpty());
+  report(directory);
+  const Browsed still = test::browse(directory / "report.html", {drawn(kTaps), kMesh}, true);
+  ASSERT_EQ(still.trouble, "");
+  EXPECT_EQ(live.values.at(1), 1);
+  EXPECT_EQ(live.values.back(), still.values.back());
+}
+
+}  // namespace
+}  // namespace palpate

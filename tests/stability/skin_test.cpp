@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+// The process over space against 100 digits. Of the framework the oracle takes the rows that are known, and nothing
+// else: slopes are differences of its own covariance, 1e-20 metres apart.
+#include "space/skin.hpp"
+#include "stability/oracle.hpp"
+#include "support/shape_laws.hpp"
+#include "support/support.hpp"
+#include "support/testing.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace palpate::stability {
+namespace {
+
+using Eigen::Vector3d;
+using test::random_direction;
+using Point = std::array<Real, 3>;
+
+const Real kStep("1e-20");
+
+class SkinOracle {
+ public:
+  SkinOracle(std::string kernel, double length, double signal, std::vector<Skin::Row> rows)
+      : kernel_(std::move(kernel)), length_(length), signal_(signal), rows_(std::move(rows)) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      std::vector<Real> row;
+      for (std::size_t j = 0; j <= i; ++j) row.push_back(covariance(rows_[i], rows_[j]));
+      lower_.push_back(std::move(row));
+    }
+  }
+
+  /// False where it is not positive definite with 100 digits.
+  bool factorise(bool noise, double jitter = 0.0) {
+    least_ = 1;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Real own = lower_[i][i];
+      for (std::size_t j = 0; j <= i; ++j) {
+        Real sum = lower_[i][j];
+        if (i == j) sum += own * jitter + (noise ? Real(rows_[i].noise) * rows_[i].noise : Real(0));
+        for (std::size_t k = 0; k < j; ++k) sum -= lower_[i][k] * lower_[j][k];
+        if (i == j && !(sum > Real("1e-80") * own)) return false;
+        if (i == j) least_ = std::min(least_, static_cast<double>(Real(sum / own)));
+        lower_[i][j] = i == j ? Real(sqrt(sum)) : Real(sum / lower_[j][j]);
+      }
+    }
+    weights_.clear();
+    for (const Skin::Row& row : rows_) weights_.emplace_back(row.target);
+    forward(weights_);
+    for (std::size_t i = weights_.size(); i-- > 0;) {
+      weights_[i] /= lower_[i][i];
+      for (std::size_t k = 0; k < i; ++k) weights_[k] -= lower_[i][k] * weights_[i];
+    }
+    return true;
+  }
+  /// The least pivot, as a share of its diagonal entry.
+  double least() const { return least_; }
+
+  struct Posterior {
+    Real mean, variance;
+  };
+  Posterior at(const Skin::Place& place) const {
+    const Skin::Row value{place, Vector3d::Zero(), 0.0, 0.0, false};
+    Posterior out{0, covariance(value, value)};
+    std::vector<Real> with;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      with.push_back(covariance(rows_[i], value));
+      out.mean += with[i] * weights_[i];
+    }
+    forward(with);
+    for (const Real& one : with) out.variance -= one * one;
+    return out;
+  }
+
+ private:
+  Real value(const Point& a, const Vector3d& na, const Point& b, const Vector3d& nb) const {
+    Real r2 = 0;
+    Real normals = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      r2 += (a[i] - b[i]) * (a[i] - b[i]);
+      normals += Real(na(k)) * nb(k);
+    }
+    r2 /= length_ * length_;
+    const Real s3 = sqrt(3 * r2);
+    const Real s5 = sqrt(5 * r2);
+    const Real k = kernel_ == "rbf"        ? Real(exp(-r2 / 2))
+                   : kernel_ == "matern32" ? Real((1 + s3) * exp(-s3))
+                                           : Real((1 + s5 + s5 * s5 / 3) * exp(-s5));
+    return signal_ * signal_ * k * normals / 2;
+  }
+
+  static Point moved(const Skin::Row& row, int sign) {
+    Point out;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      out[i] = row.place.at(k) + sign * kStep * row.along(k);
+    }
+    return out;
+  }
+
+  Real covariance(const Skin::Row& a, const Skin::Row& b) const {
+    const bool slope_a = !a.along.isZero(0.0);
+    const bool slope_b = !b.along.isZero(0.0);
+    Real sum = 0;
+    for (const int i : {1, -1}) {
+      if (!slope_a && i < 0) continue;
+      for (const int j : {1, -1}) {
+        if (!slope_b && j < 0) continue;
+        sum += i * j * value(moved(a, slope_a ? i : 0), a.place.normal, moved(b, slope_b ? j : 0), b.place.normal);
+      }
+    }
+    if (slope_a) sum /= 2 * kStep;
+    if (slope_b) sum /= 2 * kStep;
+    return sum;
+  }
+
+  void forward(std::vector<Real>& b) const {
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) b[i] -= lower_[i][k] * b[k];
+      b[i] /= lower_[i][i];
+    }
+  }
+
+  std::string kernel_;
+  Real length_, signal_;
+  std::vector<Skin::Row> rows_;
+  std::vector<std::vector<Real>> lower_;
+  std::vector<Real> weights_;
+  double least_ = 1;
+};
+
+constexpr double kLength = 0.04;
+
+std::shared_ptr<Kernel> kernel_of(const std::string& type) {
+  return test::make<Kernel>(test::shared_host(), type, "{length_scale: 4 cm}");
+}
+
+/// A vessel with a rim and an edge below, 10 cm wide.
+Composition vessel() {
+  Composition out;
+  out.parts.push_back(
+      {{Piece::Form::cylinder, {0, 0, 0.06}, Eigen::Matrix3d::Identity(), {0.05, 0.05, 0.06}, 0.004}, {}, {}, 0.0});
+  return out;
+}
+
+/// From anywhere around, some with the normal, and ways that pass beside or through.
+std::vector<SurfaceTouch> touches_of(const Composition& solids, int count, Random& random) {
+  std::vector<SurfaceTouch> out;
+  while (static_cast<int>(out.size()) < count) {
+    Vector3d direction = random_direction(random);
+    const Vector3d through = Vector3d(0, 0, 0.06) + 0.055 * random_direction(random);
+    const Line line{through - 0.3 * direction, direction};
+    const double hit = solids.first_hit(line);
+    if (hit == kNoHit) {
+      out.push_back({line, 0.6, false, false});
+      continue;
+    }
+    SurfaceTouch touch{line, hit + 0.006 * (random.uniform() - 0.5), true, false};
+    if (out.size() % 3 == 0) {
+      touch.normal = (Skin::normal(solids, touch.end()) + 0.1 * random_direction(random)).normalized();
+    }
+    out.push_back(touch);
+  }
+  return out;
+}
+
+class SkinExactly : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SkinExactly, HasMeanAndVarianceWithContactsFreePointsAndNormals) {
+  const Composition solids = vessel();
+  int slopes = 0;
+  int free = 0;
+  for (int seed = 0; seed < 4; ++seed) {
+    Random random(seed, "test/skin");
+    const std::vector<SurfaceTouch> touches = touches_of(solids, 25, random);
+    Skin skin(kernel_of(GetParam()), {0.006, 0.0005});
+    skin.fit(solids, touches);
+    SkinOracle oracle(GetParam(), kLength, skin.signal(), skin.rows());
+    ASSERT_TRUE(oracle.factorise(true));
+    std::vector<Skin::Row> certain = skin.rows();
+    certain.erase(std::remove_if(certain.begin(), certain.end(), [](const Skin::Row& row) { return row.free; }),
+                  certain.end());
+    SkinOracle without(GetParam(), kLength, skin.signal(), certain);
+    ASSERT_TRUE(without.factorise(true));
+    for (const Skin::Row& row : skin.rows()) {
+      slopes += row.along.isZero(0.0) ? 0 : 1;
+      free += row.free ? 1 : 0;
+    }
+    EXPECT_EQ(skin.jitter_raised(), 0);
+    double mean_error = 0.0;
+    double variance_error = 0.0;
+    for (int i = 0; i < 30; ++i) {
+      const Vector3d at = Vector3d(0, 0, 0.06) + 0.06 * random_direction(random);
+      // Also at the data, where distances are 0.
+      const Skin::Place place =
+          i < 10 ? skin.rows()[static_cast<std::size_t>(i)].place : Skin::Place{at, Skin::normal(solids, at)};
+      const SkinOracle::Posterior exact{oracle.at(place).mean, without.at(place).variance};
+      const double size = skin.signal();
+      mean_error = std::max(mean_error, std::abs(static_cast<double>(skin.mean(place) - exact.mean)) / size);
+      variance_error = std::max(variance_error,
+                                std::abs(static_cast<double>(skin.variance(place) - exact.variance)) / (size * size));
+    }
+    EXPECT_LE(mean_error, 1e-11);
+    EXPECT_LE(variance_error, 1e-12);
+    RecordProperty("errors_" + std::to_string(seed),
+                   std::to_string(1e15 * mean_error) + "e-15, " + std::to_string(1e15 * variance_error) + "e-15");
+  }
+  EXPECT_GT(slopes, 10);
+  EXPECT_GT(free, 3);
+}
+
+TEST_P(SkinExactly, IsTheOptimumOverAllFreePoints) {
+  const Composition solids = vessel();
+  int points = 0;
+  int slack = 0;
+  for (int seed = 10; seed < 15; ++seed) {
+    Random random(seed, "test/skin");
+    std::vector<SurfaceTouch> touches = touches_of(solids, 40, random);
+    for (int i = 0; i < 30; ++i) {  // ways close by the side: some say what others say already
+      const double angle = 2 * kHalfTurn * random.uniform();
+      const Vector3d out(std::cos(angle), std::sin(angle), 0.0);
+      const Vector3d up = (Vector3d::UnitZ() + random.uniform() * out.cross(Vector3d::UnitZ())).normalized();
+      touches.push_back({{Vector3d((0.0495 + 0.001 * random.uniform()) * out) + 0.3 * up, -up}, 0.6, false, false});
+    }
+    Skin skin(kernel_of(GetParam()), {0.006, 0.0005});
+    skin.fit(solids, touches);
+    SkinOracle oracle(GetParam(), kLength, skin.signal(), skin.rows());
+    ASSERT_TRUE(oracle.factorise(true));
+    for (const Skin::Row& point : skin.free_points()) {
+      const bool holds = std::any_of(skin.rows().begin(), skin.rows().end(), [&](const Skin::Row& row) {
+        return row.free && row.place.at == point.place.at && row.place.normal == point.place.normal;
+      });
+      const auto inside = static_cast<double>(Real(oracle.at(point.place).mean - point.target));
+      // The gradient of the cost: one that holds pulls outwards, of the others none is inside.
+      if (holds) {
+        EXPECT_GE(inside, -1e-12);
+      } else {
+        EXPECT_LE(inside, 1e-12);
+      }
+      ++points;
+      slack += holds ? 0 : 1;
+    }
+  }
+  EXPECT_GT(points, 40);
+  EXPECT_GT(slack, 5);
+  RecordProperty("points", std::to_string(points) + ", of which " + std::to_string(slack) + " do not hold");
+}
+
+TEST_P(SkinExactly, ItsCovarianceIsPositiveDefiniteOverRandomValuesAndSlopes) {
+  for (int seed = 0; seed < 5; ++seed) {
+    Random random(seed, "test/skin/designs");
+    std::vector<Skin::Row> rows;
+    for (int i = 0; i < 25; ++i) {
+      const Skin::Place place{0.08 * random.uniform() * random_direction(random), random_direction(random)};
+      rows.push_back({place, Vector3d::Zero(), 0.0, 0.0, false});
+      if (i % 2 == 0) continue;
+      for (Eigen::Index k = 0; k < 3; ++k) rows.push_back({place, Vector3d::Unit(k), 0.0, 0.0, false});
+    }
+    SkinOracle oracle(GetParam(), kLength, 0.006, rows);
+    EXPECT_TRUE(oracle.factorise(false));
+    EXPECT_GT(oracle.least(), 0.0);
+    RecordProperty("least_" + std::to_string(seed), std::to_string(std::log10(oracle.least())));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, SkinExactly, ::testing::Values("matern32", "matern52", "rbf"),
+                         [](const auto& one) { return std::string(one.param); });
+
+}  // namespace
+}  // namespace palpate::stability

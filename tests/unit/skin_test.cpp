@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+// The process over space: what many places cost and say, free ways, normals that are felt, and what it does of data
+// that no surface has. That its numbers are right to many digits is for tests/stability/skin_test.cpp.
+#include "space/skin.hpp"
+
+#include "support/mocks.hpp"
+#include "support/shape_laws.hpp"
+#include "support/support.hpp"
+#include "support/testing.hpp"
+
+#include <palpate/error.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* kFourCentimetres = "{length_scale: 4 cm}";
+
+std::shared_ptr<Kernel> kernel_of(const std::string& type = "matern32", const std::string& options = kFourCentimetres) {
+  return make<Kernel>(shared_host(), type, options);
+}
+
+Composition of(const Piece& piece) {
+  Composition out;
+  out.parts.push_back({piece, {}, {}, 0.0});
+  return out;
+}
+
+Composition ball() {
+  return of({Piece::Form::ellipsoid, {0, 0, 0.05}, Eigen::Matrix3d::Identity(), {0.05, 0.05, 0.05}, 0.0});
+}
+
+/// Its front is at y = 0.
+Composition plate() {
+  return of({Piece::Form::box, {0, -0.05, 0.1}, Eigen::Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0});
+}
+
+/// From the front, as far as y.
+SurfaceTouch onto_plate(double x, double y) { return {{{x, 0.2, 0.1}, {0, -1, 0}}, 0.2 - y, true, false}; }
+
+Skin::Place on_plate(double x) { return {{x, 0.0, 0.1}, {0, 1, 0}}; }
+
+SurfaceTouch onto_ball(const Vector3d& out, double off) {
+  return {{Vector3d(0, 0, 0.05) + (0.15 + off) * out, -out}, 0.1, true, false};
+}
+
+Skin::Place on_ball(const Vector3d& out) { return {Vector3d(0, 0, 0.05) + 0.05 * out, out}; }
+
+Skin::Places all_over_the_ball(int count) {
+  Random random(3, "test/skin");
+  Skin::Places out;
+  for (int i = 0; i < count; ++i) out.push_back(on_ball(random_direction(random)));
+  return out;
+}
+
+TEST(SkinOfMany, SaysOfEachWhatItSaysOfOne) {
+  const Composition solids = ball();
+  Random random(1, "test/skin");
+  std::vector<SurfaceTouch> touches;
+  for (int i = 0; i < 40; ++i) touches.push_back(onto_ball(random_direction(random), 0.003 * random.uniform()));
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, touches);
+  const Skin::Places places = all_over_the_ball(600);
+  const Eigen::VectorXd means = skin.means(places);
+  const Skin::Posterior all = skin.posterior(places);
+  ASSERT_EQ(all.variance.size(), 600);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    EXPECT_NEAR(means(k), skin.mean(places[i]), 1e-15);
+    EXPECT_NEAR(all.mean(k), means(k), 1e-15);
+    EXPECT_NEAR(all.variance(k), skin.variance(places[i]), 1e-17);
+  }
+  EXPECT_EQ(all.clamped, 0);
+  EXPECT_EQ(skin.means({}).size(), 0);
+}
+
+TEST(SkinBeforeAnyTouch, IsItsPrior) {
+  const Composition solids = ball();
+  Skin skin(kernel_of("scale", "{factor: 4, kernel: {type: matern52, length_scale: 3 cm}}"), {0.006, 0.0005});
+  skin.fit(solids, {});
+  for (const Skin::Place& place : all_over_the_ball(20)) {
+    EXPECT_EQ(skin.mean(place), 0.0);
+    EXPECT_EQ(skin.variance(place), 4 * 0.006 * 0.006);
+  }
+}
+
+TEST(SkinAndFreeWays, TheSurfaceIsNotWhereAToolHasPassed) {
+  const Composition solids = plate();
+  std::vector<SurfaceTouch> touches{onto_plate(-0.03, 0.004), onto_plate(0.03, 0.004)};
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, touches);
+  EXPECT_GT(skin.mean(on_plate(0.0)), 0.003);
+  EXPECT_TRUE(skin.free_points().empty());
+  const double variance = skin.variance(on_plate(0.0));
+
+  touches.push_back({{{0.0, 0.001, 0.4}, {0, 0, -1}}, 0.39, false, false});  // down along it, 1 mm in front
+  skin.fit(solids, touches);
+  EXPECT_FALSE(skin.free_points().empty());
+  EXPECT_LT(skin.mean(on_plate(0.0)), 0.0015);
+  EXPECT_NEAR(skin.variance(on_plate(0.0)), variance, 1e-18);  // which says nothing of where it is
+  for (const double x : {-0.03, 0.03}) EXPECT_NEAR(skin.mean(on_plate(x)), 0.004, 0.0008);
+}
+
+TEST(SkinAndFreeWays, OneThatPassesInFrontSaysNothing) {
+  const Composition solids = plate();
+  std::vector<SurfaceTouch> touches{onto_plate(-0.03, 0.004), onto_plate(0.03, 0.004)};
+  Skin without(kernel_of(), {0.006, 0.0005});
+  without.fit(solids, touches);
+  touches.push_back({{{0.0, 0.006, 0.4}, {0, 0, -1}}, 0.39, false, false});
+  Skin with(kernel_of(), {0.006, 0.0005});
+  with.fit(solids, touches);
+  for (const double x : {-0.02, 0.0, 0.05}) {
+    EXPECT_EQ(with.mean(on_plate(x)), without.mean(on_plate(x)));
+    EXPECT_EQ(with.variance(on_plate(x)), without.variance(on_plate(x)));
+  }
+}
+
+TEST(SkinAndFreeWays, OneDeepInTheSolidsIsForTheSolidsToExplain) {
+  const Composition solids = plate();
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, {onto_plate(0.03, 0.002), {{{0.0, -0.05, 0.4}, {0, 0, -1}}, 0.39, false, false}});
+  EXPECT_TRUE(skin.free_points().empty());
+}
+
+TEST(SkinAndNormals, TheSurfaceIsTurnedAsTheToolFelt) {
+  const Composition solids = plate();
+  const double angle = 0.1;
+  SurfaceTouch touch = onto_plate(0.0, 0.001);
+  touch.normal = Vector3d(std::sin(angle), std::cos(angle), 0.0);
+  for (const char* type : {"matern32", "matern52", "rbf"}) {
+    Skin skin(kernel_of(type), {0.006, 1e-5, 1e-4});
+    skin.fit(solids, {touch});
+    ASSERT_EQ(skin.rows().size(), 3U);
+    // f = y - g(x, z): its gradient is (-dg/dx, 1, -dg/dz).
+    const double step = 1e-4;
+    const auto beside = [](double x) { return Skin::Place{{x, 0.001, 0.1}, {0, 1, 0}}; };
+    const double slope = (skin.mean(beside(step)) - skin.mean(beside(-step))) / (2 * step);
+    EXPECT_NEAR(slope, -std::tan(angle), 0.002) << type;
+    EXPECT_NEAR(skin.mean(on_plate(0.0)), 0.001, 1e-4);
+    // Beside it, less is left unknown than without.
+    Skin without(kernel_of(type), {0.006, 1e-5, 1e-4});
+    touch.normal.reset();
+    without.fit(solids, {touch});
+    EXPECT_LT(skin.variance(on_plate(0.01)), 0.8 * without.variance(on_plate(0.01)));
+    touch.normal = Vector3d(std::sin(angle), std::cos(angle), 0.0);
+  }
+}
+
+TEST(SkinAndNormals, OneOfAnotherSurfaceThanTheSolidsHaveIsLeftOut) {
+  const Composition solids = plate();
+  SurfaceTouch touch = onto_plate(0.0, 0.001);
+  touch.normal = Vector3d(1, 0, 0);
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, {touch});
+  EXPECT_EQ(skin.rows().size(), 1U);
+}
+
+std::string refusal(const std::string& type, const std::string& options) {
+  try {
+    Skin(kernel_of(type, options), {0.006, 0.0005});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SkinAndKernels, ThoseThatAreNotOfTheDistanceAloneAreRefused) {
+  const char* const line =
+      "kernel: is not one of the distance alone, as surface: implicit needs it, choose one with a single length scale, "
+      "such as matern32";
+  EXPECT_EQ(refusal("rbf", "{length_scale: 3 cm, length_scale_y: 2.9 cm}"), line);
+  EXPECT_EQ(refusal("product", "{kernels: [{type: rbf, length_scale: 1 mm, length_scale_y: 9 m}, {type: matern32}]}"),
+            line);
+  EXPECT_EQ(refusal("sum", "{kernels: [{type: rbf}, {type: matern52, length_scale: 2 cm, length_scale_y: 4 cm}]}"),
+            line);
+  for (const char* type : {"matern12", "matern32", "matern52", "rbf", "rational_quadratic"}) {
+    for (const char* length : {"1 um", "1 mm", "4 cm", "10 m"})
+      EXPECT_EQ(refusal(type, std::string("{length_scale: ") + length + "}"), "") << type << length;
+  }
+  EXPECT_EQ(refusal("scale", "{factor: 3, kernel: {type: rbf}}"), "");
+  EXPECT_EQ(refusal("sum", "{kernels: [{type: rbf}, {type: matern12}]}"), "");
+  EXPECT_EQ(refusal("product", "{kernels: [{type: matern32, length_scale: 1 mm}, {type: matern32}]}"), "");
+}
+
+TEST(SkinAndKernels, NormalsAreRefusedWhereTheKernelHasNoSlopes) {
+  const Composition solids = plate();
+  SurfaceTouch touch = onto_plate(0.0, 0.001);
+  touch.normal = Vector3d(0, 1, 0);
+  for (const char* type : {"matern12", "rational_quadratic"}) {
+    Skin skin(kernel_of(type), {0.006, 0.0005});
+    try {
+      skin.fit(solids, {touch});
+      ADD_FAILURE() << type;
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(),
+                   "kernel: has no slopes at every place, and normals that a tool feels are slopes, choose matern32, "
+                   "matern52 or rbf");
+    }
+  }
+}
+
+/// That nothing is NaN, and no variance beyond the prior.
+void expect_sound(const Skin& skin) {
+  const Skin::Posterior all = skin.posterior(all_over_the_ball(300));
+  EXPECT_TRUE(all.mean.allFinite());
+  EXPECT_LE(all.mean.cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_GE(all.variance.minCoeff(), 0.0);
+  EXPECT_LE(all.variance.maxCoeff(), skin.signal() * skin.signal());
+}
+
+TEST(SkinOfHardData, TheSameContactAHundredTimesIsOneOfLessNoise) {
+  const Composition solids = ball();
+  const SurfaceTouch touch = onto_ball({1, 0, 0}, 0.002);
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, std::vector<SurfaceTouch>(100, touch));
+  const double signal = 0.002 * 0.002;
+  const double noise = 0.0005 * 0.0005 / 100;
+  EXPECT_NEAR(skin.mean(on_ball({1, 0, 0})), 0.002 * signal / (signal + noise), 2e-5);
+  EXPECT_EQ(skin.jitter_raised(), 0);
+  expect_sound(skin);
+}
+
+TEST(SkinOfHardData, WithoutNoiseDuplicatesRaiseTheJitterWhichIsCounted) {
+  const Composition solids = ball();
+  std::vector<SurfaceTouch> touches(100, onto_ball({1, 0, 0}, 0.002));
+  touches.push_back(onto_ball({0, 1, 0}, -0.001));
+  Skin skin(kernel_of(), {0.006, 0.0});
+  skin.fit(solids, touches);
+  EXPECT_GT(skin.jitter_raised(), 0);
+  EXPECT_GT(skin.jitter(), 0.0);
+  EXPECT_LE(skin.jitter(), 1e-11);
+  EXPECT_NEAR(skin.mean({{0.052, 0, 0.05}, {1, 0, 0}}), 0.002, 1e-6);
+  expect_sound(skin);
+}
+
+TEST(SkinOfHardData, ContactsThatContradictEachOtherSettleBetween) {
+  const Composition solids = ball();
+  for (const double noise : {0.0005, 1e-6, 0.0}) {
+    std::vector<SurfaceTouch> touches{onto_ball({1, 0, 0}, 0.003), onto_ball({1, 0, 0}, 0.003)};
+    touches[1].line.origin += Vector3d(0.0, 1e-9, 0.0);
+    touches[1].length += 0.002;  // 2 mm deeper, 1e-9 m beside
+    touches.push_back(onto_ball({1, 0, 0}, 0.001 + 1e-9));
+    touches.back().line.origin.z() += 1e-9;
+    Skin skin(kernel_of(), {0.006, noise});
+    skin.fit(solids, touches);
+    expect_sound(skin);
+  }
+}
+
+TEST(SkinOfHardData, AFreeWayThroughAContactLeavesTheSurfaceBetween) {
+  const Composition solids = plate();
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  std::vector<SurfaceTouch> touches{onto_plate(0.0, 0.004)};
+  for (int i = 0; i < 20; ++i) touches.push_back({{{0.0, 0.002, 0.4}, {0, 0, -1}}, 0.39, false, false});
+  skin.fit(solids, touches);
+  const Skin::Place on_the_way{{0.0, 0.002, 0.1}, {0, 1, 0}};
+  EXPECT_GT(skin.mean(on_the_way), 0.0019);
+  EXPECT_LT(skin.mean(on_the_way), 0.0025);
+  for (const double noise : {1e-6, 0.0}) {
+    Skin strict(kernel_of(), {0.006, noise});
+    strict.fit(solids, touches);
+    EXPECT_TRUE(std::isfinite(strict.mean(on_plate(0.0))));
+    EXPECT_GE(strict.variance(on_plate(0.0)), 0.0);
+  }
+}
+
+TEST(SkinOfHardData, FiveHundredContactsAndAHundredNormalsWithAndWithoutNoise) {
+  const Composition solids = ball();
+  Random random(5, "test/skin");
+  std::vector<SurfaceTouch> touches;
+  for (int i = 0; i < 500; ++i) {
+    touches.push_back(onto_ball(random_direction(random), 0.004 * random.uniform()));
+    if (i % 5 == 0) touches.back().normal = random_direction(random);
+  }
+  for (const char* type : {"matern32", "rbf"}) {
+    for (const double noise : {0.0005, 0.0}) {
+      Skin skin(kernel_of(type), {0.006, noise, noise});
+      skin.fit(solids, touches);
+      const Skin::Posterior all = skin.posterior(all_over_the_ball(300));
+      EXPECT_TRUE(all.mean.allFinite());
+      EXPECT_GE(all.variance.minCoeff(), 0.0);
+      EXPECT_LE(all.variance.maxCoeff(), skin.signal() * skin.signal());
+      EXPECT_EQ(skin.jitter_raised() > 0, noise == 0.0 && std::string(type) == "rbf");
+      EXPECT_EQ(skin.set_aside(), 0);
+    }
+  }
+}
+
+TEST(SkinOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAndCounted) {
+  const Composition solids = ball();
+  Random random(7, "test/skin");
+  std::vector<SurfaceTouch> touches;
+  for (int i = 0; i < 60; ++i) touches.push_back(onto_ball(random_direction(random), 0.004 * random.uniform()));
+  // Nearly alike within 5 cm and not at all beyond: no two can be so to a third, and not to each other.
+  Skin skin(std::make_shared<FormulaKernel>([](const FormulaKernel::Place& a, const FormulaKernel::Place& b) {
+              return (a - b).norm() < 0.05 ? 1.0 : 0.0;
+            }),
+            {0.006, 0.0});
+  touches.push_back({{{0.0, 0.05, 0.3}, {0, 0, -1}}, 0.29, false, false});  // which grazes it
+  skin.fit(solids, touches);
+  EXPECT_FALSE(skin.free_points().empty());
+  std::size_t contacts = 0;
+  for (const Skin::Row& row : skin.rows()) contacts += row.free ? 0 : 1;
+  EXPECT_GE(static_cast<std::size_t>(skin.set_aside()), 60 - contacts);
+  EXPECT_GT(skin.pivoted(), 0);
+  EXPECT_GT(skin.set_aside(), 0);
+  EXPECT_GT(skin.rows().size(), 0U);
+  const Skin::Posterior all = skin.posterior(all_over_the_ball(300));
+  EXPECT_TRUE(all.mean.allFinite());
+  EXPECT_GE(all.variance.minCoeff(), 0.0);
+  EXPECT_GT(all.clamped, 0);
+}
+
+TEST(SkinOfHardData, TheSameNormalAHundredTimesAndItsOpposite) {
+  const Composition solids = plate();
+  SurfaceTouch touch = onto_plate(0.0, 0.001);
+  touch.normal = Vector3d(0.1, 1.0, 0.0).normalized();
+  std::vector<SurfaceTouch> touches(100, touch);
+  touches.push_back(touch);
+  touches.back().normal = Vector3d(-0.1, 1.0, 0.0).normalized();
+  for (const double noise : {0.02, 0.0}) {
+    Skin skin(kernel_of(), {0.006, noise / 40, noise});
+    skin.fit(solids, touches);
+    EXPECT_EQ(skin.jitter_raised() > 0, noise == 0.0);
+    const Skin::Posterior all = skin.posterior({on_plate(-0.01), on_plate(0.0), on_plate(0.01)});
+    EXPECT_TRUE(all.mean.allFinite());
+    EXPECT_GE(all.variance.minCoeff(), 0.0);
+    if (noise > 0.0) {
+      EXPECT_GT(all.mean(0), all.mean(2));  // as the hundred have it
+    }
+  }
+}
+
+TEST(SkinOfHardData, ContactsThatAllAreOnTheSolidsLeaveThem) {
+  const Composition solids = ball();
+  Random random(6, "test/skin");
+  std::vector<SurfaceTouch> touches;
+  for (int i = 0; i < 30; ++i) touches.push_back(onto_ball(random_direction(random), 0.0));
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, touches);
+  EXPECT_EQ(skin.signal(), 0.001);
+  for (const Skin::Place& place : all_over_the_ball(50)) EXPECT_NEAR(skin.mean(place), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// The mesh of what is believed in space: closed whatever it is made from, on the surface, and as large as solids are.
+#include "space/mesh.hpp"
+#include "support/plugins.hpp"
+#include "support/shape_laws.hpp"
+#include "support/support.hpp"
+#include "support/testing.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cstring>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// A composition and the skin over it, after touches that were off by a millimetre or two.
+struct Believed {
+  explicit Believed(const std::vector<Piece>& pieces, std::vector<SurfaceTouch> made = {})
+      : skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005}),
+        touches(std::move(made)) {
+    for (const Piece& piece : pieces) solids.parts.push_back({piece, {}, {}, 0.0});
+    skin.fit(solids, touches);
+  }
+  Crossings crossings(double side) const { return cross_surface(solids, skin, touches, side); }
+
+  Composition solids;
+  Skin skin;
+  std::vector<SurfaceTouch> touches;
+};
+
+Matrix3d turned(Random& random) {
+  return Eigen::AngleAxisd(3.0 * random.uniform(), random_direction(random)).toRotationMatrix();
+}
+
+Believed any_belief(Random& random) {
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i <= random.index(4); ++i) {
+    Piece piece;
+    piece.form = static_cast<Piece::Form>(random.index(3));
+    piece.centre = Vector3d(0.1, 0.1, 0.06) + 0.04 * random_direction(random);
+    piece.turn = turned(random);
+    for (Eigen::Index k = 0; k < 3; ++k) piece.half(k) = 0.006 + 0.04 * random.uniform();
+    if (random.uniform() < 0.5) piece.wall = std::min(0.002 + 0.004 * random.uniform(), 0.5 * piece.half.minCoeff());
+    pieces.push_back(piece);
+  }
+  const Believed bare(pieces);
+  std::vector<SurfaceTouch> touches;
+  for (int i = 0; i < 15; ++i) {
+    const Vector3d direction = random_direction(random);
+    const Line line{Vector3d(0.1, 0.1, 0.06) - 0.3 * direction, direction};
+    const double hit = bare.solids.first_hit(line);
+    if (hit < kNoHit) touches.push_back({line, hit + 0.004 * (random.uniform() - 0.5), true, false});
+  }
+  return Believed(pieces, touches);
+}
+
+/// How many edges there are; a failure where one is not shared by two triangles that go along it in either direction.
+int edges_of(const ClosedMesh& mesh) {
+  std::map<std::pair<int, int>, int> directed;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) ++directed[{triangle[i], triangle[(i + 1) % 3]}];
+  }
+  int unpaired = 0;
+  for (const auto& [edge, count] : directed)
+    unpaired += count == 1 && directed.count({edge.second, edge.first}) == 1 ? 0 : 1;
+  EXPECT_EQ(unpaired, 0);
+  return static_cast<int>(directed.size()) / 2;
+}
+
+/// 2 for each surface without a hole through it.
+int euler(const ClosedMesh& mesh) {
+  return static_cast<int>(mesh.vertices.size()) - edges_of(mesh) + static_cast<int>(mesh.triangles.size());
+}
+
+double volume(const ClosedMesh& mesh) {
+  double out = 0.0;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    const auto at = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(triangle[i])].at; };
+    out += at(0).dot(at(1).cross(at(2))) / 6.0;
+  }
+  return out;
+}
+
+TEST(ClosedMesh, HasTwoTrianglesInOppositeDirectionsAtEachEdgeWhateverIsBelieved) {
+  Random random(1, "test/mesh");
+  std::size_t triangles = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Believed belief = any_belief(random);
+    const ClosedMesh mesh = close_mesh(belief.crossings(i % 2 == 0 ? 0.003 : 0.006));
+    triangles += mesh.triangles.size();
+    edges_of(mesh);
+    EXPECT_GT(volume(mesh), 0.0);
+  }
+  EXPECT_GT(triangles, 100000U);
+}
+
+TEST(ClosedMesh, DoesNotLie) {
+  Random random(2, "test/mesh");
+  int off = 0;
+  int all = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Believed belief = any_belief(random);
+    for (const Crossings::Vertex& one : belief.crossings(0.003).vertices) {
+      const Vector3d normal = Skin::normal(belief.solids, one.at);
+      const double value = std::max(belief.solids.distance(one.at) - belief.skin.mean({one.at, normal}), -one.at.z());
+      // Vertices stay a hundredth of a cube away from its corners.
+      off += std::abs(value) > 4e-5 ? 1 : 0;
+      ++all;
+      // The skin jumps where normals do, and there is a surface between.
+      EXPECT_LT(std::abs(value), 0.004);
+      EXPECT_NEAR(one.normal.norm(), 1.0, 1e-9);
+    }
+  }
+  EXPECT_LT(off, all / 50);
+}
+
+TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
+  Random random(3, "test/mesh");
+  for (const Piece::Form form : {Piece::Form::box, Piece::Form::cylinder, Piece::Form::ellipsoid}) {
+    for (int i = 0; i < 4; ++i) {
+      Piece piece{form, {0.1, 0.1, 0.1}, turned(random), {0.05, 0.03, 0.04}, 0.0};
+      const ClosedMesh whole = close_mesh(Believed({piece}).crossings(kFineSide));
+      EXPECT_NEAR(volume(whole) / piece.volume(), 1.0, 0.01);
+      EXPECT_EQ(euler(whole), 2);
+      piece.wall = 0.004;
+      const double outer = form == Piece::Form::ellipsoid ? piece.volume() : volume(whole);
+      const Vector3d inner = piece.half.array() - piece.wall;
+      Piece hollow = piece;
+      hollow.half = inner;
+      const double within = form == Piece::Form::ellipsoid ? hollow.volume()
+                            : form == Piece::Form::box
+                                ? 8.0 * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall)
+                                : 2.0 * kHalfTurn * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall);
+      const ClosedMesh vessel = close_mesh(Believed({piece}).crossings(kFineSide));
+      EXPECT_NEAR(volume(vessel) / (outer - within), 1.0, 0.05);
+    }
+  }
+}
+
+TEST(ClosedMesh, HasNoHoleInAWallOfThreeMillimetres) {
+  Random random(4, "test/mesh");
+  for (int i = 0; i < 12; ++i) {
+    Piece piece{static_cast<Piece::Form>(i % 3), {0.1, 0.1, 0.1}, turned(random), {0.04, 0.04, 0.05}, 0.003};
+    EXPECT_EQ(euler(close_mesh(Believed({piece}).crossings(kFineSide))), 2) << i;
+  }
+}
+
+TEST(ClosedMesh, EndsAtTheDesk) {
+  const Piece sunk{Piece::Form::box, {0.1, 0.1, 0.02}, Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  const ClosedMesh mesh = close_mesh(Believed({sunk}).crossings(kFineSide));
+  EXPECT_NEAR(volume(mesh), 0.1 * 0.06 * 0.05, 0.01 * 0.1 * 0.06 * 0.05);
+  EXPECT_EQ(euler(mesh), 2);
+  int below = 0;
+  for (const Crossings::Vertex& one : mesh.vertices) {
+    EXPECT_GT(one.at.z(), -1e-6);
+    if (one.at.z() > 1e-6) continue;
+    EXPECT_EQ(one.normal, Vector3d(-Vector3d::UnitZ()));
+    ++below;
+  }
+  EXPECT_GT(below, 1000);
+}
+
+TEST(ClosedMesh, FollowsTheSkin) {
+  const Piece plate{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.05, 0.003, 0.05}, 0.0};
+  // 2 mm in front of one side.
+  const Believed belief({plate}, {{{{0.1, 0.3, 0.1}, {0, -1, 0}}, 0.195, true, false}});
+  double front = 0.0;
+  double back = 1.0;
+  for (const Crossings::Vertex& one : belief.crossings(kFineSide).vertices) {
+    if ((one.at - Vector3d(0.1, one.at.y(), 0.1)).norm() > 0.003) continue;
+    front = std::max(front, one.at.y());
+    back = std::min(back, one.at.y());
+  }
+  EXPECT_NEAR(front, 0.105, 2e-4);
+  EXPECT_NEAR(back, 0.097, 4e-5);  // as far as vertices stay from nodes
+}
+
+TEST(ClosedMesh, IsNothingWhereNothingIsBelievedIn) {
+  const ClosedMesh mesh = close_mesh(Believed({}).crossings(kFineSide));
+  EXPECT_TRUE(mesh.vertices.empty());
+  EXPECT_TRUE(mesh.triangles.empty());
+}
+
+TEST(ClosedMesh, IsAFileOfItsNumbers) {
+  const Piece box{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
+  ClosedMesh mesh = close_mesh(Believed({box}).crossings(0.01));
+  mesh.vertices.front().deviation = 0.003;
+  const std::string file = mesh_ply(mesh, 0.5, "quality", "a box");
+  EXPECT_THAT(file, testing::HasSubstr("\ncomment a box\nelement vertex " + std::to_string(mesh.vertices.size())));
+  const std::size_t body = file.find("end_header\n") + 11;
+  ASSERT_EQ(file.size(), body + 28 * mesh.vertices.size() + 13 * mesh.triangles.size());
+  std::array<float, 7> first{};
+  std::memcpy(first.data(), file.data() + body, sizeof first);
+  const Crossings::Vertex& one = mesh.vertices.front();
+  EXPECT_EQ(first[0], static_cast<float>(one.at.x()));
+  EXPECT_EQ(first[2], static_cast<float>(one.at.z() + 0.5));
+  EXPECT_EQ(first[5], static_cast<float>(one.normal.z()));
+  EXPECT_EQ(first[6], static_cast<float>(one.deviation));
+  std::array<std::int32_t, 3> last{};
+  std::memcpy(last.data(), file.data() + file.size() - sizeof last, sizeof last);
+  EXPECT_EQ(last[2], mesh.triangles.back()[2]);
+}
+
+}  // namespace
+}  // namespace palpate::test
