@@ -284,6 +284,7 @@ class Run {
       const double hit = scene_->first_hit(line);
       if (hit < desk_along(line)) truth_.push_back(line.origin + hit * line.direction);
     }
+    fine_truth_ = thinned(truth_, 0.001);
     truth_ = thinned(truth_, kSide);
     if (settings.touch_only) {
       while (implicit_.known().size() < 3) touch_at_random();
@@ -316,7 +317,7 @@ class Run {
 
   CloudErrors errors() const {
     const Sheet sheet(implicit_, 0.02, 1.5);
-    return compare_clouds(thinned(sheet.reachable(directions_), kSide), truth_);
+    return compare_clouds(sheet.reachable(directions_), fine_truth_);
   }
 
  private:
@@ -397,7 +398,7 @@ class Run {
   Random random_;
   Implicit implicit_;
   std::vector<Vector3d> directions_;
-  Cloud truth_, failed_;
+  Cloud truth_, fine_truth_, failed_;
   int touches_ = 0;
 };
 

@@ -27,6 +27,7 @@ Cloud thinned(const Cloud& points, double side);
 /// The distance from each point of `from` to the nearest of `to`, metres; infinity where there is none.
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to);
 
+/// Of two surfaces, of which some points say how far they are from the other: at most one in a cube of 3 mm.
 struct CloudErrors {
   double mean = 0.0;          ///< mean nearest-neighbour distance over the points of both, metres
   double of_truth = 0.0;      ///< from the points of the truth alone: what is missing
@@ -35,6 +36,8 @@ struct CloudErrors {
   double rms_of_truth = 0.0;  ///< over those of the truth
   double f_score = 0.0;       ///< at 5 mm: harmonic mean of the shares of either within 5 mm of the other
 };
+/// How far apart the points of the clouds are limits what can be told: of the same surface, seen twice by points 1 mm
+/// apart, the mean is about 0.4 mm.
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth);
 
 }  // namespace palpate

@@ -13,11 +13,10 @@
 namespace palpate {
 namespace {
 
-// Lines from 150 directions, 6 mm apart: every patch of a surface as large as a finger is met by some. Points 3 mm
-// apart tell how far two surfaces are from each other to 1 mm.
+// Lines from 150 directions, 6 mm apart: every patch of a surface as large as a finger is met by some.
 constexpr int kDirections = 150;
 constexpr double kPitch = 0.006;
-constexpr double kSide = 0.003;
+constexpr double kSide = 0.001;  // of cubes of which each has one point of a surface
 // Of cubes so large a wall of 3 mm holds those whose centres it holds, too many here and too few there.
 constexpr double kCube = 0.004;
 
@@ -126,14 +125,13 @@ const FromAnySide::TrueSurface& FromAnySide::truth() {
   if (truth_) return *truth_;
   truth_.emplace();
   if (!backend_->scene_is_truth()) return *truth_;
-  Cloud& fine = truth_->fine;
+  Cloud& cloud = truth_->cloud;
   const Eigen::Vector3d desk(0.0, 0.0, scene_->desk());
   for (const Line& line : bundle_.lines) {
     const double hit = scene_->first_hit({line.origin + desk, line.direction});
-    if (hit < belief_.desk_along(line)) fine.push_back(line.origin + hit * line.direction);
+    if (hit < belief_.desk_along(line)) cloud.push_back(line.origin + hit * line.direction);
   }
-  fine = thinned(fine, kFineSide / 2);
-  truth_->cloud = thinned(fine, kSide);
+  cloud = thinned(cloud, kSide);
   truth_->cubes = cubes_.of(*scene_);
   return *truth_;
 }
@@ -156,9 +154,10 @@ Errors FromAnySide::errors() {
 std::optional<double> FromAnySide::coverage(const Cloud& surface) {
   if (surface.empty()) return std::nullopt;
   constexpr double kOf95Percent = 1.96;
-  const Cloud points = thinned(surface, 2.0 * kSide);
+  constexpr double kApart = 0.006;
+  const Cloud points = thinned(surface, kApart);
   const Eigen::VectorXd deviations = belief_.uncertainty(points);
-  const std::vector<double> distances = nearest_distances(points, truth().fine);
+  const std::vector<double> distances = nearest_distances(points, truth().cloud);
   const auto within =
       Eigen::Map<const Eigen::ArrayXd>(distances.data(), deviations.size()) <= kOf95Percent * deviations.array();
   return within.cast<double>().mean();

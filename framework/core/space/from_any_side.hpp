@@ -47,7 +47,7 @@ class FromAnySide final : public Experiment {
   std::string surface_ply();
   /// What is truly there, relative to the desk; empty where another world is tapped.
   struct TrueSurface {
-    Cloud cloud, fine;  ///< the surface, points of about 3 and of 1 mm
+    Cloud cloud;        ///< the surface, a point in a cube of 1 mm
     Cubes::Held cubes;  ///< what is solid
   };
   const TrueSurface& truth();

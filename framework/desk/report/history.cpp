@@ -103,7 +103,8 @@ void HistoryGrower::add_surface(FromAnySide& experiment) {
   grown_.surfaces.push_back(experiment.knows_object() ? experiment.crossings(kSide) : Crossings{});
   for (const Crossings::Vertex& one : grown_.surfaces.back().vertices)
     now.largest_deviation = std::max(now.largest_deviation, one.deviation);
-  if (grown_.true_points.empty()) grown_.true_points = experiment.truth().cloud;
+  constexpr double kApart = 0.003;
+  if (grown_.true_points.empty()) grown_.true_points = thinned(experiment.truth().cloud, kApart);
   grown_.shown.push_back(now.taps);
   grown_.moments.push_back(now);
   // More than a page can carry; of a thousand taps they would take gigabytes.
