@@ -396,6 +396,13 @@ Skin::Posterior Skin::posterior(const Places& places) const {
   return out;
 }
 
+MatrixXd Skin::prior_covariance(const Places& places) const {
+  std::vector<Row> rows;
+  for (const Place& place : places) rows.push_back({place, Vector3d::Zero(), 0.0, 0.0, false});
+  const Table table = table_of(rows);
+  return covariances(table, table);
+}
+
 double Skin::mean(const Place& place) const {
   return covariances(known_.table, table_of({{place, Vector3d::Zero(), 0.0, 0.0, false}})).col(0).dot(known_.weights);
 }

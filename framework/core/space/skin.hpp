@@ -68,6 +68,11 @@ class Skin {
   };
   Posterior posterior(const Places& places) const;
 
+  /// The covariance of g between all of these before any touch.
+  Eigen::MatrixXd prior_covariance(const Places& places) const;
+  /// Of a contact, metres.
+  double noise() const { return settings_.noise; }
+
   /// A row of what is known: of g itself or, where `along` is not 0, of its slope in that direction.
   struct Row {
     Place place;

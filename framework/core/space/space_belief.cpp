@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "space/space_belief.hpp"
 
+#include "space/reduction.hpp"
+
 #include <palpate/error.hpp>
 
 #include <Eigen/Geometry>
@@ -17,8 +19,8 @@ using Eigen::Vector3d;
 /// Tools come level or from above, or from below by no more than 30 degrees.
 constexpr double kSteepestUp = 0.5;
 
-/// Of every two approaches the first goes anywhere, the second along a normal.
-constexpr Eigen::Index kKinds = 2;
+/// Of every two approaches the first goes anywhere, the second along a normal, where there is one.
+bool goes_anywhere(std::size_t approach) { return approach % 2 == 0; }
 
 SolidsSettings settings_of(const SpaceOptions& options) {
   SolidsSettings out;
@@ -85,6 +87,8 @@ void SpaceBelief::update(Quantities reads) {
   draw_approaches();
   if (reads == Quantities{}) return;
   look_where_met();
+  if (reads.has(Quantity::deviation)) look_at_deviations();
+  if (reads.has(Quantity::reduction)) look_for_reductions();
   if (reads.has(Quantity::unseen)) look_for_unseen();
 }
 
@@ -131,7 +135,7 @@ void SpaceBelief::draw_approaches() {
                   "scene.touch: top is for arms that come from above");
     }
     std::optional<Line> line;
-    if ((taps_ > 0 || seen_ > 0) && approaches_.size() % kKinds == 1) line = along_normal(random);
+    if ((taps_ > 0 || seen_ > 0) && !goes_anywhere(approaches_.size())) line = along_normal(random);
     if (!line) line = random_line(random);
     const Approach approach{{line->origin + Vector3d(0.0, 0.0, desk_), line->direction}, 2.0 * region_.outside()};
     if (backend_.reaches(approach)) approaches_.push_back(approach);
@@ -145,11 +149,10 @@ Line SpaceBelief::line_of(const Approach& approach) const {
 void SpaceBelief::look_where_met() {
   const auto count = static_cast<Eigen::Index>(approaches_.size());
   met_.resize(count);
-  deviation_ = Eigen::VectorXd::Zero(count);
   squareness_ = Eigen::VectorXd::Zero(count);
+  places_.clear();
+  meets_.clear();
   const Composition& best = solids_.best();
-  Skin::Places places;
-  std::vector<Eigen::Index> whose;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Approach& approach = approaches_[static_cast<std::size_t>(i)];
     const Line line = line_of(approach);
@@ -158,13 +161,29 @@ void SpaceBelief::look_where_met() {
     if (hit > met_(i)) continue;
     const Vector3d at = line.origin + hit * line.direction;
     const Vector3d normal = Skin::normal(best, at);
-    places.push_back({at, normal});
-    whose.push_back(i);
+    places_.push_back({at, normal});
+    meets_.push_back(i);
     squareness_(i) = std::min(1.0, std::abs(normal.dot(line.direction)));
   }
-  const Skin::Posterior posterior = skin_.posterior(places);
-  deviation_(whose) = posterior.variance.cwiseSqrt();
+}
+
+void SpaceBelief::look_at_deviations() {
+  const Skin::Posterior posterior = skin_.posterior(places_);
+  deviation_ = Eigen::VectorXd::Zero(met_.size());
+  deviation_(meets_) = posterior.variance.cwiseSqrt();
   clamped_ = posterior.clamped;
+}
+
+void SpaceBelief::look_for_reductions() {
+  constexpr std::size_t kMost = 300;
+  constexpr double kSquarely = 0.5;
+  const Representatives some = representatives(places_, kMost);
+  const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places);
+  reduction_ = Eigen::VectorXd::Zero(met_.size());
+  for (std::size_t i = 0; i < meets_.size(); ++i) {
+    if (squareness_(meets_[i]) > kSquarely)
+      reduction_(meets_[i]) = reductions(static_cast<Eigen::Index>(some.stands_for[i]));
+  }
 }
 
 void SpaceBelief::look_for_unseen() {
@@ -174,6 +193,8 @@ void SpaceBelief::look_for_unseen() {
   unseen_ = Eigen::VectorXd::Zero(met_.size());
   Random random = context_.random("space/unseen", static_cast<std::uint64_t>(taps_));
   const std::vector<Piece> pieces = solids_.unseen(solids_.best(), kDraws, random);
+  double anywhere = 0.0;
+  for (std::size_t i = 0; i < approaches_.size(); ++i) anywhere += goes_anywhere(i) ? 1.0 : 0.0;
   std::vector<Eigen::Index> meets;
   for (const Piece& piece : pieces) {
     meets.clear();
@@ -182,11 +203,10 @@ void SpaceBelief::look_for_unseen() {
       const double earlier = met_(i) - piece.first_hit(line_of(approaches_[static_cast<std::size_t>(i)]));
       if (earlier <= kClearly) continue;
       meets.push_back(i);
-      if (i % kKinds == 0) moves += std::min(kFarthest, earlier);
+      if (goes_anywhere(static_cast<std::size_t>(i))) moves += std::min(kFarthest, earlier);
     }
     // The mean over the lines from all sides: those that are not along normals.
-    const Eigen::Index from_all_sides = (met_.size() + kKinds - 1) / kKinds;
-    moves /= static_cast<double>(from_all_sides) * kDraws;
+    moves /= anywhere * kDraws;
     for (const Eigen::Index i : meets) unseen_(i) += moves;
   }
 }

@@ -40,13 +40,14 @@ class SpaceBelief final : public SurfaceBelief {
   void observe(const Approach& approach, const Contact& contact);
 
   /// Has the models take in what was observed, draws the approaches of the next tap, and says of them what of
-  /// deviation and unseen is in `reads`.
+  /// deviation, reduction and unseen is in `reads`.
   void update(Quantities reads);
 
   // SurfaceBelief, as of the last update().
   const std::vector<Approach>& approaches() const override { return approaches_; }
   int taps() const override { return taps_; }
   const Eigen::VectorXd& unseen() const override { return unseen_; }
+  const Eigen::VectorXd& reduction() const override { return reduction_; }
   const Eigen::VectorXd& deviation() const override { return deviation_; }
   const Eigen::VectorXd& squareness() const override { return squareness_; }
 
@@ -70,6 +71,8 @@ class SpaceBelief final : public SurfaceBelief {
  private:
   void draw_approaches();
   void look_where_met();
+  void look_at_deviations();
+  void look_for_reductions();
   void look_for_unseen();
   /// An approach's line, above a desk at 0.
   Line line_of(const Approach& approach) const;
@@ -89,7 +92,9 @@ class SpaceBelief final : public SurfaceBelief {
   std::size_t taken_in_ = 0;  ///< of the touches, by the solids
   std::vector<Approach> approaches_;
   Eigen::VectorXd met_;  ///< how far along each approach the most probable composition is met, or else the end is
-  Eigen::VectorXd deviation_, squareness_, unseen_;
+  Skin::Places places_;  ///< where it is met
+  std::vector<Eigen::Index> meets_;  ///< the approaches that meet it there
+  Eigen::VectorXd squareness_, deviation_, reduction_, unseen_;
   int clamped_ = 0;
 };
 

@@ -93,6 +93,13 @@ class ApproachExplained final : public Explanation {
           "find {}, as a mean over lines from all sides; the best of all finds {}.",
           length_words(unseen(now->candidate)), length_words(unseen.maxCoeff())));
     }
+    const Eigen::VectorXd& reduction = experiment_.belief().reduction();
+    if (reduction.size() == scores.size()) {
+      page_.say(fmt::format(
+          "Of the standard deviation of the surface that is believed, the mean over all of it, a touch there is "
+          "expected to take off {}; the best of all takes off {}.",
+          length_words(reduction(now->candidate)), length_words(reduction.maxCoeff())));
+    }
     if (scores.size() < 2) return;
     Eigen::Index second = now->candidate == 0 ? 1 : 0;
     for (Eigen::Index i = 0; i < scores.size(); ++i)

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "space/reduction.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+namespace palpate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// How far outside the surface of the most probable composition that of each other one lies, at each place.
+MatrixXd offsets(const Solids& solids, const Skin::Places& places) {
+  constexpr double kFarthest = 0.02;  // a piece that others do not have is somewhere else, or nowhere
+  const std::vector<Composition>& all = solids.compositions();
+  MatrixXd out(static_cast<Index>(places.size()), static_cast<Index>(all.size()));
+  for (Index i = 0; i < out.rows(); ++i) {
+    const Eigen::Vector3d& at = places[static_cast<std::size_t>(i)].at;
+    const double best = solids.best().distance(at);
+    for (Index j = 0; j < out.cols(); ++j)
+      out(i, j) = std::clamp(best - all[static_cast<std::size_t>(j)].distance(at), -kFarthest, kFarthest);
+  }
+  return out;
+}
+
+}  // namespace
+
+VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places) {
+  Skin::Places all;  // contacts first
+  for (const Skin::Row& row : skin.rows()) {
+    if (!row.free && row.along.isZero(0.0)) all.push_back(row.place);
+  }
+  const auto n = static_cast<Index>(all.size());
+  const auto count = static_cast<Index>(places.size());
+  all.insert(all.end(), places.begin(), places.end());
+  MatrixXd covariance = skin.prior_covariance(all);
+  const MatrixXd apart = offsets(solids, all);
+  covariance.noalias() += apart * apart.transpose() / static_cast<double>(apart.cols());
+  const double noise = skin.noise() * skin.noise();
+  MatrixXd left = covariance.bottomRightCorner(count, count);
+  if (n > 0) {
+    // A share of the diagonal more than the noise, which may be 0: what it takes off is less than is counted here.
+    constexpr double kSlack = 1e-9;
+    MatrixXd known = covariance.topLeftCorner(n, n);
+    known.diagonal().array() = (1.0 + kSlack) * known.diagonal().array() + noise;
+    const Eigen::LLT<MatrixXd> factor(known);
+    if (factor.info() == Eigen::Success) {
+      const MatrixXd explained = factor.matrixL().solve(covariance.topRightCorner(n, count));
+      left.selfadjointView<Eigen::Lower>().rankUpdate(explained.transpose(), -1.0);
+      left.triangularView<Eigen::StrictlyUpper>() = left.transpose();
+    }
+  }
+  const Eigen::ArrayXd variance = left.diagonal().array().max(0.0);
+  const double deviation = variance.sqrt().mean();
+  VectorXd out(count);
+  for (Index i = 0; i < count; ++i) {
+    const double of_contact = variance(i) + noise;
+    const double taken = of_contact > 0.0 ? 1.0 / of_contact : 0.0;
+    out(i) = std::max(0.0, deviation - (variance - taken * left.col(i).array().square()).max(0.0).sqrt().mean());
+  }
+  return out;
+}
+
+Representatives representatives(const Skin::Places& places, std::size_t most) {
+  constexpr double kSide = 0.008;
+  constexpr double kLarger = 1.2;
+  Representatives out;
+  for (double side = kSide;; side *= kLarger) {
+    out.places.clear();
+    out.stands_for.clear();
+    std::map<std::array<std::int64_t, 4>, std::size_t> taken;
+    for (const Skin::Place& place : places) {
+      Index axis = 0;
+      place.normal.cwiseAbs().maxCoeff(&axis);  // so that the two sides of a wall are apart
+      std::array<std::int64_t, 4> key{};
+      for (std::size_t i = 0; i < 3; ++i)
+        key[i] = static_cast<std::int64_t>(std::floor(place.at(static_cast<Index>(i)) / side));
+      key[3] = 2 * axis + (place.normal(axis) > 0.0 ? 1 : 0);
+      const auto [found, is_new] = taken.emplace(key, out.places.size());
+      if (is_new) out.places.push_back(place);
+      out.stands_for.push_back(found->second);
+    }
+    if (out.places.size() <= most) return out;
+  }
+}
+
+}  // namespace palpate

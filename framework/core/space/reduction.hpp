@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// By how much a poke is expected to lower what is not known of a surface.
+//
+// The surface lies outside that of the most probable composition by an offset that is taken for normal, with mean that
+// of the skin and the covariance
+//
+//     k(x, x') + (1 / K) sum over compositions of d_j(x) d_j(x')
+//
+// k is the skin's prior, and d_j(x) how far outside the surface of composition j lies there, none more than 2 cm. So
+// touches at one place tell of others as far as the skin is smooth and as the compositions agree on what belongs
+// together. Given all contacts, and one more with their noise at a place y,
+//
+//     Var(x | y) = Var(x) - Cov(x, y)^2 / (Var(y) + noise^2),
+//
+// whatever is found there, and what a poke takes off is the mean over the surface of sd(x) - sd(x | y): in the words of
+// the design of experiments, active learning by Cohn's criterion (Cohn 1996), of deviations instead of variances.
+#pragma once
+
+#include "space/skin.hpp"
+#include "space/solids.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace palpate {
+
+/// For each place, near the surface of the most probable composition, by how much the mean standard deviation over all
+/// of them falls when the surface is touched there, metres: from 0 to the mean itself. The work grows with the square
+/// of the number of places. Never throws.
+Eigen::VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places);
+
+/// Some of the places, evenly: in each cube the first on each side of a wall, the cubes (8 mm or larger) such that it
+/// is at most `most`. `stands_for` has for each place the number of that of its cube and side.
+struct Representatives {
+  Skin::Places places;
+  std::vector<std::size_t> stands_for;
+};
+Representatives representatives(const Skin::Places& places, std::size_t most);
+
+}  // namespace palpate
