@@ -194,18 +194,32 @@ void SpaceBelief::look_for_unseen() {
   Random random = context_.random("space/unseen", static_cast<std::uint64_t>(taps_));
   const std::vector<Piece> pieces = solids_.unseen(solids_.best(), kDraws, random);
   double anywhere = 0.0;
-  for (std::size_t i = 0; i < approaches_.size(); ++i) anywhere += goes_anywhere(i) ? 1.0 : 0.0;
+  const auto count = static_cast<Eigen::Index>(approaches_.size());
+  Eigen::ArrayX3d origin(count, 3), direction(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Line line = line_of(approaches_[static_cast<std::size_t>(i)]);
+    origin.row(i) = line.origin;
+    direction.row(i) = line.direction;
+    anywhere += goes_anywhere(static_cast<std::size_t>(i)) ? 1.0 : 0.0;
+  }
   std::vector<Eigen::Index> meets;
+  Eigen::ArrayXd along(count), aside(count);
   for (const Piece& piece : pieces) {
+    // Most lines pass by the ball around the piece, or end before it.
+    const double radius = piece.half.norm();
+    const auto apart = [&](Eigen::Index k) { return piece.centre(k) - origin.col(k); };
+    along = apart(0) * direction.col(0) + apart(1) * direction.col(1) + apart(2) * direction.col(2);
+    aside = apart(0).square() + apart(1).square() + apart(2).square() - along.square();
     meets.clear();
     double moves = 0.0;
-    for (Eigen::Index i = 0; i < met_.size(); ++i) {
-      const double earlier = met_(i) - piece.first_hit(line_of(approaches_[static_cast<std::size_t>(i)]));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (aside(i) > radius * radius || along(i) - radius > met_(i)) continue;
+      const double earlier = met_(i) - piece.first_hit({origin.row(i).transpose(), direction.row(i).transpose()});
       if (earlier <= kClearly) continue;
       meets.push_back(i);
       if (goes_anywhere(static_cast<std::size_t>(i))) moves += std::min(kFarthest, earlier);
     }
-    // The mean over the lines from all sides: those that are not along normals.
+    // The mean over the lines from all sides.
     moves /= anywhere * kDraws;
     for (const Eigen::Index i : meets) unseen_(i) += moves;
   }
