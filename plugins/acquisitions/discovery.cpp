@@ -6,10 +6,21 @@
 
 namespace palpate::acquisitions {
 
+struct DiscoveryOptions : Options {
+  double haste = 0.0;
+  void list(Fields& fields) override {
+    fields.real(haste, Field("haste",
+                             "power of the way that the tool is expected to go, by which what is expected of a "
+                             "tap is divided: 0 is most a tap, 1 most a metre")
+                           .at_least(0)
+                           .at_most(1));
+  }
+};
+
 class Discovery final : public Acquisition {
  public:
-  using Options = NoOptions;
-  Discovery(const Options&, const Context&) {}
+  using Options = DiscoveryOptions;
+  Discovery(const Options& options, const Context&) : options_(options) {}
 
   bool from_above() const override { return false; }
   bool any_side() const override { return true; }
@@ -19,8 +30,13 @@ class Discovery final : public Acquisition {
   double prior_scale() const override { return 0.001; }
 
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
+    constexpr double kUsual = 0.3;  // metres
     out = belief.unseen() + belief.reduction();
+    if (options_.haste > 0.0) out.array() /= (belief.way().array() / kUsual).max(0.1).pow(options_.haste);
   }
+
+ private:
+  Options options_;
 };
 
 PALPATE_PLUGIN(Acquisition, Discovery, "discovery", "from any side, tap where most is expected to be found")

@@ -49,6 +49,7 @@ struct Settings {
   std::string labels = "true";
   double radius = 4.0;
   double noise = 0.005;
+  double elevation = 10.0;  ///< of the camera, degrees, as in configs/benchmark/any_side_view.yaml
   bool touch_only = false;
 };
 
@@ -290,8 +291,10 @@ class Run {
       while (implicit_.known().size() < 3) touch_at_random();
     } else {
       // The view that palpate's runs have of this seed.
+      SideViewOptions view;
+      view.elevation = settings.elevation / 180.0 * kHalfTurn;
       Cloud seen;
-      for (const SurfaceTouch& ray : side_view({}, *scene_, region_.centre, region_.radius,
+      for (const SurfaceTouch& ray : side_view(view, *scene_, region_.centre, region_.radius,
                                                Random(static_cast<std::uint64_t>(seed), "space/view"))) {
         if (ray.contact && !ray.desk) seen.push_back(ray.end());
       }
@@ -460,6 +463,7 @@ int main(int count, char** words) {
       ->check(CLI::IsMember({"true", "own"}));
   app.add_option("--radius", settings.radius, "R of the covariance: 2 as published, 4 where it is definite");
   app.add_option("--noise", settings.noise, "variance of each value; 0.05 as published");
+  app.add_option("--elevation", settings.elevation, "of the camera, degrees");
   app.add_flag("--touch-only", settings.touch_only, "no view: begins after three hits at random");
   app.add_option("--seeds", seeds, "FIRST:BEHIND_THE_LAST");
   app.add_option("--scenes", scenes, "of configs/scene")->delimiter(',');

@@ -94,6 +94,7 @@ std::vector<WrittenSurface> surfaces() {
     };
     one.count = 7;
     one.lines.resize(20);
+    one.ways = draw(0.4);
     one.found = draw(0.001);
     one.taken = draw(0.0002);
     one.sigma = draw(0.006);
@@ -141,6 +142,11 @@ TEST(Acquisitions, FromAnySideTakeTheLargestVarianceAlongTheNormalOrWhereMostIsE
   EXPECT_EQ(best(score(*discovery, all[1])), best(all[1].found)) << "nothing is met";
   EXPECT_EQ(best(score(*discovery, all[2])), best(all[2].taken)) << "nothing is to be found";
   EXPECT_EQ(score(*discovery, all[0]), Eigen::VectorXd(all[0].found + all[0].taken)) << "both in metres";
+  const std::shared_ptr<Acquisition> hasty = make<Acquisition>(contract_host(), "discovery", "{haste: 1}");
+  Eigen::Index near = 0;
+  all[0].ways.minCoeff(&near);
+  const Eigen::VectorXd kept = score(*hasty, all[0]).cwiseQuotient(score(*discovery, all[0]));
+  EXPECT_EQ(best(kept), near) << "of a short way most is left";
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, AcquisitionContract, testing::ValuesIn(plugins_under_contract("acquisition")),

@@ -53,11 +53,12 @@ class WrittenSurface final : public SurfaceBelief {
  public:
   int count = 0;  ///< of taps
   std::vector<Approach> lines;
-  Eigen::VectorXd found, taken, sigma, square;
+  Eigen::VectorXd ways, found, taken, sigma, square;
   mutable Quantities read;
 
   const std::vector<Approach>& approaches() const override { return lines; }
   int taps() const override { return count; }
+  const Eigen::VectorXd& way() const override { return ways; }
   const Eigen::VectorXd& unseen() const override { return seen(Quantity::unseen, found); }
   const Eigen::VectorXd& reduction() const override { return seen(Quantity::reduction, taken); }
   const Eigen::VectorXd& deviation() const override { return seen(Quantity::deviation, sigma); }

@@ -46,6 +46,7 @@ class SpaceBelief final : public SurfaceBelief {
   // SurfaceBelief, as of the last update().
   const std::vector<Approach>& approaches() const override { return approaches_; }
   int taps() const override { return taps_; }
+  const Eigen::VectorXd& way() const override { return met_; }
   const Eigen::VectorXd& unseen() const override { return unseen_; }
   const Eigen::VectorXd& reduction() const override { return reduction_; }
   const Eigen::VectorXd& deviation() const override { return deviation_; }

@@ -22,6 +22,10 @@ class SurfaceBelief {
   /// Taps made so far, failed ones included.
   virtual int taps() const = 0;
 
+  /// N: how far the tool is expected to come, by the most probable composition: to an object, to the desk, or to the end
+  /// of the approach, metres.
+  virtual const Eigen::VectorXd& way() const = 0;
+
   /// N: what a tap is expected to find that nobody has touched yet, metres, were one piece more expected a priori than
   /// is believed: the probability that there is one which no touch so far contradicts and which the approach meets
   /// before all that is believed, times how far it moves the surface: the mean over lines from all sides of how much
