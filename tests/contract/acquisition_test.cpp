@@ -94,7 +94,7 @@ std::vector<WrittenSurface> surfaces() {
     };
     one.count = 7;
     one.lines.resize(20);
-    one.ways = draw(0.4);
+    one.ways = draw(0.4).array() + 0.05;
     one.found = draw(0.001);
     one.taken = draw(0.0002);
     one.sigma = draw(0.006);
