@@ -154,7 +154,11 @@ TEST_F(BeforeAnyTouch, AreThoseOfThePrior) {
   const Eigen::VectorXd found = expected_reductions(solids, skin, some);
   for (std::size_t i = 0; i < some.size(); ++i)
     EXPECT_NEAR(found(static_cast<Eigen::Index>(i)), deviation_given({}) - deviation_given({some[i]}), 1e-9);
+}
+
+TEST_F(Reductions, AreNoneWhereNoPlaceIsAsked) {
   EXPECT_EQ(expected_reductions(solids, skin, {}).size(), 0);
+  EXPECT_TRUE(representatives({}, 60).places.empty());
 }
 
 TEST_F(Reductions, AreAskedOfPlacesThatStandForAllNearThemOnTheSameSide) {

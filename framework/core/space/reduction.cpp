@@ -33,6 +33,7 @@ MatrixXd offsets(const Solids& solids, const Skin::Places& places) {
 }  // namespace
 
 VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places) {
+  if (places.empty()) return {};
   Skin::Places all;  // contacts first
   for (const Skin::Row& row : skin.rows()) {
     if (!row.free && row.along.isZero(0.0)) all.push_back(row.place);
