@@ -81,8 +81,10 @@ void print_summary(const RunReport& report) {
                       report.interrupted ? "interrupted" : row.cell("status"), row.cell("stop_reason"),
                       row.cell("taps"), scaled(row.number("robot_seconds"), 1, "{:.1f}"));
   const std::string hit = row.cell("first_hit_tap");
-  text += fmt::format("taps: {} on the object, {} on the desk, {} failed; {}\n", row.cell("on_surface_taps"),
-                      row.cell("off_surface_taps"), row.cell("failed_taps"),
+  const std::string missed =
+      row.find("missed_taps") != nullptr ? fmt::format(" {} that met nothing,", row.cell("missed_taps")) : "";
+  text += fmt::format("taps: {} on the object, {} on the desk,{} {} failed; {}\n", row.cell("on_surface_taps"),
+                      row.cell("off_surface_taps"), missed, row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   if (const Errors errors = errors_in(row); errors.rmse) {
     text += fmt::format("error: {} cm over the scene, {} cm on the object; footprint IoU {}\n",

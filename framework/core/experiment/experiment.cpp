@@ -13,6 +13,17 @@
 #include <cmath>
 
 namespace palpate {
+namespace {
+
+/// Whether it is said of a tap along an approach how far the tool came, and it may have come so far. Of one that met
+/// nothing it may be left out: all of the way is free then. Of others nothing is learnt.
+bool ends_on_its_way(const Approach& approach, const Contact& contact) {
+  if (contact.outcome != Outcome::contact && contact.outcome != Outcome::no_contact) return true;
+  if (!contact.along) return contact.outcome == Outcome::no_contact;
+  return *contact.along >= 0.0 && *contact.along <= approach.length;
+}
+
+}  // namespace
 
 void Experiment::run(Journal& journal, int most_taps) {
   while (std::optional<TapRecord> tap = begin(journal, most_taps)) {
@@ -44,7 +55,7 @@ void Experiment::end(TapRecord& tap, Journal& journal) {
   if (tap.contact.outcome == Outcome::contact) read(tap);
   observe(tap);
   journal.record(tap, clock_.take());
-  check_backend(tap.contact);
+  check_backend(tap);
 }
 
 std::optional<std::string> Experiment::stop_reason(std::int64_t budget, Source source) {
@@ -58,21 +69,27 @@ std::optional<std::string> Experiment::stop_reason(std::int64_t budget, Source s
 Contact Experiment::touch(const TapRecord& tap) {
   const PhaseClock::Scope robot(clock_, Phase::robot);
   Contact contact = backend_->tap(request_of(tap));
-  if (contact.outcome != Outcome::contact || std::isfinite(contact.height)) return contact;
-  return {Outcome::aborted, 0.0, 0.0, contact.seconds, kHeightRefused, contact.ends_run};
+  const auto refused = [&](const char* why) -> Contact {
+    return {Outcome::aborted, 0.0, 0.0, contact.seconds, why, contact.ends_run};
+  };
+  if (contact.outcome == Outcome::contact && !std::isfinite(contact.height)) return refused(kHeightRefused);
+  if (tap.approach && !ends_on_its_way(*tap.approach, contact)) return refused(kAlongRefused);
+  return contact;
 }
 
 bool Experiment::is_broken_off(const Contact& contact) const {
   return stop_wished() && contact.outcome == Outcome::aborted && backend_->repeatable();
 }
 
-void Experiment::check_backend(const Contact& last) {
+void Experiment::check_backend(const PastTap& tap) {
+  const Contact& last = tap.contact;
   const auto fail = [&](const std::string& reason, const std::string& hint = {}) {
     throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
   };
   if (last.ends_run) fail(last.reason.empty() ? "cannot go on, and gives no reason" : last.reason);
-  if (last.outcome == Outcome::contact) failed_in_a_row_ = 0;
-  if (last.outcome == Outcome::contact || last.outcome == Outcome::unreachable || stop_wished()) return;
+  const bool is_well = last.outcome == Outcome::contact || tap.is_missed();
+  if (is_well) failed_in_a_row_ = 0;
+  if (is_well || last.outcome == Outcome::unreachable || stop_wished()) return;
   constexpr std::int64_t kOfARobot = 3;
   const std::optional<std::int64_t> most =
       options_.stop.failed_in_a_row || backend_->repeatable() ? options_.stop.failed_in_a_row : kOfARobot;

@@ -111,7 +111,7 @@ class Experiment {
   bool stop_wished() const { return context_.interrupted != nullptr && context_.interrupted->load(); }
   Contact touch(const TapRecord& tap);
   bool is_broken_off(const Contact& contact) const;
-  void check_backend(const Contact& last);
+  void check_backend(const PastTap& tap);
 
   int failed_in_a_row_ = 0;  ///< of this process: somebody has looked at the arm before a run is carried on
 };

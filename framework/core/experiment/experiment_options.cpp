@@ -188,13 +188,16 @@ void StopOptions::list(Fields& fields) {
                   .in(Unit::metre)
                   .above(0));
   fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
-  fields.integer(failed_in_a_row,
-                 Field("failed_in_a_row",
-                       "the run fails, for somebody to look at the arm, when so many taps in a row came to nothing; "
-                       "`unreachable` is none of them; not given, 3 where taps cannot be repeated, else never")
-                     .at_least(1)
-                     .at_most(100000)
-                     .from("an estimate: a robot that is well misses a tap, not three"));
+  fields.integer(
+      failed_in_a_row,
+      Field(
+          "failed_in_a_row",
+          "the run fails, for somebody to look at the arm, when so many taps in a row came to nothing; "
+          "`unreachable` is none of them, nor, from any side, one that met nothing; not given, 3 where taps cannot be "
+          "repeated, else never")
+          .at_least(1)
+          .at_most(100000)
+          .from("an estimate: a robot that is well misses a tap, not three"));
 }
 
 void LogOptions::list(Fields& fields) {

@@ -65,6 +65,9 @@ struct PastTap {
   std::string why{};                                   ///< of a fallback
   std::optional<Approach> approach = std::nullopt;     ///< the way of the tool; none: straight down at the target
 
+  /// Whether it came along an approach all of whose way was free, which tells as much as a contact.
+  bool is_missed() const { return approach && contact.outcome == Outcome::no_contact; }
+
   /// Whether scores from outside were asked for, and not the strategy.
   bool of_caller() const {
     return source == Source::caller || (source == Source::fallback && why.rfind(kOfCaller, 0) == 0);
@@ -95,8 +98,9 @@ struct TapRecord : PastTap, ModelState {
 /// The reason to stop of a run whose user wanted it: it has no summary, and can be carried on.
 constexpr const char* kStoppedByUser = "interrupted";
 
-/// The reason of a tap that failed because its height is none.
+/// The reasons of a tap that failed because its height is none, or because it ended where the tool never was.
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
+constexpr const char* kAlongRefused = "the backend reported an end that is not on the way of the tool";
 
 /// The contacts with an object: those at a cell of it, whatever was made of them.
 struct ObjectTouches {
@@ -109,18 +113,30 @@ struct ObjectResult : ObjectErrors, ObjectTouches {};
 
 /// The result of a run, in the order of summary.json but for what the record adds (clocks, memory, names).
 struct RunResult : ModelState {
+  /// Counts a tap, but for what a contact of it touched, which whoever believes it knows.
+  void count(const PastTap& tap) {
+    ++taps;
+    robot_seconds += tap.contact.seconds;
+    if (tap.source == Source::fallback) ++interventions["fallback"];
+    if (tap.contact.reason == kHeightRefused || tap.contact.reason == kAlongRefused) ++interventions["height_refused"];
+    if (tap.contact.outcome != Outcome::contact) ++(tap.is_missed() ? missed_taps : failed_taps);
+  }
+
   std::string stop_reason;
   bool interrupted = false;
   int taps = 0;
   int on_surface_taps = 0;
   int off_surface_taps = 0;
+  int missed_taps = 0;  ///< from any side: those that met nothing
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
   Calibration calibration;
   std::optional<std::vector<ObjectResult>> objects;  ///< of the scene, in its order; absent where no truth is known
   double robot_seconds = 0.0;
   double jitter_max = 0.0;
-  std::map<std::string, int> interventions;  ///< by kind, zeros included
+  /// By kind, zeros included.
+  std::map<std::string, int> interventions{{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
+                                           {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 };
 
 /// What is known of a tap before it is made, for people.

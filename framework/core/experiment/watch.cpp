@@ -37,8 +37,6 @@ Watch::Watch(const ExperimentOptions& options, const Candidates& candidates, con
       touched_(static_cast<std::size_t>(candidates.size()), false) {
   constexpr std::int64_t kRoom = 1024;  // within it no tap of the loop has to make any
   taps_.reserve(static_cast<std::size_t>(std::min(options.taps, kRoom)));
-  result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
-                           {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
 }
 
 void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, const TapBelief& belief) {
@@ -46,14 +44,8 @@ void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, con
   taps_.emplace_back(tap, manner);
   if (contact.outcome == Outcome::contact) note_object(candidate);
   if (beside_) beside_->observe(tap.target, tap.contact, manner);
-  ++result_.taps;
-  result_.robot_seconds += contact.seconds;
-  if (tap.source == Source::fallback) ++result_.interventions["fallback"];
-  if (contact.reason == kHeightRefused) ++result_.interventions["height_refused"];
-  if (contact.outcome != Outcome::contact) {
-    ++result_.failed_taps;
-    return;
-  }
+  result_.count(tap);
+  if (contact.outcome != Outcome::contact) return;
   touched_[static_cast<std::size_t>(candidate)] = true;
   result_.on_surface_taps = static_cast<int>(belief.hits().size());
   result_.off_surface_taps = static_cast<int>(belief.touches().size() - belief.hits().size());

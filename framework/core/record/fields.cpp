@@ -367,7 +367,7 @@ FieldList<Summary> make_summary_list() {
       "`tap budget`, `robot_time`, `max_standard_deviation`, `expected_rmse`, `no candidate is left`, or the error "
       "(`backend/baxter: ...` where the backend could go on no more)",
       [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
-  list.add("taps", "all of them; the next three add up to it", &Summary::taps).less().headline();
+  list.add("taps", "all of them; the next three, from any side four, add up to it", &Summary::taps).less().headline();
   list.add("on_surface_taps",
            "contacts with an object, as they are read at the end: with `height.systematic` all are read again after "
            "every "
@@ -376,7 +376,10 @@ FieldList<Summary> make_summary_list() {
       .more()
       .headline();
   list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less();
-  list.add("failed_taps", "taps without a contact", &Summary::failed_taps).less();
+  list.add_where([](const Summary& s) { return s.config.options.scene.touch == SceneOptions::Touch::any; },
+                 "missed_taps", "from any side: taps that met nothing, all of whose way is free",
+                 &Summary::missed_taps);
+  list.add("failed_taps", "taps without a contact; missed ones are none of them", &Summary::failed_taps).less();
   list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
       .less()
       .absent("the object was not found");
@@ -413,7 +416,9 @@ FieldList<Summary> make_summary_list() {
            std::pair{"fit_failed",
                      "fits that came to no finite values and kept the old ones; heights and labels fitted "
                      "together count once"},
-           std::pair{"height_refused", "taps of which the backend reported no finite number"},
+           std::pair{"height_refused",
+                     "taps of which the backend reported no finite number, or, from any side, an end that is not on "
+                     "the way of the tool"},
            std::pair{"jitter", "how often it was raised"},
            std::pair{"pivoted", "how often no jitter helped and the covariance was factorised with pivoting"},
            std::pair{"set_aside", "taps that stay out of the final models because the others tell all about them"},

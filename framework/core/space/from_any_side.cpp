@@ -34,8 +34,6 @@ FromAnySide::FromAnySide(const ExperimentOptions& options, const PluginFactory& 
     throw Error("acquisition", fmt::format("{} scores taps from above alone", options.acquisition.type),
                 "choose one that scores approaches: discovery, uncertainty, random");
   }
-  result_.interventions = {{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
-                           {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
   if (options_.space->view) look();
 }
 
@@ -102,12 +100,8 @@ void FromAnySide::read(TapRecord& tap) { tap.on_surface = tap.contact.height > s
 void FromAnySide::observe(const PastTap& tap) {
   belief_.observe(approach_of(tap), tap.contact);
   previous_ = tap.target;
-  ++result_.taps;
-  result_.robot_seconds += tap.contact.seconds;
-  if (tap.contact.outcome != Outcome::contact) {
-    ++result_.failed_taps;
-    return;
-  }
+  result_.count(tap);
+  if (tap.contact.outcome != Outcome::contact) return;
   const bool on = belief_.touches().back().contact && !belief_.touches().back().desk;
   ++(on ? result_.on_surface_taps : result_.off_surface_taps);
   if (on && !result_.first_hit_tap) result_.first_hit_tap = result_.taps;

@@ -86,6 +86,7 @@ static void to_json(Json& out, const Moment& moment) {
   out.update({{"taps", moment.taps},
               {"on_surface_taps", result.on_surface_taps},
               {"off_surface_taps", result.off_surface_taps},
+              {"missed_taps", result.missed_taps},
               {"failed_taps", result.failed_taps},
               {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
