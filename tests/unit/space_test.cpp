@@ -154,7 +154,7 @@ TEST(Piece, IsAsFarAsideUpToALimitAsWithoutOne) {
   EXPECT_LT(limited, 2900);
 }
 
-TEST(Cloud, FindsTheNearestAmongAllPoints) {
+TEST(Cloud, FindsTheNearestAmongAllPointsAndNoneFartherThanTenCentimetres) {
   Random random(5, "test/cloud");
   Cloud from, to;
   for (int i = 0; i < 300; ++i) {
@@ -162,11 +162,15 @@ TEST(Cloud, FindsTheNearestAmongAllPoints) {
     to.push_back(Vector3d(0.05, 0.0, 0.0) + 0.1 * random.uniform() * random_direction(random));
   }
   const std::vector<double> found = nearest_distances(from, to);
+  int far = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     double least = kNoHit;
     for (const Vector3d& point : to) least = std::min(least, (point - from[i]).norm());
-    EXPECT_DOUBLE_EQ(found[i], least);
+    EXPECT_DOUBLE_EQ(found[i], least <= 0.1 ? least : kNoHit);
+    far += least > 0.1 ? 1 : 0;
   }
+  EXPECT_GT(far, 30);
+  EXPECT_LT(far, 200);
 }
 
 TEST(Cloud, HasNoErrorAgainstItselfAndTheKnownOneAgainstAShiftedCopy) {

@@ -29,13 +29,15 @@ const std::vector<ErrorField>& error_list() {
       {RecordField("rmse_m",
                    "reconstruction against truth over all candidate cells, desk included (root mean square); with "
                    "`surface: two_part` the height of the object where the footprint's probability is >= 1/2, and the "
-                   "desk elsewhere")
+                   "desk elsewhere; from any side the root mean square of what `nearest_m` is the mean of")
            .in(Unit::metre)
            .less()
            .called("over the scene")
            .headline(),
        &Errors::rmse},
-      {RecordField("rmse_on_surface_m", "the same over the cells that truly lie on an object")
+      {RecordField("rmse_on_surface_m",
+                   "the same over the cells that truly lie on an object; from any side over the points of the true "
+                   "surface")
            .in(Unit::metre)
            .less()
            .called("on the object")
@@ -55,8 +57,11 @@ const std::vector<ErrorField>& error_list() {
        &Errors::footprint_iou},
       {RecordField("nearest_m",
                    "from any side: mean distance from the points of the reconstructed surface to the nearest of the "
-                   "true one and back, over the points of both; each surface is where lines from all sides first meet "
-                   "it, thinned to one point in a cube of 3 mm")
+                   "true one and back, over the points of both, each 10 cm at most, and before an object is known 10 "
+                   "cm. The true one is where lines from all sides first meet the scene; the reconstructed one where "
+                   "they meet the most probable composition, each point then moved along its normal by what the skin "
+                   "says. Of either there is a point in a cube of 1 mm; those that ask for the nearest are one in a "
+                   "cube of 3 mm")
            .in(Unit::metre)
            .less()
            .called("to the nearest point"),
@@ -70,7 +75,7 @@ const std::vector<ErrorField>& error_list() {
       {RecordField(
            "surface_coverage_95",
            "from any side: share of the reconstructed surface whose distance to the true one is within 1.96 of its "
-           "standard deviations: 0.95 where these are as large as they should be")
+           "standard deviations: 0.95 where these are as large as they should be; left out before an object is known")
            .called("coverage of 95 % intervals"),
        &Errors::coverage, true},
       {RecordField("volume_iou",

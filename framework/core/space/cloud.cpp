@@ -64,8 +64,16 @@ Cloud thinned(const Cloud& points, double side) {
   return out;
 }
 
+namespace {
+
+constexpr double kFar = 0.1;  // what lies further off, or has nothing to be near to, counts so much
+
+}  // namespace
+
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
   constexpr double kSide = 0.01;
+  // Points within kFar of each other lie in cubes no farther apart than that.
+  constexpr auto kMost = static_cast<std::int64_t>(kFar / kSide + 0.5);
   std::unordered_map<std::int64_t, std::vector<int>> cubes;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const auto cube = cube_of(to[i], kSide);
@@ -76,7 +84,6 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
   for (const Vector3d& point : from) {
     const auto cube = cube_of(point, kSide);
     double least = std::numeric_limits<double>::infinity();
-    constexpr std::int64_t kMost = 40;
     for (std::int64_t ring = 0; ring <= kMost && least > kSide * static_cast<double>(ring - 1) && !to.empty(); ++ring) {
       for (std::int64_t x = -ring; x <= ring; ++x) {
         for (std::int64_t y = -ring; y <= ring; ++y) {
@@ -89,14 +96,13 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
         }
       }
     }
-    out.push_back(least);
+    out.push_back(least <= kFar ? least : std::numeric_limits<double>::infinity());
   }
   return out;
 }
 
 namespace {
 
-constexpr double kFar = 0.1;  // what lies further off, or has nothing to be near to, counts so much
 constexpr double kNear = 0.005;
 constexpr double kSide = 0.003;  // so that where many lines meet a surface counts no more than elsewhere
 

@@ -24,7 +24,8 @@ using Cloud = std::vector<Eigen::Vector3d>;
 /// At most one of the points in each cube of this side.
 Cloud thinned(const Cloud& points, double side);
 
-/// The distance from each point of `from` to the nearest of `to`, metres; infinity where there is none.
+/// The distance from each point of `from` to the nearest of `to`, metres; infinity where none is within 10 cm, which is
+/// the most that is told apart.
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to);
 
 /// Of two surfaces, of which some points say how far they are from the other: at most one in a cube of 3 mm.

@@ -90,7 +90,7 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   if (backend_->scene_is_truth()) {
     const Line& line = tap.approach->line;
     const double desk = belief_.desk_along({line.origin - Eigen::Vector3d(0, 0, scene_->desk()), line.direction});
-    tap.true_on_surface = scene_->first_hit(line) < std::min(desk, tap.approach->length);
+    tap.true_on_surface = scene_now().first_hit(line) < std::min(desk, tap.approach->length);
   }
   return tap;
 }
@@ -115,25 +115,37 @@ void FromAnySide::resume(const std::vector<PastTap>& past) {
   }
 }
 
+const Scene& FromAnySide::scene_now() {
+  if (scene_->effects().push && now_taps_ != result_.taps) {
+    const bool stood = pushed_ == nullptr;
+    pushed_ = scene_->after(result_.taps);
+    now_taps_ = result_.taps;
+    if (!stood || pushed_) truth_.reset();
+  }
+  return pushed_ ? *pushed_ : *scene_;
+}
+
 const FromAnySide::TrueSurface& FromAnySide::truth() {
+  const Scene& scene = scene_now();
   if (truth_) return *truth_;
   truth_.emplace();
   if (!backend_->scene_is_truth()) return *truth_;
   Cloud& cloud = truth_->cloud;
   const Eigen::Vector3d desk(0.0, 0.0, scene_->desk());
   for (const Line& line : bundle_.lines) {
-    const double hit = scene_->first_hit({line.origin + desk, line.direction});
+    const double hit = scene.first_hit({line.origin + desk, line.direction});
     if (hit < belief_.desk_along(line)) cloud.push_back(line.origin + hit * line.direction);
   }
   cloud = thinned(cloud, kSide);
-  truth_->cubes = cubes_.of(*scene_);
+  truth_->cubes = cubes_.of(scene);
   return *truth_;
 }
 
 Errors FromAnySide::errors() {
   if (truth().cloud.empty()) return {};
   update();
-  const Cloud surface = belief_.surface(bundle_, kSide);
+  // Before an object is known there is no surface, and all of the true one is missing.
+  const Cloud surface = knows_object() ? belief_.surface(bundle_, kSide) : Cloud();
   const CloudErrors errors = compare_clouds(surface, truth().cloud);
   Errors out;
   out.rmse = errors.rms;
@@ -141,7 +153,8 @@ Errors FromAnySide::errors() {
   out.nearest = errors.mean;
   out.f_score = errors.f_score;
   out.coverage = coverage(surface);
-  out.volume_iou = intersection_over_union(cubes_.of(belief_.solids().best(), belief_.skin()), truth().cubes);
+  out.volume_iou =
+      knows_object() ? intersection_over_union(cubes_.of(belief_.solids().best(), belief_.skin()), truth().cubes) : 0.0;
   return out;
 }
 
@@ -179,6 +192,7 @@ std::vector<ModelReader> FromAnySide::readers() const {
 
 Crossings FromAnySide::crossings(double side) {
   update();
+  if (!knows_object()) return {};
   Crossings out = cross_surface(belief_.solids().best(), belief_.skin(), belief_.touches(), side);
   Cloud points;
   for (const Crossings::Vertex& vertex : out.vertices) points.push_back(vertex.at);

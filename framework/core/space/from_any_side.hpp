@@ -43,9 +43,9 @@ class FromAnySide final : public Experiment {
   Eigen::VectorXd scores();
   /// The surface that is believed, for a mesh of such cubes.
   Crossings crossings(double side);
-  /// Its finest mesh with normals and standard deviations, a PLY file.
+  /// Its finest mesh, then without vertices, with normals and standard deviations, a PLY file.
   std::string surface_ply();
-  /// What is truly there, relative to the desk; empty where another world is tapped.
+  /// What is truly there as of now, relative to the desk; empty where another world is tapped.
   struct TrueSurface {
     Cloud cloud;        ///< the surface, a point in a cube of 1 mm
     Cubes::Held cubes;  ///< what is solid
@@ -59,15 +59,19 @@ class FromAnySide final : public Experiment {
   /// Until an object is seen or hit there is no surface to poke: what is believed then is anywhere.
   bool starting() const { return !object_seen_ && (result_.taps < options_.initial.count || !knows_object()); }
   void look();
+  /// The scene as it stands, some of it pushed by now.
+  const Scene& scene_now();
   /// Of the 95 % intervals of such a surface.
   std::optional<double> coverage(const Cloud& surface);
 
   SpaceBelief belief_;
   std::shared_ptr<Acquisition> acquisition_;
-  bool object_seen_ = false;  ///< in a view before the first tap
-  Bundle bundle_;             ///< by which surfaces are compared
-  Cubes cubes_;               ///< by which volumes are
-  std::optional<TrueSurface> truth_;
+  bool object_seen_ = false;             ///< in a view before the first tap
+  Bundle bundle_;                        ///< by which surfaces are compared
+  Cubes cubes_;                          ///< by which volumes are
+  std::unique_ptr<const Scene> pushed_;  ///< where something was pushed
+  int now_taps_ = 0;                     ///< taps that it stands after
+  std::optional<TrueSurface> truth_;     ///< of the same
   RunResult result_;
   int updated_ = -1;  ///< taps that the belief has taken in
 };

@@ -100,7 +100,7 @@ void HistoryGrower::add_surface(FromAnySide& experiment) {
   now.next = experiment.choose_next();
   if (now.next) now.next_along = experiment.belief().meeting(*now.next->approach, experiment.belief().solids().best());
   now.result = experiment.result();
-  grown_.surfaces.push_back(experiment.knows_object() ? experiment.crossings(kSide) : Crossings{});
+  grown_.surfaces.push_back(experiment.crossings(kSide));
   for (const Crossings::Vertex& one : grown_.surfaces.back().vertices)
     now.largest_deviation = std::max(now.largest_deviation, one.deviation);
   constexpr double kApart = 0.003;
