@@ -289,6 +289,7 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
                                 "accuracy=1e-6",
                                 "stop.max_standard_deviation=1cm",
                                 "stop.expected_rmse=1cm",
+                                "threads=2",
                                 "log.maps=true"}) {
     const std::string word(key);
     EXPECT_THAT(refused({"run", config(), "--dry-run", word}),
@@ -296,9 +297,15 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
                                testing::HasSubstr(": is of taps from above and means nothing from any side, take it "
                                                   "away")));
   }
-  EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47"})
+  // Of a grid that is not read there.
+  EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47",
+                     "initial.count=2500", "taps=3000"})
                 .status,
             0);
+  for (const char* const key : {"space.moves=5", "space.view={}"}) {
+    EXPECT_THAT(refused({"run", paper(), "--dry-run", key}),
+                testing::HasSubstr("space: is of surface: implicit and means nothing from above, take it away"));
+  }
 }
 
 }  // namespace

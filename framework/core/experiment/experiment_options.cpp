@@ -47,6 +47,7 @@ void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields)
   only("stop.expected_rmse", !options.stop.expected_rmse);
   only("log.maps", options.log.maps == usual.log.maps);
   only("prior", !options.prior);
+  only("threads", options.threads == usual.threads);
 }
 
 }  // namespace
@@ -289,12 +290,15 @@ void ExperimentOptions::list(Fields& fields) {
   fields.require(!any_side || initial.design == InitialOptions::Design::random, "initial.design",
                  "from any side the first taps are random");
   if (any_side) refuse_what_is_from_above(*this, fields);
+  fields.require(!space || surface == Surface::implicit, "space",
+                 "is of surface: implicit and means nothing from above, take it away");
   fields.require(
       std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
       fmt::format("cuts the area into {} x {} cells, at most {} a side are possible", columns, rows, kMaxCellsPerSide));
   fields.require(!initial.searches() || initial.smallest < std::min(scene.area.width, scene.area.depth),
                  "initial.smallest", "is not below the sides of the area, name the least width of the object");
-  fields.require(initial.searches() || static_cast<double>(initial.count) <= columns * rows, "initial.count",
+  fields.require(any_side || initial.searches() || static_cast<double>(initial.count) <= columns * rows,
+                 "initial.count",
                  fmt::format("{} taps, but there are only {} candidates, take fewer first taps or more candidates",
                              initial.count, columns * rows));
 }
