@@ -249,6 +249,16 @@ TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
     EXPECT_THAT(ended.err,
                 testing::HasSubstr("a tap of a run from any side has no z and no direction, its record is damaged"));
   }
+  const fs::path other = touched("taps=4 name=other");
+  std::string taps = text_of(other / "taps.jsonl");
+  const std::string lost = "\"along\": ";
+  for (auto at = taps.find(lost); at != std::string::npos; at = taps.find(lost))
+    taps.replace(at, lost.size(), "\"lost\": ");
+  write(other / "taps.jsonl", taps);
+  for (const char* const command : {"report", "replay", "export"}) {
+    EXPECT_THAT(refused({command, other}),
+                testing::HasSubstr("has no number 'along', how far the tool went to its contact, the file is damaged"));
+  }
 }
 
 TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {

@@ -47,6 +47,8 @@ PastTap past_tap(const Row& row, const std::string& where) {
         {{out.target.x, out.target.y, *z}, {number("direction.x"), number("direction.y"), number("direction.z")}},
         number("length")};
     out.contact.along = row.number("along");
+    if (out.contact.outcome == Outcome::contact && !out.contact.along)
+      throw Error(where, "has no number 'along', how far the tool went to its contact", "the file is damaged");
   }
   out.why = row.text("why");
   out.motion = static_cast<int>(row.number("motion").value_or(0.0));
