@@ -25,6 +25,12 @@ class AnySide : public Shell {
   /// The meshes of the scenes are in the folder that they name.
   void SetUp() override { fs::create_directory_symlink(test::source_folder() / "configs", here() / "configs"); }
   static std::string config() { return (test::source_folder() / "configs/any_side.yaml").string(); }
+  /// Where the tool started, tap by tap.
+  static std::vector<double> starts_of(const fs::path& run) {
+    std::vector<double> out;
+    for (const Row& row : rows_of(run, "taps.jsonl")) out.push_back(row.number("x").value());
+    return out;
+  }
   fs::path touched(const Words& more) const {
     return ran(Words{"scene=any_bowl", "space.approaches=200", "space.moves=100"} + more, config());
   }
@@ -145,6 +151,81 @@ TEST_F(AnySide, ARunIsPlayedAgainToTheLastBit) {
   const Ended ended = palpate({"replay", touched("taps=9")});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, testing::HasSubstr("all equal"));
+}
+
+TEST_F(AnySide, ARunWhoseApproachesAreLimitedByTheToolOrTheArmIsPlayedAgainAndExplainedAsItWas) {
+  const Words few = "taps=6 space.moves=20 name=limited";
+  const std::vector<double> free = starts_of(touched(few + "name=free"));
+  for (const char* const effects : {"{tip_radius: {radius: 2 cm}}", "{shaft: {radius: 2 cm, length: 3 cm}}",
+                                    "{reach: {base: [-55 cm, 13 cm], radius: 75 cm}}"}) {
+    const fs::path run = touched(few + Words{std::string("scene.effects=") + effects});
+    EXPECT_NE(starts_of(run), free) << effects;
+    const Ended ended = palpate({"replay", run});
+    EXPECT_EQ(ended.status, 0) << effects << ended.err;
+    EXPECT_THAT(ended.out, testing::HasSubstr("all equal"));
+    EXPECT_THAT(palpate({"explain", run, "6"}).out, testing::Not(testing::HasSubstr("elsewhere")));
+    fs::remove_all(here() / "runs");
+  }
+}
+
+TEST_F(AnySide, ARunThatFailedByItsArmIsPlayedAgainToItsEnd) {
+  // On every tap the arm takes longer than it may.
+  const Ended failed = palpate({"run", config(), "--quiet", "scene=any_bowl", "space.approaches=50", "space.moves=20",
+                                "taps=9", "backend.motion.timeout=100ms", "stop.failed_in_a_row=3"});
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_THAT(failed.err, testing::HasSubstr("3 taps in a row failed"));
+  const Ended ended = palpate({"replay", directory()});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, testing::HasSubstr("all equal"));
+}
+
+TEST_F(AnySide, OnAHighDeskAndOverAnAreaThatIsNoSquareEverythingIsWhereItIs) {
+  const fs::path flat = touched("taps=12");
+  const fs::path run = touched("taps=12 scene.desk=70cm name=high");
+  const std::vector<Row> low = rows_of(flat, "taps.jsonl");
+  const std::vector<Row> high = rows_of(run, "taps.jsonl");
+  ASSERT_EQ(high.size(), low.size());
+  for (std::size_t i = 0; i < high.size(); ++i) {
+    EXPECT_EQ(high[i].text("outcome"), low[i].text("outcome")) << i;
+    EXPECT_EQ(high[i].flag("on_surface"), low[i].flag("on_surface"));
+    EXPECT_EQ(high[i].flag("true_on_surface"), low[i].flag("true_on_surface"));
+    // Rounding at 70 cm, and what the belief makes of it.
+    EXPECT_NEAR(high[i].number("z").value(), low[i].number("z").value() + 0.7, 1e-6);
+    EXPECT_EQ(high[i].number("height").has_value(), low[i].number("height").has_value());
+    EXPECT_NEAR(high[i].number("height").value_or(0.7), low[i].number("height").value_or(0.0) + 0.7, 1e-6);
+  }
+  const auto nearest = [&](const fs::path& one) {
+    return parse_json_row(text_of(one / "summary.json")).value().number("nearest_m").value();
+  };
+  EXPECT_NEAR(nearest(run), nearest(flat), 1e-6);
+  EXPECT_THAT(palpate({"replay", run}).out, testing::HasSubstr("all equal"));
+
+  const fs::path wide = touched("taps=12 scene.area.width=40cm name=wide");
+  int on = 0;
+  for (const Row& row : rows_of(wide, "taps.jsonl")) {
+    if (row.text("outcome") != "contact") continue;
+    EXPECT_EQ(row.flag("on_surface"), row.flag("true_on_surface"));
+    on += *row.flag("on_surface") ? 1 : 0;
+  }
+  EXPECT_GT(on, 2);
+  EXPECT_LT(nearest(wide), 0.05);
+}
+
+TEST_F(AnySide, ARunThatMetNothingLeavesNoSurfaceAndEveryPageAndFileOfIt) {
+  const fs::path run = touched("taps=5 scene.objects=[]");
+  const Row summary = parse_json_row(text_of(run / "summary.json")).value();
+  EXPECT_EQ(summary.number("taps"), 5);
+  EXPECT_EQ(summary.number("on_surface_taps"), 0);
+  EXPECT_EQ(summary.number("failed_taps"), 0);
+  EXPECT_EQ(*summary.number("off_surface_taps") + *summary.number("missed_taps"), 5);
+  EXPECT_THAT(text_of(run / "surface.ply"), testing::HasSubstr("element vertex 0\n"));
+  EXPECT_EQ(status_of(run).status, 0);
+  for (const char* const command : {"replay", "report", "export"}) {
+    const Ended ended = palpate({command, run});
+    EXPECT_EQ(ended.status, 0) << command << ended.err;
+  }
+  EXPECT_EQ(palpate({"explain", run, "5"}).status, 0);
+  EXPECT_THAT(text_of(run / "export/surface.ply"), testing::HasSubstr("element vertex 0\n"));
 }
 
 TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedRunAndAReplayHaveTheSameView) {

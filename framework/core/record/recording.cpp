@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numeric>
 
 namespace palpate {
@@ -33,11 +34,32 @@ class Absent : public Backend {
   bool truth_known_;
 };
 
+/// The same of a recorded run. Among which approaches a tap was chosen depends on which of them the run's own backend
+/// reached. Who tapped the very scene of the config is a simulator, and is asked; anybody else may move something when
+/// built, and is not: there all count as reached.
+class Played : public Absent {
+ public:
+  Played(const PluginHost& host, const Recording& recording) : Absent(recording.truth_known()) {
+    const ExperimentOptions& options = recording.config.options;
+    if (!recording.truth_known() || options.scene.touch != SceneOptions::Touch::any) return;
+    const auto seed = static_cast<std::uint64_t>(options.seed);
+    scene_ = build_scene(options.scene, seed, host);
+    context_.emplace(Context{host, *scene_, seed, nullptr});
+    own_ = context_->create<Backend>(options.backend);
+  }
+  bool reaches(const Approach& approach) const override { return own_ == nullptr || own_->reaches(approach); }
+
+ private:
+  std::unique_ptr<const Scene> scene_;
+  std::optional<Context> context_;
+  std::shared_ptr<const Backend> own_;  ///< of a run from any side that is simulated
+};
+
 /// Reads what the run's own backend read. The taps are those of the record, whatever the target: a target that differs
 /// shows.
-class Recorded final : public Absent {
+class Recorded final : public Played {
  public:
-  explicit Recorded(const Recording& recording) : Absent(recording.truth_known()), recording_(recording) {}
+  Recorded(const PluginHost& host, const Recording& recording) : Played(host, recording), recording_(recording) {}
   Quantities expects() const override {
     Quantities out;
     if (recording_.rows.front().number("predicted.height")) out = out | Quantity::height;
@@ -157,7 +179,7 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
 Playback::Playback(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
       experiment_(make_experiment(recording.config.options, workshop.host, workshop.interrupted,
-                                  no_backend(recording.truth_known()))) {}
+                                  std::make_shared<Played>(workshop.host, recording))) {}
 
 void Playback::advance_to(int taps) {
   const auto begin = recording_.taps.begin();
@@ -170,8 +192,11 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const std::vector<Row>& recorded = recording.rows;
   const auto made = static_cast<int>(recorded.size());
   const bool cut = made < recording.config.options.taps;
-  const std::unique_ptr<Experiment> made_again = make_experiment(
-      recording.config.options, workshop.host, workshop.interrupted, std::make_shared<Recorded>(recording));
+  // A run that ended by this rule failed by its arm: here its taps are compared like any other's.
+  ExperimentOptions options = recording.config.options;
+  options.stop.failed_in_a_row.reset();
+  const std::unique_ptr<Experiment> made_again = make_experiment(options, workshop.host, workshop.interrupted,
+                                                                 std::make_shared<Recorded>(workshop.host, recording));
   Experiment& experiment = *made_again;
   const auto* const from_above = dynamic_cast<const FromAbove*>(made_again.get());
   Collector collector;

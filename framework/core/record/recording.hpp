@@ -40,7 +40,8 @@ std::shared_ptr<Backend> no_backend(bool truth_known);
 Quantities recorded_quantities(const Row& row);
 
 /// Brings the models of a recorded run to the state that they had after any of its taps, from the taps alone: what is
-/// read of them there is what the run would have read. Writes nothing, moves nothing: there is no backend.
+/// read of them there is what the run would have read. Writes nothing, moves nothing: there is no backend, but that of
+/// a run from any side whose truth is known, a simulator, says which approaches it reaches.
 class Playback {
  public:
   /// Before the first tap. `workshop` and `recording` must outlive it. Throws Error for what only building finds out.
@@ -77,7 +78,7 @@ struct ReplayReport {
 
 /// Sends the recorded taps of a run through the same models and compares every number but clocks, memory and host, as
 /// text, bit for bit.
-/// Writes nothing, moves nothing: the backend is not even created.
+/// Writes nothing, moves nothing: see Playback.
 ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
 
 /// What a finished run had come to earlier: the summary of `recording`, which ended well, at each of these occasions;
