@@ -24,6 +24,7 @@ class Uncertainty final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 };
 
-PALPATE_PLUGIN(Acquisition, Uncertainty, "uncertainty", "tap where the height is least known")
+PALPATE_PLUGIN(Acquisition, Uncertainty, "uncertainty",
+               "tap where the height, or from any side the surface along its normal, is least known")
 
 }  // namespace palpate::acquisitions

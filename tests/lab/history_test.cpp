@@ -4,6 +4,7 @@
 #include "record/fields.hpp"
 #include "record/session.hpp"
 #include "record/tap_row.hpp"
+#include "report/curves.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"
 #include "support/runs.hpp"
@@ -180,6 +181,17 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
     EXPECT_EQ(moment.next->approach->line.origin, recording.taps[static_cast<std::size_t>(taps)].approach->line.origin);
   }
   EXPECT_EQ(history.moments.back().result.errors.nearest, recording.summary->number("nearest_m"));
+
+  // A page that has all moments is told of the end without any surface, and keeps its plots.
+  HistoryGrower grower(run.workshop, recording);
+  while (grower.taps() < 9) grower.advance();
+  const auto titles = [&](const History& of) {
+    std::vector<std::string> out;
+    for (const CurvePanel& panel : curves_of(recording, of).panels) out.push_back(panel.title);
+    return out;
+  };
+  EXPECT_TRUE(grower.since(10).surfaces.empty());
+  EXPECT_EQ(titles(grower.since(10)), titles(history));
 }
 
 TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
@@ -213,6 +225,16 @@ TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
 TEST(Warnings, TellOfARuleThatStalls) {
   EXPECT_THAT(warnings("paper/object_i.yaml", {"fallback=none", "repeat=allow"}),
               Contains(HasSubstr("14 taps were chosen by the acquisition although no candidate had a positive score")));
+}
+
+TEST(Warnings, OfARunFromAnySideSpeakOfApproachesAndTakeAFreeWayForNoFailure) {
+  const Recorded run("any_side.yaml", {"scene=object_i", "scene.touch=any", "acquisition=uncertainty", "taps=12",
+                                       "space.approaches=1", "space.moves=20"});
+  ASSERT_GT(run.history().moments.back().result.missed_taps, 0);
+  const std::vector<std::string> said = warnings_of(run.recording(), run.history());
+  EXPECT_THAT(said, Contains(HasSubstr("although no approach had a positive score")));
+  for (const char* const other : {"fallback", "did not reach the models", "maps"})
+    EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr(other))));
 }
 
 TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {

@@ -130,7 +130,7 @@ std::string constant_words(const CurvePanel& panel) {
 }  // namespace
 
 Curves curves_of(const Recording& recording, const History& history) {
-  const bool any_side = !history.surfaces.empty();
+  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
   std::vector<CurvePanel> panels;
   const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});

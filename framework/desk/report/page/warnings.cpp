@@ -11,6 +11,10 @@
 namespace palpate {
 namespace {
 
+bool is_any_side(const Recording& recording) {
+  return recording.config.options.scene.touch == SceneOptions::Touch::any;
+}
+
 int interventions(const RunResult& result, const char* kind) {
   const auto found = result.interventions.find(kind);
   return found != result.interventions.end() ? found->second : 0;
@@ -21,12 +25,20 @@ void tell(std::vector<std::string>& out, int count, const char* noun, const char
   if (count > 0) out.push_back(counted(count, noun) + what);
 }
 
+/// Whether of two taps at one place the tool came, or would have come, along another line.
+bool other_way(const PastTap& one, const PastTap& other) {
+  if (!one.approach || !other.approach) return one.approach.has_value() != other.approach.has_value();
+  const auto& [a, b] = std::pair(one.approach->line, other.approach->line);
+  return a.origin != b.origin || a.direction != b.direction;
+}
+
 /// The first tap that this build would have made elsewhere; 0 if there is none.
 int first_drift(const Recording& recording, const History& history) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const std::optional<TapRecord>& next = history.moments[i].next;
-    const Target& made = recording.taps[i].target;
-    if (!next || next->target.x != made.x || next->target.y != made.y) return static_cast<int>(i) + 1;
+    const PastTap& made = recording.taps[i];
+    if (!next || next->target.x != made.target.x || next->target.y != made.target.y || other_way(*next, made))
+      return static_cast<int>(i) + 1;
   }
   return 0;
 }
@@ -38,23 +50,20 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
   } else if (!recording.summary) {
     out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
   }
-  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
+  const bool any_side = is_any_side(recording);
   if (last.on_surface_taps + last.off_surface_taps == 0) {
     out.push_back(any_side ? "No tap touched anything." : "No tap touched anything: the maps show what was assumed.");
   } else if (last.on_surface_taps == 0) {
     out.push_back(any_side ? "No tap touched an object." : "No tap touched an object: the maps show where it is not.");
   }
-  // From any side a way that met nothing tells something, too.
-  const auto broken_off =
-      std::count_if(recording.taps.begin(), recording.taps.begin() + last.taps, [](const PastTap& tap) {
-        return tap.contact.outcome != Outcome::contact && tap.contact.outcome != Outcome::no_contact;
-      });
-  tell(out, any_side ? static_cast<int>(broken_off) : last.failed_taps, "tap",
-       " brought no contact and did not reach the models.");
-  tell(out, interventions(last, "height_refused"), "tap", " brought a height that is no number, and was refused.");
+  tell(out, last.failed_taps, "tap", " brought no contact and did not reach the models.");
+  tell(out, interventions(last, "height_refused"), "tap",
+       any_side ? " brought a height that is no number, or an end off its way, and was refused."
+                : " brought a height that is no number, and was refused.");
 }
 
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
+  const bool any_side = is_any_side(recording);
   const RunResult& last = history.moments.back().result;
   if (const int fallbacks = interventions(last, "fallback"); fallbacks > 0) {
     out.push_back(fmt::format(
@@ -66,16 +75,17 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
     return row.text("source") == source_name(Source::acquisition) && row.number("score").value_or(1.0) <= 0.0;
   };
   if (const auto stalled = std::count_if(recording.rows.begin(), recording.rows.end(), without_reason); stalled > 0) {
-    out.push_back(
-        fmt::format("{} chosen by the acquisition although no candidate had a positive score: where nothing speaks for "
-                    "any of them the first one is taken. fallback=uncertainty looks for the object instead.",
-                    counted(stalled, "tap") + (stalled == 1 ? " was" : " were")));
+    out.push_back(fmt::format(
+        "{} chosen by the acquisition although no {} had a positive score: where nothing speaks for any of them the "
+        "first one is taken.{}",
+        counted(stalled, "tap") + (stalled == 1 ? " was" : " were"), any_side ? "approach" : "candidate",
+        any_side ? "" : " fallback=uncertainty looks for the object instead."));
   }
   if (const int drift = first_drift(recording, history); drift > 0) {
     out.push_back(
         fmt::format("From the same taps this build would have made tap {} elsewhere: the run was made by another build "
-                    "or on another instruction path. The maps are those of the recorded taps.",
-                    drift));
+                    "or on another instruction path. The {} are those of the recorded taps.",
+                    drift, any_side ? "surfaces" : "maps"));
   }
 }
 
