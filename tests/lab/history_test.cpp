@@ -169,7 +169,7 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
   const History history = run.history();
   ASSERT_EQ(history.surfaces.size(), 10U);
   EXPECT_TRUE(history.maps.empty());
-  EXPECT_GT(history.true_points.size(), 500U);
+  EXPECT_GT(history.true_contours.size(), 10U);
   const auto hit = static_cast<int>(recording.summary.value().number("first_hit_tap").value());
   EXPECT_LE(hit, 9);
   for (int taps = 0; taps <= 9; ++taps) {

@@ -141,6 +141,13 @@ const FromAnySide::TrueSurface& FromAnySide::truth() {
   return *truth_;
 }
 
+std::vector<Ring> FromAnySide::true_contours() {
+  constexpr double kApart = 0.01;
+  constexpr double kOfGrid = 0.002;  // walls of 3 mm are whole
+  if (!backend_->scene_is_truth()) return {};
+  return contours(scene_now(), belief_.region().centre, belief_.region().radius, kApart, kOfGrid);
+}
+
 Errors FromAnySide::errors() {
   if (truth().cloud.empty()) return {};
   update();

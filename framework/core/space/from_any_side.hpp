@@ -5,6 +5,7 @@
 #include "experiment/experiment.hpp"
 #include "experiment/from_above.hpp"
 #include "space/cloud.hpp"
+#include "space/contours.hpp"
 #include "space/mesh.hpp"
 #include "space/space_belief.hpp"
 #include "space/volume.hpp"
@@ -41,7 +42,7 @@ class FromAnySide final : public Experiment {
   bool knows_object() const { return object_seen_ || result_.first_hit_tap; }
   /// What the acquisition gives each of the approaches among which the next tap would be chosen.
   Eigen::VectorXd scores();
-  /// The surface that is believed, for a mesh of such cubes.
+  /// The surface that is believed, for a mesh of such cubes; none before an object is known.
   Crossings crossings(double side);
   /// Its finest mesh, then without vertices, with normals and standard deviations, a PLY file.
   std::string surface_ply();
@@ -51,6 +52,8 @@ class FromAnySide final : public Experiment {
     Cubes::Held cubes;  ///< what is solid
   };
   const TrueSurface& truth();
+  /// Lines on what is truly there as of now, for a picture; none where another world is tapped.
+  std::vector<Ring> true_contours();
 
  private:
   void update() override;

@@ -103,8 +103,8 @@ void HistoryGrower::add_surface(FromAnySide& experiment) {
   grown_.surfaces.push_back(experiment.crossings(kSide));
   for (const Crossings::Vertex& one : grown_.surfaces.back().vertices)
     now.largest_deviation = std::max(now.largest_deviation, one.deviation);
-  constexpr double kApart = 0.003;
-  if (grown_.true_points.empty()) grown_.true_points = thinned(experiment.truth().cloud, kApart);
+  if (grown_.true_contours.empty() || experiment.scene().effects().push)
+    grown_.true_contours = experiment.true_contours();
   grown_.shown.push_back(now.taps);
   grown_.moments.push_back(now);
   // More than a page can carry; of a thousand taps they would take gigabytes.
@@ -150,7 +150,7 @@ void HistoryGrower::thin(std::size_t most) {
 
 History HistoryGrower::since(int moment) const {
   const auto first = std::lower_bound(grown_.shown.begin(), grown_.shown.end(), moment);
-  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_points};
+  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_contours};
   if (!grown_.surfaces.empty())
     out.surfaces = {grown_.surfaces.end() - (grown_.shown.end() - first), grown_.surfaces.end()};
   for (const MapSeries& map : grown_.maps)

@@ -73,9 +73,10 @@ struct History {
   std::vector<MapSeries> maps;
   Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row
   /// Of a run from any side, in the place of maps: the surface at each moment that is shown, which of a long run are
-  /// not all; none before a tap has hit an object, when it is anywhere. And points of the true one, where it is known.
+  /// not all; none before a tap has hit an object, when it is anywhere. And lines on the true one as it is at the last
+  /// moment, where it is known.
   std::vector<Crossings> surfaces;
-  Cloud true_points;
+  std::vector<Ring> true_contours;
 };
 
 /// Tells how many of all taps are done.

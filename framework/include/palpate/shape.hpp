@@ -58,7 +58,8 @@ class Shape {
   virtual double top(double s, double t) const { return -first_hit({{s, t, 0.0}, {0.0, 0.0, -1.0}}); }
 
   /// Which parts of the line lie in the solid, in their order: of what is hollow those within its walls. As it is here
-  /// it is right for what no line leaves and meets again; other shapes override it. Asked only to compare volumes.
+  /// it is right for what no line leaves and meets again; other shapes override it. Asked only to compare volumes
+  /// and to draw sections.
   /// Laws: the first begins at first_hit(), the last ends where the line the other way round first meets the solid;
   /// whether a point is within does not depend on the line through it.
   virtual std::vector<Stretch> stretches(const Line& line) const {

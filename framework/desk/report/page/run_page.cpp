@@ -20,6 +20,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -181,11 +182,20 @@ PackedSurface pack_surface(const Crossings& surface) {
   return out;
 }
 
-/// Points of the true surface, x, y and z of each, in tenths of a millimetre.
-static std::vector<int> true_points_of(const History& history) {
-  std::vector<int> out;
-  for (const Eigen::Vector3d& point : history.true_points) {
-    for (const double one : point) out.push_back(static_cast<int>(std::lround(1e4 * one)));
+/// The lines on the true surface, of each x, y and z of its points, in tenths of a millimetre: the first point in full,
+/// of the others what they differ by from the one before.
+static std::vector<std::vector<int>> true_contours_of(const History& history) {
+  std::vector<std::vector<int>> out;
+  for (const Ring& ring : history.true_contours) {
+    std::vector<int>& numbers = out.emplace_back();
+    std::array<int, 3> before{};
+    for (const Eigen::Vector3d& point : ring) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto now = static_cast<int>(std::lround(1e4 * point(static_cast<Eigen::Index>(i))));
+        numbers.push_back(now - before[i]);
+        before[i] = now;
+      }
+    }
   }
   return out;
 }
@@ -215,7 +225,7 @@ static Json json_of_page(const Recording& recording, const History& history) {
                {"titles", map_titles(recording.config.options)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
-               {"true_points", true_points_of(history)},
+               {"true_contours", true_contours_of(history)},
                {"config", json_of_config(recording, manifest)},
                {"build", json_of_build(manifest)}});
   return data;
@@ -302,6 +312,7 @@ std::string run_news(const Recording& recording, const History& history, int mom
   news["at"] = at;
   news["moments"] = std::vector<Moment>(history.moments.begin() + moments, history.moments.end());
   news["taps"] = known < made ? std::vector<Row>(row(known), row(made)) : std::vector<Row>{};
+  if (recording.config.options.scene.effects.values.push) news["true_contours"] = true_contours_of(history);
   if (!history.shown.empty()) news["bytes"] = base64(deflated(add_maps(news, history, 1)));
   return line_of(news);
 }

@@ -75,6 +75,7 @@ async function growRun(slider, news) {
   data.moments.push(...news.moments);
   data.taps.push(...news.taps);
   for (const name of ["state", "stop_reason", "summary", "curves", "constants", "warnings"]) data[name] = news[name];
+  data.true_contours = news.true_contours ?? data.true_contours;  // of what is pushed
   if (news.bytes) {
     const bytes = Uint8Array.from(atob(news.bytes), (c) => c.charCodeAt(0));
     const plain = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")));

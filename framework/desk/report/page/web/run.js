@@ -136,7 +136,7 @@ class Slider {
 
   controls() {
     const out = element("div", { class: "controls" }, this.output, this.player.button, this.input, liveNote(this.data));
-    if (this.data.truth) out.append(element("label", {}, this.truth, this.data.any_side ? " truth as points" : this.surface.spatial ? " truth as wireframe" : " truth instead"));
+    if (this.data.truth) out.append(element("label", {}, this.truth, this.surface.spatial || this.data.any_side ? " truth as wireframe" : " truth instead"));
     return out;
   }
 

@@ -129,9 +129,19 @@ class SpaceView {
     this.surfaces = [];
     this.withTruth = false;
     this.grow(surfaces);
-    const points = data.true_points;
-    const side = (first) => points.filter((_, i) => i % 3 === first).map((tenths) => tenths / 100 + (first === 2 ? kCentimetres * data.desk : 0));
-    this.truth = { x: side(0), y: side(1), z: side(2) };
+  }
+
+  /// The truth as closed lines, with gaps between them, centimetres.
+  truth() {
+    const out = { x: [], y: [], z: [] };
+    for (const ring of this.data.true_contours) {
+      kAxes3.forEach((side, axis) => {
+        let tenths = axis === 2 ? 1e4 * this.data.desk : 0;
+        const line = ring.filter((_, i) => i % 3 === axis).map((step) => (tenths += step) / 100);
+        for (const value of [...line, line[0], null]) out[side].push(value);
+      });
+    }
+    return out;
   }
 
   grow(surfaces) {
@@ -193,7 +203,8 @@ class SpaceView {
 
   traces(frame, moment) {
     const surface = this.surfaces[frame];
-    const [on, off, missed] = tapsUntil(this.data.taps, moment.taps);
+    const [on, off, others] = tapsUntil(this.data.taps, moment.taps);
+    const missed = others.filter((tap) => tap.outcome === "no_contact");  // of the others nothing is known of their way
     const most = Math.max(extent(surface.deviation)[1], 0);
     const title = "standard deviation [mm]";
     const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
@@ -210,7 +221,8 @@ class SpaceView {
       const some = (list) => list.filter((_, i) => i % every === 0);
       const words = some(surface.z).map((z) => `height ${shown(z, 3)} cm`);
       out.unshift(points("surface", some(surface.x), some(surface.y), words, { size: 4, color: some(surface.deviation), ...colours }));
-      if (this.withTruth) out.push(points("truth", this.truth.x, this.truth.y, [], { size: 2, color: themed("ink") }));
+      const { x, y } = this.withTruth ? this.truth() : {};
+      if (this.withTruth) out.push({ type: "scatter", mode: "lines", name: "truth", x, y, line: { color: themed("ink"), width: 0.5 }, hoverinfo: "skip" });
       return out;
     }
     const { colorbar, colorscale, cmin, cmax } = colours;
@@ -221,7 +233,7 @@ class SpaceView {
       text: surface.deviation.map((value) => shown(value, 2)),
       hovertemplate: "(%{x:.1f}, %{y:.1f}, %{z:.1f}) cm<br>standard deviation %{text} mm<extra></extra>",
     });
-    if (this.withTruth) out.push({ ...points("truth", this.truth.x, this.truth.y, [], { size: 1.6, color: themed("accent") }), type: "scatter3d", z: this.truth.z, hoverinfo: "skip" });
+    if (this.withTruth) out.push({ type: "scatter3d", mode: "lines", name: "truth", ...this.truth(), line: { color: themed("accent"), width: 1.5 }, hoverinfo: "skip" });
     return out;
   }
 
