@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -126,6 +127,77 @@ TEST(SkinAndFreeWays, OneDeepInTheSolidsIsForTheSolidsToExplain) {
   Skin skin(kernel_of(), {0.006, 0.0005});
   skin.fit(solids, {onto_plate(0.03, 0.002), {{{0.0, -0.05, 0.4}, {0, 0, -1}}, 0.39, false, false}});
   EXPECT_TRUE(skin.free_points().empty());
+}
+
+/// Down along the plate's front, so far inside.
+SurfaceTouch along_plate(double x, double inside) { return {{{x, -inside, 0.4}, {0, 0, -1}}, 0.39, false, false}; }
+
+/// By how much the surface is in front of the deepest point of a way along the plate, which asks at every 0.5 mm.
+double most_inside(const Skin& skin, const Composition& solids, const SurfaceTouch& way) {
+  double most = -1.0;
+  for (double along = 0.0; along < way.length; along += 0.0005) {
+    const Vector3d at = way.line.origin + along * way.line.direction;
+    most = std::max(most, skin.mean({at, Skin::normal(solids, at)}) - solids.distance(at));
+  }
+  return most;
+}
+
+TEST(SkinAndFreeWays, NoneIsLeftInsideHoweverLongItIs) {
+  const Composition solids = plate();
+  std::vector<SurfaceTouch> touches;
+  for (const double x : {-0.09, 0.09}) {
+    touches.push_back(onto_plate(x, 0.004));
+    touches.push_back(onto_plate(0.95 * x, -0.004));
+  }
+  const std::vector<SurfaceTouch> ways{along_plate(-0.03, 0.006), along_plate(-0.01, 0.008), along_plate(0.01, 0.01),
+                                       along_plate(0.03, 0.008)};
+  touches.insert(touches.end(), ways.begin(), ways.end());
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, touches);
+  EXPECT_EQ(skin.ways_broken(), 0);
+  // 0.5 mm is what a point may be inside and not be taken, the noise. One that is taken costs what a contact does that
+  // is off, and between two of them, 1.5 mm apart, is no more.
+  for (const SurfaceTouch& way : ways) EXPECT_LT(most_inside(skin, solids, way), 0.001) << way.line.origin.transpose();
+}
+
+TEST(SkinAndFreeWays, MayPushAsFarAsThreeStandardDeviationsOfTheKernelToo) {
+  const Composition solids = plate();
+  const std::vector<SurfaceTouch> touches{onto_plate(-0.09, 0.001), onto_plate(0.09, -0.001), along_plate(0.0, 0.005)};
+  Skin plain(kernel_of(), {0.006, 0.0005});
+  plain.fit(solids, touches);
+  EXPECT_TRUE(plain.free_points().empty());
+  Skin scaled(kernel_of("scale", "{factor: 9, kernel: {type: matern32, length_scale: 4 cm}}"), {0.006, 0.0005});
+  scaled.fit(solids, touches);
+  EXPECT_DOUBLE_EQ(scaled.signal(), 0.001);
+  EXPECT_NEAR(scaled.deviation(), 0.003, 1e-15);
+  EXPECT_FALSE(scaled.free_points().empty());
+  EXPECT_LT(scaled.mean(on_plate(0.0)), -0.004);
+}
+
+TEST(SkinAndFreeWays, TheSurfaceReachesAsFarAsTheyPushIt) {
+  const Composition solids = plate();
+  Skin skin(kernel_of(), {0.006, 0.0005});
+  skin.fit(solids, {onto_plate(-0.09, 0.002), onto_plate(0.09, -0.002)});
+  EXPECT_GE(skin.reach(), 0.0018);
+  EXPECT_LT(skin.reach(), 0.0031);
+  skin.fit(solids, {onto_plate(-0.09, 0.002), onto_plate(0.09, -0.002), along_plate(0.0, 0.005)});
+  double farthest = 0.0;
+  for (double x = -0.1; x < 0.1; x += 0.002) farthest = std::max(farthest, std::abs(skin.mean(on_plate(x))));
+  EXPECT_GT(farthest, 0.004);
+  EXPECT_GE(skin.reach(), farthest);
+}
+
+TEST(SkinAndFreeWays, WithoutNoiseTheyAskForNoJitter) {
+  const Composition solids = plate();
+  std::vector<SurfaceTouch> touches{onto_plate(-0.05, 0.004), onto_plate(0.05, 0.004)};
+  for (int i = 0; i < 30; ++i) touches.push_back(along_plate(1e-9 * i, -0.001));
+  Skin skin(kernel_of(), {0.006, 0.0});
+  skin.fit(solids, touches);
+  EXPECT_GT(skin.rows().size(), 30U);
+  EXPECT_EQ(skin.jitter(), 0.0);
+  EXPECT_EQ(skin.set_aside(), 0);
+  EXPECT_EQ(skin.ways_broken(), 0);
+  EXPECT_NEAR(skin.mean(on_plate(0.0)), 0.001, 1e-4);  // no way is known better
 }
 
 TEST(SkinAndNormals, TheSurfaceIsTurnedAsTheToolFelt) {
@@ -276,7 +348,8 @@ TEST(SkinOfHardData, FiveHundredContactsAndAHundredNormalsWithAndWithoutNoise) {
   std::vector<SurfaceTouch> touches;
   for (int i = 0; i < 500; ++i) {
     touches.push_back(onto_ball(random_direction(random), 0.004 * random.uniform()));
-    if (i % 5 == 0) touches.back().normal = random_direction(random);
+    const Vector3d out = (touches.back().end() - Vector3d(0, 0, 0.05)).normalized();
+    if (i % 5 == 0) touches.back().normal = (out + 0.2 * random_direction(random)).normalized();
   }
   for (const char* type : {"matern32", "rbf"}) {
     for (const double noise : {0.0005, 0.0}) {
@@ -288,6 +361,7 @@ TEST(SkinOfHardData, FiveHundredContactsAndAHundredNormalsWithAndWithoutNoise) {
       EXPECT_LE(all.variance.maxCoeff(), skin.signal() * skin.signal());
       EXPECT_EQ(skin.jitter_raised() > 0, noise == 0.0 && std::string(type) == "rbf");
       EXPECT_EQ(skin.set_aside(), 0);
+      EXPECT_EQ(skin.rows().size(), 700U);
     }
   }
 }
@@ -315,6 +389,34 @@ TEST(SkinOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAndCounte
   EXPECT_TRUE(all.mean.allFinite());
   EXPECT_GE(all.variance.minCoeff(), 0.0);
   EXPECT_GT(all.clamped, 0);
+}
+
+TEST(SkinOfHardData, FreeWaysTakeNothingFromContactsWhereTheKernelIsNotPositiveDefinite) {
+  const Composition solids = ball();
+  Random random(7, "test/skin");
+  std::vector<SurfaceTouch> touches;
+  for (int i = 0; i < 60; ++i) touches.push_back(onto_ball(random_direction(random), 0.004 * random.uniform()));
+  Skin skin(std::make_shared<FormulaKernel>([](const FormulaKernel::Place& a, const FormulaKernel::Place& b) {
+              return (a - b).norm() < 0.05 ? 1.0 : 0.0;
+            }),
+            {0.006, 0.0});
+  const auto contacts = [&] {
+    return std::count_if(skin.rows().begin(), skin.rows().end(), [](const Skin::Row& row) { return !row.free; });
+  };
+  skin.fit(solids, touches);
+  const auto before = contacts();
+  const Skin::Places places = all_over_the_ball(100);
+  const Skin::Posterior without = skin.posterior(places);
+  for (int i = 0; i < 6; ++i) {  // which graze it
+    const Vector3d out(std::cos(i), std::sin(i), 0.0);
+    touches.push_back({{Vector3d(0.05 * out + Vector3d(0, 0, 0.3)), {0, 0, -1}}, 0.29, false, false});
+  }
+  skin.fit(solids, touches);
+  EXPECT_FALSE(skin.free_points().empty());
+  EXPECT_EQ(contacts(), before);
+  const Skin::Posterior with = skin.posterior(places);
+  EXPECT_EQ(with.variance, without.variance);
+  EXPECT_TRUE(with.mean.allFinite());
 }
 
 TEST(SkinOfHardData, TheSameNormalAHundredTimesAndItsOpposite) {

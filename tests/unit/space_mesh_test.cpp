@@ -27,7 +27,7 @@ struct Believed {
     for (const Piece& piece : pieces) solids.parts.push_back({piece, {}, {}, 0.0});
     skin.fit(solids, touches);
   }
-  Crossings crossings(double side) const { return cross_surface(solids, skin, touches, side); }
+  Crossings crossings(double side) const { return cross_surface(solids, skin, side); }
 
   Composition solids;
   Skin skin;
@@ -55,7 +55,13 @@ Believed any_belief(Random& random) {
     const Vector3d direction = random_direction(random);
     const Line line{Vector3d(0.1, 0.1, 0.06) - 0.3 * direction, direction};
     const double hit = bare.solids.first_hit(line);
-    if (hit < kNoHit) touches.push_back({line, hit + 0.004 * (random.uniform() - 0.5), true, false});
+    if (hit == kNoHit) continue;
+    touches.push_back({line, hit + 0.004 * (random.uniform() - 0.5), true, false});
+    // And a way past it, a little inside.
+    const Vector3d at = line.origin + hit * direction;
+    const Vector3d out = Skin::normal(bare.solids, at);
+    const Vector3d along = out.unitOrthogonal();
+    if (i % 3 == 0) touches.push_back({{at - 0.003 * random.uniform() * out - 0.3 * along, along}, 0.6, false, false});
   }
   return Believed(pieces, touches);
 }
@@ -104,20 +110,67 @@ TEST(ClosedMesh, DoesNotLie) {
   Random random(2, "test/mesh");
   int off = 0;
   int all = 0;
+  std::size_t free = 0;
   for (int i = 0; i < 20; ++i) {
     const Believed belief = any_belief(random);
+    free += belief.skin.free_points().size();
     for (const Crossings::Vertex& one : belief.crossings(0.003).vertices) {
       const Vector3d normal = Skin::normal(belief.solids, one.at);
       const double value = std::max(belief.solids.distance(one.at) - belief.skin.mean({one.at, normal}), -one.at.z());
-      // Vertices stay a hundredth of a cube away from its corners.
+      // Vertices stay a hundredth of a cube, 3e-5, away from its corners, and f rises by little more than 1.
       off += std::abs(value) > 4e-5 ? 1 : 0;
       ++all;
-      // The skin jumps where normals do, and there is a surface between.
-      EXPECT_LT(std::abs(value), 0.004);
+      // The skin jumps where normals do, and there is a surface between: from no less than -reach() to no more than it.
+      EXPECT_LT(std::abs(value), 2.0 * belief.skin.reach() + 4e-5);
       EXPECT_NEAR(one.normal.norm(), 1.0, 1e-9);
     }
   }
+  EXPECT_GT(free, 10U);
+  // Normals jump along the edges of pieces and where two of them meet, lines on a surface that has a thousand vertices.
   EXPECT_LT(off, all / 50);
+}
+
+TEST(ClosedMesh, IsWhereAWayHasPushedTheSurface) {
+  const Piece plate{Piece::Form::box, {0.1, 0.05, 0.1}, Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0};
+  const auto onto = [](double x, double off) {
+    return SurfaceTouch{{{x, 0.3, 0.1}, {0, -1, 0}}, 0.2 - off, true, false};
+  };
+  const Believed belief({plate},
+                        {onto(0.02, 0.002), onto(0.18, -0.002), {{{0.1, 0.095, 0.4}, {0, 0, -1}}, 0.39, false, false}});
+  double least = 1.0;
+  for (const Crossings::Vertex& one : belief.crossings(0.0025).vertices) {
+    if (std::abs(one.at.x() - 0.1) > 0.01 || std::abs(one.at.z() - 0.1) > 0.03 || one.at.y() < 0.05) continue;
+    const double value = belief.solids.distance(one.at) - belief.skin.mean({one.at, Vector3d::UnitY()});
+    EXPECT_NEAR(value, 0.0, 4e-5);  // as in DoesNotLie
+    least = std::min(least, one.at.y());
+  }
+  EXPECT_LT(least, 0.0965);
+}
+
+TEST(ClosedMesh, HasTheNormalsOfItsTriangles) {
+  // The skin rises from one contact to the other, by a tenth.
+  const Piece plate{Piece::Form::box, {0.1, 0.05, 0.1}, Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0};
+  const auto onto = [](double x, double off) {
+    return SurfaceTouch{{{x, 0.3, 0.1}, {0, -1, 0}}, 0.2 - off, true, false};
+  };
+  const Believed belief({plate}, {onto(0.08, -0.004), onto(0.12, 0.004)});
+  const ClosedMesh mesh = close_mesh(belief.crossings(kFineSide));
+  int seen = 0;
+  double turned = 0.0;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    const auto of = [&](std::size_t i) -> const Crossings::Vertex& {
+      return mesh.vertices[static_cast<std::size_t>(triangle[i])];
+    };
+    const Vector3d across = (of(1).at - of(0).at).cross(of(2).at - of(0).at);
+    if (of(0).at.y() < 0.09 || (of(0).at - Vector3d(0.1, of(0).at.y(), 0.1)).norm() > 0.01) continue;
+    if (across.norm() < 1e-7) continue;  // a sliver has no direction
+    ++seen;
+    // Over a cube of 2 mm a surface that bends by a tenth over 2 cm turns by a hundredth.
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((across.normalized() - of(i).normal).norm(), 0.02);
+    turned = std::max(turned, (across.normalized() - Vector3d::UnitY()).norm());
+  }
+  EXPECT_GT(seen, 50);
+  EXPECT_GT(turned, 0.1);  // the composition's normals would not do
 }
 
 TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
@@ -126,6 +179,8 @@ TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
     for (int i = 0; i < 4; ++i) {
       Piece piece{form, {0.1, 0.1, 0.1}, turned(random), {0.05, 0.03, 0.04}, 0.0};
       const ClosedMesh whole = close_mesh(Believed({piece}).crossings(kFineSide));
+      // Edges are cut by less than half a cube of 2 mm, and so is what bends, by its square over the radius: together
+      // below one in a hundred of something 6 to 10 cm wide.
       EXPECT_NEAR(volume(whole) / piece.volume(), 1.0, 0.01);
       EXPECT_EQ(euler(whole), 2);
       piece.wall = 0.004;
@@ -138,17 +193,32 @@ TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
                                 ? 8.0 * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall)
                                 : 2.0 * kHalfTurn * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall);
       const ClosedMesh vessel = close_mesh(Believed({piece}).crossings(kFineSide));
+      // Of a wall of 4 mm, rims included, the same is five in a hundred.
       EXPECT_NEAR(volume(vessel) / (outer - within), 1.0, 0.05);
     }
   }
 }
 
-TEST(ClosedMesh, HasNoHoleInAWallOfThreeMillimetres) {
-  Random random(4, "test/mesh");
-  for (int i = 0; i < 12; ++i) {
-    Piece piece{static_cast<Piece::Form>(i % 3), {0.1, 0.1, 0.1}, turned(random), {0.04, 0.04, 0.05}, 0.003};
-    EXPECT_EQ(euler(close_mesh(Believed({piece}).crossings(kFineSide))), 2) << i;
+TEST(ClosedMesh, HasNoHoleInAWallOfThreeMillimetresNorOnAPage) {
+  constexpr double kPageSide = 0.0025;  // see report/history.cpp
+  for (const double side : {kFineSide, kPageSide}) {
+    Random random(4, "test/mesh");
+    for (int i = 0; i < 12; ++i) {
+      Piece piece{static_cast<Piece::Form>(i % 3), {0.1, 0.1, 0.1}, turned(random), {0.04, 0.04, 0.05}, 0.003};
+      EXPECT_EQ(euler(close_mesh(Believed({piece}).crossings(side))), 2) << i << ", " << side;
+    }
   }
+}
+
+TEST(ClosedMesh, SaysHowLargeItsCubesAreWhereTheyHadToGrow) {
+  const Piece small{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
+  const ClosedMesh fine = close_mesh(Believed({small}).crossings(kFineSide));
+  EXPECT_THAT(mesh_ply(fine, 0.0, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2 mm\n"));
+  const Piece large{Piece::Form::box, {0.2, 0.2, 0.18}, Matrix3d::Identity(), {0.17, 0.17, 0.17}, 0.0};
+  const ClosedMesh coarse = close_mesh(Believed({large}).crossings(kFineSide));
+  // 34 x 34 x 35 cm are more than four million of 2 mm, and of 2.2 mm.
+  EXPECT_DOUBLE_EQ(coarse.side, 1.1 * 1.1 * kFineSide);
+  EXPECT_THAT(mesh_ply(coarse, 0.0, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2.42 mm\n"));
 }
 
 TEST(ClosedMesh, EndsAtTheDesk) {
@@ -192,7 +262,8 @@ TEST(ClosedMesh, IsAFileOfItsNumbers) {
   ClosedMesh mesh = close_mesh(Believed({box}).crossings(0.01));
   mesh.vertices.front().deviation = 0.003;
   const std::string file = mesh_ply(mesh, 0.5, "quality", "a box");
-  EXPECT_THAT(file, testing::HasSubstr("\ncomment a box\nelement vertex " + std::to_string(mesh.vertices.size())));
+  EXPECT_THAT(file, testing::HasSubstr("\ncomment a box, of cubes of 10 mm\nelement vertex " +
+                                       std::to_string(mesh.vertices.size())));
   const std::size_t body = file.find("end_header\n") + 11;
   ASSERT_EQ(file.size(), body + 28 * mesh.vertices.size() + 13 * mesh.triangles.size());
   std::array<float, 7> first{};

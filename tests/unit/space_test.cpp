@@ -555,6 +555,28 @@ TEST(Cubes, AreFewerOrMoreByWhatTheSkinAdds) {
   EXPECT_NEAR(std::cbrt(volume * 3 / (4 * kHalfTurn)), 0.054, 5e-4);
 }
 
+TEST(Cubes, OfPiecesSideBySideHaveWhatTheSkinAddsToEach) {
+  // Two plates that face y, from -4.5 to 0.5 mm and from 7 to 9 mm. The first is 2.5 mm farther out in front.
+  Composition plates;
+  for (const auto& [middle, half] : {std::pair(-0.002, 0.0025), {0.008, 0.001}}) {
+    const Piece plate{Piece::Form::box, {0, middle, 0.06}, Eigen::Matrix3d::Identity(), {0.048, half, 0.048}, 0.0};
+    plates.parts.push_back({plate, {}, {}, 0.0});
+  }
+  std::vector<SurfaceTouch> touches;
+  for (int x = -4; x <= 4; ++x) {
+    for (int z = 2; z <= 10; ++z) {
+      touches.push_back({{{0.01 * x, 0.0065, 0.01 * z}, {0, -1, 0}}, 0.0035, true, false});
+      touches.push_back({{{0.01 * x, 0.2, 0.01 * z}, {0, -1, 0}}, 0.191, true, false});
+    }
+  }
+  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 1 cm}"), {0.006, 0.0001});
+  skin.fit(plates, touches);
+  const Cubes::Held held = Cubes({0, 0, 0.06}, 0.08, 0.004).of(plates, skin);
+  // Centres at y = -2 and 2 mm, 24 across and 24 up, but for some at the corners, far from contacts. Those at 10 mm,
+  // half as many, would be solid with what is added to the other.
+  EXPECT_NEAR(static_cast<double>(std::count(held.begin(), held.end(), true)), 2 * 24 * 24, 24);
+}
+
 TEST(Scene, TellsWhichPartsOfALineLieInItsObjectsAlsoWhereTheyOverlap) {
   const auto scene = scene_of_cup();
   const std::vector<Stretch> across = scene->stretches({{0.0, 0.13, 0.05}, {1.0, 0.0, 0.0}});

@@ -430,6 +430,7 @@ FieldList<Summary> make_summary_list() {
            std::pair{"variance_clamped",
                      "candidates of the final models whose variance rounding took out of [0, prior]; "
                      "they read as its ends"},
+           std::pair{"ways_broken", "from any side: free ways in which the final surface is left"},
        }) {
     list.add(std::string("interventions.") + name, meaning,
              [kind = std::string(name)](const Summary& s) {

@@ -181,11 +181,12 @@ RunResult FromAnySide::result() {
   update();
   RunResult out = result_;
   const Skin& skin = belief_.skin();
-  out.jitter_max = skin.jitter() * skin.signal() * skin.signal();
+  out.jitter_max = skin.jitter() * skin.deviation() * skin.deviation();
   out.interventions["jitter"] = skin.jitter_raised();
   out.interventions["pivoted"] = skin.pivoted();
   out.interventions["set_aside"] = skin.set_aside();
   out.interventions["variance_clamped"] = belief_.variances_clamped();
+  out.interventions["ways_broken"] = skin.ways_broken();
   out.interrupted = out.stop_reason == kStoppedByUser;
   out.errors = errors();
   return out;
@@ -200,7 +201,7 @@ std::vector<ModelReader> FromAnySide::readers() const {
 Crossings FromAnySide::crossings(double side) {
   update();
   if (!knows_object()) return {};
-  Crossings out = cross_surface(belief_.solids().best(), belief_.skin(), belief_.touches(), side);
+  Crossings out = cross_surface(belief_.solids().best(), belief_.skin(), side);
   Cloud points;
   for (const Crossings::Vertex& vertex : out.vertices) points.push_back(vertex.at);
   const Eigen::VectorXd deviations = belief_.uncertainty(points);

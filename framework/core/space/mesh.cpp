@@ -5,45 +5,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
 
-/// f, of which the skin has a say near the composition's surface alone: further away it changes no sign.
+/// f, of which the skin has a say near the composition's surface alone: further away it changes no sign. Of many places
+/// at once, because so the skin is quicker.
 class SignedSurface {
  public:
-  SignedSurface(const Composition& solids, const Skin& skin, const std::vector<SurfaceTouch>& touches)
-      : solids_(solids), skin_(skin) {
-    constexpr double kMore = 0.001;
-    for (const SurfaceTouch& touch : touches) {
-      const double off = touch.contact && !touch.desk ? std::abs(solids_.distance(touch.end())) : 0.0;
-      if (off <= kFarthest) most_ = std::max(most_, off + kMore);
-    }
-  }
+  SignedSurface(const Composition& solids, const Skin& skin) : solids_(solids), skin_(skin), most_(skin.reach()) {}
 
   /// How far off the composition's surface that of the belief may be.
   double most() const { return most_; }
 
-  /// At a place with this distance from the composition.
-  double value(const Vector3d& at, double distance) const {
-    if (std::abs(distance) <= most_) distance -= skin_.mean({at, Skin::normal(solids_, at)});
-    return std::max(distance, -at.z());
+  /// At places with these distances from the composition, without regard to the desk.
+  std::vector<double> values(const std::vector<Vector3d>& at, std::vector<double> distances) const {
+    Skin::Places places;
+    std::vector<std::size_t> whose;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (!(std::abs(distances[i]) <= most_)) continue;
+      places.push_back({at[i], Skin::normal(solids_, at[i])});
+      whose.push_back(i);
+    }
+    const Eigen::VectorXd means = skin_.means(places);
+    for (std::size_t i = 0; i < whose.size(); ++i) distances[whose[i]] -= means(static_cast<Eigen::Index>(i));
+    return distances;
   }
-  double operator()(const Vector3d& at) const { return value(at, solids_.distance(at)); }
+  std::vector<double> values(const std::vector<Vector3d>& at) const {
+    std::vector<double> distances;
+    for (const Vector3d& one : at) distances.push_back(solids_.distance(one));
+    return values(at, std::move(distances));
+  }
 
-  Crossings::Vertex vertex(const Vector3d& at) const {
-    constexpr double kOnDesk = 1e-6;
-    const Vector3d normal = Skin::normal(solids_, at);
-    return {at, at.z() < kOnDesk ? Vector3d(-Vector3d::UnitZ()) : normal, 0.0};
+  /// The normals of the surface at places of it: the gradient of f by differences from the corners of a tetrahedron.
+  std::vector<Vector3d> normals(const std::vector<Vector3d>& at) const {
+    constexpr double kStep = 1e-5;
+    // The slope of a distance is 1 and that of the skin less: where f is steeper it jumps, as the composition's normal
+    // does, and tells nothing.
+    constexpr double kSteepest = 3.0;
+    static const std::array<Vector3d, 4> corners{Vector3d(1, -1, -1), Vector3d(-1, -1, 1), Vector3d(-1, 1, -1),
+                                                 Vector3d(1, 1, 1)};
+    std::vector<Vector3d> around;
+    for (const Vector3d& one : at) {
+      for (const Vector3d& corner : corners) around.emplace_back(one + kStep * corner);
+    }
+    const std::vector<double> found = values(around);
+    std::vector<Vector3d> out;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      constexpr double kOnDesk = 1e-6;
+      Vector3d slope = Vector3d::Zero();
+      for (std::size_t k = 0; k < corners.size(); ++k) slope += found[4 * i + k] / (4.0 * kStep) * corners[k];
+      const double steepness = slope.norm();
+      const bool smooth = steepness > 1.0 / kSteepest && steepness < kSteepest;
+      out.push_back(at[i].z() < kOnDesk ? Vector3d(-Vector3d::UnitZ())
+                    : smooth            ? Vector3d(slope / steepness)
+                                        : Skin::normal(solids_, at[i]));
+    }
+    return out;
   }
 
  private:
-  static constexpr double kFarthest = 0.012;  // what is further off is not the skin's
   const Composition& solids_;
   const Skin& skin_;
-  double most_ = 0.0;
+  double most_;
 };
 
 struct Box {
@@ -55,26 +82,50 @@ Box box_of(const Piece& piece, double margin) {
   return {(piece.centre - reach).array() - margin, (piece.centre + reach).array() + margin};
 }
 
-/// Where f is 0 between a node and the next one along an axis, of which one lies inside. Never at an end, where
-/// vertices of several edges would fall together.
-Vector3d root(const SignedSurface& field, const Vector3d& from, Eigen::Index axis, double side) {
+/// What is solid ends at the desk.
+double above_desk(double value, const Vector3d& at) { return std::max(value, -at.z()); }
+
+/// An edge from a node to the next one, of which one lies inside, and what of it has the end of the surface.
+struct Edge {
+  Vector3d from;
+  Eigen::Index axis;
+  double at_low, at_high;  ///< f; infinity, maybe, far off
+  double low = 0.0, high = 1.0, share = 0.5;
+  bool done = false;
+
+  Vector3d at(double part, double side) const { return from + part * side * Vector3d::Unit(axis); }
+};
+
+/// Where f is 0 on each. Never at an end, where vertices of several edges would fall together.
+std::vector<Vector3d> roots(const SignedSurface& field, std::vector<Edge> edges, double side) {
   constexpr double kRim = 0.01;
   constexpr double kExact = 1e-6;
   constexpr int kSteps = 24;
-  const auto at = [&](double share) { return Vector3d(from + share * side * Vector3d::Unit(axis)); };
-  double low = 0.0, high = 1.0;
-  double at_low = field(at(low)), at_high = field(at(high));
-  double share = 0.5;
-  for (int i = 0; i < kSteps; ++i) {
-    // Between the two by the secant, then in their middle: f has kinks, and jumps where normals do.
-    const bool secant = i % 2 == 0 && (at_low < 0.0) != (at_high < 0.0);
-    share = secant ? low + (high - low) * at_low / (at_low - at_high) : 0.5 * (low + high);
-    const double value = field(at(share));
-    if (std::abs(value) < kExact) break;
-    ((value < 0.0) == (at_low < 0.0) ? low : high) = share;
-    ((value < 0.0) == (at_low < 0.0) ? at_low : at_high) = value;
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<Edge*> some;
+    std::vector<Vector3d> places;
+    for (Edge& one : edges) {
+      if (one.done) continue;
+      // Between the two by the secant, then in their middle: f has kinks, and jumps where normals do.
+      const bool secant = step % 2 == 0 && std::abs(one.at_low) < kNoHit && std::abs(one.at_high) < kNoHit;
+      one.share = secant ? one.low + (one.high - one.low) * one.at_low / (one.at_low - one.at_high)
+                         : 0.5 * (one.low + one.high);
+      some.push_back(&one);
+      places.push_back(one.at(one.share, side));
+    }
+    if (some.empty()) break;
+    const std::vector<double> found = field.values(places);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      Edge& one = *some[i];
+      const double value = above_desk(found[i], places[i]);
+      one.done = std::abs(value) < kExact;
+      ((value < 0.0) == (one.at_low < 0.0) ? one.low : one.high) = one.share;
+      ((value < 0.0) == (one.at_low < 0.0) ? one.at_low : one.at_high) = value;
+    }
   }
-  return at(std::clamp(share, kRim, 1.0 - kRim));
+  std::vector<Vector3d> out;
+  for (const Edge& one : edges) out.push_back(one.at(std::clamp(one.share, kRim, 1.0 - kRim), side));
+  return out;
 }
 
 /// The eight nodes of a cube are counted along x, then y, then z; an edge is one of three axes from one of them. Of
@@ -140,10 +191,9 @@ std::vector<double> distances_at(const Crossings& grid, const Composition& solid
 
 }  // namespace
 
-Crossings cross_surface(const Composition& solids, const Skin& skin, const std::vector<SurfaceTouch>& touches,
-                        double side) {
+Crossings cross_surface(const Composition& solids, const Skin& skin, double side) {
   constexpr double kMostNodes = 4e6;
-  const SignedSurface field(solids, skin, touches);
+  const SignedSurface field(solids, skin);
   Crossings out;
   Box all;
   for (const Composition::Part& part : solids.parts) {
@@ -166,29 +216,43 @@ Crossings cross_surface(const Composition& solids, const Skin& skin, const std::
   const std::array<int, 3> strides = out.strides();
   const auto place = [&](int x, int y, int z) { return Vector3d(out.origin + side * Vector3d(x, y, z)); };
 
-  const std::vector<double> distances = distances_at(out, solids, field.most() + side);
-  out.inside.resize(distances.size());
-  std::size_t node = 0;
+  // Where nothing is near, infinity: outside.
+  std::vector<double> f = distances_at(out, solids, field.most() + side);
+  out.inside.resize(f.size());
+  std::vector<Vector3d> layer;
   for (int z = 0; z < nz; ++z) {
+    layer.clear();
     for (int y = 0; y < ny; ++y) {
-      for (int x = 0; x < nx; ++x, ++node) {
+      for (int x = 0; x < nx; ++x) layer.push_back(place(x, y, z));
+    }
+    const auto begin = f.begin() + static_cast<std::ptrdiff_t>(z) * strides[2];
+    const std::vector<double> values = field.values(layer, {begin, begin + strides[2]});
+    std::transform(values.begin(), values.end(), layer.begin(), begin, above_desk);
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) {
         const bool rim = x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz;
-        out.inside[node] = !rim && distances[node] < kNoHit && field.value(place(x, y, z), distances[node]) < 0.0;
+        const auto node = static_cast<std::size_t>(x + strides[1] * y + strides[2] * z);
+        out.inside[node] = !rim && f[node] < 0.0;
       }
     }
   }
+  std::vector<Edge> edges;
   for (int i = 0; i < static_cast<int>(out.inside.size()); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!out.crosses(i, axis)) continue;
-      const Vector3d at = place(i % nx, i / nx % ny, i / strides[2]);
-      out.vertices.push_back(field.vertex(root(field, at, static_cast<Eigen::Index>(axis), side)));
+      const auto node = static_cast<std::size_t>(i);
+      const auto next = node + static_cast<std::size_t>(strides[axis]);
+      edges.push_back({place(i % nx, i / nx % ny, i / strides[2]), static_cast<Eigen::Index>(axis), f[node], f[next]});
     }
   }
+  const std::vector<Vector3d> ends = roots(field, std::move(edges), side);
+  const std::vector<Vector3d> normals = field.normals(ends);
+  for (std::size_t i = 0; i < ends.size(); ++i) out.vertices.push_back({ends[i], normals[i], 0.0});
   return out;
 }
 
 ClosedMesh close_mesh(const Crossings& crossings) {
-  ClosedMesh out{crossings.vertices, {}};
+  ClosedMesh out{crossings.vertices, {}, crossings.side};
   const std::array<int, 3> strides = crossings.strides();
   std::array<int, 8> corners{};
   for (int i = 0; i < 8; ++i)
@@ -252,10 +316,11 @@ ClosedMesh close_mesh(const Crossings& crossings) {
 
 std::string mesh_ply(const ClosedMesh& mesh, double desk, const std::string& deviation, const std::string& comment) {
   std::string out = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "ply\nformat binary_little_endian 1.0\ncomment {}, of cubes of {:.3g} mm\nelement vertex {}\nproperty float "
+      "x\nproperty float y\n"
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float {}\n"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      comment, mesh.vertices.size(), deviation, mesh.triangles.size());
+      comment, 1e3 * mesh.side, mesh.vertices.size(), deviation, mesh.triangles.size());
   const auto append = [&](const auto& value) {
     out.append(reinterpret_cast<const char*>(value.data()), sizeof(value[0]) * value.size());
   };

@@ -9,7 +9,6 @@
 
 #include "space/skin.hpp"
 #include "space/solids.hpp"
-#include "space/surface_touch.hpp"
 
 #include <Eigen/Core>
 
@@ -44,25 +43,27 @@ struct Crossings {
   }
 };
 
-/// Of the composition as `skin`, which was fitted to it and these touches, corrects it. Cubes of `side`, or, where
-/// there would be millions, larger ones. The deviations are left to SpaceBelief, which knows all compositions. A wall
-/// that is thinner may have holes, whose rims are closed, too.
-Crossings cross_surface(const Composition& solids, const Skin& skin, const std::vector<SurfaceTouch>& touches,
-                        double side);
+/// Of the composition as `skin`, which was fitted to it, corrects it. Cubes of `side`, or, where there would be more
+/// than four million, as of 2 mm over what is 31 cm wide, long and high, larger ones: Crossings::side. A wall that is
+/// thinner may have holes, whose rims are closed, too. Normals are those of f; where f jumps, as at the edges of
+/// pieces, those of the composition. The deviations are left to SpaceBelief, which knows all compositions.
+Crossings cross_surface(const Composition& solids, const Skin& skin, double side);
 
 /// Triangles counter-clockwise seen from outside. Rings that could share a diagonal with those of the next cube have a
 /// vertex more, in their middle; these come last.
 struct ClosedMesh {
   std::vector<Crossings::Vertex> vertices;
   std::vector<std::array<int, 3>> triangles;
+  double side = 0.0;  ///< of the cubes
 };
 ClosedMesh close_mesh(const Crossings& crossings);
 
-/// The side of the cubes of a mesh to be kept: walls of 3 mm have no holes.
+/// The side of the cubes of a mesh to be kept: walls of 3 mm have no holes, as long as it need not be larger.
 inline constexpr double kFineSide = 0.002;
 
 /// PLY 1.0, binary with the least byte first, for a large mesh: vertices of x, y, z, nx, ny, nz and `deviation`, as the
-/// property is called, in single precision, and triangles. `desk` is the height that is added. `comment` is one line.
+/// property is called, in single precision, and triangles. `desk` is the height that is added. `comment` is one
+/// line, to which the side of the cubes is added.
 std::string mesh_ply(const ClosedMesh& mesh, double desk, const std::string& deviation, const std::string& comment);
 
 }  // namespace palpate

@@ -3,14 +3,15 @@
 
 #include "gp/factor.hpp"
 #include "gp/tolerances.hpp"
+#include "space/nonnegative.hpp"
 
 #include <palpate/error.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -48,55 +49,17 @@ bool knows_distances_alone(const Kernel& kernel) {
   return true;
 }
 
-/// The linear problem l >= 0, w = S l - d >= 0, l . w = 0 for a positive definite S, by changing what is 0 in blocks
-/// (Judice and Pires 1994); where blocks make no progress, one at a time, which ends for certain (Murty 1974). Says
-/// which l are not 0.
-std::vector<Eigen::Index> complementary(const MatrixXd& s, const VectorXd& d) {
-  const Eigen::Index n = d.size();
-  const double rounding = 1e-12 * d.cwiseAbs().maxCoeff();
-  std::vector<bool> in(static_cast<std::size_t>(n));
-  for (Eigen::Index i = 0; i < n; ++i) in[static_cast<std::size_t>(i)] = d(i) > 0.0;
-  std::vector<Eigen::Index> chosen;
-  std::size_t fewest = static_cast<std::size_t>(n) + 1;
-  constexpr int kPatience = 3;
-  int patience = kPatience;
-  for (Eigen::Index tries = 0; tries < 100 + 10 * n; ++tries) {
-    chosen.clear();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (in[static_cast<std::size_t>(i)]) chosen.push_back(i);
-    }
-    const VectorXd some = MatrixXd(s(chosen, chosen)).ldlt().solve(VectorXd(d(chosen)));
-    VectorXd slack = s(Eigen::all, chosen) * some - d;
-    for (std::size_t k = 0; k < chosen.size(); ++k)
-      slack(chosen[k]) = some(static_cast<Eigen::Index>(k)) < 0.0 ? -2.0 * rounding : 0.0;
-    std::vector<std::size_t> wrong;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (slack(i) < -rounding) wrong.push_back(static_cast<std::size_t>(i));
-    }
-    if (wrong.empty()) break;
-    if (wrong.size() < fewest) {
-      fewest = wrong.size();
-      patience = kPatience;
-    } else if (--patience < 0) {
-      wrong.erase(wrong.begin(), wrong.end() - 1);
-    }
-    for (const std::size_t i : wrong) in[i] = !in[i];
-  }
-  return chosen;
-}
-
-/// The lower triangle of a covariance, row by row, each diagonal entry with its noise and a share `jitter` of itself:
-/// false where that is not positive definite in double precision.
-bool factorise(Factor& factor, const MatrixXd& covariance, const std::vector<int>& which, const VectorXd& noise,
-               double jitter) {
+/// The lower triangle of a covariance, row by row, each diagonal entry with its noise and a share `jitter` of itself.
+/// Says which rows it has: those with which it is not positive definite in double precision are left out.
+std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std::vector<int>& which,
+                           const VectorXd& noise, double jitter) {
   factor.clear();
-  VectorXd before(static_cast<Eigen::Index>(which.size()));
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    const auto n = static_cast<Eigen::Index>(i);
-    for (Eigen::Index k = 0; k < n; ++k) before(k) = covariance(which[static_cast<std::size_t>(k)], which[i]);
-    if (!factor.append(before.head(n), (1.0 + jitter) * covariance(which[i], which[i]) + noise(which[i]))) return false;
+  std::vector<int> taken;
+  for (const int i : which) {
+    if (factor.append(VectorXd(covariance.col(i)(taken)), (1.0 + jitter) * covariance(i, i) + noise(i)))
+      taken.push_back(i);
   }
-  return true;
+  return taken;
 }
 
 }  // namespace
@@ -140,6 +103,11 @@ MatrixXd Skin::covariances(const Table& a, const Table& b) const {
   Points apart = Points::Zero(out.size(), 2);
   covariances(a, b, apart, out);
   return out;
+}
+
+MatrixXd Skin::covariance(const std::vector<Row>& rows) const {
+  const Table table = table_of(rows);
+  return covariances(table, table);
 }
 
 void Skin::covariances(const Table& a, const Table& b, Points& apart, MatrixOut out) const {
@@ -208,7 +176,7 @@ std::vector<Skin::Row> Skin::contacts_of(const Composition& solids, const std::v
   return out;
 }
 
-void Skin::take_in(std::vector<Row> rows, int already_aside) {
+void Skin::take_in(std::vector<Row> rows) {
   Table table = table_of(rows);
   MatrixXd covariance = covariances(table, table);
   const auto n = static_cast<Eigen::Index>(rows.size());
@@ -218,32 +186,28 @@ void Skin::take_in(std::vector<Row> rows, int already_aside) {
     noise(i) = row.noise * row.noise;
     targets(i) = row.target;
   }
-  std::vector<int> taken(rows.size());
-  std::iota(taken.begin(), taken.end(), 0);
+  std::vector<int> all(rows.size());
+  std::iota(all.begin(), all.end(), 0);
   Factor factor(loops_);
   factor.reserve(static_cast<int>(n));
   const double unit = static_cast<double>(n) * kEpsilon;
-  while (!factorise(factor, covariance, taken, noise, jitter_)) {
-    if (jitter_ >= kLastJitter * unit) {
-      ++pivoted_;
-      covariance.diagonal() += jitter_ * covariance.diagonal() + noise;
-      taken = independent_rows(covariance);
-      std::stable_partition(taken.begin(), taken.end(), [&](int i) { return !rows[static_cast<std::size_t>(i)].free; });
-      factorise(factor, covariance, taken, VectorXd::Zero(n), 0.0);
-      taken.resize(static_cast<std::size_t>(factor.size()));  // the guards of both differ by rounding
-      break;
-    }
+  std::vector<int> taken = factorise(factor, covariance, all, noise, jitter_);
+  while (factor.size() < n && jitter_ < kLastJitter * unit) {
     jitter_ = std::min(std::max(kFirstJitter * unit, 10.0 * jitter_), kLastJitter * unit);
     ++jitter_raised_;
+    taken = factorise(factor, covariance, all, noise, jitter_);
   }
-  set_aside_ = already_aside + static_cast<int>(n) - factor.size();
   if (factor.size() < n) {
+    ++pivoted_;
+    covariance.diagonal() += jitter_ * covariance.diagonal() + noise;
+    taken = factorise(factor, covariance, independent_rows(covariance), VectorXd::Zero(n), 0.0);
     std::vector<Row> kept;
     for (const int i : taken) kept.push_back(rows[static_cast<std::size_t>(i)]);
     rows = kept;
     targets = VectorXd(targets(taken));
     table = table_of(rows);
   }
+  set_aside_ = static_cast<int>(n) - factor.size();
   Lower lower = Lower::Zero(factor.size(), factor.size());
   for (int i = 0; i < factor.size(); ++i) {
     lower.row(i).head(i) = factor.row(i);
@@ -251,29 +215,32 @@ void Skin::take_in(std::vector<Row> rows, int already_aside) {
   }
   lower.triangularView<Eigen::Lower>().solveInPlace(targets);
   lower.triangularView<Eigen::Lower>().transpose().solveInPlace(targets);
-  const auto certain = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.free; });
-  known_ = {std::move(rows), certain, std::move(table), std::move(lower), std::move(targets)};
+  known_ = {std::move(rows), std::move(table), std::move(lower), std::move(targets)};
 }
 
 /// A point of a free way.
 struct Skin::Passage {
   std::size_t way;
   Place place;
-  double distance;  ///< to the composition
+  double distance;      ///< to the composition
+  double inside = 0.0;  ///< the surface, when that was last looked at
   bool taken = false;
+
+  bool broken(double noise) const { return !taken && inside > noise; }
 };
 
 std::vector<Skin::Passage> Skin::passages(const Composition& solids, const std::vector<SurfaceTouch>& touches) const {
   constexpr double kStep = 0.0015;
-  constexpr double kDeviations = 3.0;  // farther out g never is
-  const double near = std::min(kFarthest, kDeviations * signal_);
+  constexpr double kDeviations = 3.0;
+  const double deepest = std::min(kFarthest, kDeviations * deviation());
+  const double near = std::max(deepest, reach());
   std::vector<Passage> out;
   for (std::size_t way = 0; way < touches.size(); ++way) {
     const std::size_t first = out.size();
     for (double along = 0.0; along < touches[way].length;) {
       const Vector3d at = touches[way].line.origin + along * touches[way].line.direction;
       const double distance = solids.distance(at);
-      if (!(distance >= -near)) {  // the composition is wrong here, not the skin
+      if (!(distance >= -deepest)) {  // the composition is wrong here, not the skin
         out.resize(first);
         break;
       }
@@ -284,44 +251,114 @@ std::vector<Skin::Passage> Skin::passages(const Composition& solids, const std::
   return out;
 }
 
-std::vector<Skin::Row> Skin::broken(std::vector<Passage>& passages) const {
-  constexpr double kLeast = 1e-4;
+void Skin::look_at(const std::vector<Passage*>& passages) const {
   Places places;
-  for (const Passage& one : passages) places.push_back(one.place);
+  for (const Passage* const one : passages) places.push_back(one->place);
   const VectorXd means = this->means(places);
-  std::vector<Row> out;
-  for (std::size_t i = 0; i < passages.size();) {
-    const std::size_t way = passages[i].way;
-    double most = std::max(kLeast, settings_.noise);
-    Passage* deepest = nullptr;
-    for (; i < passages.size() && passages[i].way == way; ++i) {
-      const double inside = means(static_cast<Eigen::Index>(i)) - passages[i].distance;
-      if (passages[i].taken || !(inside > most)) continue;
-      most = inside;
-      deepest = &passages[i];
+  for (std::size_t i = 0; i < passages.size(); ++i)
+    passages[i]->inside = means(static_cast<Eigen::Index>(i)) - passages[i]->distance;
+}
+
+std::vector<Skin::Passage*> Skin::deepest(const std::vector<Passage*>& passages) const {
+  std::vector<Passage*> out;
+  const Passage* before = nullptr;
+  for (Passage* const one : passages) {
+    const bool broken = one->broken(noise_of_ways());
+    if (broken && before != nullptr && before->way == one->way) {
+      if (one->inside > out.back()->inside) out.back() = one;
+    } else if (broken) {
+      out.push_back(one);
     }
-    if (!deepest) continue;
-    deepest->taken = true;
-    out.push_back({deepest->place, Vector3d::Zero(), deepest->distance, settings_.noise, true});
+    before = broken ? one : nullptr;
   }
   return out;
 }
 
-std::vector<Skin::Row> Skin::holding(const Known& contacts) const {
-  const Table free = table_of(free_);
-  MatrixXd between = covariances(free, free);
-  MatrixXd with = covariances(contacts.table, free);
-  VectorXd inside = with.transpose() * contacts.weights;
-  for (Eigen::Index i = 0; i < inside.size(); ++i) {
-    const Row& row = free_[static_cast<std::size_t>(i)];
-    inside(i) -= row.target;
-    between(i, i) += row.noise * row.noise + kFirstJitter * kEpsilon * between(i, i);
+/// With A the covariance of the contacts, noise included, as A = L L', and V = L^-1 of that with the free points, S of
+/// Nonnegative is the covariance of the free points when the contacts are known, d by how much they are inside then.
+void Skin::keep_free(std::vector<Passage> passages) {
+  const Known contacts = known_;
+  const auto lower = contacts.lower.triangularView<Eigen::Lower>();
+  const Eigen::Index n = contacts.weights.size();
+  MatrixXd known(n, 0);  // V
+  Nonnegative pull(loops_);
+  const int aside = set_aside_;
+  std::vector<Passage*> all, close;
+  for (Passage& one : passages) all.push_back(&one);
+  const auto look_at_all = [&] {
+    constexpr double kClose = 0.003;  // what holds elsewhere moves the surface by less, as a rule, if it does outwards
+    look_at(all);
+    close.clear();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(close),
+                 [&](const Passage* one) { return one->inside > -kClose; });
+  };
+  look_at_all();
+  constexpr int kRounds = 16;
+  for (int round = 0;; ++round) {
+    std::vector<Passage*> more = deepest(close);
+    if (more.empty() && round > 0) {
+      look_at_all();
+      more = deepest(close);
+    }
+    if (more.empty()) return;
+    if (round == kRounds) {
+      look_at_all();
+      more = deepest(close);
+      for (std::size_t i = 0; i < more.size(); ++i) ways_broken_ += i == 0 || more[i]->way != more[i - 1]->way ? 1 : 0;
+      return;
+    }
+    std::vector<Row> rows;
+    for (Passage* const one : more) {
+      one->taken = true;
+      rows.push_back({one->place, Vector3d::Zero(), one->distance, noise_of_ways(), true});
+    }
+    free_.insert(free_.end(), rows.begin(), rows.end());
+    const Table table = table_of(rows);
+    const auto m = static_cast<Eigen::Index>(rows.size());
+    MatrixXd with = covariances(contacts.table, table);
+    VectorXd inside = with.transpose() * contacts.weights;
+    for (Eigen::Index i = 0; i < m; ++i) inside(i) -= rows[static_cast<std::size_t>(i)].target;
+    lower.solveInPlace(with);
+    known.conservativeResize(n, known.cols() + m);
+    known.rightCols(m) = with;
+    MatrixXd left = covariances(table_of(free_), table);
+    left.noalias() -= known.transpose() * with;
+    left.diagonal(m - left.rows()).array() += noise_of_ways() * noise_of_ways();
+    pull.append(left, inside);
+    pull.solve();
+    set_aside_ = aside + pull.set_aside();
+
+    VectorXd shift = known(Eigen::all, pull.held()) * pull.values();
+    lower.transpose().solveInPlace(shift);
+    known_.rows = contacts.rows;
+    for (const int i : pull.held()) known_.rows.push_back(free_[static_cast<std::size_t>(i)]);
+    known_.table = table_of(known_.rows);
+    known_.weights.resize(n + pull.values().size());
+    known_.weights << contacts.weights + shift, -pull.values();
+    look_at(close);
   }
-  contacts.lower.triangularView<Eigen::Lower>().solveInPlace(with);
-  between -= with.transpose() * with;
-  std::vector<Row> out;
-  for (const Eigen::Index i : complementary(between, inside)) out.push_back(free_[static_cast<std::size_t>(i)]);
-  return out;
+}
+
+double Skin::noise_of_ways() const {
+  constexpr double kLeast = 1e-4;
+  return std::max(kLeast, settings_.noise);
+}
+
+/// |g(x)| <= ||g|| sqrt(k(x, x)) in the kernel's space, ||g||^2 = w' K w, where (K + N) w is what is known: for
+/// certain, but with many rows several times too much. Where values alone are known, g is larger between them than at
+/// them, by a fifth at most in some hundred fits of runs: half leaves room.
+double Skin::reach() const {
+  constexpr double kBetween = 1.5;
+  double square = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < known_.rows.size(); ++i) {
+    const Row& row = known_.rows[i];
+    const double weight = known_.weights(static_cast<Eigen::Index>(i));
+    square += weight * (row.target - row.noise * row.noise * weight);
+    largest = std::max(largest, std::abs(row.target));
+  }
+  const double certain = deviation() * std::sqrt(std::max(0.0, square));
+  return std::min(certain, kBetween * (known_.table.slopes ? kFarthest : largest));
 }
 
 void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touches) {
@@ -337,21 +374,10 @@ void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touch
   constexpr double kLeast = 0.001;
   signal_ = std::clamp(rms, std::min(kLeast, settings_.most), settings_.most);
   free_.clear();
+  ways_broken_ = 0;
   jitter_ = 0.0;
-  take_in(std::move(rows), 0);
-  const Known contacts = known_;
-  const int aside = set_aside_;
-  std::vector<Passage> near = passages(solids, touches);
-  constexpr int kRounds = 3;  // what holds at one place moves the surface at others
-  for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Row> more = broken(near);
-    if (more.empty()) return;
-    free_.insert(free_.end(), more.begin(), more.end());
-    rows = contacts.rows;
-    const std::vector<Row> hold = holding(contacts);
-    rows.insert(rows.end(), hold.begin(), hold.end());
-    take_in(std::move(rows), aside);
-  }
+  take_in(std::move(rows));
+  keep_free(passages(solids, touches));
 }
 
 template <class Use>
@@ -384,10 +410,10 @@ Skin::Posterior Skin::posterior(const Places& places) const {
   simd::Lines left(simd::kPiece);
   for_pieces(places, [&](Eigen::Index first, Eigen::Index count, Eigen::Map<MatrixXd> k) {
     out.mean.segment(first, count).noalias() = k.topRows(count) * known_.weights;
-    std::fill_n(left.data(), simd::kPiece, signal_ * signal_ * unit_);
+    std::fill_n(left.data(), simd::kPiece, deviation() * deviation());
     simd::Update variance{};
     variance.variance = left.data();
-    for (Eigen::Index i = 0; i < known_.certain; ++i)
+    for (Eigen::Index i = 0; i < known_.lower.rows(); ++i)
       loops_.absorb_dense({k.data(), &known_.lower(i, 0), static_cast<int>(i), known_.lower(i, i)}, variance);
     out.variance.segment(first, count) = Eigen::Map<const VectorXd>(left.data(), count);
   });
@@ -408,10 +434,10 @@ double Skin::mean(const Place& place) const {
 }
 
 double Skin::variance(const Place& place) const {
-  const Eigen::Index n = known_.certain;
+  const Eigen::Index n = known_.lower.rows();
   VectorXd k = covariances(known_.table, table_of({{place, Vector3d::Zero(), 0.0, 0.0, false}})).col(0).head(n);
-  known_.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(k);
-  return std::max(0.0, signal_ * signal_ * unit_ - k.squaredNorm());
+  known_.lower.triangularView<Eigen::Lower>().solveInPlace(k);
+  return std::max(0.0, deviation() * deviation() - k.squaredNorm());
 }
 
 }  // namespace palpate

@@ -12,13 +12,14 @@
 //     a contact             f = 0:  g = m(x), with the noise of a contact
 //     a normal felt there   f rises along it alone: t . grad g = t . grad m for two directions t across it, with the
 //                           normals of the composition held
-//     a free way            f >= 0: g <= m(x), at a few points; one that would be broken holds as a contact does, the
+//     a free way            f >= 0: g <= m(x), at points of it; one that would be broken holds as a contact does, the
 //                           others say nothing
 //
 // So the mean is the most probable g where a free point that lies inside by d costs d^2 / 2 noise^2, as a contact that
-// is off by d does, and one outside costs nothing: the optimum of a strictly convex problem, found exactly. The
-// variance is that of a process which knows contacts and normals alone: what a free way takes off it is less than a
-// contact in its place would, and where it is none, nothing.
+// is off by d does, and one outside costs nothing: the optimum of a strictly convex problem, found exactly. Of each
+// stretch of a way inside the surface the deepest point is taken, until no way is inside by more than its noise but at
+// points that were. The variance is that of a process which knows contacts and normals alone: what a free way takes off
+// it is less than a contact in its place would, and where it is none, nothing.
 #pragma once
 
 #include "gp/simd/table.hpp"
@@ -29,6 +30,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -46,8 +48,8 @@ class Skin {
   /// the distance alone.
   Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops = simd::fastest());
 
-  /// The process over `solids`, which must outlive it, after these touches. Throws Error where one has a normal and the
-  /// kernel no slopes.
+  /// The process over `solids` after these touches; nothing is kept of either but what follows from them. Throws Error
+  /// where a touch has a normal and the kernel no slopes.
   void fit(const Composition& solids, const std::vector<SurfaceTouch>& touches);
 
   struct Place {
@@ -58,7 +60,12 @@ class Skin {
   /// By how much the surface lies outside the composition's, near such a place of it, metres.
   double mean(const Place& place) const;
   double variance(const Place& place) const;
+  /// What contacts are off as a rule, and the standard deviation before any touch: that times the kernel's.
   double signal() const { return signal_; }
+  double deviation() const { return signal_ * std::sqrt(unit_); }
+  /// How far from the composition's the surface may be, metres: mean() is between -reach() and reach(). Mesh, volume
+  /// and free ways ask no farther.
+  double reach() const;
 
   // Of many at once, which is much quicker.
   Eigen::VectorXd means(const Places& places) const;
@@ -87,11 +94,18 @@ class Skin {
   const std::vector<Row>& free_points() const { return free_; }
 
   /// What is added to the diagonal by need, as a share of each entry, and how often that was raised, all fits together;
-  /// how often the matrix was singular even so, and how many rows do not enter now for that.
+  /// how often the matrix was singular even so, and how many rows do not enter now for that. Free ways have no part in
+  /// it but of the last: a point with which the matrix would be singular is set aside.
   double jitter() const { return jitter_; }
   int jitter_raised() const { return jitter_raised_; }
   int pivoted() const { return pivoted_; }
   int set_aside() const { return set_aside_; }
+  /// Free ways that the surface is left in, by more than noise and elsewhere than at points that hold: the last fit
+  /// ended before it had seen to them.
+  int ways_broken() const { return ways_broken_; }
+
+  /// What rows have in common before any of them is known, with the signal of the last fit, noise left out.
+  Eigen::MatrixXd covariance(const std::vector<Row>& rows) const;
 
   static Eigen::Vector3d normal(const Composition& solids, const Eigen::Vector3d& at);
 
@@ -113,21 +127,24 @@ class Skin {
   /// Rows that were taken in, those of free ways last.
   struct Known {
     std::vector<Row> rows;
-    Eigen::Index certain = 0;  ///< of the others
     Table table;
-    Lower lower;  ///< the Cholesky factor of their covariance, noise included
+    Lower lower;  ///< the Cholesky factor of the covariance of the others, noise included
     Eigen::VectorXd weights;
   };
-  /// With the jitter so far, or what more it takes. `already_aside`: of the touches, rows that are not among these.
-  void take_in(std::vector<Row> rows, int already_aside);
+  /// With as much jitter as it takes, and as many rows as it allows.
+  void take_in(std::vector<Row> rows);
   std::vector<Row> contacts_of(const Composition& solids, const std::vector<SurfaceTouch>& touches) const;
   struct Passage;
   /// The points of free ways near or in the composition.
   std::vector<Passage> passages(const Composition& solids, const std::vector<SurfaceTouch>& touches) const;
-  /// Of each way the point that is deepest inside the surface now.
-  std::vector<Row> broken(std::vector<Passage>& passages) const;
-  /// Those of free_ that hold in the optimum, with all contacts.
-  std::vector<Row> holding(const Known& contacts) const;
+  void look_at(const std::vector<Passage*>& passages) const;
+  /// Of each stretch of a way that was inside the surface the deepest point; one that was taken ends a stretch.
+  std::vector<Passage*> deepest(const std::vector<Passage*>& passages) const;
+  /// Adds what holds of these to the contacts, in the optimum.
+  void keep_free(std::vector<Passage> passages);
+  /// That of a contact, but no way is known better than by a tenth of a millimetre: that keeps the problem far from
+  /// singular, however many points hold side by side.
+  double noise_of_ways() const;
 
   std::shared_ptr<const Kernel> kernel_;
   SkinSettings settings_;
@@ -140,6 +157,7 @@ class Skin {
   int jitter_raised_ = 0;
   int pivoted_ = 0;
   int set_aside_ = 0;
+  int ways_broken_ = 0;
 };
 
 }  // namespace palpate

@@ -39,7 +39,7 @@ namespace {
 struct Nearest {
   double distance = kNoHit;  ///< to the composition
   double clear = kNoHit;     ///< no surface is nearer
-  const Piece* piece = nullptr;
+  std::size_t piece = 0;     ///< whose distance that is
 };
 
 /// The share of what Piece::distance() says that is true at least: of what is round, and not equally in all
@@ -59,20 +59,21 @@ Vector3d normal(const Piece& piece, const Vector3d& at) {
   return out.stableNormalized();
 }
 
-/// What the skin adds, which changes slowly: asked for once in a few cubes for each of six directions of the normal.
+/// What the skin adds, which changes slowly: asked for once in a few cubes for each of six directions of the normal of
+/// each piece. Pieces side by side may have surfaces that are parallel, and other than each other.
 class SkinNearby {
  public:
   SkinNearby(const Skin& skin, double side) : skin_(skin), side_(kCubes * side) {}
 
-  double mean(const Piece& piece, const Vector3d& at) {
+  double mean(std::size_t which, const Piece& piece, const Vector3d& at) {
     const Vector3d facing = normal(piece, at);
     Eigen::Index axis = 0;
     facing.cwiseAbs().maxCoeff(&axis);
     const auto place = [&](Eigen::Index i) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at(i) / side_)) + (1 << 15));
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(at(i) / side_)) + (1 << (kBits - 1)));
     };
     const auto face = static_cast<std::uint64_t>(2 * axis + (facing(axis) < 0.0 ? 1 : 0));
-    const std::uint64_t key = ((place(0) << 16 | place(1)) << 16 | place(2)) << 3 | face;
+    const std::uint64_t key = (((which << kBits | place(0)) << kBits | place(1)) << kBits | place(2)) << 3 | face;
     const auto [found, is_new] = means_.try_emplace(key, 0.0);
     if (is_new) found->second = skin_.mean({at, facing});
     return found->second;
@@ -80,6 +81,7 @@ class SkinNearby {
 
  private:
   static constexpr int kCubes = 3;
+  static constexpr unsigned kBits = 16;  // 13 are left for pieces, and more than seven there never are
   const Skin& skin_;
   double side_;
   std::unordered_map<std::uint64_t, double> means_;
@@ -89,7 +91,7 @@ class SkinNearby {
 
 Cubes::Held Cubes::of(const Composition& solids, const Skin& skin) const {
   Held out(static_cast<std::size_t>(across_) * static_cast<std::size_t>(across_) * static_cast<std::size_t>(up_));
-  const double band = 2.0 * skin.signal();
+  const double band = skin.reach();
   SkinNearby nearby(skin, side_);
   std::vector<double> shares, balls;
   for (const Composition::Part& part : solids.parts) {
@@ -108,7 +110,7 @@ Cubes::Held Cubes::of(const Composition& solids, const Skin& skin) const {
       } else if (known.distance >= 0.0) {
         known.clear = std::min(known.clear, clear);
       }
-      if (distance < known.distance) known.distance = distance, known.piece = &piece;
+      if (distance < known.distance) known.distance = distance, known.piece = i;
     }
     return known;
   };
@@ -124,7 +126,7 @@ Cubes::Held Cubes::of(const Composition& solids, const Skin& skin) const {
       return;
     }
     const bool near = size == 1 && std::abs(found.distance) < band;
-    if (!(found.distance - (near ? nearby.mean(*found.piece, at) : 0.0) < 0.0)) return;
+    if (!(found.distance - (near ? nearby.mean(found.piece, solids.parts[found.piece].piece, at) : 0.0) < 0.0)) return;
     for (int i = x; i < std::min(across_, x + size); ++i) {
       for (int k = y; k < std::min(across_, y + size); ++k) {
         const std::size_t column =

@@ -24,7 +24,7 @@ class Cubes {
   /// In an object of the scene: within its walls, not in what they enclose.
   Held of(const Scene& scene) const;
   /// In what is believed: where the composition's distance, less what the skin adds, is negative. The skin is asked
-  /// within two of its signals from the composition's surface, once in three cubes along each axis.
+  /// as far from the composition's surface as it reaches, once in three cubes along each axis.
   Held of(const Composition& solids, const Skin& skin) const;
 
  private:
