@@ -251,11 +251,14 @@ TEST_P(SkinExactly, IsTheOptimumOverAllFreePoints) {
         const Vector3d at = way.line.origin + along * way.line.direction;
         const double distance = solids.distance(at);
         deepest = std::min(deepest, distance);
+        if (distance > skin.reach()) {
+          stretch.clear();
+          along += distance - skin.reach();
+          continue;
+        }
         // One that is inside though it holds has a contact against it.
-        const bool holds = std::any_of(skin.rows().begin(), skin.rows().end(), [&](const Skin::Row& row) {
-          return row.free && (row.place.at - at).norm() < 0.0015;
-        });
-        if (distance > skin.reach() || holds) {
+        if (std::any_of(skin.rows().begin(), skin.rows().end(),
+                        [&](const Skin::Row& row) { return row.free && (row.place.at - at).norm() < 0.0015; })) {
           stretch.clear();
           continue;
         }
