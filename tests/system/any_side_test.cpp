@@ -402,5 +402,18 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
   }
 }
 
+TEST_F(AnySide, ASoftWorldAndAnArmThatErrsLeaveASurfaceNearlyAsGoodAsAPerfectOne) {
+  if (test::brief()) GTEST_SKIP() << "runs at full effort";
+  const std::string effects =
+      "scene.effects={force_noise: {}, stiffness: {}, joint_lag: {}, pose_noise: {}, false_contacts: {}}";
+  double sum = 0.0;
+  for (const std::string scene : {"scene=any_mug", "scene=any_bowl"}) {
+    const fs::path run = ran({scene, "taps=40", "seed=16100", effects}, config());
+    sum += parse_json_row(text_of(run / "summary.json")).value().number("nearest_m").value();
+  }
+  // Without effects 1 mm; without a correction 11 mm.
+  EXPECT_LT(sum / 2, 0.004);
+}
+
 }  // namespace
 }  // namespace palpate

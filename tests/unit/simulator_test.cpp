@@ -355,5 +355,28 @@ TEST(Tool, ShaftStopsBesideATallObject) {
   EXPECT_NEAR(backends::contact_height(bench.scene(), effects, 0.09, 0.12), 0.0, 1e-12) << "a long tool";
 }
 
+TEST(Simulator, HasTheDeskAsSoftAsTheConfigSaysWhereTheSideOfARoundTipTouchesItAtASlope) {
+  const TappingBench bench(kBare, "{stiffness: {object: 500 N/m, desk: 1000000 N/m}, tip_radius: {radius: 5 mm}}",
+                           "{type: paper}");
+  const Eigen::Vector3d direction = Eigen::Vector3d(0.6, 0.0, -0.8);
+  const Line line{Eigen::Vector3d(0.01, 0.005, 0.0) - 0.1 * direction, direction};
+  TapRequest request;
+  request.approach = Approach{line, 0.2};
+  const Contact contact = bench.backend().tap(request);
+  ASSERT_EQ(contact.outcome, Outcome::contact);
+  // The foremost point is higher than the lowest by r (1 - 0.8). The arm goes on for three periods at 2.4 cm/s, 0.7 mm;
+  // an object would give way by 20 mm.
+  EXPECT_NEAR(contact.height, 0.005 * (1.0 - 0.8), 0.0008);
+}
+
+TEST(Simulator, SaysOfATapAlongALineThatFeltNothingThatItCameToItsEnd) {
+  const TappingBench bench(kBare, "{missed_contacts: {probability: 1}}", "{type: paper}");
+  TapRequest request;
+  request.approach = Approach{{{0.115, 0.115, 0.2}, -Eigen::Vector3d::UnitZ()}, 0.3};
+  const Contact contact = bench.backend().tap(request);
+  EXPECT_EQ(contact.outcome, Outcome::no_contact);
+  EXPECT_EQ(contact.along, 0.3) << "where the object truly was, an arm that felt nothing does not know";
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -592,5 +592,76 @@ TEST(Scene, TellsWhichPartsOfALineLieInItsObjectsAlsoWhereTheyOverlap) {
   EXPECT_EQ(all[1].begin, 0.3);
 }
 
+/// Contacts with a box from all sides but below, as they would be without noise.
+std::vector<SurfaceTouch> touches_of(const Piece& box, int count) {
+  Random random(7, "test/solids");
+  std::vector<SurfaceTouch> out;
+  while (static_cast<int>(out.size()) < count) {
+    Vector3d direction = random_direction(random);
+    direction.z() = -std::abs(direction.z());
+    const Line line{box.centre + 0.06 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
+    const double desk = -line.origin.z() / direction.z();
+    out.push_back({line, std::min(box.first_hit(line), desk), true, desk <= box.first_hit(line)});
+  }
+  return out;
+}
+
+TEST(Solids, GoOnWhereNoCompositionIsPossibleAtAll) {
+  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  SolidsSettings settings;
+  settings.count = 4;
+  settings.moves = 20;
+  settings.misfit = 1e-200;
+  Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
+  for (const SurfaceTouch& touch : touches_of(box, 5)) solids.add({touch});
+  EXPECT_EQ(solids.compositions().size(), 4U);
+  EXPECT_THROW(shipped_config("any_side.yaml", {"space.misfit=1e-200m"}), Error);
+}
+
+TEST(Solids, MakeNoPieceOfOneContactInTheAirWhereATouchMayBeALie) {
+  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  const Vector3d air(0.15, 0.14, 0.16);
+  int made = 0, made_of_lies = 0;
+  for (const double most : {kNoHit, 5.5}) {
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      SolidsSettings settings;
+      settings.count = 8;
+      settings.moves = 300;
+      settings.most = most;
+      Solids solids({0.26, 0.26}, settings, Random(seed, "solids"));
+      std::vector<SurfaceTouch> touches = touches_of(box, 30);
+      touches.insert(touches.begin() + 15, {{air + Vector3d(0, 0, 0.1), -Vector3d::UnitZ()}, 0.1, true, false});
+      for (const SurfaceTouch& touch : touches) solids.add({touch});
+      (most < kNoHit ? made : made_of_lies) += solids.best().distance(air) < 0.01 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(made_of_lies, 3) << "a contact that is no lie is of something";
+  EXPECT_LE(made, 1);
+}
+
+TEST(Solids, AreWeighedByTouchesAsTheyAreReadNow) {
+  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  SolidsSettings settings;
+  settings.count = 6;
+  settings.moves = 100;
+  Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
+  std::vector<SurfaceTouch> touches = touches_of(box, 12);
+  for (const SurfaceTouch& touch : touches) solids.add({touch});
+  for (SurfaceTouch& touch : touches) touch.length -= 0.004;
+  solids.read_again(touches, 0.003, kNoHit);
+  for (const Composition& one : solids.compositions()) {
+    double likelihood = 0.0;
+    for (const SurfaceTouch& touch : touches) {
+      double reach = touch.desk ? 0.0 : 0.3;
+      if (!touch.desk) reach = std::min(reach, std::abs(one.distance(touch.end())));
+      double depth = 0.0;
+      for (const Composition::Part& part : one.parts)
+        depth = std::max(depth, part.depth[static_cast<std::size_t>(&touch - touches.data())]);
+      likelihood -= 2.0 * std::log1p((reach * reach + depth * depth) / (3.0 * 0.003 * 0.003));
+    }
+    EXPECT_NEAR(one.likelihood, likelihood, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -95,16 +95,17 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   return tap;
 }
 
-void FromAnySide::read(TapRecord& tap) { tap.on_surface = tap.contact.height > scene_->desk() + 0.0015; }
+void FromAnySide::read(TapRecord& tap) { tap.on_surface = belief_.on_object(approach_of(tap), tap.contact); }
 
 void FromAnySide::observe(const PastTap& tap) {
   belief_.observe(approach_of(tap), tap.contact);
   previous_ = tap.target;
   result_.count(tap);
   if (tap.contact.outcome != Outcome::contact) return;
-  const bool on = belief_.touches().back().contact && !belief_.touches().back().desk;
-  ++(on ? result_.on_surface_taps : result_.off_surface_taps);
-  if (on && !result_.first_hit_tap) result_.first_hit_tap = result_.taps;
+  const SpaceBelief::Hits hits = belief_.hits();  // as all contacts are read now
+  result_.on_surface_taps = hits.count;
+  result_.off_surface_taps = result_.taps - result_.failed_taps - result_.missed_taps - hits.count;
+  result_.first_hit_tap = hits.first;
 }
 
 void FromAnySide::resume(const std::vector<PastTap>& past) {

@@ -48,6 +48,9 @@ class Skin {
   /// the distance alone.
   Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops = simd::fastest());
 
+  /// Of contacts from the next fit on, metres.
+  void set_noise(double noise) { settings_.noise = noise; }
+
   /// The process over `solids` after these touches; nothing is kept of either but what follows from them. Throws Error
   /// where a touch has a normal and the kernel no slopes.
   void fit(const Composition& solids, const std::vector<SurfaceTouch>& touches);

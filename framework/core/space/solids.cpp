@@ -169,12 +169,23 @@ void Solids::look(const std::vector<SurfaceTouch>& view) {
 void Solids::take_in(const std::vector<SurfaceTouch>& touches) {
   const std::size_t before = touches_.size();
   touches_.insert(touches_.end(), touches.begin(), touches.end());
+  weigh(before);
+}
+
+void Solids::read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most) {
+  touches_ = touches;
+  settings_.misfit = misfit;
+  settings_.most = most;
+  weigh(0);
+}
+
+void Solids::weigh(std::size_t from) {
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::vector<double> weights;
   for (Composition& one : all_) {
     const double was = one.likelihood;
-    for (Composition::Part& part : one.parts) look(part, before);
+    for (Composition::Part& part : one.parts) look(part, from);
     one.likelihood = likelihood_with(one, one.parts.size(), nullptr, -kNoHit);
     weights.push_back(last_power_ * (one.likelihood - was));
   }
@@ -199,7 +210,8 @@ void Solids::resample(const std::vector<double>& weights) {
     total += shares.back();
     squares += shares.back() * shares.back();
   }
-  if (total * total / squares > 0.5 * static_cast<double>(shares.size())) return;
+  // All may be impossible, and none is then more so.
+  if (!std::isfinite(total) || total * total / squares > 0.5 * static_cast<double>(shares.size())) return;
   std::vector<Composition> drawn;
   const double step = total / static_cast<double>(shares.size());
   double at = step * random_.uniform();
@@ -219,6 +231,7 @@ double Solids::likelihood_with(const Composition& one, std::size_t which, const 
   constexpr std::size_t kAtOnce = 8;  // as many factors have one logarithm
   const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
   const double most = std::exp(std::min(700.0, -2.0 * least / (kTails + 1.0)));
+  const double of_a_lie = std::exp(2.0 * settings_.most / (kTails + 1.0));
   scratch_.reach.resize(touches_.size());
   scratch_.depth.resize(touches_.size());
   double out = 0.0;
@@ -240,7 +253,7 @@ double Solids::likelihood_with(const Composition& one, std::size_t which, const 
       reach = std::min(reach, scratch_.reach[i]);
       depth = std::max(depth, scratch_.depth[i]);
     }
-    product *= 1.0 + scale * (reach * reach + depth * depth);
+    product *= std::min(of_a_lie, 1.0 + scale * (reach * reach + depth * depth));
     if (k % kAtOnce == kAtOnce - 1) {
       out += std::log(product), product = 1.0;
     }

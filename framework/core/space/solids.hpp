@@ -11,6 +11,7 @@
 #include <palpate/scene.hpp>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace palpate {
@@ -22,6 +23,7 @@ struct SolidsSettings {
   double pieces = 5.0;      ///< what one piece more has to explain, nats
   double smallest = 0.002;  ///< half the least extent, metres
   double largest = 0.15;    ///< half the largest
+  double most = std::numeric_limits<double>::infinity();  ///< nats that a touch costs at most: it may be a lie
 };
 
 /// Pieces, and what each touch so far is to each of them.
@@ -47,6 +49,8 @@ class Solids {
 
   /// Takes in touches made at once, one or few.
   void add(const std::vector<SurfaceTouch>& touches);
+  /// The same touches as they are read now; of the settings `misfit` and `most` as they are from now on.
+  void read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most);
   /// Takes in a view before all touches: many at once, and as many rounds of moves as it would take to get there touch
   /// by touch, the first of them with the likelihood to a small power, from which it cools: so that no mode stays
   /// because it came first.
@@ -67,6 +71,8 @@ class Solids {
   double likelihood_with(const Composition& one, std::size_t which, const Piece* piece, double least);
   void resample(const std::vector<double>& weights);
   void take_in(const std::vector<SurfaceTouch>& touches);
+  /// By what touches_ are from one of them on.
+  void weigh(std::size_t from);
   void move_all();
   void move(Composition& one);
   /// The least likelihood with which a change is taken, if it gains so much in prior: by Metropolis's rule, the

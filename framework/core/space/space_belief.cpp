@@ -30,6 +30,16 @@ SolidsSettings settings_of(const SpaceOptions& options) {
   return out;
 }
 
+/// Metres below the desk at which a tool that presses on it is felt by all means.
+constexpr double kFeltLate = 0.03;
+
+/// Nats that a touch costs at most once contacts are known to err: less than a piece that floats, so that one contact
+/// in the air makes none. Two in a hundred that are a lie, anywhere on the way, are about as much.
+constexpr double kLie = 6.5;
+
+/// A tool's tip is a tool's, whoever moves it.
+double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.effects().tip_radius->radius : 0.0; }
+
 }  // namespace
 
 Region::Region(const Area& area, double desk) {
@@ -47,7 +57,10 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
       count_(static_cast<std::size_t>(options.space->approaches)),
       solids_(context.scene.area(), settings_of(*options.space), context.random("space/solids")),
       skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise},
-            simd::table_of(context.lanes)) {
+            simd::table_of(context.lanes)),
+      misfit_(options.space->misfit),
+      noise_(options.height.noise),
+      overtravel_(tip_of(context.scene), options.scene.on_surface_above) {
   draw_approaches();
 }
 
@@ -68,19 +81,61 @@ void SpaceBelief::look(const std::vector<SurfaceTouch>& seen) {
 void SpaceBelief::observe(const Approach& approach, const Contact& contact) {
   ++taps_;
   if (contact.outcome != Outcome::contact && contact.outcome != Outcome::no_contact) return;
+  const Told one = told(approach, contact);
+  // A tool that felt nothing of the desk would have felt nothing of an object either.
+  if (!one.touch.contact && one.touch.end().z() < -kFeltLate) return;
+  told_.push_back(one);
+  const double before = overtravel_.spread();
+  overtravel_.add(one.touch, one.force);
+  read_again_ = read_again_ || overtravel_.spread() != before;
+  for (std::size_t i = 0; i < told_.size(); ++i) {
+    const SurfaceTouch touch = overtravel_.read(told_[i].touch, told_[i].force);
+    if (i + 1 == told_.size()) {
+      touches_.push_back(touch);
+      continue;
+    }
+    SurfaceTouch& known = touches_[seen_ + i];
+    read_again_ = read_again_ || touch.length != known.length || touch.desk != known.desk;
+    known = touch;
+  }
+}
+
+SpaceBelief::Told SpaceBelief::told(const Approach& approach, const Contact& contact) const {
   SurfaceTouch touch;
-  touch.line = {approach.line.origin - Vector3d(0.0, 0.0, desk_), approach.line.direction};
+  touch.line = line_of(approach);
   touch.length = contact.along.value_or(approach.length);
   touch.contact = contact.outcome == Outcome::contact;
-  constexpr double kOnDesk = 0.0015;
-  touch.desk = touch.contact && touch.end().z() <= kOnDesk;
-  touches_.push_back(touch);
+  return {touch, contact.force, taps_};
+}
+
+SpaceBelief::Hits SpaceBelief::hits() const {
+  Hits out;
+  for (std::size_t i = 0; i < told_.size(); ++i) {
+    const SurfaceTouch& touch = touches_[seen_ + i];
+    if (!touch.contact || touch.desk) continue;
+    ++out.count;
+    if (!out.first) out.first = told_[i].tap;
+  }
+  return out;
+}
+
+bool SpaceBelief::on_object(const Approach& approach, const Contact& contact) const {
+  const Told one = told(approach, contact);
+  return one.touch.contact && !overtravel_.read(one.touch, one.force).desk;
 }
 
 void SpaceBelief::update(Quantities reads) {
   if (taken_in_ < seen_) {
     solids_.look({touches_.begin(), touches_.begin() + static_cast<std::ptrdiff_t>(seen_)});
     taken_in_ = seen_;
+  }
+  if (read_again_) {
+    // A touch errs by what the solids are off the objects, and by what it is told wrongly.
+    const double spread = overtravel_.spread() > Overtravel::kLeastSpread ? overtravel_.spread() : 0.0;
+    solids_.read_again({touches_.begin(), touches_.begin() + static_cast<std::ptrdiff_t>(taken_in_)},
+                       std::hypot(misfit_, spread), kLie);
+    skin_.set_noise(std::max(noise_, spread));
+    read_again_ = false;
   }
   for (; taken_in_ < touches_.size(); ++taken_in_) solids_.add({touches_[taken_in_]});
   skin_.fit(solids_.best(), touches_);

@@ -5,6 +5,7 @@
 
 #include "experiment/experiment_options.hpp"
 #include "space/cloud.hpp"
+#include "space/overtravel.hpp"
 #include "space/skin.hpp"
 #include "space/solids.hpp"
 #include "space/surface_touch.hpp"
@@ -36,8 +37,11 @@ class SpaceBelief final : public SurfaceBelief {
   /// Takes in what was seen before the first tap.
   void look(const std::vector<SurfaceTouch>& seen);
 
-  /// Takes in a tap. Of one that failed nothing is learnt.
+  /// Takes in a tap. Of one that failed nothing is learnt. All contacts so far are read again by what it tells of how
+  /// deep they come.
   void observe(const Approach& approach, const Contact& contact);
+  /// Whether a contact is with an object, not the desk, as it is read before it is taken in.
+  bool on_object(const Approach& approach, const Contact& contact) const;
 
   /// Has the models take in what was observed, draws the approaches of the next tap, and says of them what of
   /// deviation, reduction and unseen is in `reads`.
@@ -57,7 +61,15 @@ class SpaceBelief final : public SurfaceBelief {
   const Skin& skin() const { return skin_; }
   /// How many variances of the last update() rounding had taken below 0.
   int variances_clamped() const { return clamped_; }
+  /// As they are read now, those that were seen first.
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
+  /// Contacts with an object, and the number of the first tap that made one.
+  struct Hits {
+    int count = 0;
+    std::optional<int> first;
+  };
+  Hits hits() const;
+  const Overtravel& overtravel() const { return overtravel_; }
   /// How far along a line the desk is, infinity where it is not.
   double desk_along(const Line& line) const;
   /// How far a tool comes along an approach if a composition is the truth.
@@ -70,6 +82,12 @@ class SpaceBelief final : public SurfaceBelief {
   Eigen::VectorXd uncertainty(const Cloud& surface) const;
 
  private:
+  struct Told {
+    SurfaceTouch touch;
+    double force;
+    int tap;  ///< its number, from 1
+  };
+  Told told(const Approach& approach, const Contact& contact) const;
   void draw_approaches();
   void look_where_met();
   void look_at_deviations();
@@ -87,7 +105,11 @@ class SpaceBelief final : public SurfaceBelief {
   std::size_t count_;
   Solids solids_;
   Skin skin_;
+  const double misfit_, noise_;  ///< of contacts that err by no more than the least, metres
+  Overtravel overtravel_;
+  std::vector<Told> told_;  ///< of touches_ those that were made, as the arm told them
   std::vector<SurfaceTouch> touches_;
+  bool read_again_ = false;  ///< some that the solids have taken in are read otherwise now
   int taps_ = 0;
   std::size_t seen_ = 0;      ///< of the touches, before the first tap
   std::size_t taken_in_ = 0;  ///< of the touches, by the solids

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How a scene's taps differ from perfect ones: `scene.effects` of a config. Each effect is absent unless the config has
-// it, and what is absent is not modelled at all. Only simulators read this; a robot brings effects of its own.
+// it, and what is absent is not modelled at all. Only simulators read this, and the belief from any
+// side how round the tip is; a robot brings effects of its own.
 #pragma once
 
 #include <cstdint>

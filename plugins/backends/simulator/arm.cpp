@@ -113,17 +113,33 @@ double contact_height(const Scene& scene, const Effects& effects, double x, doub
   return touched(effects, scene.highest(), [&](double dx, double dy) { return scene.height(x + dx, y + dy); });
 }
 
-double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
+namespace {
+
+/// Where any of a tool touches that comes along a line, given how far lines beside it are free.
+template <class Free>
+double along(const Effects& effects, const Line& line, const Free& free) {
   const Eigen::Vector3d one = line.direction.unitOrthogonal();
   const Eigen::Vector3d other = line.direction.cross(one);
-  const double down = line.direction.z();
   // Against its way, what it meets is high.
   return -touched(effects, 0.0, [&](double dx, double dy) {
-    const Line beside{line.origin + dx * one + dy * other, line.direction};
-    const double to_desk =
-        down < 0.0 ? (scene.desk() - beside.origin.z()) / down : std::numeric_limits<double>::infinity();
-    return -std::min(scene.first_hit(beside), to_desk);
+    return -free({line.origin + dx * one + dy * other, line.direction});
   });
+}
+
+double to_desk(const Scene& scene, const Line& line) {
+  const double down = line.direction.z();
+  return down < 0.0 ? (scene.desk() - line.origin.z()) / down : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
+  return along(effects, line,
+               [&](const Line& beside) { return std::min(scene.first_hit(beside), to_desk(scene, beside)); });
+}
+
+double desk_along(const Scene& scene, const Effects& effects, const Line& line) {
+  return along(effects, line, [&](const Line& beside) { return to_desk(scene, beside); });
 }
 
 double outlier(const Outliers& effect, std::uint64_t seed, double x, double y) {

@@ -68,6 +68,9 @@ double contact_height(const Scene& scene, const Effects& effects, double x, doub
 /// any of it first meets an object or the desk, metres; infinity if nothing does.
 double contact_along(const Scene& scene, const Effects& effects, const Line& line);
 
+/// The same over the bare desk.
+double desk_along(const Scene& scene, const Effects& effects, const Line& line);
+
 /// What lies at (x, y) beside the scene, metres of height: 0 nearly everywhere. A function of seed and place alone.
 double outlier(const Outliers& effect, std::uint64_t seed, double x, double y);
 

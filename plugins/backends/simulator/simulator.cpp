@@ -87,15 +87,18 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
   const Scene& scene = pushed ? *pushed : scene_;
   double along = contact_along(scene, effects, true_line);
+  // With the side of a round tip, too, whose foremost point is then above it.
+  constexpr double kAsExact = 1e-6;  // as the search of either, and more
+  const bool desk = effects.stiffness && along > desk_along(scene, effects, true_line) - kAsExact;
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
   if (effects.outliers) along -= outlier(*effects.outliers, context_.seed, met.x(), met.y());
   const Descending way{motion, {length, length, 0.0}};
-  const bool desk = met.z() <= scene_.desk();
   const bool met_any = along <= length;
   const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
   Contact contact = moves_ ? simulated_tap(request.number, way, left, desk) : ideal_tap(way, std::max(0.0, left));
   if (!moves_ && !met_any && contact.outcome == Outcome::contact) contact.outcome = Outcome::no_contact;
-  contact.along = contact.outcome == Outcome::contact ? length - contact.height : std::min(along, length);
+  // An arm that has felt nothing is at the end of its way, whatever was there.
+  contact.along = contact.outcome == Outcome::contact ? length - contact.height : length;
   contact.height = line.origin.z() + *contact.along * line.direction.z();
   contact.seconds += tapping::travel_seconds(motion, request);
   return paced(std::move(contact));
