@@ -117,6 +117,26 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
                              testing::EndsWith("end_header\n")));
 }
 
+TEST(FromAnySide, AnObjectAtTheEndOfALongAreaIsLookedForAndCompared) {
+  Touching run({"taps=25", "space.approaches=1000", "scene.area={width: 60 cm, depth: 20 cm}",
+                "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 8 cm, at: [8 cm, 10 cm]}]"});
+  int aimed = 0;
+  for (const Approach& approach : run.experiment.belief().approaches()) {
+    aimed += run.experiment.scene().first_hit(approach.line) < kNoHit ? 1 : 0;
+  }
+  EXPECT_GT(aimed, 0) << "of lines anywhere through the region";
+  EXPECT_FALSE(run.experiment.truth().cloud.empty());
+  EXPECT_EQ(run.experiment.errors().volume_iou, 0.0) << "of an object that nobody has touched yet";
+}
+
+TEST(FromAnySide, OfWhatIsThinnerThanACubeNoVolumesAreCompared) {
+  Touching run({"taps=5",
+                "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 1.5 mm, at: [12 cm, 12 cm]}]",
+                "scene.on_surface_above=1 mm"});
+  EXPECT_FALSE(run.experiment.truth().cloud.empty());
+  EXPECT_EQ(run.experiment.errors().volume_iou, std::nullopt);
+}
+
 Eigen::Vector3d middle_of(const Cloud& cloud) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : cloud) sum += point;

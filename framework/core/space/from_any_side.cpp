@@ -161,8 +161,10 @@ Errors FromAnySide::errors() {
   out.nearest = errors.mean;
   out.f_score = errors.f_score;
   out.coverage = coverage(surface);
+  const Cubes::Held& cubes = truth().cubes;
+  if (std::find(cubes.begin(), cubes.end(), true) == cubes.end()) return out;  // thinner than a cube
   out.volume_iou =
-      knows_object() ? intersection_over_union(cubes_.of(belief_.solids().best(), belief_.skin()), truth().cubes) : 0.0;
+      knows_object() ? intersection_over_union(cubes_.of(belief_.solids().best(), belief_.skin()), cubes) : 0.0;
   return out;
 }
 

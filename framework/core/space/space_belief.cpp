@@ -43,9 +43,9 @@ double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.ef
 }  // namespace
 
 Region::Region(const Area& area, double desk) {
-  constexpr double kShare = 0.46;  // of the shorter side: an object has to fit in however it is turned
+  constexpr double kShare = 0.46;  // of the longer side: objects lie anywhere along it
   constexpr double kHeight = 0.65;
-  radius = kShare * std::min(area.width, area.depth);
+  radius = kShare * std::max(area.width, area.depth);
   centre = {area.width / 2, area.depth / 2, desk + kHeight * radius};
 }
 
