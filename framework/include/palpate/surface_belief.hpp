@@ -22,8 +22,8 @@ class SurfaceBelief {
   /// Taps made so far, failed ones included.
   virtual int taps() const = 0;
 
-  /// N: how far the tool is expected to come, by the most probable composition: to an object, to the desk, or to the end
-  /// of the approach, metres.
+  /// N: how far the tool is expected to come, by the most probable composition: to an object, to the desk, or to the
+  /// end of the approach, metres.
   virtual const Eigen::VectorXd& way() const = 0;
 
   /// N: what a tap is expected to find that nobody has touched yet, metres, were one piece more expected a priori than
