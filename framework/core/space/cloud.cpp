@@ -71,9 +71,9 @@ constexpr double kFar = 0.1;  // what lies further off, or has nothing to be nea
 }  // namespace
 
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
-  constexpr double kSide = 0.01;
   // Points within kFar of each other lie in cubes no farther apart than that.
-  constexpr auto kMost = static_cast<std::int64_t>(kFar / kSide + 0.5);
+  constexpr std::int64_t kMost = 10;
+  constexpr double kSide = kFar / kMost;
   std::unordered_map<std::int64_t, std::vector<int>> cubes;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const auto cube = cube_of(to[i], kSide);

@@ -60,7 +60,9 @@ Ring straightened(const Ring& ring, double most) {
 /// Cell by cell, as mesh.cpp goes from cube to cube: the line comes in over one side of a cell and leaves over another,
 /// and over the side between two cells it leaves the one and comes into the other.
 void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out) {
-  const auto node_of = [&](int i, int j) { return static_cast<std::size_t>(j * plane.columns + i); };
+  const auto node_of = [&](int i, int j) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(plane.columns) + static_cast<std::size_t>(i);
+  };
   const std::size_t count = node_of(0, plane.rows);
   std::vector<bool> inside(count);
   std::vector<Vector3d> crossing(2 * count);  // of the edge to the next node of the row, and of the column

@@ -231,7 +231,8 @@ Crossings cross_surface(const Composition& solids, const Skin& skin, double side
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) {
         const bool rim = x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz;
-        const auto node = static_cast<std::size_t>(x + strides[1] * y + strides[2] * z);
+        const int number = x + strides[1] * y + strides[2] * z;
+        const auto node = static_cast<std::size_t>(number);
         out.inside[node] = !rim && f[node] < 0.0;
       }
     }

@@ -48,8 +48,8 @@ void Overtravel::add(const SurfaceTouch& told, double force) {
   // As if two had been seen that err by the least.
   double count = 2.0;
   double squares = count * kLeastSpread * kLeastSpread;
-  for (std::size_t i = 0; i < lows_.size(); ++i) {
-    const double below = lows_[i].height + at(lows_[i].force) * lows_[i].steep;
+  for (const Low& low : lows_) {
+    const double below = low.height + at(low.force) * low.steep;
     if (below >= 0.0) continue;
     squares += below * below;
     ++count;

@@ -153,8 +153,9 @@ std::array<Chord, 2> Piece::inside(const Line& line) const {
 }
 
 double Piece::first_hit(const Line& line) const {
-  const std::array<Chord, 2> chords = inside(line);
-  return chords[0].empty() ? kNoHit : chords[0].begin;
+  const Chord first = inside(line)[0];
+  if (first.empty()) return kNoHit;
+  return first.begin;
 }
 
 double Piece::reach(const Vector3d& own) const {
