@@ -6,6 +6,7 @@
 #include <palpate/random.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate::test {
 namespace {
@@ -86,6 +87,34 @@ TEST(NonnegativeUnknowns, WithWhichTheFormIsNotPositiveDefiniteAreSetAsideAndCou
     aside += solver.set_aside();
   }
   EXPECT_GT(aside, 200);
+}
+
+/// As the free ways of a skin are: values of one smooth process, some of them close to each other.
+TEST(NonnegativeUnknowns, OfPlacesCloseToEachOtherAreFoundInTheEnd) {
+  Random random(4, "test/nonnegative");
+  for (int k = 0; k < 3000; ++k) {
+    const int n = 12 + static_cast<int>(random.index(40));
+    VectorXd at(n);
+    Problem problem{MatrixXd(n, n), VectorXd(n)};
+    for (double& one : at) one = 3.0 * random.uniform();
+    for (double& one : problem.d) one = 1e-3 * (random.uniform() - 0.3);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const double r = std::abs(at(i) - at(j));
+        problem.s(i, j) = 4e-6 * (1.0 + r) * std::exp(-r) + (i == j ? 2.5e-7 : 0.0);
+      }
+    }
+    Nonnegative solver;
+    const int half = n / 2;
+    solver.append(problem.s.topLeftCorner(half, half), problem.d.head(half));
+    solver.solve();
+    solver.append(problem.s.rightCols(n - half), problem.d.tail(n - half));
+    solver.solve();
+    const VectorXd l = all_of(solver, n);
+    EXPECT_GE(l.minCoeff(), 0.0);
+    // Of a condition below 1e3 and values below 1e4 roundings are some 1e-12 of the slopes, which are 1e-3.
+    EXPECT_GE((problem.s * l - problem.d).minCoeff(), -1e-12);
+  }
 }
 
 }  // namespace

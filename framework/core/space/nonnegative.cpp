@@ -2,6 +2,7 @@
 #include "space/nonnegative.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate {
 
@@ -50,21 +51,25 @@ VectorXd Nonnegative::unbounded() const {
 void Nonnegative::settle() {
   while (true) {
     const VectorXd best = unbounded();
-    // As far towards it as none becomes negative.
+    // As far towards it as none becomes negative; whoever is 0 first is let go, whatever rounding makes of its value.
     double share = 1.0;
+    Index first = -1;
     for (Index i = 0; i < best.size(); ++i) {
-      if (!(best(i) > 0.0)) share = std::min(share, values_(i) > 0.0 ? values_(i) / (values_(i) - best(i)) : 0.0);
+      if (best(i) > 0.0) continue;
+      const double way = values_(i) > 0.0 ? values_(i) / (values_(i) - best(i)) : 0.0;
+      if (first >= 0 && !(way < share)) continue;
+      share = way;
+      first = i;
     }
-    if (share == 1.0) {
-      values_ = best.cwiseMax(0.0);
+    if (first < 0) {
+      values_ = best;
       return;
     }
     std::vector<int> kept;
     VectorXd left = VectorXd::Zero(d_.size());
     for (Index i = 0; i < best.size(); ++i) {
       const double value = values_(i) + share * (best(i) - values_(i));
-      const bool first = !(best(i) > 0.0) && !(values_(i) > 0.0 && values_(i) > share * (values_(i) - best(i)));
-      if (first) continue;
+      if (i == first || !(value > 0.0)) continue;
       kept.push_back(held_[static_cast<std::size_t>(i)]);
       left(kept.back()) = value;
     }
@@ -93,7 +98,9 @@ void Nonnegative::solve() {
     values_.conservativeResize(values.size() + 1);
     values_.tail(1).setZero();
     settle();
-    if (cost() < least) continue;
+    // By more than rounding: the same set in another order is no better.
+    constexpr double kClearly = 1e-13;
+    if (cost() < least - kClearly * std::abs(least)) continue;
     hold_only(before);
     values_ = values;
     refused[static_cast<std::size_t>(next)] = true;

@@ -4,8 +4,8 @@
 //     1/2 l' S l - d' l,   l >= 0
 //
 // By the active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23), each time from the
-// last optimum. It goes from one set of unknowns that are not 0 to the next, and each lowers the form, or is not taken:
-// no set comes twice, whatever rounding does, and no bound on their number is needed.
+// last optimum. It goes from one set of unknowns that are not 0 to the next, and each lowers the form by more than
+// rounding, or is not taken: no set comes twice, and no bound on their number is needed.
 #pragma once
 
 #include "gp/factor.hpp"
