@@ -27,7 +27,10 @@ std::string range_text(const Field& field) {
 
 class Describer final : public Fields {
  public:
-  explicit Describer(const PluginCases& plugins) : plugins_(plugins) {}
+  explicit Describer(const PluginCases& plugins) : plugins_(plugins) {
+    constexpr std::size_t kUsual = 16;  // descriptions are not small, and every first run makes hundreds
+    rows.reserve(kUsual);
+  }
 
   std::vector<FieldDescription> rows;
 
