@@ -286,6 +286,16 @@ constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fit
                                                           "updating the models", "scoring and choosing",
                                                           "writing the record of the tap before"};
 
+bool is_from_any_side(const Summary& summary) { return summary.config.options.scene.touch == SceneOptions::Touch::any; }
+
+/// How often a run took such a step.
+auto interventions(const std::string& kind) {
+  return [kind](const Summary& s) {
+    const auto found = s.interventions.find(kind);
+    return found != s.interventions.end() ? found->second : 0;
+  };
+}
+
 /// The number of a run's objects of which `holds` holds; none where no truth is known.
 template <class Holds>
 std::optional<int> count_objects(const Summary& summary, Holds holds) {
@@ -381,8 +391,7 @@ FieldList<Summary> make_summary_list() {
       .more()
       .headline();
   list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less();
-  list.add_where([](const Summary& s) { return s.config.options.scene.touch == SceneOptions::Touch::any; },
-                 "missed_taps", "from any side: taps that met nothing, all of whose way is free",
+  list.add_where(is_from_any_side, "missed_taps", "from any side: taps that met nothing, all of whose way is free",
                  &Summary::missed_taps);
   list.add("failed_taps", "taps without a contact; missed ones are none of them", &Summary::failed_taps).less();
   list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
@@ -430,15 +439,12 @@ FieldList<Summary> make_summary_list() {
            std::pair{"variance_clamped",
                      "candidates of the final models whose variance rounding took out of [0, prior]; "
                      "they read as its ends"},
-           std::pair{"ways_broken", "from any side: free ways in which the final surface is left"},
        }) {
-    list.add(std::string("interventions.") + name, meaning,
-             [kind = std::string(name)](const Summary& s) {
-               const auto found = s.interventions.find(kind);
-               return found != s.interventions.end() ? found->second : 0;
-             })
-        .less();
+    list.add(std::string("interventions.") + name, meaning, interventions(name)).less();
   }
+  list.add_where(is_from_any_side, "interventions.ways_broken",
+                 "from any side: free ways in which the final surface is left", interventions("ways_broken"))
+      .less();
   list_models(list, true);
   list.add("peak_rss_bytes", "peak memory of the process", &Summary::peak_rss_bytes).less().measured();
   return list;
