@@ -31,7 +31,7 @@ done
 command -v mmdebstrap >/dev/null || refuse "the package mmdebstrap is missing"
 
 # What the READMEs show, so that it is they who are tested.
-both=$(sed -n '/^## Two commands/,/^## Ten things/s|^\(\./[^#]*[^# ]\)  *#.*|\1|p' "$root/README.md")
+both=$(sed -n '/^## Two commands/,/^## What one does most/s|^\(\./[^#]*[^# ]\)  *#.*|\1|p' "$root/README.md")
 capture=$(sed -n '/^ tap  source/,/^```/{/^```/d;p}' "$root/README.md")
 tutorial=$(sed -n '/^cmake --install/,/^```/{/^```/d;p}' "$root/plugins/README.md")
 [ "$(echo "$both" | wc -l)" = 2 ] && [ -n "$capture" ] && [ -n "$tutorial" ] || refuse "the READMEs show no commands"

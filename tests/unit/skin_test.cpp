@@ -369,16 +369,26 @@ TEST(SkinOfHardData, FiveHundredContactsAndAHundredNormalsWithAndWithoutNoise) {
   }
 }
 
+/// Alike within 5 cm and not at all beyond: no two can be so to a third, and not to each other.
+std::shared_ptr<Kernel> kernel_of_no_covariance() {
+  return std::make_shared<FormulaKernel>(
+      [](const FormulaKernel::Place& a, const FormulaKernel::Place& b) { return (a - b).norm() < 0.05 ? 1.0 : 0.0; });
+}
+
+std::vector<SurfaceTouch> sixty_around_the_ball() {
+  Random random(7, "test/skin");
+  std::vector<SurfaceTouch> out;
+  for (int i = 0; i < 60; ++i) {
+    const double off = 0.004 * random.uniform();
+    out.push_back(onto_ball(random_direction(random), off));
+  }
+  return out;
+}
+
 TEST(SkinOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAndCounted) {
   const Composition solids = ball();
-  Random random(7, "test/skin");
-  std::vector<SurfaceTouch> touches;
-  for (int i = 0; i < 60; ++i) touches.push_back(onto_ball(random_direction(random), 0.004 * random.uniform()));
-  // Nearly alike within 5 cm and not at all beyond: no two can be so to a third, and not to each other.
-  Skin skin(std::make_shared<FormulaKernel>([](const FormulaKernel::Place& a, const FormulaKernel::Place& b) {
-              return (a - b).norm() < 0.05 ? 1.0 : 0.0;
-            }),
-            {0.006, 0.0});
+  std::vector<SurfaceTouch> touches = sixty_around_the_ball();
+  Skin skin(kernel_of_no_covariance(), {0.006, 0.0});
   touches.push_back({{{0.0, 0.05, 0.3}, {0, 0, -1}}, 0.29, false, false});  // which grazes it
   skin.fit(solids, touches);
   EXPECT_FALSE(skin.free_points().empty());
@@ -396,13 +406,8 @@ TEST(SkinOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAndCounte
 
 TEST(SkinOfHardData, FreeWaysTakeNothingFromContactsWhereTheKernelIsNotPositiveDefinite) {
   const Composition solids = ball();
-  Random random(7, "test/skin");
-  std::vector<SurfaceTouch> touches;
-  for (int i = 0; i < 60; ++i) touches.push_back(onto_ball(random_direction(random), 0.004 * random.uniform()));
-  Skin skin(std::make_shared<FormulaKernel>([](const FormulaKernel::Place& a, const FormulaKernel::Place& b) {
-              return (a - b).norm() < 0.05 ? 1.0 : 0.0;
-            }),
-            {0.006, 0.0});
+  std::vector<SurfaceTouch> touches = sixty_around_the_ball();
+  Skin skin(kernel_of_no_covariance(), {0.006, 0.0});
   const auto contacts = [&] {
     return std::count_if(skin.rows().begin(), skin.rows().end(), [](const Skin::Row& row) { return !row.free; });
   };

@@ -32,7 +32,7 @@ struct Errors {
       std::nullopt;  ///< metres, mean distance from the points of either surface to the other
   std::optional<double> f_score = std::nullopt;     ///< at 5 mm
   std::optional<double> coverage = std::nullopt;    ///< of the 95 % intervals of the surface from any side
-  std::optional<double> volume_iou = std::nullopt;  ///< of what is solid; 1 if both are empty
+  std::optional<double> volume_iou = std::nullopt;  ///< of what is solid; none if nothing is
 };
 
 /// Root mean square of (map - truth.height), over all cells or over those on an object. None if there are none.

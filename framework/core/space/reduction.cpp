@@ -16,20 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// How far outside the surface of the most probable composition that of each other one lies, at each place.
-MatrixXd offsets(const Solids& solids, const Skin::Places& places) {
-  constexpr double kFarthest = 0.02;  // a piece that others do not have is somewhere else, or nowhere
-  const std::vector<Composition>& all = solids.compositions();
-  MatrixXd out(static_cast<Index>(places.size()), static_cast<Index>(all.size()));
-  for (Index i = 0; i < out.rows(); ++i) {
-    const Eigen::Vector3d& at = places[static_cast<std::size_t>(i)].at;
-    const double best = solids.best().distance(at);
-    for (Index j = 0; j < out.cols(); ++j)
-      out(i, j) = std::clamp(best - all[static_cast<std::size_t>(j)].distance(at), -kFarthest, kFarthest);
-  }
-  return out;
-}
-
 }  // namespace
 
 VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places) {
@@ -42,7 +28,8 @@ VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin:
   const auto count = static_cast<Index>(places.size());
   all.insert(all.end(), places.begin(), places.end());
   MatrixXd covariance = skin.prior_covariance(all);
-  const MatrixXd apart = offsets(solids, all);
+  MatrixXd apart(n + count, static_cast<Index>(solids.compositions().size()));
+  for (Index i = 0; i < apart.rows(); ++i) apart.row(i) = solids.offsets(all[static_cast<std::size_t>(i)].at);
   covariance.noalias() += apart * apart.transpose() / static_cast<double>(apart.cols());
   const double noise = skin.noise() * skin.noise();
   MatrixXd left = covariance.bottomRightCorner(count, count);

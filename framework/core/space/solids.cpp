@@ -128,6 +128,15 @@ const Composition& Solids::best() const {
   });
 }
 
+Eigen::VectorXd Solids::offsets(const Vector3d& at) const {
+  constexpr double kFarthest = 0.02;
+  const double here = best().distance(at);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(all_.size()));
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    out(i) = std::clamp(here - all_[static_cast<std::size_t>(i)].distance(at), -kFarthest, kFarthest);
+  return out;
+}
+
 std::vector<Piece> Solids::unseen(const Composition& one, int draws, Random& random) const {
   constexpr double kClear = 0.001;
   // Nats beside those of any piece, for stance, size and wall: more has what reaches into the desk.

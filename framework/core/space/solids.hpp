@@ -62,6 +62,9 @@ class Solids {
   std::vector<Piece> unseen(const Composition& one, int draws, Random& random) const;
   /// The one that is most probable.
   const Composition& best() const;
+  /// How far outside the surface of that one the surface of each lies near a point, metres, none more than 2 cm: a
+  /// piece that others do not have is somewhere else, or nowhere.
+  Eigen::VectorXd offsets(const Eigen::Vector3d& at) const;
 
  private:
   double prior_of(const Piece& piece) const;

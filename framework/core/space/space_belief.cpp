@@ -281,19 +281,12 @@ void SpaceBelief::look_for_unseen() {
 }
 
 Eigen::VectorXd SpaceBelief::uncertainty(const Cloud& surface) const {
-  constexpr double kFarthest = 0.02;
   Skin::Places places;
   for (const Vector3d& at : surface) places.push_back({at, Skin::normal(solids_.best(), at)});
   Eigen::VectorXd squares = skin_.posterior(places).variance;
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    double apart = 0.0;
-    const double off_best = solids_.best().distance(surface[i]);  // what the skin knows of
-    for (const Composition& one : solids_.compositions()) {
-      const double off = std::min(kFarthest, std::abs(one.distance(surface[i]) - off_best));
-      apart += off * off;
-    }
-    squares(static_cast<Eigen::Index>(i)) += apart / static_cast<double>(solids_.compositions().size());
-  }
+  const auto compositions = static_cast<double>(solids_.compositions().size());
+  for (std::size_t i = 0; i < surface.size(); ++i)
+    squares(static_cast<Eigen::Index>(i)) += solids_.offsets(surface[i]).squaredNorm() / compositions;
   return squares.cwiseSqrt();
 }
 

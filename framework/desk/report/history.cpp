@@ -73,9 +73,11 @@ std::string count_words(const RunResult& result) {
 }
 
 HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recording)
-    : recording_(recording), playback_(workshop, recording) {
-  if (auto* const any_side = dynamic_cast<FromAnySide*>(&playback_.experiment())) {
-    add_surface(*any_side);
+    : recording_(recording),
+      playback_(workshop, recording),
+      any_side_(dynamic_cast<FromAnySide*>(&playback_.experiment())) {
+  if (any_side_ != nullptr) {
+    add_surface();
     return;
   }
   const Candidates& all = playback_.from_above().candidates();
@@ -89,11 +91,11 @@ HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recordin
 
 void HistoryGrower::advance() {
   playback_.advance_to(playback_.taps() + 1);
-  auto* const any_side = dynamic_cast<FromAnySide*>(&playback_.experiment());
-  any_side != nullptr ? add_surface(*any_side) : add();
+  any_side_ != nullptr ? add_surface() : add();
 }
 
-void HistoryGrower::add_surface(FromAnySide& experiment) {
+void HistoryGrower::add_surface() {
+  FromAnySide& experiment = *any_side_;
   constexpr double kSide = 0.0025;  // walls of 3 mm are whole, most pages have all moments
   Moment now;
   now.taps = playback_.taps();

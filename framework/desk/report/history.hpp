@@ -107,13 +107,14 @@ class HistoryGrower {
 
  private:
   void add();
-  void add_surface(FromAnySide& experiment);
+  void add_surface();
   History finished(History history) const;
   Eigen::VectorXf shown(const Eigen::VectorXd& map);
 
   const Recording& recording_;
   Playback playback_;
-  int stride_ = 1;  ///< shown is every so-many-th column and row
+  FromAnySide* any_side_;  ///< what is played; null where it taps from above
+  int stride_ = 1;         ///< shown is every so-many-th column and row
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< as of now: what is pushed moves it
   double largest_ = 0.0;                  ///< standard deviation of the height process, of all moments

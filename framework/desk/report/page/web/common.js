@@ -141,6 +141,17 @@ function axis(title, more = {}) {
   return { title: { text: title }, zeroline: false, gridcolor: grid, linecolor: lines, tickcolor: lines, ...more };
 }
 
+/// The layout of a plot that is turned. Its room is filled by the axes, not by what is drawn on them: else a flat surface
+/// would fill it.
+function turntable(scene) {
+  return {
+    margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
+    showlegend: false,
+    uirevision: "keep the view",
+    scene: { dragmode: "turntable", aspectmode: "manual", ...scene },
+  };
+}
+
 /// The scale beside a plot whose colours are values.
 const colourBar = (title, more = {}) => ({ title: { text: title, side: "right" }, thickness: 12, outlinecolor: themed("line"), ...more });
 

@@ -284,21 +284,13 @@ class SurfaceView {
     const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
     // Fills the room as the camera stands; what is as high as wide has the scale of the colours below it.
     const side = Math.max(width, depth) / (kNarrow.matches ? 1.05 : 1.3);
-    return {
-      margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
-      showlegend: false,
-      uirevision: "keep the view",
-      scene: {
-        dragmode: "turntable",
-        // By the axes, not by what is drawn on them: else a flat surface would fill the room.
-        aspectmode: "manual",
-        aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },
-        camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: kNarrow.matches ? -0.1 : -0.22 } },
-        xaxis: axis("x [cm]", { range: [0, width] }),
-        yaxis: axis("y [cm]", { range: [0, depth] }),
-        zaxis: axis("height [cm]", { range }),
-      },
-    };
+    return turntable({
+      aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },
+      camera: { eye: { x: 1.2, y: -1.6, z: 1.05 }, center: { x: 0, y: 0, z: kNarrow.matches ? -0.1 : -0.22 } },
+      xaxis: axis("x [cm]", { range: [0, width] }),
+      yaxis: axis("y [cm]", { range: [0, depth] }),
+      zaxis: axis("height [cm]", { range }),
+    });
   }
 
   draw(frame, moment) {

@@ -242,20 +242,13 @@ class SpaceView {
     const lengths = this.range.map(([low, high]) => high - low);
     const side = Math.max(...lengths) / (kNarrow.matches ? 1.05 : 1.2);
     const ratio = (i) => lengths[i] / side;
-    return {
-      margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
-      showlegend: false,
-      uirevision: "keep the view",
-      scene: {
-        dragmode: "turntable",
-        aspectmode: "manual",
-        aspectratio: { x: ratio(0), y: ratio(1), z: ratio(2) },
-        camera: { eye: { x: 1.05, y: -1.45, z: 0.85 }, center: { x: 0, y: 0, z: -0.12 } },
-        xaxis: axis("x [cm]", { range: this.range[0] }),
-        yaxis: axis("y [cm]", { range: this.range[1] }),
-        zaxis: axis("height [cm]", { range: this.range[2] }),
-      },
-    };
+    return turntable({
+      aspectratio: { x: ratio(0), y: ratio(1), z: ratio(2) },
+      camera: { eye: { x: 1.05, y: -1.45, z: 0.85 }, center: { x: 0, y: 0, z: -0.12 } },
+      xaxis: axis("x [cm]", { range: this.range[0] }),
+      yaxis: axis("y [cm]", { range: this.range[1] }),
+      zaxis: axis("height [cm]", { range: this.range[2] }),
+    });
   }
 
   draw(frame, moment) {
