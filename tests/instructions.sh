@@ -75,11 +75,13 @@ command_of() {
   esac
 }
 
-# count PIECE: its instructions, of all processes; what each function took is left in $work/counted/PIECE.
+# count PIECE: its instructions, of all processes; what each function took is left in $work/counted/PIECE. A process that
+# is forked begins with the counts of its parent, which grow with the time that one waited: those of a job are its own.
 count() {
   words=$(command_of "$1")
   rm -f "$work"/out.*
-  (cd "$work" && valgrind --tool=callgrind --callgrind-out-file="$work/out.%p" $words) >"$work/said" 2>&1 ||
+  (cd "$work" && valgrind --tool=callgrind --zero-before='palpate::run_job*' \
+    --callgrind-out-file="$work/out.%p" $words) >"$work/said" 2>&1 ||
     { cat "$work/said" >&2; echo "instructions: $1 failed: $words" >&2; exit 1; }
   awk '/^totals:/ {sum += $2} END {printf "%.0f\n", sum}' "$work"/out.*
   for file in "$work"/out.*; do callgrind_annotate --threshold=99 "$file"; done |

@@ -63,7 +63,7 @@ Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_
   process->show(2);
   Eigen::VectorXd uncertainty(candidates.size());
   Eigen::VectorXd weight(candidates.size());
-  const std::vector<bool> allowed(static_cast<std::size_t>(candidates.size()), true);
+  const Allowed allowed = Allowed::Constant(candidates.size(), true);
   auto before = Clock::now();
   for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
     process->add({taps.places(i, 0), taps.places(i, 1)}, taps.answers.row(i).transpose());

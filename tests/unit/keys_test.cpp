@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/keys.hpp"
 
+#include "config/describe.hpp"
 #include "experiment/experiment_options.hpp"
 #include "support/testing.hpp"
 
@@ -32,10 +33,9 @@ TEST(ConfigKeys, OfTheRunAreTheWorldTheBudgetAndWhatIsKeptAndAllElseIsAStrategys
 }
 
 TEST(ConfigKeys, ThatSayNothingOfStrategiesAreRefused) {
-  std::vector<FieldDescription> fields = all_fields();
-  fields.push_back(describe_key(Field("radius", "of the world")));
+  double radius = 0.0;
   try {
-    const ConfigKeys keys(fields);
+    const ConfigKeys keys([&](Fields& fields) { fields.real(radius, Field("radius", "of the world")); });
     FAIL() << "it was taken";
   } catch (const std::logic_error& error) {
     EXPECT_STREQ(error.what(), "the key 'radius' does not say whether it is of a strategy or of the run");

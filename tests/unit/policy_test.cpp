@@ -12,7 +12,7 @@ Pick pick_all(std::initializer_list<double> scores, double scale = 0.0, double t
   const std::vector<double> values(scores);
   const Eigen::VectorXd vector =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  return pick_best(vector, std::vector<bool>(values.size(), true), scale, tolerance);
+  return pick_best(vector, Allowed::Constant(vector.size(), true), scale, tolerance);
 }
 
 TEST(Pick, TakesTheHighestScoreAndNamesTheRunnerUp) {
@@ -48,9 +48,10 @@ TEST(Pick, SeesThatScoresSayNothing) {
 
 TEST(Pick, LeavesOutWhatIsNotAllowed) {
   const Eigen::Vector3d scores(0.9, 0.5, 0.7);
-  EXPECT_EQ(pick_best(scores, {false, true, true}, 0.0, 1e-8).candidate, 2);
-  EXPECT_EQ(pick_best(scores, {false, true, false}, 0.0, 1e-8).runner_up, -1);
-  EXPECT_EQ(pick_best(scores, {false, false, false}, 0.0, 1e-8).candidate, -1);
+  const auto allowed = [](const std::array<bool, 3>& each) { return Eigen::Map<const Allowed>(each.data(), 3).eval(); };
+  EXPECT_EQ(pick_best(scores, allowed({false, true, true}), 0.0, 1e-8).candidate, 2);
+  EXPECT_EQ(pick_best(scores, allowed({false, true, false}), 0.0, 1e-8).runner_up, -1);
+  EXPECT_EQ(pick_best(scores, allowed({false, false, false}), 0.0, 1e-8).candidate, -1);
 }
 
 TEST(InitialDesign, GivesDifferentCandidatesAndTheSameOnesForTheSameSeed) {

@@ -22,7 +22,7 @@ std::vector<int> sequence(double smallest, const Candidates& candidates, std::ui
   Search search(smallest, candidates, kArea, Random(seed, "initial"));
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
-    out.push_back(search.next(std::vector<bool>(static_cast<std::size_t>(candidates.size()), true)));
+    out.push_back(search.next(Allowed::Constant(candidates.size(), true)));
     search.look(candidates.target(out.back()));
   }
   return out;
@@ -84,9 +84,9 @@ TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
     discs.push_back({x, y, radius, 1.0});
   }
   Search search(smallest, candidates, area, Random(9, "initial"));
-  const std::vector<bool> all(static_cast<std::size_t>(candidates.size()), true);
+  const Allowed all = Allowed::Constant(candidates.size(), true);
   for (int tap = 0; tap < 12; ++tap) {
-    std::vector<double> held(all.size(), 0.0);
+    std::vector<double> held(static_cast<std::size_t>(all.size()), 0.0);
     const auto inside = [&](const std::array<double, 4>& disc, int i) {
       return disc[2] - std::hypot(candidates.target(i).x - disc[0], candidates.target(i).y - disc[1]);
     };
@@ -130,8 +130,8 @@ TEST(Search, LooksEverywhereOnceAndOnlyWhereItMay) {
   const std::vector<int> places = sequence(0.02, candidates, 4, candidates.size());
   EXPECT_EQ(std::set<int>(places.begin(), places.end()).size(), 36U);
   Search search(0.02, candidates, kArea, Random(4, "initial"));
-  std::vector<bool> allowed(36, true);
-  allowed[static_cast<std::size_t>(places[0])] = false;
+  Allowed allowed = Allowed::Constant(36, true);
+  allowed(places[0]) = false;
   EXPECT_NE(search.next(allowed), places[0]);
 }
 

@@ -3,9 +3,9 @@
 // what they do not say, and which a strategy sets.
 #pragma once
 
-#include "config/describe.hpp"
+#include <palpate/options.hpp>
 
-#include <map>
+#include <functional>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,8 +18,8 @@ constexpr const char* kStrategy = "strategy";
 
 class ConfigKeys {
  public:
-  /// `fields`: all top-level keys. Throws std::logic_error for one that does not say whether a strategy sets it.
-  explicit ConfigKeys(const std::vector<FieldDescription>& fields);
+  /// `list` visits all top-level keys. Throws std::logic_error for one that does not say whether a strategy sets it.
+  explicit ConfigKeys(const std::function<void(Fields&)>& list);
 
   /// Whether a name at a dotted path chooses a file: at the path of a group, and wherever a plugin of a kind that is a
   /// group stands under the kind's name, as in another plugin.
@@ -42,7 +42,7 @@ class ConfigKeys {
   std::vector<std::string> heirs_of(const std::string& path) const;
 
  private:
-  void add(const std::vector<FieldDescription>& fields, const std::string& prefix);
+  class Reader;
 
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names

@@ -12,7 +12,7 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       candidates_(candidates),
       acquisition_(context.create<Acquisition>(options.acquisition)),
       initial_(initial_design(options.initial, candidates, context.scene.area(), context.seed)),
-      allowed_(static_cast<std::size_t>(candidates.size())) {
+      allowed_(Allowed::Constant(candidates.size(), true)) {
   if (!acquisition_->from_above()) {
     throw Error("acquisition", options.acquisition.type + " scores approaches from any side alone",
                 "choose another, or a scene with touch: any");
@@ -26,7 +26,7 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
 bool Chooser::starting(const TapBelief& belief) const {
   if (!search_) return taps_ < initial_.size();
   if (belief.sees_object()) return false;  // what is looked for has been seen
-  if (taps_ >= allowed_.size()) return false;
+  if (taps_ >= static_cast<std::size_t>(allowed_.size())) return false;
   constexpr double kBelieved = 0.5;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (belief.touches()[i].on && belief.doubt_of(i) < kBelieved) return false;
@@ -37,19 +37,19 @@ bool Chooser::starting(const TapBelief& belief) const {
 std::optional<int> Chooser::second_look(const TapBelief& belief) const {
   constexpr double kSure = 0.95;
   for (std::size_t i = 0; search_ && i < contacts_.size(); ++i) {
-    const std::size_t place = contacts_[i];
-    if (!belief.touches()[i].on || belief.doubt_of(i) > kSure || !allowed_[place]) continue;
-    if (std::count(contacts_.begin(), contacts_.end(), place) == 1) return static_cast<int>(place);
+    const int place = contacts_[i];
+    if (!belief.touches()[i].on || belief.doubt_of(i) > kSure || !allowed_(place)) continue;
+    if (std::count(contacts_.begin(), contacts_.end(), place) == 1) return place;
   }
   return std::nullopt;
 }
 
 void Chooser::allow(const TapBelief& belief) {
-  allowed_.assign(allowed_.size(), true);
-  for (const std::size_t place : failed_) allowed_[place] = false;
+  allowed_.setConstant(true);
+  for (const int place : failed_) allowed_(place) = false;
   if (options_.repeat == ExperimentOptions::Repeat::allow) return;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_[contacts_[i]] = false;
+    if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_(contacts_[i]) = false;
   }
 }
 
@@ -116,8 +116,7 @@ void Chooser::observe(const PastTap& tap, int candidate, const std::optional<Tar
   const Outcome outcome = tap.contact.outcome;
   const bool looked = outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;
   if (search_ && looked) search_->look(tap.target);
-  const auto place = static_cast<std::size_t>(candidate);
-  (outcome == Outcome::contact ? contacts_ : failed_).push_back(place);
+  (outcome == Outcome::contact ? contacts_ : failed_).push_back(candidate);
 }
 
 }  // namespace palpate

@@ -71,9 +71,9 @@ class Chooser {
   std::optional<Search> search_;  ///< the other one
   std::optional<Pace> pace_;      ///< where the backend has several motions
   Eigen::VectorXd scores_;
-  std::vector<std::size_t> failed_;    ///< candidates at which a tap came to nothing, in the order of the taps
-  std::vector<std::size_t> contacts_;  ///< those of all others, likewise
-  std::vector<bool> allowed_;
+  std::vector<int> failed_;    ///< candidates at which a tap came to nothing, in the order of the taps
+  std::vector<int> contacts_;  ///< those of all others, likewise
+  Allowed allowed_;
   std::size_t taps_ = 0;
 };
 

@@ -319,12 +319,11 @@ std::vector<Field> keys_beside_options() {
 }
 
 const ConfigKeys& config_keys() {
-  static const ConfigKeys keys = [] {
-    ExperimentOptions options;
-    std::vector<FieldDescription> fields = describe_fields([&](Fields& visitor) { options.list(visitor); });
-    for (const Field& field : keys_beside_options()) fields.push_back(describe_key(field));
-    return ConfigKeys(fields);
-  }();
+  static const ConfigKeys keys([](Fields& fields) {
+    ExperimentOptions().list(fields);
+    std::string no_option;
+    for (const Field& field : keys_beside_options()) fields.text(no_option, field);
+  });
   return keys;
 }
 

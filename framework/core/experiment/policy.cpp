@@ -80,15 +80,23 @@ double largest(const double* block) {
 /// Visits the allowed candidates, in their order, whose score is worth it, which no lower one then is: by blocks, of
 /// which most have none.
 template <class Worth, class Visit>
-void for_allowed(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, const Worth& worth,
-                 const Visit& visit) {
+void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
   for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
     const Eigen::Index count = std::min(kBlock, scores.size() - first);
     if (count == kBlock && !worth(largest(scores.data() + first))) continue;
     for (Eigen::Index i = first; i < first + count; ++i) {
-      if (worth(scores(i)) && allowed[static_cast<std::size_t>(i)]) visit(static_cast<int>(i));
+      if (worth(scores(i)) && allowed(i)) visit(static_cast<int>(i));
     }
   }
+}
+
+/// Whether the score of an allowed candidate is so.
+template <class Is>
+bool any_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Is& is) {
+  for (Eigen::Index i = 0; i < scores.size(); ++i) {
+    if (is(scores(i)) && allowed(i)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -109,9 +117,12 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   return design;
 }
 
-Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, double scale, double tolerance) {
+Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  const auto score = [&](int candidate) { return candidate < 0 ? kNone : scores(candidate); };
+  const auto score = [&](int candidate) -> double {
+    if (candidate < 0) return kNone;
+    return scores(candidate);
+  };
   int best = -1;  // of equals the first
   int second = -1;
   double to_beat = kNone;  // the score of the second
@@ -142,15 +153,15 @@ Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, 
   if (out.runner_up >= 0) out.runner_up_score = score(out.runner_up);
   if (score(best) <= 0.0) {
     out.flat = "no score is positive";
-  } else if (tied && out.ties == std::count(allowed.begin(), allowed.end(), true)) {
+  } else if (tied && !any_allowed(scores, allowed, [&](double one) { return one < threshold; })) {
     out.flat = "every score is equal";
   }
   return out;
 }
 
 bool all_finite(const Eigen::VectorXd& values) {
-  // What is not finite is not equal to itself less itself.
-  return (values - values).sum() == 0.0;
+  // Nothing of what is finite is nothing, of what is not it is no number.
+  return (0.0 * values).sum() == 0.0;
 }
 
 }  // namespace palpate

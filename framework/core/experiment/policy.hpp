@@ -32,10 +32,13 @@ struct Pick {
   std::optional<std::string> flat;
 };
 
+/// Of each candidate, whether it may be tapped.
+using Allowed = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
 /// Takes the highest score among the candidates that are `allowed`. Scores within
 /// tolerance x (|best| + scale) of the best are tied; the lowest index wins. So rounding decides nothing, as long as
 /// it stays below that bound. All scores are finite.
-Pick pick_best(const Eigen::VectorXd& scores, const std::vector<bool>& allowed, double scale, double tolerance);
+Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance);
 
 /// As Eigen's allFinite(), in a fraction of the time.
 bool all_finite(const Eigen::VectorXd& values);

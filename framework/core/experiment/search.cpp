@@ -80,7 +80,7 @@ void Search::strike_off(const Target& place) {
   discs_.erase(std::remove_if(discs_.begin(), discs_.end(), is_done), discs_.end());
 }
 
-int Search::next(const std::vector<bool>& allowed) {
+int Search::next(const Allowed& allowed) {
   if (rises_.empty()) draw_discs();
   while (struck_off_ < looked_.size()) strike_off(looked_[struck_off_++]);
   const std::vector<int> weight = weights();
@@ -89,7 +89,7 @@ int Search::next(const std::vector<bool>& allowed) {
   double widest = 0.0;
   for (int i = 0; i < candidates_.size(); ++i) {
     const int here = weight[static_cast<std::size_t>(i)];
-    if (!allowed[static_cast<std::size_t>(i)] || here < most) continue;
+    if (!allowed(i) || here < most) continue;
     const double gap = room(candidates_.target(i));
     if (here == most && gap <= widest) continue;
     best = i;

@@ -2,6 +2,7 @@
 // Where to look for an object of which nothing is known but how small it may be: the initial design `search`.
 #pragma once
 
+#include "experiment/policy.hpp"
 #include "gp/candidates.hpp"
 
 #include <palpate/random.hpp>
@@ -34,7 +35,7 @@ class Search {
   void look(const Target& place);
 
   /// The candidate to tap next, one of the `allowed`; of equals the first. At least one must be allowed.
-  int next(const std::vector<bool>& allowed);
+  int next(const Allowed& allowed);
 
  private:
   struct Disc {

@@ -78,8 +78,9 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   tap.number = result_.taps + 1;
   tap.source = starting() ? Source::initial : Source::acquisition;
   if (!starting()) {
-    const Pick picked = pick_best(scores(), std::vector<bool>(belief_.approaches().size(), true),
-                                  acquisition_->prior_scale(), options_.tie_tolerance);
+    const Pick picked =
+        pick_best(scores(), Allowed::Constant(static_cast<Eigen::Index>(belief_.approaches().size()), true),
+                  acquisition_->prior_scale(), options_.tie_tolerance);
     tap.candidate = picked.candidate;
     tap.score = picked.score;
     tap.ties = picked.ties;
