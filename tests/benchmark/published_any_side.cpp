@@ -265,10 +265,6 @@ class Sheet {
   std::vector<float> distances_;  ///< to the surface, by the gradient, of nodes that were looked at
 };
 
-double desk_along(const Line& line) {
-  return line.direction.z() < 0.0 ? -line.origin.z() / line.direction.z() : kNoHit;
-}
-
 /// One run: a scene as a seed turns it.
 class Run {
  public:
@@ -283,7 +279,7 @@ class Run {
     for (const Line& line : bundle_.lines) {
       if (directions_.empty() || directions_.back() != line.direction) directions_.push_back(line.direction);
       const double hit = scene_->first_hit(line);
-      if (hit < desk_along(line)) truth_.push_back(line.origin + hit * line.direction);
+      if (hit < distance_down_to(0.0, line)) truth_.push_back(line.origin + hit * line.direction);
     }
     fine_truth_ = thinned(truth_, 0.001);
     truth_ = thinned(truth_, kSide);
@@ -349,7 +345,7 @@ class Run {
     ++touches_;
     // The tool comes along the whole line: what stands before its start is met there.
     const double hit = scene_->first_hit(line);
-    const double end = std::min({hit, desk_along(line), length});
+    const double end = std::min({hit, distance_down_to(0.0, line), length});
     const bool met = hit == end;
     if (met) implicit_.know(line.origin + hit * line.direction);
     const double scale = implicit_.scale();
@@ -382,7 +378,7 @@ class Run {
       }
       ++touches_;
       const double hit = scene_->first_hit(line);
-      if (hit < desk_along(line)) implicit_.know(line.origin + hit * direction);
+      if (hit < distance_down_to(0.0, line)) implicit_.know(line.origin + hit * direction);
       return;
     }
   }

@@ -71,7 +71,7 @@ Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_
     process->read_relative_variance(uncertainty);
     process->read_mean(1, weight);
     weight.array() *= uncertainty.array();
-    out.choices.push_back(pick_best(weight, allowed, 1.0, 0.0).candidate);
+    out.choices.push_back(pick_best(weight, allowed, 1.0, 0.0, *settings.machine.loops).candidate);
     out.seconds.push_back(seconds_since(std::exchange(before, Clock::now())));
   }
   out.total = seconds_since(start);

@@ -3,6 +3,9 @@
 
 #include "support/testing.hpp"
 
+#include <palpate/random.hpp>
+
+#include <algorithm>
 #include <set>
 
 namespace palpate::test {
@@ -54,6 +57,32 @@ TEST(Pick, LeavesOutWhatIsNotAllowed) {
   EXPECT_EQ(pick_best(scores, allowed({false, false, false}), 0.0, 1e-8).candidate, -1);
 }
 
+TEST(Pick, IsTheFirstOfTheHighestAmongManyWhicheverLoopsLook) {
+  Random random(4, "test/pick");
+  for (const int size : {1, 63, 64, 65, 4000}) {
+    for (int trial = 0; trial < 20; ++trial) {
+      Eigen::VectorXd scores(size);
+      Allowed all(size);
+      for (int i = 0; i < size; ++i) {
+        scores(i) = static_cast<double>(random.index(trial < 10 ? 5 : 100000));  // with many ties, and with few
+        all(i) = random.uniform() < 0.7;
+      }
+      std::vector<int> order;
+      for (int i = 0; i < size; ++i) {
+        if (all(i)) order.push_back(i);
+      }
+      std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scores(a) > scores(b); });
+      for (const simd::Table* loops : {&simd::baseline(), &simd::fastest()}) {
+        const Pick picked = pick_best(scores, all, 1.0, 1e-12, *loops);
+        ASSERT_EQ(picked.candidate, order.empty() ? -1 : order[0]);
+        ASSERT_EQ(picked.runner_up, order.size() < 2 ? -1 : order[1]);
+        ASSERT_EQ(picked.ties,
+                  std::count_if(order.begin(), order.end(), [&](int i) { return scores(i) == scores(order[0]); }));
+      }
+    }
+  }
+}
+
 TEST(InitialDesign, GivesDifferentCandidatesAndTheSameOnesForTheSameSeed) {
   using Design = InitialOptions::Design;
   const Area area{0.23, 0.23};
@@ -83,7 +112,7 @@ TEST(InitialDesign, RandomHitsEveryCandidateEquallyOften) {
     }
   }
   // 3 of 16 each time: binomial with mean 750 and standard deviation below 25; five of those.
-  for (const int count : counts) EXPECT_NEAR(count, kSeeds * 3 / 16, 125);
+  for (const int count : counts) EXPECT_NEAR(count, 3.0 / 16.0 * kSeeds, 125);
 }
 
 TEST(InitialDesign, SobolSpreadsFourTapsOverTheFourQuarters) {
@@ -96,7 +125,8 @@ TEST(InitialDesign, SobolSpreadsFourTapsOverTheFourQuarters) {
     std::vector<int> quarters(4, 0);
     for (const int index : initial_design(options, candidates, area, seed)) {
       const Target at = candidates.target(index);
-      ++quarters[static_cast<std::size_t>((at.x < 0.5 ? 0 : 1) + (at.y < 0.5 ? 0 : 2))];
+      const std::size_t quarter = (at.x < 0.5 ? 0U : 1U) + (at.y < 0.5 ? 0U : 2U);
+      ++quarters[quarter];
     }
     EXPECT_EQ(quarters, std::vector<int>(4, 1)) << "seed " << seed;
   }

@@ -125,8 +125,8 @@ TEST_P(Loops, UpdateTheMapsByEveryCellOfAProduct) {
 
 TEST_P(Loops, UpdateADensePieceByAllItsRows) {
   for (const int depth : {0, 1, 7, 8, 9, 30}) {
-    Lines rows = drawn(static_cast<std::size_t>(kPiece * (depth + 1)));
-    const Lines factor = drawn(static_cast<std::size_t>(depth + 1));
+    Lines rows = drawn((static_cast<std::size_t>(depth) + 1) * kPiece);
+    const Lines factor = drawn(static_cast<std::size_t>(depth) + 1);
     using Rows = Eigen::Matrix<double, kPiece, Eigen::Dynamic>;
     const Rows all = Eigen::Map<const Rows>(rows.data(), kPiece, depth + 1);
     const Eigen::Map<const Eigen::VectorXd> l(factor.data(), depth);
@@ -144,7 +144,8 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
     const auto near = [&](const double* values, const Eigen::VectorXd& expected) {
       return (Eigen::Map<const Eigen::VectorXd>(values, kPiece) - expected).cwiseAbs().maxCoeff() < 1e-14;
     };
-    EXPECT_TRUE(near(rows.data() + depth * kPiece, v)) << "the new row stays, for those to come";
+    EXPECT_TRUE(near(rows.data() + static_cast<std::ptrdiff_t>(depth) * kPiece, v))
+        << "the new row stays, for those to come";
     EXPECT_TRUE(near(mean.data(), mean_before + 0.5 * v));
     EXPECT_TRUE(near(variance.data(), variance_before - v.cwiseAbs2()));
   }
@@ -154,11 +155,11 @@ TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
   constexpr int kRows = 3;
   constexpr int kWidth = kPanelLines * kLine;
   constexpr int kColumns = 61;
-  const Lines cells = drawn(kRows * kWidth);
+  const Lines cells = drawn(std::size_t{kRows} * kWidth);
   const Reading reading{-0.25, 0.375, 0.1, 0.3};
   for (int count = 0; count <= kWidth; ++count) {
     for (const bool mirrored : {false, true}) {
-      std::vector<double> to(kRows * kColumns, 7.0);
+      std::vector<double> to(std::size_t{kRows} * kColumns, 7.0);
       std::vector<double> expected = to;
       const int first = mirrored ? kWidth : 1;
       for (int row = 0; row < kRows; ++row) {
@@ -166,7 +167,8 @@ TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
           // Two roundings, which no compiler makes one of.
           const volatile double product =
               std::min(std::max(cells.data()[row * kWidth + i], reading.least), reading.most) * reading.scale;
-          expected[static_cast<std::size_t>(row * kColumns + first + (mirrored ? -i : i))] = product + reading.offset;
+          const int place = row * kColumns + first + (mirrored ? -i : i);
+          expected[static_cast<std::size_t>(place)] = product + reading.offset;
         }
       }
       table().read({cells.data(), kWidth, to.data() + first, kColumns, kRows, count, mirrored}, reading);
@@ -200,6 +202,24 @@ TEST_P(Loops, SolveATriangleOfAnySize) {
     table().solve_lower_transposed(packed.data(), n, x.data());
     EXPECT_LT(residual(lower.transpose()), 1e-12) << n;
   }
+}
+
+TEST_P(Loops, FindTheHighestOfEachBlockWhereverItStands) {
+  constexpr int kBlocks = 2 * kScores;
+  Lines numbers = drawn(static_cast<std::size_t>(kBlocks) * kScores + 1);
+  double* const from = numbers.data() + 1;  // not aligned
+  std::array<double, kBlocks + 1> highest;
+  highest.fill(7.0);
+  for (int i = 0; i < kScores; ++i) from[i * kScores + i] = 1.0 + i;
+  for (int i = 0; i < kScores; ++i) from[kScores * kScores + i] = -1.0 - i;
+  table().highest(from, kBlocks, highest.data());
+  for (int i = 0; i < kScores; ++i) EXPECT_EQ(highest[static_cast<std::size_t>(i)], 1.0 + i);
+  EXPECT_EQ(highest[kScores], -1.0);
+  for (int i = kScores; i < kBlocks; ++i) {
+    const double* const block = from + static_cast<std::ptrdiff_t>(i) * kScores;
+    EXPECT_EQ(highest[static_cast<std::size_t>(i)], *std::max_element(block, block + kScores));
+  }
+  EXPECT_EQ(highest[kBlocks], 7.0) << "nothing is written beside";
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Loops, testing::ValuesIn(tables()), [](const auto& one) {

@@ -76,15 +76,16 @@ bool Chooser::choose_place(TapBelief& belief, TapRecord& tap, const Wish* wish) 
     return true;
   }
   tap.source = wish != nullptr ? Source::caller : Source::acquisition;
+  const auto pick = [&](const Eigen::VectorXd& of, double scale) {
+    return pick_best(of, allowed_, scale, options_.tie_tolerance, loops_of(options_));
+  };
   // Of scores from outside nobody says how large they are before the first tap.
-  Pick picked = wish != nullptr
-                    ? pick_best(wish->scores, allowed_, 0.0, options_.tie_tolerance)
-                    : pick_best(scores(belief), allowed_, acquisition_->prior_scale(), options_.tie_tolerance);
+  Pick picked = wish != nullptr ? pick(wish->scores, 0.0) : pick(scores(belief), acquisition_->prior_scale());
   if (picked.flat && may_fall_back()) {
     tap.source = Source::fallback;
     tap.why = (wish != nullptr ? kOfCaller : "") + *picked.flat;
     belief.ask(kFallbackReads);
-    picked = pick_best(belief.uncertainty(), allowed_, 1.0, options_.tie_tolerance);
+    picked = pick(belief.uncertainty(), 1.0);
   }
   if (picked.candidate < 0) return false;
   tap.candidate = picked.candidate;

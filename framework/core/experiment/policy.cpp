@@ -60,34 +60,27 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   return design;
 }
 
-constexpr Eigen::Index kBlock = 64;
-
-/// Of a block: by several at once, as each comparison waits for the one before.
-double largest(const double* block) {
-  constexpr Eigen::Index kAtOnce = 16;
-  std::array<double, kAtOnce> most;
-  std::copy_n(block, kAtOnce, most.data());
-  for (Eigen::Index first = kAtOnce; first < kBlock; first += kAtOnce) {
-    for (Eigen::Index i = 0; i < kAtOnce; ++i) {
-      const double one = block[first + i];
-      const double before = most[static_cast<std::size_t>(i)];
-      most[static_cast<std::size_t>(i)] = one > before ? one : before;
-    }
-  }
-  return *std::max_element(most.begin(), most.end());
-}
-
 /// Visits the allowed candidates, in their order, whose score is worth it, which no lower one then is: by blocks, of
 /// which most have none.
 template <class Worth, class Visit>
-void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
-  for (Eigen::Index first = 0; first < scores.size(); first += kBlock) {
-    const Eigen::Index count = std::min(kBlock, scores.size() - first);
-    if (count == kBlock && !worth(largest(scores.data() + first))) continue;
-    for (Eigen::Index i = first; i < first + count; ++i) {
+void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const simd::Table& loops, const Worth& worth,
+                 const Visit& visit) {
+  constexpr Eigen::Index kBlock = simd::kScores;
+  const auto look = [&](Eigen::Index begin, Eigen::Index end) {
+    for (Eigen::Index i = begin; i < end; ++i) {
       if (worth(scores(i)) && allowed(i)) visit(static_cast<int>(i));
     }
+  };
+  std::array<double, 32> highest;
+  const Eigen::Index blocks = scores.size() / kBlock;
+  for (Eigen::Index first = 0; first < blocks; first += static_cast<Eigen::Index>(highest.size())) {
+    const Eigen::Index count = std::min(static_cast<Eigen::Index>(highest.size()), blocks - first);
+    loops.highest(scores.data() + first * kBlock, static_cast<int>(count), highest.data());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (worth(highest[static_cast<std::size_t>(i)])) look((first + i) * kBlock, (first + i + 1) * kBlock);
+    }
   }
+  look(blocks * kBlock, scores.size());
 }
 
 /// Whether the score of an allowed candidate is so.
@@ -117,7 +110,8 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   return design;
 }
 
-Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance) {
+Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance,
+               const simd::Table& loops) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   const auto score = [&](int candidate) -> double {
     if (candidate < 0) return kNone;
@@ -127,7 +121,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
   int second = -1;
   double to_beat = kNone;  // the score of the second
   for_allowed(
-      scores, allowed, [&](double one) { return one > to_beat; },
+      scores, allowed, loops, [&](double one) { return one > to_beat; },
       [&](int i) {
         second = score(i) > score(best) ? std::exchange(best, i) : i;
         to_beat = score(second);
@@ -142,7 +136,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
     out.candidate = -1;
     out.ties = 0;
     for_allowed(
-        scores, allowed, [&](double one) { return one >= threshold; },
+        scores, allowed, loops, [&](double one) { return one >= threshold; },
         [&](int i) {
           if (out.ties++ == 0) out.candidate = i;
         });

@@ -90,8 +90,8 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   tap.target = {tap.approach->line.origin.x(), tap.approach->line.origin.y()};
   if (backend_->scene_is_truth()) {
     const Line& line = tap.approach->line;
-    const double desk = belief_.desk_along({line.origin - Eigen::Vector3d(0, 0, scene_->desk()), line.direction});
-    tap.true_on_surface = scene_now().first_hit(line) < std::min(desk, tap.approach->length);
+    const double end = std::min(distance_down_to(scene_->desk(), line), tap.approach->length);
+    tap.true_on_surface = scene_now().first_hit(line) < end;
   }
   return tap;
 }
@@ -136,7 +136,7 @@ const FromAnySide::TrueSurface& FromAnySide::truth() {
   const Eigen::Vector3d desk(0.0, 0.0, scene_->desk());
   for (const Line& line : bundle_.lines) {
     const double hit = scene.first_hit({line.origin + desk, line.direction});
-    if (hit < belief_.desk_along(line)) cloud.push_back(line.origin + hit * line.direction);
+    if (hit < distance_down_to(0.0, line)) cloud.push_back(line.origin + hit * line.direction);
   }
   cloud = thinned(cloud, kSide);
   truth_->cubes = cubes_.of(scene);

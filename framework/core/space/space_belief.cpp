@@ -64,13 +64,9 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
   draw_approaches();
 }
 
-double SpaceBelief::desk_along(const Line& line) const {
-  return line.direction.z() < 0.0 ? -line.origin.z() / line.direction.z() : kNoHit;
-}
-
 double SpaceBelief::meeting(const Approach& approach, const Composition& composition) const {
   const Line line = line_of(approach);
-  return std::max(0.0, std::min({approach.length, desk_along(line), composition.first_hit(line)}));
+  return std::max(0.0, std::min({approach.length, distance_down_to(0.0, line), composition.first_hit(line)}));
 }
 
 void SpaceBelief::look(const std::vector<SurfaceTouch>& seen) {
@@ -168,7 +164,7 @@ Line SpaceBelief::random_line(Random& random) const {
 std::optional<Line> SpaceBelief::along_normal(Random& random) const {
   const Line line = random_line(random);
   const double hit = solids_.best().first_hit(line);
-  if (hit >= desk_along(line)) return std::nullopt;
+  if (hit >= distance_down_to(0.0, line)) return std::nullopt;
   const Vector3d at = line.origin + hit * line.direction;
   const Vector3d inwards = -Skin::normal(solids_.best(), at);
   if (inwards.z() > kSteepestUp) return std::nullopt;
@@ -212,7 +208,7 @@ void SpaceBelief::look_where_met() {
     const Approach& approach = approaches_[static_cast<std::size_t>(i)];
     const Line line = line_of(approach);
     const double hit = best.first_hit(line);
-    met_(i) = std::min({hit, approach.length, desk_along(line)});
+    met_(i) = std::min({hit, approach.length, distance_down_to(0.0, line)});
     if (hit > met_(i)) continue;
     const Vector3d at = line.origin + hit * line.direction;
     const Vector3d normal = Skin::normal(best, at);
@@ -295,7 +291,7 @@ Cloud SpaceBelief::surface(const Bundle& bundle, double side) const {
   Cloud points;
   for (const Line& line : bundle.lines) {
     const double hit = best.first_hit(line);
-    if (hit < desk_along(line)) points.emplace_back(line.origin + hit * line.direction);
+    if (hit < distance_down_to(0.0, line)) points.emplace_back(line.origin + hit * line.direction);
   }
   Skin::Places places;
   for (const Vector3d& at : thinned(points, side)) places.push_back({at, Skin::normal(best, at)});

@@ -70,8 +70,6 @@ class SpaceBelief final : public SurfaceBelief {
   };
   Hits hits() const;
   const Overtravel& overtravel() const { return overtravel_; }
-  /// How far along a line the desk is, infinity where it is not.
-  double desk_along(const Line& line) const;
   /// How far a tool comes along an approach if a composition is the truth.
   double meeting(const Approach& approach, const Composition& composition) const;
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -31,6 +32,12 @@ struct Line {
   Eigen::Vector3d origin;     ///< metres
   Eigen::Vector3d direction;  ///< of unit length
 };
+
+/// How far along a line that goes down it is at a height; infinity for one that is level or goes up.
+inline double distance_down_to(double height, const Line& line) {
+  const double down = line.direction.z();
+  return down < 0.0 ? (height - line.origin.z()) / down : std::numeric_limits<double>::infinity();
+}
 
 /// The way of a tool towards what it is to touch: from the origin of the line, `length` metres along its direction, its
 /// shaft straight behind it. In the frame of the area, z as heights are. A tap from above is the one straight down.

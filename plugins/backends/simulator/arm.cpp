@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <limits>
 
 namespace palpate::backends {
 namespace {
@@ -126,20 +125,16 @@ double along(const Effects& effects, const Line& line, const Free& free) {
   });
 }
 
-double to_desk(const Scene& scene, const Line& line) {
-  const double down = line.direction.z();
-  return down < 0.0 ? (scene.desk() - line.origin.z()) / down : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
-  return along(effects, line,
-               [&](const Line& beside) { return std::min(scene.first_hit(beside), to_desk(scene, beside)); });
+  return along(effects, line, [&](const Line& beside) {
+    return std::min(scene.first_hit(beside), distance_down_to(scene.desk(), beside));
+  });
 }
 
 double desk_along(const Scene& scene, const Effects& effects, const Line& line) {
-  return along(effects, line, [&](const Line& beside) { return to_desk(scene, beside); });
+  return along(effects, line, [&](const Line& beside) { return distance_down_to(scene.desk(), beside); });
 }
 
 double outlier(const Outliers& effect, std::uint64_t seed, double x, double y) {

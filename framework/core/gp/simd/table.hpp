@@ -17,6 +17,8 @@ constexpr int kPanelLines = 3;                                        ///< width
 constexpr int kStripRows = 8;                                         ///< rows of a grid that are updated together
 constexpr int kPiece = kStripRows * kPanelLines * kLine;              ///< cells of a dense map updated together
 
+constexpr int kScores = 64;  ///< numbers of which the highest is found
+
 constexpr int kMeans = 3;  ///< maps that a row is added to, at most
 
 /// What a new row v of the posterior does to the cells of some strips, or of a piece:
@@ -90,6 +92,8 @@ struct Table {
   void (*absorb_mirrored)(const MirroredProduct&, const Update&);
   void (*absorb_dense)(const DenseRow&, const Update&);
   void (*read)(const Cells&, const Reading&);
+  /// out_i = the highest of the kScores numbers from `from` + i kScores on, of which none is NaN; not aligned either.
+  void (*highest)(const double* from, int count, double* out);
   // L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
   // matrix goes. Both work in place on n numbers, with room up to a line.
   void (*solve_lower)(const double* lower, int n, double* x);             ///< x = L^-1 x

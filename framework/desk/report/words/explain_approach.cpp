@@ -116,9 +116,7 @@ class ApproachExplained final : public Explanation {
 
   /// Whether a tool that comes so far is held by an object, and not by the desk or by nothing.
   bool met(double along) const {
-    const Vector3d desk(0.0, 0.0, experiment_.scene().desk());
-    return along < approach_.length &&
-           along < experiment_.belief().desk_along({approach_.line.origin - desk, approach_.line.direction});
+    return along < std::min(approach_.length, distance_down_to(experiment_.scene().desk(), approach_.line));
   }
 
   /// What rules read of the place where the surface is met.

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// What is solid, by cubes: of a scene, of pieces, and with what the skin adds.
+#include "space/volume.hpp"
+
+#include "space_bench.hpp"
+#include "support/testing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(Cubes, HoldWhatIsSolidAndNotWhatItEncloses) {
+  const auto scene = scene_of_cup();
+  const Cubes cubes(kMiddleOfCup, 0.18, 0.004);
+  const Cubes::Held truth = cubes.of(*scene);
+  const auto volume = [](const Cubes::Held& held) {
+    return 0.004 * 0.004 * 0.004 * static_cast<double>(std::count(held.begin(), held.end(), true));
+  };
+  EXPECT_NEAR(volume(truth), kHalfTurn * (0.04 * 0.04 - 0.03 * 0.03) * 0.06, 9e-6)
+      << "of 132 cubic centimetres, to what cubes of 4 mm make of it";
+  EXPECT_EQ(intersection_over_union(truth, truth), 1.0);
+  EXPECT_EQ(intersection_over_union(truth, Cubes::Held(truth.size())), 0.0);
+  EXPECT_EQ(intersection_over_union(Cubes::Held(truth.size()), Cubes::Held(truth.size())), 1.0);
+}
+
+TEST(Cubes, OfACompositionAreThoseWhoseCentresThePiecesHold) {
+  Random random(9, "test/cubes");
+  const Skin nothing(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005});
+  const Cubes cubes({0.0, 0.0, 0.1}, 0.12, 0.006);
+  for (int i = 0; i < 10; ++i) {
+    Composition one;
+    for (int k = 0; k < 2; ++k) {
+      Piece piece = random_piece(random);
+      piece.centre.z() += 0.1;
+      one.parts.push_back({piece, {}, {}, 0.0});
+    }
+    const Cubes::Held held = cubes.of(one, nothing);
+    std::size_t index = 0;
+    int count = 0;
+    for (int x = 0; x < 40; ++x) {
+      for (int y = 0; y < 40; ++y) {
+        for (int z = 0; z < 37; ++z, ++index) {
+          const Vector3d at(-0.117 + 0.006 * x, -0.117 + 0.006 * y, 0.003 + 0.006 * z);
+          const bool within = holds(one.parts[0].piece, at) || holds(one.parts[1].piece, at);
+          count += held[index] == within ? 0 : 1;
+        }
+      }
+    }
+    ASSERT_EQ(index, held.size());
+    EXPECT_EQ(count, 0);
+  }
+}
+
+TEST(Cubes, AreFewerOrMoreByWhatTheSkinAdds) {
+  Composition ball;
+  ball.parts.push_back(
+      {{Piece::Form::ellipsoid, {0, 0, 0.1}, Eigen::Matrix3d::Identity(), {0.05, 0.05, 0.05}, 0.0}, {}, {}, 0.0});
+  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 8 cm}"), {0.006, 0.0005});
+  std::vector<SurfaceTouch> touches;  // 4 mm outside all around
+  Random random(10, "test/cubes");
+  for (int i = 0; i < 150; ++i) {
+    const Vector3d out = random_direction(random);
+    touches.push_back({{Vector3d(0, 0, 0.1) + 0.154 * out, -out}, 0.1, true, false});
+  }
+  skin.fit(ball, touches);
+  const Cubes::Held held = Cubes({0, 0, 0.1}, 0.12, 0.003).of(ball, skin);
+  const double volume = 2.7e-8 * static_cast<double>(std::count(held.begin(), held.end(), true));
+  EXPECT_NEAR(std::cbrt(volume * 3 / (4 * kHalfTurn)), 0.054, 5e-4);
+}
+
+TEST(Cubes, OfPiecesSideBySideHaveWhatTheSkinAddsToEach) {
+  // Two plates that face y, from -4.5 to 0.5 mm and from 7 to 9 mm. The first is 2.5 mm farther out in front.
+  Composition plates;
+  for (const auto& [middle, half] : {std::pair(-0.002, 0.0025), {0.008, 0.001}}) {
+    const Piece plate{Piece::Form::box, {0, middle, 0.06}, Eigen::Matrix3d::Identity(), {0.048, half, 0.048}, 0.0};
+    plates.parts.push_back({plate, {}, {}, 0.0});
+  }
+  std::vector<SurfaceTouch> touches;
+  for (int x = -4; x <= 4; ++x) {
+    for (int z = 2; z <= 10; ++z) {
+      touches.push_back({{{0.01 * x, 0.0065, 0.01 * z}, {0, -1, 0}}, 0.0035, true, false});
+      touches.push_back({{{0.01 * x, 0.2, 0.01 * z}, {0, -1, 0}}, 0.191, true, false});
+    }
+  }
+  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 1 cm}"), {0.006, 0.0001});
+  skin.fit(plates, touches);
+  const Cubes::Held held = Cubes({0, 0, 0.06}, 0.08, 0.004).of(plates, skin);
+  // Centres at y = -2 and 2 mm, 24 across and 24 up, but for some at the corners, far from contacts. Those at 10 mm,
+  // half as many, would be solid with what is added to the other.
+  EXPECT_NEAR(static_cast<double>(std::count(held.begin(), held.end(), true)), 2 * 24 * 24, 24);
+}
+
+TEST(Scene, TellsWhichPartsOfALineLieInItsObjectsAlsoWhereTheyOverlap) {
+  const auto scene = scene_of_cup();
+  const std::vector<Stretch> across = scene->stretches({{0.0, 0.13, 0.05}, {1.0, 0.0, 0.0}});
+  ASSERT_EQ(across.size(), 2U);
+  EXPECT_NEAR(across[0].begin, 0.09, 1e-12);
+  EXPECT_NEAR(across[0].end, 0.10, 1e-12);
+  EXPECT_NEAR(across[1].begin, 0.16, 1e-12);
+  EXPECT_NEAR(across[1].end, 0.17, 1e-12);
+  EXPECT_TRUE(scene->stretches({{0.0, 0.13, 0.09}, {1.0, 0.0, 0.0}}).empty());
+  const std::vector<Stretch> all = joined({{0.3, 0.4}, {0.0, 0.1}, {0.05, 0.2}, {0.1, 0.12}});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].end, 0.2);
+  EXPECT_EQ(all[1].begin, 0.3);
+}
+
+}  // namespace
+}  // namespace palpate::test
