@@ -154,7 +154,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
 }
 
 bool all_finite(const Eigen::VectorXd& values) {
-  // Nothing of what is finite is nothing, of what is not it is no number.
+  // 0 times what is finite is 0; times what is not it is NaN.
   return (0.0 * values).sum() == 0.0;
 }
 
