@@ -16,8 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// 10 x 6 x 6 cm, on the desk in the middle of an area of 26 cm.
+const Piece kStanding{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+
 TEST(Solids, FindABoxFromTouchesOfIt) {
-  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   Random random(7, "test/solids");
   SolidsSettings settings;
   settings.count = 12;
@@ -26,19 +28,19 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
   for (int i = 0; i < 60; ++i) {
     Vector3d direction = random_direction(random);
     direction.z() = -std::abs(direction.z());
-    const Vector3d through = box.centre + 0.06 * random.uniform() * random_direction(random);
+    const Vector3d through = kStanding.centre + 0.06 * random.uniform() * random_direction(random);
     const Line line{through - 0.3 * direction, direction};
     const double desk = -line.origin.z() / direction.z();
-    const double hit = std::min(box.first_hit(line), desk);
+    const double hit = std::min(kStanding.first_hit(line), desk);
     solids.add({{line, hit, true, hit == desk}});
   }
   const Composition& best = solids.best();
   EXPECT_TRUE(std::isfinite(best.posterior()));
-  const Bundle bundle(box.centre, 0.12, 60, 0.01);
+  const Bundle bundle(kStanding.centre, 0.12, 60, 0.01);
   Cloud truth, believed;
   for (const Line& line : bundle.lines) {
     const double desk = line.direction.z() < 0 ? -line.origin.z() / line.direction.z() : kNoHit;
-    if (box.first_hit(line) < desk) truth.push_back(line.origin + box.first_hit(line) * line.direction);
+    if (kStanding.first_hit(line) < desk) truth.push_back(line.origin + kStanding.first_hit(line) * line.direction);
     if (best.first_hit(line) < desk) believed.push_back(line.origin + best.first_hit(line) * line.direction);
   }
   EXPECT_GT(compare_clouds(thinned(believed, 0.003), thinned(truth, 0.003)).f_score, 0.95);
@@ -75,7 +77,6 @@ TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
 }
 
 TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
-  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   SolidsSettings settings;
   settings.count = 4;
   settings.moves = 100;
@@ -86,9 +87,9 @@ TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
   for (int i = 0; i < 40; ++i) {
     Vector3d direction = random_direction(random);
     direction.z() = -std::abs(direction.z());
-    const Line line{box.centre + 0.08 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
+    const Line line{kStanding.centre + 0.08 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
     const double desk = -line.origin.z() / direction.z();
-    touches.push_back({line, std::min(box.first_hit(line), desk), true, desk <= box.first_hit(line)});
+    touches.push_back({line, std::min(kStanding.first_hit(line), desk), true, desk <= kStanding.first_hit(line)});
     solids.add({touches.back()});
     if (i % 13 != 12) continue;
     const std::vector<Piece> unseen = solids.unseen(solids.best(), 300, random);
@@ -142,34 +143,32 @@ TEST(Solids, KeepWhatTheySumUpTrueThroughAllMoves) {
   }
 }
 
-/// Contacts with a box from all sides but below, as they would be without noise.
-std::vector<SurfaceTouch> touches_of(const Piece& box, int count) {
+/// Contacts with it from all sides but below, as they would be without noise.
+std::vector<SurfaceTouch> touches_of(int count) {
   Random random(7, "test/solids");
   std::vector<SurfaceTouch> out;
   while (static_cast<int>(out.size()) < count) {
     Vector3d direction = random_direction(random);
     direction.z() = -std::abs(direction.z());
-    const Line line{box.centre + 0.06 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
+    const Line line{kStanding.centre + 0.06 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
     const double desk = -line.origin.z() / direction.z();
-    out.push_back({line, std::min(box.first_hit(line), desk), true, desk <= box.first_hit(line)});
+    out.push_back({line, std::min(kStanding.first_hit(line), desk), true, desk <= kStanding.first_hit(line)});
   }
   return out;
 }
 
 TEST(Solids, GoOnWhereNoCompositionIsPossibleAtAll) {
-  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   SolidsSettings settings;
   settings.count = 4;
   settings.moves = 20;
   settings.misfit = 1e-200;
   Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
-  for (const SurfaceTouch& touch : touches_of(box, 5)) solids.add({touch});
+  for (const SurfaceTouch& touch : touches_of(5)) solids.add({touch});
   EXPECT_EQ(solids.compositions().size(), 4U);
   EXPECT_THROW(shipped_config("any_side.yaml", {"space.misfit=1e-200m"}), Error);
 }
 
 TEST(Solids, MakeNoPieceOfOneContactInTheAirWhereATouchMayBeALie) {
-  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   const Vector3d air(0.15, 0.14, 0.16);
   int made = 0, made_of_lies = 0;
   for (const double most : {kNoHit, 5.5}) {
@@ -179,7 +178,7 @@ TEST(Solids, MakeNoPieceOfOneContactInTheAirWhereATouchMayBeALie) {
       settings.moves = 300;
       settings.most = most;
       Solids solids({0.26, 0.26}, settings, Random(seed, "solids"));
-      std::vector<SurfaceTouch> touches = touches_of(box, 30);
+      std::vector<SurfaceTouch> touches = touches_of(30);
       touches.insert(touches.begin() + 15, {{air + Vector3d(0, 0, 0.1), -Vector3d::UnitZ()}, 0.1, true, false});
       for (const SurfaceTouch& touch : touches) solids.add({touch});
       (most < kNoHit ? made : made_of_lies) += solids.best().distance(air) < 0.01 ? 1 : 0;
@@ -190,12 +189,11 @@ TEST(Solids, MakeNoPieceOfOneContactInTheAirWhereATouchMayBeALie) {
 }
 
 TEST(Solids, AreWeighedByTouchesAsTheyAreReadNow) {
-  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   SolidsSettings settings;
   settings.count = 6;
   settings.moves = 100;
   Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
-  std::vector<SurfaceTouch> touches = touches_of(box, 12);
+  std::vector<SurfaceTouch> touches = touches_of(12);
   for (const SurfaceTouch& touch : touches) solids.add({touch});
   for (SurfaceTouch& touch : touches) touch.length -= 0.004;
   solids.read_again(touches, 0.003, kNoHit);
