@@ -75,7 +75,12 @@ TEST(Form, AmongManyMeetsWhatItMeetsAlone) {
   ASSERT_EQ(many.size(), all.size());
   for (const Form& other : forms(50, 7)) {
     std::vector<std::uint8_t> met;
-    many.mark_met(other, met);
+    many.mark_met(other, false, met);
+    for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(met[i] != 0, meet(other, all[i])) << i;
+    many.mark_met(all[7], true, met);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      ASSERT_EQ(met[i] != 0, meet(other, all[i]) || meet(all[7], all[i])) << i;
+    many.mark_met(other, false, met);
     for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(met[i] != 0, meet(other, all[i])) << i;
   }
 }

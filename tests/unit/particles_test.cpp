@@ -18,7 +18,7 @@ Particles belief_of(int count, double moves, double mistaken, std::uint64_t seed
   settings.area = {0.23, 0.23};
   ParticleSettings how;
   how.count = count;
-  how.moves = moves;
+  how.moves = how.moves_apart = moves;
   how.mistaken = how.lies = mistaken;
   return {OutlinePrior(settings), how, Random(seed, "particles test")};
 }
@@ -52,7 +52,7 @@ TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTh
   touches.insert(touches.begin() + 2, test::touch_at(0.115, 0.115, true));
   for (const Touch& touch : touches) {
     belief.add(touch);
-    for (const auto& [columns, rows] : {std::pair{31, 31}, {31, 7}, {64, 5}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
+    for (const auto& [columns, rows] : {std::pair{31, 31}, {31, 7}, {63, 5}, {64, 5}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
       const Points places = test::lattice(columns, rows);
       Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
       belief.probability(places, inside);
@@ -87,7 +87,9 @@ TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
     Eigen::VectorXd held = Eigen::VectorXd::Zero(where.rows());
     Eigen::VectorXd touched = Eigen::VectorXd::Zero(where.rows());
     for (int k = 0; k < kSample; ++k) {
-      const Outline& outline = belief.particles()[static_cast<std::size_t>(k / (kSample / kCount))].outline;
+      // Words of 64 of them, each as often as any.
+      const int one = k / 64 / (kSample / kCount) * 64 + k % 64;
+      const Outline& outline = belief.particles()[static_cast<std::size_t>(one)].outline;
       for (Eigen::Index i = 0; i < where.rows(); ++i) {
         const bool holds = bit(sample.holds, k, i);
         const bool has = outline.contains(where(i, 0), where(i, 1));
@@ -233,8 +235,10 @@ TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
         ASSERT_EQ(one.depths.holders(i, one.outline.size()), holders);
         const LabelModel::Step step =
             !one.blurred ? (holders != 0 ? LabelModel::kInside : LabelModel::kOutside) : labels.step(deepest);
-        ASSERT_EQ(one.depths.deepest()[i], step);
-        loss += labels.loss(step, touches[i].on);
+        // Single precision may take it for the step beside it.
+        const LabelModel::Step kept = one.depths.deepest()[i];
+        ASSERT_LE(std::abs(kept - step), one.blurred ? 1 : 0);
+        loss += labels.loss(kept, touches[i].on);
       }
       // Summed up over some hundred moves.
       ASSERT_NEAR(one.labels, loss, 1e-9);

@@ -102,7 +102,7 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
   how.count = 2000;
   how.mistaken = how.lies = 0.05;
   how.pushes = 0.05;
-  how.moves = 160;  // a push is found slowly: with 40 a twentieth less of them, with 12 a fifth
+  how.moves = how.moves_apart = 160;  // a push is found slowly: with 40 a twentieth less of them, with 12 a fifth
   how.most_moves = 800;
   OutlinePrior::Settings settings;
   settings.area = kDesk;

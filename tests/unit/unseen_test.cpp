@@ -190,25 +190,27 @@ TEST(Unseen, IsDrawnInWholeAsAPoissonProcess) {
         told(prior, {kTouches.begin(), kTouches.begin() + static_cast<std::ptrdiff_t>(touches)}, 0.0, 5);
     const double mean = sum_over(unseen, [](const Piece&) { return 1.0; });
     Random random(6, "unseen test: draws");
-    std::vector<long> counts(Outline::kMost + 1, 0);
-    std::vector<long> holders(Outline::kMost + 1, 0);  // of one place
+    std::vector<std::size_t> sizes(static_cast<std::size_t>(draws), 0);
+    std::vector<std::size_t> here(static_cast<std::size_t>(draws), 0);  // that hold one place
     Numbers drawn{};
-    for (const Outline& all : unseen.draw(draws, random)) {
-      ++counts[static_cast<std::size_t>(all.size())];
-      std::size_t here = 0;
-      for (const Piece& piece : all) {
-        here += holds(piece, kPlaces[7]) ? 1U : 0U;
-        const Numbers numbers = numbers_of_places(piece);
-        for (std::size_t k = 0; k < kNumbers; ++k) drawn[k] += numbers[k];
-      }
-      ++holders[here];
+    for (const Unseen::Drawn& one : unseen.draw(static_cast<std::size_t>(draws), random)) {
+      const Piece& piece = unseen.piece(one.piece);
+      ++sizes[one.draw];
+      here[one.draw] += holds(piece, kPlaces[7]) ? 1U : 0U;
+      const Numbers numbers = numbers_of_places(piece);
+      for (std::size_t k = 0; k < kNumbers; ++k) drawn[k] += numbers[k];
     }
+    const auto counted = [](const std::vector<std::size_t>& numbers) {
+      std::vector<long> out(Outline::kMost + 1, 0);
+      for (const std::size_t number : numbers) ++out[std::min<std::size_t>(number, Outline::kMost)];
+      return out;
+    };
     std::vector<double> expected = poisson(mean, Outline::kMost);
     std::vector<double> expected_here = poisson(unseen.holding(kPlaces[7]).rate(), Outline::kMost);
     for (double& one : expected) one *= draws;
     for (double& one : expected_here) one *= draws;
-    EXPECT_LT(deviation_from(expected, counts), 5.0);
-    EXPECT_LT(deviation_from(expected_here, holders), 5.0);
+    EXPECT_LT(deviation_from(expected, counted(sizes)), 5.0);
+    EXPECT_LT(deviation_from(expected_here, counted(here)), 5.0);
     for (std::size_t k = 0; k < kNumbers; ++k) {
       const double rate = sum_over(unseen, [&](const Piece& piece) { return numbers_of_places(piece)[k]; });
       EXPECT_NEAR(drawn[k] / draws, rate, 5.0 * std::sqrt(rate / draws) + 1e-12) << k;
@@ -224,7 +226,7 @@ TEST(Unseen, HasOverALatticeTheRatesThatItHasOneByOne) {
          {test::lattice(41, 37), test::lattice(31, 7), test::lattice(1, 40), test::lattice(40, 1), test::lattice(1, 1),
           test::scattered(50), test::doubled(test::scattered(5), 0.0)}) {
       Eigen::VectorXd rates = Eigen::VectorXd::Constant(places.rows(), std::nan(""));
-      unseen.rates(places, rates);
+      unseen.rates(places, Lattice::over(places), rates);
       for (Eigen::Index i = 0; i < places.rows(); ++i) {
         ASSERT_NEAR(rates(i), unseen.holding({places(i, 0), places(i, 1)}).rate(), 1e-9)
             << places.rows() << " places, " << i;

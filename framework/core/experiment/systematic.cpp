@@ -123,11 +123,12 @@ Systematic::Estimate Systematic::at(double seconds, int motion) const {
   const When now{seconds, motion};
   Estimate out{0.0, covariance(now, now)};
   if (judged_.empty()) return out;
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(judgement_.a.size());  // there is no broad signal
+  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;  // of a judgement without its broad signal
+  Eigen::VectorXd z(size);
   z(0) = 1.0;
-  for (std::size_t i = 0; i < judged_.size(); ++i) z(static_cast<Eigen::Index>(i) + 1) = covariance(now, judged_[i]);
-  out.value = z.dot(judgement_.a);
-  out.variance += z.dot(judgement_.b * z);
+  for (Eigen::Index i = 1; i < size; ++i) z(i) = covariance(now, judged_[static_cast<std::size_t>(i - 1)]);
+  out.value = z.dot(judgement_.a.head(size));
+  out.variance += z.dot(judgement_.b.topLeftCorner(size, size) * z);
   return out;
 }
 

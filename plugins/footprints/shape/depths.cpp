@@ -10,7 +10,7 @@
 namespace palpate::footprints {
 namespace {
 
-constexpr double kFar = 1e3;  // metres
+constexpr float kFar = 1e3F;  // metres
 constexpr int kRound = Places::kRound;
 constexpr int kWord = Places::kWord;
 
@@ -32,35 +32,64 @@ PALPATE_INLINE bool any(const Bytes& bytes) {
   return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
 }
 
-// Four places at a time. By reference, as these vectors are passed otherwise from one set of instructions to another.
-using Four = double __attribute__((vector_size(32)));
-using FourBits = std::int64_t __attribute__((vector_size(32)));
+// A word of places at a time. By reference, as these vectors are passed otherwise from one set of instructions to
+// another.
+using Places8 = float __attribute__((vector_size(4 * kWord)));
+using Bits8 = std::int32_t __attribute__((vector_size(4 * kWord)));
 
-PALPATE_INLINE void root(Four& x) {
-  double parts[4];
+PALPATE_INLINE void root(Places8& x) {
+  float parts[kWord];
   std::memcpy(parts, &x, sizeof(x));
-  for (double& part : parts) part = std::sqrt(part);
+  for (float& part : parts) part = std::sqrt(part);
   std::memcpy(&x, parts, sizeof(x));
 }
 
-PALPATE_INLINE void magnitude(Four& x) {
-  FourBits bits;
+PALPATE_INLINE void magnitude(Places8& x) {
+  Bits8 bits;
   std::memcpy(&bits, &x, sizeof(x));
-  bits &= 0x7fffffffffffffff;
+  bits &= 0x7fffffff;
   std::memcpy(&x, &bits, sizeof(x));
 }
 
+/// The last byte of each; as one word, where a conversion of vectors would take three times as long.
+PALPATE_INLINE void to_bytes(const Bits8& numbers, LabelModel::Step* out) {
+  using Pairs = std::uint64_t __attribute__((vector_size(32)));
+  using Half = std::uint64_t __attribute__((vector_size(16)));
+  Pairs pairs;
+  std::memcpy(&pairs, &numbers, sizeof(pairs));
+  pairs = ((pairs | pairs >> 24) & 0xFFFF) << Pairs{0, 16, 32, 48};
+  Half first, second;
+  std::memcpy(&first, &pairs, sizeof(first));
+  std::memcpy(&second, reinterpret_cast<const char*>(&pairs) + sizeof(first), sizeof(second));
+  first |= second;
+  const std::uint64_t word = first[0] | first[1];
+  std::memcpy(out, &word, sizeof(word));
+}
+
+/// A form, as places are compared with it.
+struct SingleForm {
+  bool box;
+  float x, y, a, b, cosine, sine;
+};
+PALPATE_INLINE SingleForm single(const Form& form) {
+  return {form.family == Form::Family::box, static_cast<float>(form.x), static_cast<float>(form.y),
+          static_cast<float>(form.a),       static_cast<float>(form.b), static_cast<float>(form.cosine),
+          static_cast<float>(form.sine)};
+}
+
 /// From the centre, along the axes.
-PALPATE_INLINE void in_axes(const Form& form, const Four& x, const Four& y, Four& u, Four& v) {
-  u = form.cosine * (x - form.x) + form.sine * (y - form.y);
-  v = form.cosine * (y - form.y) - form.sine * (x - form.x);
+PALPATE_INLINE void in_axes(const SingleForm& form, const Places8& x, const Places8& y, Places8& u, Places8& v) {
+  const Places8 dx = x - form.x;
+  const Places8 dy = y - form.y;
+  u = form.cosine * dx + form.sine * dy;
+  v = form.cosine * dy - form.sine * dx;
 }
 
 /// As Form::contains, all bits of those within.
-PALPATE_INLINE void contained_in(const Form& form, const Four& x, const Four& y, FourBits& out) {
-  Four u, v;
+PALPATE_INLINE void contained_in(const SingleForm& form, const Places8& x, const Places8& y, Bits8& out) {
+  Places8 u, v;
   in_axes(form, x, y, u, v);
-  if (form.family == Form::Family::box) {
+  if (form.box) {
     magnitude(u);
     magnitude(v);
     out = (u <= form.a) & (v <= form.b);
@@ -69,91 +98,85 @@ PALPATE_INLINE void contained_in(const Form& form, const Four& x, const Four& y,
   }
 }
 
-/// As Form::depth, to the last bit.
-PALPATE_INLINE void depths_in(const Form& form, const Four& x, const Four& y, Four& out) {
-  const double a = form.a;
-  const double b = form.b;
-  Four u, v;
+/// As Form::depth.
+PALPATE_INLINE void depths_in(const SingleForm& form, const Places8& x, const Places8& y, Places8& out) {
+  const float a = form.a;
+  const float b = form.b;
+  Places8 u, v;
   in_axes(form, x, y, u, v);
-  if (form.family == Form::Family::box) {
+  if (form.box) {
     magnitude(u);
     magnitude(v);
-    const Four along = a - u;
-    const Four across = b - v;
-    Four beyond = along * along + across * across;
+    const Places8 along = a - u;
+    const Places8 across = b - v;
+    Places8 beyond = along * along + across * across;
     root(beyond);
-    const Four least = across < along ? across : along;
-    const Four most = along < across ? across : along;
-    out = most < 0.0 ? -beyond : least;
+    const Places8 least = across < along ? across : along;
+    const Places8 most = along < across ? across : along;
+    out = most < 0.0F ? -beyond : least;
     return;
   }
   u *= u;
   v *= v;
-  Four q = u * (b * b) + v * (a * a);
-  Four slope = u * (b * b * b * b) + v * (a * a * a * a);
-  Four distance = u + v;
+  Places8 q = u * (b * b) + v * (a * a);
+  Places8 slope = u * (b * b * b * b) + v * (a * a * a * a);
+  Places8 distance = u + v;
   root(q);
   root(slope);
   root(distance);
   q /= a * b;
   slope /= a * a * b * b;
-  const Four to_rim = q * (1.0 - q) / slope;
-  const Four in_circle = a - distance;
-  const Four centre = Four{} + b;
+  const Places8 to_rim = q * (1.0F - q) / slope;
+  const Places8 in_circle = a - distance;
+  const Places8 centre = Places8{} + b;
   out = in_circle < to_rim ? in_circle : to_rim;
-  out = slope > 0.0 ? out : centre;
+  out = slope > 0.0F ? out : centre;
 }
 
-PALPATE_INLINE void to_bytes(const FourBits& first, const FourBits& second, LabelModel::Step* out) {
-  const FourBits parts = (first | second << 32) << FourBits{0, 8, 16, 24};
-  const std::int64_t word = parts[0] | parts[1] | parts[2] | parts[3];
-  std::memcpy(out, &word, sizeof(word));
+/// And a piece.
+struct SinglePiece {
+  SingleForm form, hole;
+  bool hollow;
+};
+PALPATE_INLINE void take(const Piece& piece, SinglePiece& out) {
+  out.form = single(piece.form);
+  if (piece.hollow) out.hole = single(piece.hole);
+  out.hollow = piece.hollow;
 }
 
-/// As Steps::of how deep places lie in a piece.
-PALPATE_INLINE void steps_in(const Piece& piece, bool exact, LabelModel::Steps steps, const Four& x, const Four& y,
-                             FourBits& out) {
-  if (exact) {
-    contained_in(piece.form, x, y, out);
-    if (piece.hollow) {
-      FourBits in_hole;
-      contained_in(piece.hole, x, y, in_hole);
-      out &= ~in_hole;
-    }
-    static_assert(LabelModel::kOutside == 0);
-    out &= LabelModel::kInside;
-    return;
-  }
-  Four depth;
-  depths_in(piece.form, x, y, depth);
-  if (piece.hollow) {
-    Four of_hole;
-    depths_in(piece.hole, x, y, of_hole);
-    depth = -of_hole < depth ? -of_hole : depth;
-  }
-  depth = depth * steps.per_metre + 0.5 * LabelModel::kSteps;
-  constexpr double kMost = LabelModel::kSteps;
-  const Four least = Four{} - 1.0;
-  const Four most = Four{} + kMost;
-  depth = depth > least ? depth : least;
-  depth = depth < most ? depth : most;
-  using Whole = std::int32_t __attribute__((vector_size(16)));
-  out = __builtin_convertvector(__builtin_convertvector(depth + 1.0, Whole), FourBits);
-}
-
-/// Of a word of places.
-PALPATE_INLINE void steps_in(const Piece& piece, bool exact, LabelModel::Steps steps, const double* xs,
-                             const double* ys, LabelModel::Step* out) {
-  static_assert(kWord == 8);
-  Four x, y;
-  FourBits first, second;
+/// As Steps::of how deep a word of places lies in a piece.
+PALPATE_INLINE void steps_in(const SinglePiece& piece, bool exact, float per_metre, const float* xs, const float* ys,
+                             LabelModel::Step* out) {
+  Places8 x, y;
   std::memcpy(&x, xs, sizeof(x));
   std::memcpy(&y, ys, sizeof(y));
-  steps_in(piece, exact, steps, x, y, first);
-  std::memcpy(&x, xs + 4, sizeof(x));
-  std::memcpy(&y, ys + 4, sizeof(y));
-  steps_in(piece, exact, steps, x, y, second);
-  to_bytes(first, second, out);
+  Bits8 steps;
+  if (exact) {
+    contained_in(piece.form, x, y, steps);
+    if (piece.hollow) {
+      Bits8 in_hole;
+      contained_in(piece.hole, x, y, in_hole);
+      steps &= ~in_hole;
+    }
+    static_assert(LabelModel::kOutside == 0);
+    steps &= LabelModel::kInside;
+  } else {
+    Places8 depth;
+    depths_in(piece.form, x, y, depth);
+    if (piece.hollow) {
+      Places8 of_hole;
+      depths_in(piece.hole, x, y, of_hole);
+      depth = -of_hole < depth ? -of_hole : depth;
+    }
+    depth = depth * per_metre + 0.5F * LabelModel::kSteps;
+    constexpr float kMost = LabelModel::kSteps;
+    const Places8 least = Places8{} - 1.0F;
+    const Places8 most = Places8{} + kMost;
+    depth = depth > least ? depth : least;
+    depth = depth < most ? depth : most;
+    steps = __builtin_convertvector(depth + 1.0F, Bits8);
+  }
+  to_bytes(steps, out);
 }
 
 /// The deepest steps of some rows, of a word of them.
@@ -166,32 +189,35 @@ PALPATE_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, i
   }
 }
 
-PALPATE_CLONES void all_steps(const Piece& piece, bool exact, LabelModel::Steps steps, const double* xs,
-                              const double* ys, int count, LabelModel::Step* out) {
-  for (int from = 0; from < count; from += kWord) steps_in(piece, exact, steps, xs + from, ys + from, out + from);
+PALPATE_CLONES void all_steps(const Piece& piece, bool exact, float per_metre, const float* xs, const float* ys,
+                              int count, LabelModel::Step* out) {
+  SinglePiece one;
+  take(piece, one);
+  for (int from = 0; from < count; from += kWord) steps_in(one, exact, per_metre, xs + from, ys + from, out + from);
 }
 
-PALPATE_CLONES void all_contained(const Form& form, const double* xs, const double* ys, int count,
+PALPATE_CLONES void all_contained(const Form& form, const float* xs, const float* ys, int count,
                                   LabelModel::Step* out) {
+  const SingleForm one = single(form);
   for (int from = 0; from < count; from += kWord) {
-    Four x, y;
-    FourBits first, second;
+    Places8 x, y;
     std::memcpy(&x, xs + from, sizeof(x));
     std::memcpy(&y, ys + from, sizeof(y));
-    contained_in(form, x, y, first);
-    std::memcpy(&x, xs + from + 4, sizeof(x));
-    std::memcpy(&y, ys + from + 4, sizeof(y));
-    contained_in(form, x, y, second);
-    to_bytes(first & 0xFF, second & 0xFF, out + from);
+    Bits8 contained;
+    contained_in(one, x, y, contained);
+    to_bytes(contained & 0xFF, out + from);
   }
 }
 
-PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const double* xs, const double* ys) {
+PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const float* xs, const float* ys) {
   using Step = LabelModel::Step;
   const LabelModel& labels = *change.labels;
   const LabelModel& labels_before = *change.labels_before;
   const bool exact = !labels.blurs();
-  const LabelModel::Steps steps = labels.steps();
+  const auto per_metre = static_cast<float>(labels.steps().per_metre);
+  SinglePiece changed[Outline::kMost];
+  for (int k = 0; k < change.changes; ++k)
+    take((*change.outline)[change.changed[static_cast<std::size_t>(k)]], changed[k]);
   const std::uint64_t in_any_case = &labels == &labels_before ? 0 : ~std::uint64_t{0};
   const int pieces = change.outline->size();
   double loss = 0.0;
@@ -199,10 +225,8 @@ PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const doub
   int mistakes = 0;
   std::uint64_t any = 0;
   for (int from = change.until - kWord; from >= change.since; from -= kWord) {
-    for (int k = 0; k < change.changes; ++k) {
-      const int i = change.changed[static_cast<std::size_t>(k)];
-      steps_in((*change.outline)[i], exact, steps, xs + from, ys + from, change.to[static_cast<std::size_t>(k)] + from);
-    }
+    for (int k = 0; k < change.changes; ++k)
+      steps_in(changed[k], exact, per_metre, xs + from, ys + from, change.to[static_cast<std::size_t>(k)] + from);
     Word deepest;
     deepest_in(change.rows.data(), pieces, from, deepest);
     std::uint64_t left;
@@ -232,13 +256,13 @@ PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const doub
   return true;
 }
 
-PALPATE_CLONES void carry(const Push& push, int count, const double* __restrict xs, const double* __restrict ys,
-                          double* __restrict to_x, double* __restrict to_y) {
+PALPATE_CLONES void carry(const Push& push, int count, const float* __restrict xs, const float* __restrict ys,
+                          float* __restrict to_x, float* __restrict to_y) {
   const Push by = push;
   for (int i = 0; i < count; ++i) {
     const Target now = by.now(Target{xs[i], ys[i]});
-    to_x[i] = now.x;
-    to_y[i] = now.y;
+    to_x[i] = static_cast<float>(now.x);
+    to_y[i] = static_cast<float>(now.y);
   }
 }
 
@@ -254,8 +278,8 @@ void Places::add(const Target& place) {
     xs_.resize(xs_.size() + kRound, kFar);
     ys_.resize(ys_.size() + kRound, kFar);
   }
-  xs_[static_cast<std::size_t>(size_)] = place.x;
-  ys_[static_cast<std::size_t>(size_++)] = place.y;
+  xs_[static_cast<std::size_t>(size_)] = static_cast<float>(place.x);
+  ys_[static_cast<std::size_t>(size_++)] = static_cast<float>(place.y);
 }
 
 void Places::seen_after(const Push& push, Places& out) const {
@@ -266,7 +290,8 @@ void Places::seen_after(const Push& push, Places& out) const {
 }
 
 void Places::steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const {
-  all_steps(piece, !labels.blurs(), labels.steps(), xs_.data(), ys_.data(), length(), row);
+  all_steps(piece, !labels.blurs(), static_cast<float>(labels.steps().per_metre), xs_.data(), ys_.data(), length(),
+            row);
 }
 
 void Places::contained(const Form& form, LabelModel::Step* row) const {

@@ -13,7 +13,7 @@
 
 namespace palpate::footprints {
 
-/// The places of all touches, as many at a time as vectors hold.
+/// The places of all touches, as many at a time as vectors hold: in single precision, a hundred millionth of a metre.
 class Places {
  public:
   /// Rows of something about each touch are whole multiples of this long: places that are no touches are far away.
@@ -59,7 +59,7 @@ class Places {
 
  private:
   int size_ = 0;
-  std::vector<double> xs_, ys_;
+  std::vector<float> xs_, ys_;
 };
 
 /// Touches, as they are seen after a push or without one.

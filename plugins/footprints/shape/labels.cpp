@@ -83,7 +83,7 @@ double HeightModel::evidence(const std::vector<std::uint16_t>& holders, int piec
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     unsigned held = holders[numbers_[i]];
     if (held == 0) continue;
-    const double part = 1.0 / __builtin_popcount(held);
+    const double part = (held & (held - 1)) == 0 ? 1.0 : 1.0 / __builtin_popcount(held);  // most are held by one
     for (const Neighbour& neighbour : neighbours_[i]) {
       const unsigned both = held & holders[neighbour.touch];
       if (both == 0) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "particles.hpp"
 
-#include "lattice_counts.hpp"
+#include "lattice.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,9 @@
 namespace palpate::footprints {
 namespace {
 
-constexpr double kPushMoves = 0.1;  // share of the moves
+// Shares of the moves.
+constexpr double kBlurMoves = 0.02;
+constexpr double kPushMoves = 0.10;
 constexpr double kLogOfTwo = 0.69314718055994531;
 
 /// How deep a place lies in a piece. Most pieces are elsewhere, where how far away they are makes no difference.
@@ -62,13 +64,6 @@ double Particles::mean_pieces() const {
   double sum = 0.0;
   for (const Particle& particle : particles_) sum += particle.outline.size();
   return sum / size();
-}
-
-std::vector<const Outline*> Particles::some(int count) const {
-  std::vector<const Outline*> out;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-    out.push_back(&particles_[k * particles_.size() / static_cast<std::size_t>(count)].outline);
-  return out;
 }
 
 double Particles::left(double size) const { return 1.0 - std::exp(-unseen_.apart(size)); }
@@ -146,8 +141,7 @@ bool Particles::all_touched(const LabelModel::Step* const* rows, int pieces) con
                      [&](const LabelModel::Step* row) { return holds_any(row, objects_.data(), places_.length()); });
 }
 
-const Places& Particles::seen_after(const Push& push) {
-  if (!push) return places_;
+const Places& Particles::carried_by(const Push& push) {
   // Most moves of an outline leave its push as it is.
   if (pushed_places_.size() != places_.size() || !(pushed_by_ == push)) {
     places_.seen_after(push, pushed_places_);
@@ -193,16 +187,27 @@ double Particles::add(const Touch& touch) {
   resample(weights, sum);
   if (touch.on && something_new > 0.0) find(number, unseen, something_new);
   unseen_.add(touch, labels(settings_.blur > 0.0));
-  const double left = sum * sum / (sum_of_squares * size());
-  const int moves = std::min(settings_.most_moves,
-                             static_cast<int>(std::ceil(settings_.moves * std::max(1.0, 0.5 * mean_pieces()) / left)));
+  const int moves = this->moves(sum * sum / (sum_of_squares * size()));
   for (Particle& particle : particles_) {
     proposal_.begin(particle);
     for (int i = 0; i < moves; ++i) move(particle);
   }
-  constexpr int kAsked = 8;
-  unseen_.lie_apart_from(some(kAsked));
+  held_.reset();
+  constexpr std::size_t kAsked = 8;
+  std::vector<const Outline*> asked;
+  for (std::size_t k = 0; k < kAsked; ++k) asked.push_back(&particles_[k * particles_.size() / kAsked].outline);
+  unseen_.lie_apart_from(asked);
   return of_label / size();
+}
+
+/// Of each outline after a touch of which the label left such a share of them.
+int Particles::moves(double left) const {
+  double forms = 0.0;
+  for (const Particle& particle : particles_) {
+    for (const Piece& piece : particle.outline) forms += piece.hollow ? 2.0 : 1.0;
+  }
+  const double each = settings_.moves + settings_.moves_apart * (1.0 / left - 1.0);
+  return std::min(settings_.most_moves, static_cast<int>(std::ceil(std::max(1.0, forms / size()) * each)));
 }
 
 /// Of what was not seen so far, what holds the touch is seen now: a piece, as often as it was there to be found.
@@ -253,17 +258,20 @@ void Particles::resample(const std::vector<double>& weights, double sum) {
 
 void Particles::move(Particle& particle) {
   ++tried_;
-  constexpr double kChangesBlur = 0.02;
+  const double changes_blur = settings_.blur > 0.0 ? kBlurMoves : 0.0;
+  const double pushes = settings_.pushes > 0.0 && touches_.size() > 1 ? kPushMoves : 0.0;
   Proposal& proposal = proposal_;
   bool blurred = particle.blurred;
-  if (settings_.blur > 0.0 && random_.uniform() < kChangesBlur) {
+  const double which = random_.uniform();
+  if (which < changes_blur) {
     blurred = !blurred;
     proposal.until = places_.size();
     proposal.correction = 1.0;
-  } else if (settings_.pushes > 0.0 && touches_.size() > 1 && random_.uniform() < kPushMoves) {
+  } else if (which < changes_blur + pushes) {
     propose_push(proposal, prior_, places_.size(), settings_.pushes, random_);
   } else {
-    propose(proposal, prior_, {seen_after(particle.push), objects_.data(), of_objects_}, random_);
+    const double of_outline = (which - changes_blur - pushes) / (1.0 - changes_blur - pushes);
+    propose(proposal, prior_, {seen_after(particle.push), objects_.data(), of_objects_}, of_outline, random_);
   }
   if (proposal.correction > 0.0 && weigh(particle, proposal, blurred)) ++moved_;
   proposal.begin_again(particle);
@@ -294,10 +302,10 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     change.rows[at] = change.to[static_cast<std::size_t>(change.changes)] = depths_.row(i);
     change.changed[static_cast<std::size_t>(change.changes++)] = i;
   }
-  const auto up = [](int touch) { return (touch + Places::kWord - 1) / Places::kWord * Places::kWord; };
+  const auto down = [](int touch) { return touch & -Places::kWord; };
   const bool some = seen_otherwise && !any_new;
-  change.since = some ? proposal.since / Places::kWord * Places::kWord : 0;
-  change.until = up(some ? proposal.until : places_.size());
+  change.since = some ? down(proposal.since) : 0;
+  change.until = down((some ? proposal.until : places_.size()) + Places::kWord - 1);
   change.labels = &labels;
   change.labels_before = &labels_before;
   change.objects = objects_.data();
@@ -336,12 +344,20 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
   return true;
 }
 
+LatticeBits Particles::held(const Lattice& lattice) const {
+  LatticeBits out(lattice, particles_.size());
+  for (const Particle& particle : particles_) out.append(particle.outline);
+  out.fill();
+  return out;
+}
+
 void Particles::probability(const PointsView& places, VectorOut out) {
+  const std::optional<Lattice> lattice = Lattice::over(places);
   Eigen::VectorXd rates(places.rows());
-  unseen_.rates(places, rates);
-  if (std::optional<LatticeCounts> counts = LatticeCounts::over(places)) {
-    for (const Particle& particle : particles_) counts->count(particle.outline);
-    counts->counted(out);
+  unseen_.rates(places, lattice, rates);
+  if (lattice) {
+    if (!held_ || !(held_->lattice() == *lattice)) held_ = held(*lattice);
+    held_->count(out);
   } else {
     out.setZero();
     for (const Particle& particle : particles_) {
@@ -353,44 +369,53 @@ void Particles::probability(const PointsView& places, VectorOut out) {
 }
 
 void Particles::sample(const PointsView& places, int count, OutlineSample& out) const {
+  const auto words = static_cast<std::size_t>(count) / 64;
   out.count = count;
-  out.holds.resize(count / 64, places.rows());
-  std::optional<LatticeCounts> lattice = LatticeCounts::over(places);
-  if (!lattice) out.holds.setZero();
-  std::vector<std::uint64_t> edges;
-  Random random(touches_.size(), "sample");
-  const std::vector<const Outline*> outlines = some(count);
-  const std::vector<Outline> unseen = unseen_.draw(count, random);
-  Outline outline;
-  for (Eigen::Index word = 0; word < out.holds.rows(); ++word) {
-    // Where in a row of places each outline begins and ends.
-    if (lattice) edges.assign(lattice->edges(), 0);
-    for (std::size_t k = 0; k < 64; ++k) {
-      const std::size_t number = static_cast<std::size_t>(word) * 64 + k;
-      const Outline& known = *outlines[number];
-      outline = known;
-      for (const Piece& piece : unseen[number]) {
-        const auto meets = [&](const Piece& one) { return meet(one.form, piece.form); };
-        if (outline.size() < Outline::kMost && std::any_of(known.begin(), known.end(), meets)) outline.add(piece);
-      }
-      const std::uint64_t bit = std::uint64_t{1} << k;
-      if (lattice) {
-        lattice->for_each_edge(outline, [&](int at) { edges[static_cast<std::size_t>(at)] ^= bit; });
-        continue;
-      }
-      for (Eigen::Index i = 0; i < places.rows(); ++i) {
-        if (outline.contains(places(i, 0), places(i, 1))) out.holds(word, i) |= bit;
-      }
-    }
-    Eigen::Index place = 0;
-    const std::uint64_t* edge = edges.data();
-    for (int row = 0; lattice && row < lattice->rows(); ++row, ++edge) {
-      std::uint64_t held = 0;
-      for (int column = 0; column < lattice->columns(); ++column) out.holds(word, place++) = held ^= *edge++;
+  out.holds.resize(static_cast<Eigen::Index>(words), places.rows());
+  const std::optional<Lattice> lattice = Lattice::over(places);
+  out.to_find.resize(places.rows());
+  unseen_.to_find(places, lattice, out.to_find);
+  // Words of outlines, of as many as are full.
+  const auto word_of = [&](std::size_t word) { return word * (particles_.size() / 64) / words; };
+  const auto known = [&](std::size_t k) -> const Outline& { return particles_[64 * word_of(k / 64) + k % 64].outline; };
+  if (lattice) {
+    const bool asked = held_ && held_->lattice() == *lattice;
+    const std::optional<LatticeBits> now = asked ? std::nullopt : std::optional(held(*lattice));
+    for (std::size_t word = 0; word < words; ++word) {
+      (asked ? *held_ : *now).for_each_place(word_of(word), [&](Eigen::Index place, std::uint64_t bits) {
+        out.holds(static_cast<Eigen::Index>(word), place) = bits;
+      });
     }
   }
-  out.to_find.resize(places.rows());
-  unseen_.to_find(places, out.to_find);
+  const auto add = [&](std::size_t k, Eigen::Index place) {
+    out.holds(static_cast<Eigen::Index>(k / 64), place) |= std::uint64_t{1} << (k % 64);
+  };
+  const auto add_held = [&](std::size_t k, const auto& piece) {
+    for (Eigen::Index i = 0; i < places.rows(); ++i) {
+      if (piece.contains(places(i, 0), places(i, 1))) add(k, i);
+    }
+  };
+  if (!lattice) {
+    out.holds.setZero();
+    for (std::size_t k = 0; k < 64 * words; ++k) add_held(k, known(k));
+  }
+  Random random(touches_.size(), "sample");
+  const LatticeRuns* const runs = lattice ? unseen_.runs(*lattice) : nullptr;
+  for (const Unseen::Drawn& drawn : unseen_.draw(64 * words, random)) {
+    // What meets nothing that is known is another thing: to_find has it.
+    const Outline& outline = known(drawn.draw);
+    const Piece& piece = unseen_.piece(drawn.piece);
+    const auto meets = [&](const Piece& one) { return meet(one.form, piece.form); };
+    if (std::none_of(outline.begin(), outline.end(), meets)) continue;
+    if (!runs) {
+      add_held(drawn.draw, piece);
+      continue;
+    }
+    runs->for_each(drawn.piece, [&](const Lattice::Run& run) {
+      const int row = run.begin / (lattice->columns() + 1);
+      for (int at = run.begin - row; at < run.end - row; ++at) add(drawn.draw, at);
+    });
+  }
 }
 
 }  // namespace palpate::footprints

@@ -5,18 +5,20 @@
 
 #include "depths.hpp"
 #include "labels.hpp"
+#include "lattice.hpp"
 #include "proposals.hpp"
 #include "unseen.hpp"
 
 #include <palpate/footprint.hpp>
 #include <palpate/random.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace palpate::footprints {
 
 struct ParticleSettings {
-  int count = 600;
+  int count = 384;
   double mistaken = 0.01;  ///< probability that a touch of an object has the label of the desk
   double lies = 0.01;      ///< probability that a touch of the desk has the label of an object
   /// Standard deviation of the place of a touch, along x and y, metres, if there is any: half of the outlines believe
@@ -25,9 +27,11 @@ struct ParticleSettings {
   /// Probability, between two touches, that the objects are pushed; an outline has been so once at most.
   double pushes = 0.0;
   bool heights = true;  ///< whether heights tell pieces apart
-  /// Moves of each outline after a touch, over the share of outlines that its label leaves (the effective sample size:
-  /// Kong, Liu and Wong 1994): a label that nobody expected leaves many copies of few outlines, which have to part.
-  double moves = 16.0;
+  /// Moves after a touch, of each piece and each hole of an outline, and so many more over the odds that an outline is
+  /// left by its label (of the effective sample size: Kong, Liu and Wong 1994): a label that nobody expected leaves
+  /// many copies of few outlines, which have to part.
+  double moves = 2.5;
+  double moves_apart = 7.5;
   int most_moves = 200;
 };
 
@@ -52,7 +56,7 @@ class Particles {
   /// The probability that each of the places is on an object.
   void probability(const PointsView& places, VectorOut out);
 
-  /// `count` of the outlines, evenly among all, over the places, each with what may be there beside.
+  /// `count` of the outlines, whole words of 64 evenly among all, over the places, each with what may be there beside.
   void sample(const PointsView& places, int count, OutlineSample& out) const;
 
   /// The probability that the label of each touch so far is wrong, and no blur accounts for it.
@@ -84,18 +88,20 @@ class Particles {
   const std::vector<Particle>& particles() const { return particles_; }
 
  private:
-  /// So many of the outlines, evenly among all.
-  std::vector<const Outline*> some(int count) const;
+  /// What each outline holds of a lattice.
+  LatticeBits held(const Lattice& lattice) const;
   void resample(const std::vector<double>& weights, double sum);
   void find(std::size_t number, const Unseen::Holding& unseen, double something_new);
   void move(Particle& particle);
+  int moves(double left) const;
   bool weigh(Particle& particle, const Proposal& proposal, bool blurred);
   /// How deep the latest touch lies in its pieces.
   void look(Particle& particle) const;
   /// What the heights say for so many pieces with these rows of depths.
   double evidence(const LabelModel::Step* const* rows, int pieces);
   /// The touches as seen after a push.
-  const Places& seen_after(const Push& push);
+  const Places& seen_after(const Push& push) { return push ? carried_by(push) : places_; }
+  const Places& carried_by(const Push& push);
   /// Whether each piece holds a touch of an object.
   bool all_touched(const LabelModel::Step* const* rows, int pieces) const;
   const LabelModel& labels(bool blurred) const { return blurred ? blurred_ : exact_; }
@@ -108,6 +114,7 @@ class Particles {
   LabelModel exact_, blurred_;
   HeightModel heights_;
   Unseen unseen_;
+  std::optional<LatticeBits> held_;  ///< by each outline, of the lattice asked about since the latest touch
   long tried_ = 0;
   long moved_ = 0;
 

@@ -13,9 +13,9 @@ namespace palpate::footprints {
 namespace {
 
 // Greatest steps.
-constexpr double kShift = 0.07;   // metres
-constexpr double kTurn = 1.4;     // radians
-constexpr double kStretch = 0.9;  // of a logarithm
+constexpr double kShift = 0.05;   // metres
+constexpr double kTurn = 0.6;     // tangent of half an angle
+constexpr double kStretch = 0.3;  // see stretch()
 
 constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of a new piece from a wrong label
 
@@ -59,16 +59,23 @@ class Choice {
   double wish_ = 0.0;
 };
 
+// Both without a function of the library, and as probable as the way back, which has the other sign.
+void turn(Form& form, double tangent) {
+  const double square = tangent * tangent;
+  form.turn_by((1.0 - square) / (1.0 + square), 2.0 * tangent / (1.0 + square));
+}
+double stretch(double step) { return (1.0 + step) / (1.0 - step); }
+
 /// Moves a side and leaves the one across from it. Returns the correction: even steps in the length of a half axis are
 /// uneven ones in its logarithm.
-double move_side(Form& form, double scale, Random& random) {
-  const bool along = random.uniform() < 0.5;
+double move_side(Form& form, const Steps& steps) {
+  const bool along = steps.heads;
   double& half = along ? form.a : form.b;
   const double before = half;
-  const double change = 0.5 * kShift * scale * either_way(random);
+  const double change = 0.5 * kShift * steps.one;
   half += change;
   if (half <= 0.0) return 0.0;
-  const double side = random.uniform() < 0.5 ? change : -change;
+  const double side = steps.also_heads ? change : -change;
   form.x += side * (along ? form.cosine : -form.sine);
   form.y += side * (along ? form.sine : form.cosine);
   const double correction = before / half;
@@ -240,11 +247,11 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
   const double target = piece.hollow ? random.uniform() : 0.0;
   Form& form = target < 0.5 ? piece.form : piece.hole;
   const bool both = target > 0.8;
-  const double scale = some_scale(random);
+  const Steps steps(random);
   out.correction = 1.0;
   if (which < 0.38) {
-    const double dx = kShift * scale * either_way(random);
-    const double dy = kShift * scale * either_way(random);
+    const double dx = kShift * steps.one;
+    const double dy = kShift * steps.other;
     form.x += dx;
     form.y += dy;
     if (both) {
@@ -252,13 +259,13 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
       piece.form.y += dy;
     }
   } else if (which < 0.59) {
-    form.turn(kTurn * scale * either_way(random));
+    turn(form, kTurn * steps.one);
   } else if (which < 0.78) {
-    form.a *= std::exp(kStretch * scale * either_way(random));
-    form.b *= std::exp(kStretch * scale * either_way(random));
+    form.a *= stretch(kStretch * steps.one);
+    form.b *= stretch(kStretch * steps.other);
     form.order_axes();
   } else if (which < 0.965) {
-    out.correction = move_side(form, scale, random);
+    out.correction = move_side(form, steps);
   } else {
     change_family(form);
   }
@@ -280,17 +287,16 @@ void replace(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random&
 }
 
 // Shares of the moves that are not of a form. What leads there is proposed as often as what leads back.
-constexpr double kAddOrRemove = 0.06;  // each
+constexpr double kAddOrRemove = 0.03;  // each
 constexpr double kHoleOrFill = 0.04;
-constexpr double kSplitOrMerge = 0.02;
-constexpr double kReplace = 0.02;
+constexpr double kSplitOrMerge = 0.005;
+constexpr double kReplace = 0.01;
 constexpr double kOthers = 2.0 * (kAddOrRemove + kHoleOrFill + kSplitOrMerge) + kReplace;  // in sum
 
 }  // namespace
 
-void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
+void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, double which, Random& random) {
   using Kind = Proposal::Kind;
-  double which = random.uniform();
   if (which >= kOthers) {
     out.kind = Kind::change_form;
     const int touches = seen.places.size();

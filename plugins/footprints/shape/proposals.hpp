@@ -85,8 +85,9 @@ struct Proposal : State {
 /// a hole or fills it, splits a piece or merges two, or draws one anew. A piece is added where the prior would have it
 /// or, one time in two, about a touch of an object that no piece holds, a hole about one of the desk that the piece
 /// holds: there they may set a label right. Pieces near the latest touch are moved more often, as they know least of
-/// it. `out` has just begun, from a state by whose push the touches are `seen`.
-void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random);
+/// it. `out` has just begun, from a state by whose push the touches are `seen`. `which`: what it does, drawn evenly
+/// from [0, 1), where the caller has drawn anyway.
+void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, double which, Random& random);
 
 /// Two of the moves of propose(): a piece is split into two, or two that are near each other are merged.
 void propose_split(Proposal& out, const OutlinePrior& prior, Random& random);

@@ -64,10 +64,10 @@ void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double 
       out.push.before += static_cast<int>(random.index(2 * kFar + 1)) - kFar;
       if (out.push.before < 1 || out.push.before >= touches) return;
     } else {
-      const double scale = some_scale(random);
-      out.push.dx += 2.0 * kPushed * scale * either_way(random);
-      out.push.dy += 2.0 * kPushed * scale * either_way(random);
-      const double angle = from.angle() + 2.0 * kTurned * scale * either_way(random);
+      const Steps shift(random);
+      out.push.dx += 2.0 * kPushed * shift.one;
+      out.push.dy += 2.0 * kPushed * shift.other;
+      const double angle = from.angle() + 2.0 * kTurned * Steps(random).one;
       out.push.cosine = std::cos(angle);
       out.push.sine = std::sin(angle);
       if (stays_before) {

@@ -22,7 +22,7 @@ struct ShapeOptions : LaplaceOptions {
   double pushes = 0.0;
   bool heights = true;
   double contradictions = 4.0;
-  std::int64_t particles = 600;
+  std::int64_t particles = 384;
   void list(Fields& fields) override {
     fields.real(smallest, Field("smallest", "least width of a piece").in(Unit::metre).above(0));
     fields.real(largest, Field("largest", "greatest length of a piece").in(Unit::metre).above(0));

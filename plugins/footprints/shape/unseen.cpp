@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace palpate::footprints {
 namespace {
 
 constexpr int kPieces = 8192;
+constexpr float kNowhere = 1e6F;  // metres
 
 }  // namespace
 
@@ -36,17 +38,31 @@ std::size_t Unseen::Holding::draw(const std::vector<std::uint64_t>& reached, Ran
 
 const Piece& Unseen::Holding::draw(Random& random) const { return *pieces_[draw(reached_, random)]; }
 
+template <class Visit>
+void Unseen::for_each_near(const Target& place, double reach, const Visit& visit) const {
+  const auto x = static_cast<float>(place.x);
+  const auto y = static_cast<float>(place.y);
+  using Marks = Eigen::Array<bool, Eigen::Dynamic, 1>;
+  const Marks near = (xs_ - x).square() + (ys_ - y).square() <= (radii_ + static_cast<float>(reach)).square();
+  constexpr std::size_t kAtOnce = 8;  // most are not
+  static_assert(kPieces % kAtOnce == 0);
+  for (std::size_t from = 0; from < pieces_.size(); from += kAtOnce) {
+    std::uint64_t any;
+    std::memcpy(&any, near.data() + from, sizeof(any));
+    for (std::size_t i = from; any != 0 && i < from + kAtOnce; ++i) {
+      if (near(static_cast<Eigen::Index>(i))) visit(i);
+    }
+  }
+}
+
 Unseen::Holding Unseen::holding(const Target& place) const {
   Holding out;
   std::uint64_t sum = 0;
-  const auto x = static_cast<float>(place.x);
-  const auto y = static_cast<float>(place.y);
-  const Eigen::Array<bool, Eigen::Dynamic, 1> near = (xs_ - x).square() + (ys_ - y).square() <= radii_.square();
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (!near(static_cast<Eigen::Index>(i)) || weights_[i] == 0 || !pieces_[i].contains(place.x, place.y)) continue;
+  for_each_near(place, 0.0, [&](std::size_t i) {
+    if (!pieces_[i].contains(place.x, place.y)) return;
     out.pieces_.push_back(&pieces_[i]);
     out.reached_.push_back(sum += weights_[i]);
-  }
+  });
   out.rate_ = unit_ * static_cast<double>(sum);
   return out;
 }
@@ -54,53 +70,47 @@ Unseen::Holding Unseen::holding(const Target& place) const {
 void Unseen::change(std::size_t one, Weight to) {
   if (to == weights_[one]) return;
   weights_[one] = to;
+  if (to == 0) xs_(static_cast<Eigen::Index>(one)) = kNowhere;
   changed_.push_back(one);
 }
 
 void Unseen::add(const Touch& touch, const LabelModel& labels) {
   const double outside = labels.probability(LabelModel::kOutside, false);
-  const auto x = static_cast<float>(touch.place.x);
-  const auto y = static_cast<float>(touch.place.y);
-  const Eigen::Array<bool, Eigen::Dynamic, 1> near =
-      (xs_ - x).square() + (ys_ - y).square() <= (radii_ + static_cast<float>(labels.reach())).square();
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (!near(static_cast<Eigen::Index>(i)) || weights_[i] == 0) continue;
+  for_each_near(touch.place, labels.reach(), [&](std::size_t i) {
     const Piece& piece = pieces_[i];
     if (touch.on) {
       if (piece.contains(touch.place.x, touch.place.y)) change(i, 0);
-      continue;
+      return;
     }
     const double depth = piece.depth(touch.place.x, touch.place.y);
-    if (depth < -labels.reach()) continue;
+    if (depth < -labels.reach()) return;
     const double share = labels.probability(labels.step(depth), false) / outside;
     change(i, static_cast<Weight>(std::lround(weights_[i] * share)));
-  }
+  });
 }
 
-void Unseen::rates(const PointsView& places, VectorOut out) {
-  std::optional<LatticeCounts> lattice = LatticeCounts::over(places);
+void Unseen::rates(const PointsView& places, const std::optional<Lattice>& lattice, VectorOut out) {
   if (!lattice) {
     for (Eigen::Index i = 0; i < out.size(); ++i) out(i) = holding({places(i, 0), places(i, 1)}).rate();
     return;
   }
-  if (!counts_ || !counts_->same_places(*lattice)) {
-    counts_ = std::move(lattice);
+  if (!counts_ || !(counts_->lattice() == *lattice)) {
+    counts_.emplace(*lattice);
     std::fill(counted_.begin(), counted_.end(), 0);
     changed_.resize(pieces_.size());
     for (std::size_t i = 0; i < changed_.size(); ++i) changed_[i] = i;
-    runs_.clear();
-    first_run_.assign(1, 0);
+    runs_.emplace(*lattice);
     Outline outline;
     outline.add({});
     for (const Piece& piece : pieces_) {
       outline[0] = piece;
-      counts_->append_runs(outline, runs_);
-      first_run_.push_back(runs_.size());
+      runs_->append(outline);
     }
   }
   for (const std::size_t i : changed_) {
     if (weights_[i] == counted_[i]) continue;
-    add_runs(*counts_, i, static_cast<double>(weights_[i]) - counted_[i]);
+    const double more = static_cast<double>(weights_[i]) - counted_[i];
+    runs_->for_each(i, [&](const Lattice::Run& run) { counts_->add(run, more); });
     counted_[i] = weights_[i];
   }
   changed_.clear();
@@ -124,9 +134,8 @@ void Unseen::lie_apart_from(const std::vector<const Outline*>& known) {
   std::vector<std::uint8_t> met;
   std::vector<std::uint8_t> times;  // that each meets an outline
   for (const Outline* outline : known) {
-    met.clear();
-    for (const Piece& piece : *outline) forms_.mark_met(piece.form, met);
-    if (!met.empty()) Forms::count_met(met, times);
+    for (int i = 0; i < outline->size(); ++i) forms_.mark_met((*outline)[i].form, i > 0, met);
+    if (outline->size() > 0) Forms::count_met(met, times);
   }
   times.resize(std::max(times.size(), there_.size()), 0);
   const auto all = static_cast<float>(known.size());
@@ -141,13 +150,10 @@ double Unseen::apart(double size) const {
   return sum;
 }
 
-void Unseen::add_runs(LatticeCounts& counts, std::size_t one, double weight) const {
-  counts.add(runs_.data() + first_run_[one], runs_.data() + first_run_[one + 1], weight);
-}
-
-void Unseen::to_find(const PointsView& places, VectorOut out) const {
-  std::optional<LatticeCounts> counts = LatticeCounts::over(places);
-  const bool known = counts && counts_ && counts->same_places(*counts_);
+void Unseen::to_find(const PointsView& places, const std::optional<Lattice>& lattice, VectorOut out) const {
+  std::optional<LatticeCounts> counts;
+  if (lattice) counts.emplace(*lattice);
+  const LatticeRuns* const known = lattice ? runs(*lattice) : nullptr;
   out.setZero();
   Outline outline;
   outline.add({});
@@ -158,7 +164,7 @@ void Unseen::to_find(const PointsView& places, VectorOut out) const {
     const Piece& piece = pieces_[i];
     const double extent = kOneIn * expected(i) * static_cast<double>(apart_[i]) * piece.form.extent();
     if (known) {
-      add_runs(*counts, i, extent);
+      known->for_each(i, [&](const Lattice::Run& run) { counts->add(run, extent); });
       continue;
     }
     outline[0] = piece;
@@ -172,17 +178,17 @@ void Unseen::to_find(const PointsView& places, VectorOut out) const {
   out = out.cwiseMax(0.0);  // sums of both signs leave some rounding where there is nothing
 }
 
-std::vector<Outline> Unseen::draw(int count, Random& random) const {
-  std::vector<std::uint64_t> reached(pieces_.size());
+std::vector<Unseen::Drawn> Unseen::draw(std::size_t count, Random& random) const {
+  std::vector<std::uint64_t> reached;
+  reached.reserve(pieces_.size());
   std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) reached[i] = sum += weights_[i];
-  std::vector<Outline> out(static_cast<std::size_t>(count));
-  for (Outline& outline : out) {
-    // Poisson: as many as fit into the unit of time.
-    const auto pause = [&] { return -std::log(1.0 - random.uniform()); };
-    const double time = unit_ * static_cast<double>(sum);
-    for (double at = pause(); at < time && outline.size() < Outline::kMost; at += pause())
-      outline.add(pieces_[Holding::draw(reached, random)]);
+  for (const Weight weight : weights_) reached.push_back(sum += weight);
+  std::vector<Drawn> out;
+  // Poisson: as many as fit into a unit of time.
+  const double time = unit_ * static_cast<double>(sum);
+  const auto pause = [&] { return -std::log(1.0 - random.uniform()); };
+  for (std::size_t one = 0; one < count; ++one) {
+    for (double at = pause(); at < time; at += pause()) out.push_back({one, Holding::draw(reached, random)});
   }
   return out;
 }

@@ -9,7 +9,7 @@
 
 #include "forms.hpp"
 #include "labels.hpp"
-#include "lattice_counts.hpp"
+#include "lattice.hpp"
 #include "outline.hpp"
 
 #include <palpate/footprint.hpp>
@@ -46,8 +46,9 @@ class Unseen {
   /// There was a touch: of the desk, and `labels` say what that tells of a piece, or of an object.
   void add(const Touch& touch, const LabelModel& labels);
 
-  /// The rates at the places, M x 2 metres. Quick where they are the same lattice as before.
-  void rates(const PointsView& places, VectorOut out);
+  /// The rates at the places, M x 2 metres, and the lattice that they are, if any. Quick where it is the same as
+  /// before.
+  void rates(const PointsView& places, const std::optional<Lattice>& lattice, VectorOut out);
 
   /// Tells some of the outlines that what is known may have: what meets none of its pieces lies apart.
   void lie_apart_from(const std::vector<const Outline*>& known);
@@ -62,10 +63,20 @@ class Unseen {
   /// How many pieces at least `size` long, metres, are expected that lie apart.
   double apart(double size) const;
   /// The extent of what lies apart and holds a place, as expected at each of them, square metres.
-  void to_find(const PointsView& places, VectorOut out) const;
+  void to_find(const PointsView& places, const std::optional<Lattice>& lattice, VectorOut out) const;
 
-  /// `count` times what is there, as drawn.
-  std::vector<Outline> draw(int count, Random& random) const;
+  /// A piece, by its number, that is there in one of many draws.
+  struct Drawn {
+    std::size_t draw;
+    std::size_t piece;
+  };
+  /// What is there in each of so many draws, one after another.
+  std::vector<Drawn> draw(std::size_t count, Random& random) const;
+  const Piece& piece(std::size_t one) const { return pieces_[one]; }
+  /// What each of them holds of a lattice, where it is the one that rates() was asked about last; or none.
+  const LatticeRuns* runs(const Lattice& lattice) const {
+    return runs_ && runs_->lattice() == lattice ? &*runs_ : nullptr;
+  }
 
  private:
   // Whole numbers, of which sums are exact whatever their order: a run that goes on sums up otherwise.
@@ -74,18 +85,19 @@ class Unseen {
 
   double expected(std::size_t one) const { return unit_ * weights_[one]; }
   void change(std::size_t one, Weight to);
-  void add_runs(LatticeCounts& counts, std::size_t one, double weight) const;
+  /// Calls visit(one) for those that are there and no farther than `reach` from a place, and for some more.
+  template <class Visit>
+  void for_each_near(const Target& place, double reach, const Visit& visit) const;
 
   std::vector<Piece> pieces_;
   std::vector<Weight> weights_;
   std::vector<float> apart_;        ///< share of the outlines of what is known that each lies apart from
   std::vector<std::size_t> there_;  ///< most of those that are there, or may have been lately
   Forms forms_;                     ///< theirs
-  Eigen::ArrayXf xs_, ys_, radii_;  ///< of their forms, to see quickly which are near
+  Eigen::ArrayXf xs_, ys_, radii_;  ///< of their forms, to see quickly which are near: none that are gone
   double unit_;                     ///< what one in kWhole of a piece is expected to be there as often as
   std::optional<LatticeCounts> counts_;
-  std::vector<LatticeCounts::Run> runs_;  ///< of all pieces there, and where those of each begin
-  std::vector<std::size_t> first_run_;
+  std::optional<LatticeRuns> runs_;   ///< of all pieces there
   std::vector<Weight> counted_;       ///< what each piece counts for there
   std::vector<std::size_t> changed_;  ///< since then
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many outlines hold each place of a lattice.
+// What outlines hold of the places of a lattice.
 #pragma once
 
 #include "outline.hpp"
@@ -45,28 +45,6 @@ struct Axis {
   static int above(double t) { return t < 0.0 ? 0 : static_cast<int>(t) + 1; }
 };
 
-/// How often each of many bits was set.
-class BitCounts {
- public:
-  explicit BitCounts(std::size_t words) : words_(words) {}
-
-  /// Sets of bits, each of which counts for 2^digit.
-  void add(const std::uint64_t* bits, std::size_t digit = 0);
-  /// To be called before read().
-  void settle();
-  /// The counts of the 64 bits of a word.
-  void read(std::size_t word, std::uint64_t* out) const;
-
- private:
-  /// A binary digit of all counts, and what waits to be added to it: two are added at once, as that takes no longer.
-  struct Digit {
-    std::vector<std::uint64_t> sum, waiting;
-    bool waits = false;
-  };
-  std::size_t words_;
-  std::vector<Digit> digits_;
-};
-
 /// Where each row of what a form holds begins and ends.
 struct Ends {
   int* begins;
@@ -75,12 +53,11 @@ struct Ends {
 /// Sets in these rows the bits between the ends that lie in a word: of each row the one in its place.
 void set_bits(const Cells& rows, const Ends& ends, int word, std::uint64_t* bits);
 
-/// How many outlines hold each place of a lattice: where a row of them begins and ends is marked, and the marks are
-/// summed up in the end.
-class LatticeCounts {
+/// Places in rows, all in equal steps, and what outlines hold of them.
+class Lattice {
  public:
   /// None where the places are no lattice, row after row in equal steps up.
-  static std::optional<LatticeCounts> over(const PointsView& places) {
+  static std::optional<Lattice> over(const PointsView& places) {
     const auto count = static_cast<int>(places.rows());
     int columns = 1;
     while (columns < count && places(columns, 1) == places(0, 1)) ++columns;
@@ -98,108 +75,75 @@ class LatticeCounts {
           !((here.col(1) - y.at(row)).abs().maxCoeff() <= kLeast * y.step))
         return std::nullopt;
     }
-    return LatticeCounts(x, y);
+    return Lattice(x, y);
   }
 
-  /// Where a row of what an outline holds begins and ends, among the marks.
+  /// Of a row of places what lies from one on and before another, where rows have a place more than the lattice.
   struct Run {
     int begin;
     int end;
   };
 
-  void add(const Outline& outline, double weight) {
-    for_each_run(outline, [&](const Run& run) { mark(run, weight); });
-  }
-  /// The same in two steps, for what is added again and again.
-  void append_runs(const Outline& outline, std::vector<Run>& out) {
-    for_each_run(outline, [&](const Run& run) { out.push_back(run); });
-  }
-  void add(const Run* begin, const Run* end, double weight) {
-    for (const Run* run = begin; run != end; ++run) mark(*run, weight);
-  }
-
-  /// Calls visit(at) where in a row of places what the outline holds begins, and where it has ended: of rows that have
-  /// a place more than the lattice.
+  /// Calls visit(run) for all that the outline holds, each place once.
   template <class Visit>
-  void for_each_edge(const Outline& outline, const Visit& visit) {
+  void for_each_run(const Outline& outline, const Visit& visit) {
     if (outline.size() == 1 && !outline[0].hollow) {
       // As most are: what is cut of them is all there is.
       const Cells rows = cut(outline[0].form, 0);
       const Ends ends = ends_of(0);
       for (int row = rows.begin; row < rows.end; ++row) {
-        if (ends.begins[row] >= ends.ends[row]) continue;
-        visit(row * (x_.count + 1) + ends.begins[row]);
-        visit(row * (x_.count + 1) + ends.ends[row]);
+        const int first = row * (x_.count + 1);
+        if (ends.begins[row] < ends.ends[row]) visit(Run{first + ends.begins[row], first + ends.ends[row]});
       }
       return;
     }
     const Cells rows = hold(outline);
     for (int row = rows.begin; row < rows.end; ++row) {
       const int first = row * (x_.count + 1);
+      if (x_.count < 64) {
+        for (std::uint64_t held = held_[static_cast<std::size_t>(row)]; held != 0;) {
+          const std::uint64_t behind = held + (held & (~held + 1));  // the run's bits are carried into the one behind
+          visit(Run{first + __builtin_ctzll(held), first + __builtin_ctzll(behind)});
+          held &= behind;
+        }
+        continue;
+      }
+      int begin = -1;
+      const auto edge = [&](int at) {
+        if (begin >= 0) visit(Run{begin, at});
+        begin = begin < 0 ? at : -1;
+      };
       std::uint64_t before = 0;
       for (int word = 0; word < words_; ++word) {
         const std::uint64_t held = held_[index(row, word)];
         for (std::uint64_t edges = held ^ (held << 1U | before); edges != 0; edges &= edges - 1)
-          visit(first + word * 64 + __builtin_ctzll(edges));
+          edge(first + word * 64 + __builtin_ctzll(edges));
         before = held >> 63U;
       }
-      if (before != 0) visit(first + words_ * 64);
+      if (before != 0) edge(first + words_ * 64);
     }
   }
 
-  /// So many are the places where an edge may be.
-  std::size_t edges() const { return static_cast<std::size_t>(marks_.size()); }
-
-  /// One outline more is counted.
-  void count(const Outline& outline) {
-    hold(outline);
-    counts_.add(held_.data());
-  }
-  /// How many outlines that were counted hold each place.
-  void counted(VectorOut out) {
-    counts_.settle();
-    std::array<std::uint64_t, 64> counts;
-    for (int row = 0; row < y_.count; ++row) {
-      for (int word = 0; word < words_; ++word) {
-        counts_.read(index(row, word), counts.data());
-        const int first = word * 64;
-        for (int i = 0; i < std::min(64, x_.count - first); ++i)
-          out(row * x_.count + first + i) = static_cast<double>(counts[static_cast<std::size_t>(i)]);
-      }
-    }
-  }
+  /// So many are the places where a run may begin or end.
+  int edges() const { return (x_.count + 1) * y_.count; }
 
   int columns() const { return x_.count; }
   int rows() const { return y_.count; }
-  bool same_places(const LatticeCounts& other) const { return x_ == other.x_ && y_ == other.y_; }
-
-  void sum(VectorOut out) const {
-    for (int row = 0; row < y_.count; ++row) {
-      double count = 0.0;
-      for (int column = 0; column < x_.count; ++column) out(row * x_.count + column) = count += marks_(column, row);
-    }
-  }
+  bool operator==(const Lattice& other) const { return x_ == other.x_ && y_ == other.y_; }
 
  private:
   std::size_t index(int row, int word) const {
     return static_cast<std::size_t>(word) * static_cast<std::size_t>(y_.count) + static_cast<std::size_t>(row);
   }
 
-  LatticeCounts(const Axis& x, const Axis& y)
+  Lattice(const Axis& x, const Axis& y)
       : x_(x),
         y_(y),
-        marks_(Eigen::MatrixXd::Zero(x.count + 1, y.count)),
         begins_(static_cast<std::size_t>(2 * y.count)),
         ends_(begins_.size()),
         words_((x.count + 63) / 64),
         held_(static_cast<std::size_t>(words_ * y.count), 0),
-        of_piece_(static_cast<std::size_t>(2 * y.count)),
-        counts_(held_.size()) {}
-
-  void mark(const Run& run, double weight) {
-    marks_.data()[run.begin] += weight;
-    marks_.data()[run.end] -= weight;
-  }
+        of_piece_(static_cast<std::size_t>(2 * y.count)) {}
 
   /// Sets a bit for each place that the outline holds, and says in which rows there may be some.
   Cells hold(const Outline& outline) {
@@ -227,19 +171,6 @@ class LatticeCounts {
     return all;
   }
 
-  /// Calls visit(run) for all that the outline holds, each place once.
-  template <class Visit>
-  void for_each_run(const Outline& outline, const Visit& visit) {
-    int begin = -1;
-    for_each_edge(outline, [&](int at) {
-      if (begin < 0) {
-        begin = at;
-      } else {
-        visit(Run{std::exchange(begin, -1), at});
-      }
-    });
-  }
-
   /// The rows that a form may reach into, and, in the place for it, what it holds of them.
   Cells cut(const Form& form, std::size_t at) {
     const Cuts cuts = Cuts(form).scaled(x_.first, x_.step, y_.first, y_.step);
@@ -254,13 +185,107 @@ class LatticeCounts {
   }
 
   Axis x_, y_;
-  Eigen::MatrixXd marks_;
   std::vector<int> begins_, ends_;  ///< of the form that is looked at, and of its hole, in each row
   int words_;                       ///< of a row
   std::vector<std::uint64_t>
       held_;  ///< by the outline that is looked at: a bit for each place, word by word of all rows
   std::vector<std::uint64_t> of_piece_;  ///< and of its hole: one word of all rows
-  BitCounts counts_;
+};
+
+/// How often each place is held: where a row of what an outline holds begins and ends is marked, and the marks are
+/// summed up in the end.
+class LatticeCounts {
+ public:
+  explicit LatticeCounts(Lattice lattice)
+      : lattice_(std::move(lattice)), marks_(Eigen::MatrixXd::Zero(lattice_.columns() + 1, lattice_.rows())) {}
+
+  const Lattice& lattice() const { return lattice_; }
+  /// The outline counts for so much in each place that it holds.
+  void add(const Lattice::Run& run, double weight) {
+    marks_.data()[run.begin] += weight;
+    marks_.data()[run.end] -= weight;
+  }
+  void add(const Outline& outline, double weight) {
+    lattice_.for_each_run(outline, [&](const Lattice::Run& run) { add(run, weight); });
+  }
+  void sum(VectorOut out) const {
+    Eigen::Index place = 0;
+    for (int row = 0; row < lattice_.rows(); ++row) {
+      double count = 0.0;
+      for (int column = 0; column < lattice_.columns(); ++column) out(place++) = count += marks_(column, row);
+    }
+  }
+
+ private:
+  Lattice lattice_;
+  Eigen::MatrixXd marks_;
+};
+
+/// What each of many pieces holds of the places of one lattice: found once, asked for again and again.
+class LatticeRuns {
+ public:
+  using Run = Lattice::Run;
+
+  explicit LatticeRuns(Lattice lattice) : lattice_(std::move(lattice)) {}
+
+  void append(const Outline& outline) {
+    lattice_.for_each_run(outline, [this](const Run& run) { runs_.push_back(run); });
+    first_.push_back(runs_.size());
+  }
+  const Lattice& lattice() const { return lattice_; }
+
+  /// Calls visit(run) for all that a piece holds, each place once; pieces by their number.
+  template <class Visit>
+  void for_each(std::size_t piece, const Visit& visit) const {
+    for (std::size_t i = first_[piece]; i < first_[piece + 1]; ++i) visit(runs_[i]);
+  }
+
+ private:
+  Lattice lattice_;
+  std::vector<Run> runs_;
+  std::vector<std::size_t> first_{0};
+};
+
+/// Which of many outlines hold each place of a lattice: a bit for each.
+class LatticeBits {
+ public:
+  LatticeBits(Lattice lattice, std::size_t outlines)
+      : lattice_(std::move(lattice)),
+        words_((outlines + 63) / 64),
+        bits_(words_ * static_cast<std::size_t>(lattice_.edges()), 0) {}
+
+  /// The next outline, of as many as there are.
+  void append(const Outline& outline) {
+    const std::uint64_t bit = std::uint64_t{1} << (size_ % 64);
+    std::uint64_t* const at = bits_.data() + size_ / 64;
+    lattice_.for_each_run(outline, [&](const Lattice::Run& run) {
+      at[words_ * static_cast<std::size_t>(run.begin)] ^= bit;
+      at[words_ * static_cast<std::size_t>(run.end)] ^= bit;
+    });
+    ++size_;
+  }
+  /// To be called after the last one.
+  void fill();
+
+  const Lattice& lattice() const { return lattice_; }
+  /// How many outlines hold each place.
+  void count(VectorOut out) const;
+  /// Which of 64 outlines hold each place: those from 64 * word on.
+  template <class Visit>
+  void for_each_place(std::size_t word, const Visit& visit) const {
+    const std::uint64_t* at = bits_.data() + word;
+    Eigen::Index place = 0;
+    for (int row = 0; row < lattice_.rows(); ++row, at += words_) {
+      for (int column = 0; column < lattice_.columns(); ++column, at += words_) visit(place++, *at);
+    }
+  }
+
+ private:
+  Lattice lattice_;
+  std::size_t words_;
+  std::size_t size_ = 0;
+  std::vector<std::uint64_t>
+      bits_;  ///< words x places, of rows that have a place more; where each begins or ends, first
 };
 
 }  // namespace palpate::footprints

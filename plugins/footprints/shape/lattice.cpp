@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lattice_counts.hpp"
+#include "lattice.hpp"
 
 #include "clones.hpp"
 
@@ -22,49 +22,34 @@ PALPATE_CLONES void set_bits(const Cells& rows, const Ends& ends, int first, std
     bits[row] |= from(begins[row], first, all) & ~from(behind[row], first, all);
 }
 
-/// Adds two numbers of one digit each to the sum, and leaves what is carried in the first of them.
-PALPATE_CLONES void add_both(std::size_t words, std::uint64_t* __restrict sum, std::uint64_t* __restrict one,
-                             const std::uint64_t* __restrict other) {
-  for (std::size_t i = 0; i < words; ++i) {
-    const std::uint64_t differ = sum[i] ^ one[i];
-    one[i] = (sum[i] & one[i]) | (differ & other[i]);
-    sum[i] = differ ^ other[i];
+PALPATE_CLONES void fill_rows(int rows, std::size_t columns, std::size_t words, std::uint64_t* bits) {
+  for (int row = 0; row < rows; ++row, bits += words * (columns + 1)) {
+    for (std::size_t i = words; i < words * columns; ++i) bits[i] ^= bits[i - words];
   }
 }
 
-PALPATE_CLONES void add_digit(std::uint64_t bits, std::uint64_t digit, std::uint64_t* __restrict out) {
-  for (std::uint64_t i = 0; i < 64; ++i) out[i] += (bits >> i & 1U) << digit;
+PALPATE_CLONES void count_bits(std::size_t places, std::size_t words, const std::uint64_t* bits,
+                               double* __restrict out) {
+  for (std::size_t place = 0; place < places; ++place) {
+    int count = 0;
+    for (std::size_t word = 0; word < words; ++word) count += __builtin_popcountll(*bits++);
+    out[place] = count;
+  }
 }
 
 }  // namespace
 
-void BitCounts::add(const std::uint64_t* bits, std::size_t digit) {
-  for (;; ++digit) {
-    if (digit == digits_.size()) {
-      if (std::all_of(bits, bits + words_, [](std::uint64_t word) { return word == 0; })) return;
-      digits_.push_back({std::vector<std::uint64_t>(words_, 0), std::vector<std::uint64_t>(words_, 0)});
-    }
-    Digit& one = digits_[digit];
-    one.waits = !one.waits;
-    if (one.waits) {
-      std::copy_n(bits, words_, one.waiting.begin());
-      return;
-    }
-    add_both(words_, one.sum.data(), one.waiting.data(), bits);
-    bits = one.waiting.data();
-  }
+void LatticeBits::fill() {
+  fill_rows(lattice_.rows(), static_cast<std::size_t>(lattice_.columns()), words_, bits_.data());
 }
 
-void BitCounts::settle() {
-  const std::vector<std::uint64_t> none(words_, 0);
-  for (std::size_t digit = 0; digit < digits_.size(); ++digit) {
-    if (digits_[digit].waits) add(none.data(), digit);
+void LatticeBits::count(VectorOut out) const {
+  const auto columns = static_cast<std::size_t>(lattice_.columns());
+  for (int row = 0; row < lattice_.rows(); ++row) {
+    const std::size_t first = static_cast<std::size_t>(row) * (columns + 1) * words_;
+    count_bits(columns, words_, bits_.data() + first,
+               out.data() + static_cast<std::ptrdiff_t>(row) * lattice_.columns());
   }
-}
-
-void BitCounts::read(std::size_t word, std::uint64_t* out) const {
-  std::fill_n(out, 64, 0);
-  for (std::size_t digit = 0; digit < digits_.size(); ++digit) add_digit(digits_[digit].sum[word], digit, out);
 }
 
 void set_bits(const Cells& rows, const Ends& ends, int word, std::uint64_t* bits) {
