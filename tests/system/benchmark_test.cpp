@@ -51,11 +51,14 @@ TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
   const std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
   ASSERT_EQ(rows.size(), 8U);
   double covered = 0.0;
+  double error = 0.0;
   for (const Cells& row : rows) {
     EXPECT_EQ(row.at("found"), "true");
     const bool ideal = row.at("scene.effects") == "none";
     if (ideal) {
-      EXPECT_LT(std::stod(row.at("rmse_m")), 0.003);
+      // Of 100 seeds the largest is 4.6 mm, and one in five of object I is above 3.
+      EXPECT_LT(std::stod(row.at("rmse_m")), 0.006);
+      error += std::stod(row.at("rmse_m")) / 4.0;
       EXPECT_GT(std::stod(row.at("footprint_iou")), 0.95);
       EXPECT_GT(std::stod(row.at("coverage_95")), 0.95);
     } else {
@@ -64,6 +67,7 @@ TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
     }
   }
   EXPECT_GT(covered, 0.75);
+  EXPECT_LT(error, 0.003);
 }
 
 TEST_F(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {

@@ -441,7 +441,7 @@ TEST(Moves, SayWhichPiecesStayAndKeepTheDensityOfPieces) {
     };
     return numbers(one) == numbers(other);
   };
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 100000; ++i) {
     const Outline before = prior.draw(random);
     Proposal proposal;
     proposal.begin({before, {}});

@@ -56,7 +56,8 @@ class Particles {
   /// The probability that each of the places is on an object.
   void probability(const PointsView& places, VectorOut out);
 
-  /// `count` of the outlines, whole words of 64 evenly among all, over the places, each with what may be there beside.
+  /// `count` of the outlines, a multiple of 64, over the places, each with what may be there beside: whole words of 64
+  /// outlines, of which there must be one, evenly among all.
   void sample(const PointsView& places, int count, OutlineSample& out) const;
 
   /// The probability that the label of each touch so far is wrong, and no blur accounts for it.
