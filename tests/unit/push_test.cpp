@@ -156,8 +156,8 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
     }
   }
   EXPECT_GT(pushed, 0.2) << "the labels say something";
-  // Two runs differ by 0.01 or less.
-  EXPECT_NEAR(found, pushed, 0.03);
+  // Two runs differ by 0.01 or less; of the draws a quarter as many are off by 0.02.
+  EXPECT_NEAR(found, pushed, test::brief() ? 0.05 : 0.03);
   EXPECT_LT((found_since - since).cwiseAbs().maxCoeff(), 0.05)
       << found_since.transpose() << " for " << since.transpose();
 }
