@@ -56,9 +56,10 @@ TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
     EXPECT_EQ(row.at("found"), "true");
     const bool ideal = row.at("scene.effects") == "none";
     if (ideal) {
-      // Of 100 seeds the largest is 4.6 mm, and one in five of object I is above 3.
-      EXPECT_LT(std::stod(row.at("rmse_m")), 0.006);
-      error += std::stod(row.at("rmse_m")) / 4.0;
+      // Of 100 seeds the largest are 4.6 mm on object I, one in five above 3 mm, and 1.7 mm on the cone.
+      const double rmse = std::stod(row.at("rmse_m"));
+      EXPECT_LT(rmse, row.at("scene") == "object_i" ? 0.005 : 0.002);
+      error += rmse / 4.0;
       EXPECT_GT(std::stod(row.at("footprint_iou")), 0.95);
       EXPECT_GT(std::stod(row.at("coverage_95")), 0.95);
     } else {
@@ -67,7 +68,7 @@ TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
     }
   }
   EXPECT_GT(covered, 0.75);
-  EXPECT_LT(error, 0.003);
+  EXPECT_LT(error, 0.0025);
 }
 
 TEST_F(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {

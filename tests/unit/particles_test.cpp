@@ -52,7 +52,8 @@ TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTh
   touches.insert(touches.begin() + 2, test::touch_at(0.115, 0.115, true));
   for (const Touch& touch : touches) {
     belief.add(touch);
-    for (const auto& [columns, rows] : {std::pair{31, 31}, {31, 7}, {63, 5}, {64, 5}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
+    for (const auto& [columns, rows] :
+         {std::pair{31, 31}, {31, 7}, {63, 5}, {64, 5}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
       const Points places = test::lattice(columns, rows);
       Eigen::VectorXd inside = Eigen::VectorXd::Zero(places.rows());
       belief.probability(places, inside);
@@ -216,6 +217,7 @@ TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
     const std::vector<Touch> made = test::disc_touches(25);
     for (const Touch& touch : made) belief.add(touch);
     int pieces = 0;
+    int beside = 0;
     for (const Particle& one : belief.particles()) {
       std::vector<Touch> touches = made;
       for (int i = 0; i < one.push.before; ++i) {
@@ -235,9 +237,10 @@ TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
         ASSERT_EQ(one.depths.holders(i, one.outline.size()), holders);
         const LabelModel::Step step =
             !one.blurred ? (holders != 0 ? LabelModel::kInside : LabelModel::kOutside) : labels.step(deepest);
-        // Single precision may take it for the step beside it.
+        // Single precision may take it for the step beside it, once in some thousand.
         const LabelModel::Step kept = one.depths.deepest()[i];
         ASSERT_LE(std::abs(kept - step), one.blurred ? 1 : 0);
+        beside += kept != step ? 1 : 0;
         loss += labels.loss(kept, touches[i].on);
       }
       // Summed up over some hundred moves.
@@ -248,6 +251,7 @@ TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
       }
       pieces += one.outline.size();
     }
+    EXPECT_LE(beside, 7) << "of 7500";
     EXPECT_DOUBLE_EQ(belief.mean_pieces(), pieces / 300.0);
   }
 }

@@ -66,17 +66,6 @@ PALPATE_INLINE void to_bytes(const Bits8& numbers, LabelModel::Step* out) {
   std::memcpy(out, &word, sizeof(word));
 }
 
-/// A form, as places are compared with it.
-struct SingleForm {
-  bool box;
-  float x, y, a, b, cosine, sine;
-};
-PALPATE_INLINE SingleForm single(const Form& form) {
-  return {form.family == Form::Family::box, static_cast<float>(form.x), static_cast<float>(form.y),
-          static_cast<float>(form.a),       static_cast<float>(form.b), static_cast<float>(form.cosine),
-          static_cast<float>(form.sine)};
-}
-
 /// From the centre, along the axes.
 PALPATE_INLINE void in_axes(const SingleForm& form, const Places8& x, const Places8& y, Places8& u, Places8& v) {
   const Places8 dx = x - form.x;
@@ -133,7 +122,7 @@ PALPATE_INLINE void depths_in(const SingleForm& form, const Places8& x, const Pl
   out = slope > 0.0F ? out : centre;
 }
 
-/// And a piece.
+/// A piece, as places are compared with it.
 struct SinglePiece {
   SingleForm form, hole;
   bool hollow;

@@ -68,6 +68,17 @@ struct Form {
   }
 };
 
+/// A form in single precision, as many others or many places at once are compared with it.
+struct SingleForm {
+  bool box;
+  float x, y, a, b, cosine, sine;
+};
+inline SingleForm single(const Form& form) {
+  return {form.family == Form::Family::box, static_cast<float>(form.x), static_cast<float>(form.y),
+          static_cast<float>(form.a),       static_cast<float>(form.b), static_cast<float>(form.cosine),
+          static_cast<float>(form.sine)};
+}
+
 /// Whether none of the lines along an axis of one, or across the way from one to the other, has them on either side.
 bool no_line_between(const Form& one, const Form& other);
 

@@ -17,11 +17,8 @@ PALPATE_CLONES void mark(const Form& other, const float* __restrict xs, const fl
                          const float* __restrict as, const float* __restrict bs, const float* __restrict cosines,
                          const float* __restrict sines, const float* __restrict ellipses, std::size_t count,
                          std::uint8_t keeps, std::uint8_t* __restrict met) {
-  const struct {
-    float x, y, a, b, cosine, sine;
-  } one{static_cast<float>(other.x), static_cast<float>(other.y),      static_cast<float>(other.a),
-        static_cast<float>(other.b), static_cast<float>(other.cosine), static_cast<float>(other.sine)};
-  const float ellipse = other.family == Form::Family::ellipse ? 1.0F : 0.0F;
+  const SingleForm one = single(other);
+  const float ellipse = one.box ? 0.0F : 1.0F;
   for (std::size_t from = 0; from < count; from += Forms::kRound) {
     float within[Forms::kRound];
     for (std::size_t k = 0; k < Forms::kRound; ++k) {
@@ -69,13 +66,14 @@ void Forms::add(const Form& form) {
   if (count_ == x_.size()) {
     for (auto* numbers : {&x_, &y_, &a_, &b_, &cosine_, &sine_, &ellipse_}) numbers->resize(count_ + kRound, 0.0F);
   }
-  x_[count_] = static_cast<float>(form.x);
-  y_[count_] = static_cast<float>(form.y);
-  a_[count_] = static_cast<float>(form.a);
-  b_[count_] = static_cast<float>(form.b);
-  cosine_[count_] = static_cast<float>(form.cosine);
-  sine_[count_] = static_cast<float>(form.sine);
-  ellipse_[count_++] = form.family == Form::Family::ellipse ? 1.0F : 0.0F;
+  const SingleForm one = single(form);
+  x_[count_] = one.x;
+  y_[count_] = one.y;
+  a_[count_] = one.a;
+  b_[count_] = one.b;
+  cosine_[count_] = one.cosine;
+  sine_[count_] = one.sine;
+  ellipse_[count_++] = one.box ? 0.0F : 1.0F;
 }
 
 void Forms::mark_met(const Form& other, bool too, std::vector<std::uint8_t>& met) const {
