@@ -3,20 +3,27 @@
 // weight process. Its prior mean and its clipping are options of that process: `weight: {prior_mean, clip}`.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
+#include <palpate/simd.hpp>
 
 namespace palpate::acquisitions {
 
 class Weighted final : public Acquisition {
  public:
   using Options = NoOptions;
-  Weighted(const Options&, const Context&) {}
+  Weighted(const Options&, const Context& context) : lanes_(context.lanes) {}
 
   Quantities reads() const override { return Quantity::uncertainty | Quantity::weight; }
   void score(const Belief& belief, VectorOut out) const override {
-    out = belief.uncertainty().cwiseProduct(belief.weight());
+    simd::for_each(lanes_, out.size(),
+                   [to = out.data(), u = belief.uncertainty().data(), w = belief.weight().data()](std::ptrdiff_t i) {
+                     to[i] = u[i] * w[i];
+                   });
   }
   /// u is 1 before any tap and w is a probability in the model's mind.
   double prior_scale() const override { return 1.0; }
+
+ private:
+  simd::Lanes lanes_;
 };
 
 PALPATE_PLUGIN(Acquisition, Weighted, "weighted",

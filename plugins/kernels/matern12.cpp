@@ -7,7 +7,7 @@ namespace palpate::kernels {
 struct Matern12Shape : PlainShape {
   using PlainShape::PlainShape;
 
-  PALPATE_INLINE double value(double r2) const { return simd::exp(-std::sqrt(r2)); }
+  PALPATE_INLINE double value(double r2) const { return simd::decay(std::sqrt(r2)); }
   PALPATE_INLINE double slope(double r2, double& k) const {
     k = value(r2);
     // At r = 0 the slope by the length scale, g r^2, is 0; the bound keeps g finite there.

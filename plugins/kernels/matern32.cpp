@@ -10,17 +10,17 @@ struct Matern32Shape : PlainShape {
 
   PALPATE_INLINE double value(double r2) const {
     const double s = std::sqrt(3.0 * r2);
-    return (1.0 + s) * simd::exp(-s);
+    return (1.0 + s) * simd::decay(s);
   }
   PALPATE_INLINE double slope(double r2, double& k) const {
     const double s = std::sqrt(3.0 * r2);
-    const double falling = simd::exp(-s);
+    const double falling = simd::decay(s);
     k = (1.0 + s) * falling;
     return 3.0 * falling;
   }
   double bend(double r2) const {
     const double s = std::sqrt(3.0 * r2);
-    return 3.0 * (1.0 - s) * simd::exp(-s);
+    return 3.0 * (1.0 - s) * simd::decay(s);
   }
 };
 

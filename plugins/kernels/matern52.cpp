@@ -10,17 +10,17 @@ struct Matern52Shape : PlainShape {
 
   PALPATE_INLINE double value(double r2) const {
     const double s = std::sqrt(5.0 * r2);
-    return (1.0 + s + s * s / 3.0) * simd::exp(-s);
+    return (1.0 + s + s * s / 3.0) * simd::decay(s);
   }
   PALPATE_INLINE double slope(double r2, double& k) const {
     const double s = std::sqrt(5.0 * r2);
-    const double falling = simd::exp(-s);
+    const double falling = simd::decay(s);
     k = (1.0 + s + s * s / 3.0) * falling;
     return (5.0 / 3.0) * (1.0 + s) * falling;
   }
   double bend(double r2) const {
     const double s = std::sqrt(5.0 * r2);
-    return (5.0 / 3.0) * (1.0 + s - s * s) * simd::exp(-s);
+    return (5.0 / 3.0) * (1.0 + s - s * s) * simd::decay(s);
   }
 };
 

@@ -9,7 +9,7 @@ struct RbfShape : PlainShape {
   static constexpr bool kSeparable = true;
   static constexpr bool kSlopes = true;
 
-  PALPATE_INLINE double value(double r2) const { return simd::exp(-0.5 * r2); }
+  PALPATE_INLINE double value(double r2) const { return simd::decay(0.5 * r2); }
   PALPATE_INLINE double slope(double r2, double& k) const { return k = value(r2); }
   double bend(double r2) const { return (1.0 - r2) * value(r2); }
 };

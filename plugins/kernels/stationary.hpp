@@ -60,9 +60,13 @@ class Stationary final : public Kernel {
         per_axis_(options.length_scale_y.has_value()) {}
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
+    // Two loops: one would be a chain of instructions too long for a processor to work on many of them at once.
+    const Columns to(out);
     simd::for_each(lanes_, a.rows(), b.rows(),
-                   [x = Scaled(a.col(0), b.col(0), along_x_), y = Scaled(a.col(1), b.col(1), along_y_), shape = shape_,
-                    to = Columns(out)](Eigen::Index i, Eigen::Index j) { to(i, j) = shape.value(x(i, j) + y(i, j)); });
+                   [to, x = Scaled(a.col(0), b.col(0), along_x_), y = Scaled(a.col(1), b.col(1), along_y_)](
+                       Eigen::Index i, Eigen::Index j) { to(i, j) = x(i, j) + y(i, j); });
+    simd::for_each(lanes_, a.rows(), b.rows(),
+                   [to, shape = shape_](Eigen::Index i, Eigen::Index j) { to(i, j) = shape.value(to(i, j)); });
   }
 
   void variance(const PointsView& a, VectorOut out) const override { out.head(a.rows()).setOnes(); }

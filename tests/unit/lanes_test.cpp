@@ -57,6 +57,22 @@ TEST_P(EveryLanes, TakeExponentialsBeyondEveryBound) {
   EXPECT_TRUE(std::isnan(out[9]));
 }
 
+TEST_P(EveryLanes, FallByTheSameNumberAsTheExponential) {
+  std::vector<double> in{0.0,   5e-324, 1e-17, 707.999,  708.0, std::nextafter(708.0, 709.0),
+                         709.0, 1e6,    1e300, kInfinity};
+  for (int i = 0; i < 100000; ++i) in.push_back(0.00713 * i);
+  std::vector<double> negative(in.size());
+  for (std::size_t i = 0; i < in.size(); ++i) negative[i] = -in[i];
+  std::vector<double> out(in.size());
+  for_each(GetParam(), static_cast<std::ptrdiff_t>(in.size()),
+           [from = in.data(), to = out.data()](std::ptrdiff_t i) { to[i] = decay(from[i]); });
+  EXPECT_EQ(out, exp_of(negative));
+  const double nan = std::nan("");
+  double fallen = 0.0;
+  for_each(GetParam(), 1, [nan, to = &fallen](std::ptrdiff_t) { *to = decay(nan); });
+  EXPECT_TRUE(std::isnan(fallen));
+}
+
 TEST_P(EveryLanes, ChooseTheSmallerTheLargerAndTheOther) {
   const double nan = std::nan("");
   const std::vector<double> a{1.0, -1.0, 0.0, kInfinity, -kInfinity, nan, 2.0, 5e-324, 1.0};

@@ -127,10 +127,12 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
   for (const int depth : {0, 1, 7, 8, 9, 30}) {
     Lines rows = drawn((static_cast<std::size_t>(depth) + 1) * kPiece);
     const Lines factor = drawn(static_cast<std::size_t>(depth) + 1);
+    const Lines covariance = drawn(kPiece);
+    const Eigen::Map<const Eigen::VectorXd> k(covariance.data(), kPiece);
     using Rows = Eigen::Matrix<double, kPiece, Eigen::Dynamic>;
     const Rows all = Eigen::Map<const Rows>(rows.data(), kPiece, depth + 1);
     const Eigen::Map<const Eigen::VectorXd> l(factor.data(), depth);
-    const Eigen::VectorXd v = (all.col(depth) - all.leftCols(depth) * l) / 1.75;
+    const Eigen::VectorXd v = (k - all.leftCols(depth) * l) / 1.75;
     Lines mean = drawn(kPiece);
     Lines variance = drawn(kPiece);
     const Eigen::VectorXd mean_before = Eigen::Map<Eigen::VectorXd>(mean.data(), kPiece);
@@ -140,7 +142,7 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
     update.coefficient[0] = 0.5;
     update.mean[0] = mean.data();
     update.variance = variance.data();
-    table().absorb_dense({rows.data(), factor.data(), depth, 1.75}, update);
+    table().absorb_dense({rows.data(), covariance.data(), factor.data(), depth, 1.75}, update);
     const auto near = [&](const double* values, const Eigen::VectorXd& expected) {
       return (Eigen::Map<const Eigen::VectorXd>(values, kPiece) - expected).cwiseAbs().maxCoeff() < 1e-14;
     };

@@ -60,15 +60,15 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   return design;
 }
 
-/// Visits the allowed candidates, in their order, whose score is worth it, which no lower one then is: by blocks, of
-/// which most have none.
+/// Visits the allowed candidates whose score is worth it, which by then a lower one at a later place is not: by blocks,
+/// of each thousand or two the highest first, as there most are not worth a look after that.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const simd::Table& loops, const Worth& worth,
                  const Visit& visit) {
   constexpr Eigen::Index kBlock = simd::kScores;
   const auto look = [&](Eigen::Index begin, Eigen::Index end) {
     for (Eigen::Index i = begin; i < end; ++i) {
-      if (worth(scores(i)) && allowed(i)) visit(static_cast<int>(i));
+      if (worth(scores(i), static_cast<int>(i)) && allowed(i)) visit(static_cast<int>(i));
     }
   };
   std::array<double, 32> highest;
@@ -76,8 +76,14 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const si
   for (Eigen::Index first = 0; first < blocks; first += static_cast<Eigen::Index>(highest.size())) {
     const Eigen::Index count = std::min(static_cast<Eigen::Index>(highest.size()), blocks - first);
     loops.highest(scores.data() + first * kBlock, static_cast<int>(count), highest.data());
+    const auto look_at = [&](Eigen::Index block) {
+      const Eigen::Index begin = (first + block) * kBlock;
+      if (worth(highest[static_cast<std::size_t>(block)], static_cast<int>(begin))) look(begin, begin + kBlock);
+    };
+    const Eigen::Index top = std::max_element(highest.begin(), highest.begin() + count) - highest.begin();
+    look_at(top);
     for (Eigen::Index i = 0; i < count; ++i) {
-      if (worth(highest[static_cast<std::size_t>(i)])) look((first + i) * kBlock, (first + i + 1) * kBlock);
+      if (i != top) look_at(i);
     }
   }
   look(blocks * kBlock, scores.size());
@@ -112,40 +118,45 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
 
 Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance,
                const simd::Table& loops) {
-  constexpr double kNone = -std::numeric_limits<double>::infinity();
-  const auto score = [&](int candidate) -> double {
-    if (candidate < 0) return kNone;
-    return scores(candidate);
+  struct One {
+    int candidate = -1;
+    double score = -std::numeric_limits<double>::infinity();
+    bool before(const One& other) const {
+      return score > other.score || (score == other.score && candidate < other.candidate);
+    }
   };
-  int best = -1;  // of equals the first
-  int second = -1;
-  double to_beat = kNone;  // the score of the second
+  One best;  // of equals the first
+  One second;
   for_allowed(
-      scores, allowed, loops, [&](double one) { return one > to_beat; },
+      scores, allowed, loops,
+      [&](double score, int i) {
+        return One{i, score}.before(second);
+      },
       [&](int i) {
-        second = score(i) > score(best) ? std::exchange(best, i) : i;
-        to_beat = score(second);
+        second = {i, scores(i)};
+        if (second.before(best)) std::swap(best, second);
       });
   Pick out;
-  if (best < 0) return out;
-  out.candidate = best;
+  if (best.candidate < 0) return out;
+  out.candidate = best.candidate;
   out.ties = 1;
-  const double threshold = score(best) - tolerance * (std::abs(score(best)) + scale);
-  const bool tied = second >= 0 && score(second) >= threshold;
+  const double threshold = best.score - tolerance * (std::abs(best.score) + scale);
+  const bool tied = second.candidate >= 0 && second.score >= threshold;
   if (tied) {
-    out.candidate = -1;
     out.ties = 0;
     for_allowed(
-        scores, allowed, loops, [&](double one) { return one >= threshold; },
+        scores, allowed, loops, [&](double score, int) { return score >= threshold; },
         [&](int i) {
-          if (out.ties++ == 0) out.candidate = i;
+          ++out.ties;
+          out.candidate = std::min(out.candidate, i);
         });
   }
   // The second best stays the runner-up, unless it is the one that is chosen: then the best is.
-  out.runner_up = out.candidate == best ? second : best;
-  out.score = score(out.candidate);
-  if (out.runner_up >= 0) out.runner_up_score = score(out.runner_up);
-  if (score(best) <= 0.0) {
+  const One& other = out.candidate == best.candidate ? second : best;
+  out.score = scores(out.candidate);
+  out.runner_up = other.candidate;
+  if (other.candidate >= 0) out.runner_up_score = other.score;
+  if (best.score <= 0.0) {
     out.flat = "no score is positive";
   } else if (tied && !any_allowed(scores, allowed, [&](double one) { return one < threshold; })) {
     out.flat = "every score is equal";

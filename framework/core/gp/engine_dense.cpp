@@ -7,11 +7,16 @@ namespace {
 /// Rows are reserved up to so many numbers (1 GiB), of which only those that are used are paid for.
 constexpr double kMostReserved = 1.0 * (1 << 27);
 
+/// Pieces for which the kernel is asked at once: a call costs what ten candidates do.
+constexpr int kTogether = 4;
+
 class Dense final : public Engine {
  public:
   Dense(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
       : Engine("dense", machine, kernel, candidates, Tiling::pieces(candidates.size())),
-        rows_(maps_.tiling().strips() * simd::kPiece, simd::kPiece, simd::kPiece) {}
+        rows_(maps_.tiling().strips() * simd::kPiece, simd::kPiece, simd::kPiece) {
+    for (int i = 0; i < machine.workers->threads(); ++i) covariances_.emplace_back(kTogether * simd::kPiece);
+  }
 
   void reserve(int rows) override {
     if (static_cast<double>(rows) * candidates_.size() <= kMostReserved) rows_.reserve(rows);
@@ -21,21 +26,28 @@ class Dense final : public Engine {
   void absorb(const FactorRow& row) override {
     const int depth = rows_.rows();
     rows_.extend();
-    machine_.workers->for_each(maps_.tiling().strips(), [&](int piece, int) {
+    const int pieces = maps_.tiling().strips();
+    machine_.workers->for_each((pieces + kTogether - 1) / kTogether, [&](int group, int worker) {
+      double* covariance = covariances_[static_cast<std::size_t>(worker)].data();
+      const int piece = group * kTogether;
       const Eigen::Index first = static_cast<Eigen::Index>(piece) * simd::kPiece;
-      const Eigen::Index count = std::min<Eigen::Index>(simd::kPiece, candidates_.size() - first);
-      Eigen::Map<Eigen::VectorXd> own(rows_.row(piece, depth), simd::kPiece);
-      kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1), own.head(count));
-      own.tail(simd::kPiece - count).setZero();
-      machine_.loops->absorb_dense({rows_.panel(piece), row.factor.data(), depth, row.pivot},
-                                   maps_.update(piece, row.coefficients));
+      const Eigen::Index count = std::min<Eigen::Index>(kTogether * simd::kPiece, candidates_.size() - first);
+      kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1),
+                         Eigen::Map<Eigen::VectorXd>(covariance, count));
+      const Eigen::Index padded = (count + simd::kPiece - 1) / simd::kPiece * simd::kPiece;
+      std::fill(covariance + count, covariance + padded, 0.0);
+      for (int i = 0; i < padded / simd::kPiece; ++i, covariance += simd::kPiece) {
+        machine_.loops->absorb_dense({rows_.panel(piece + i), covariance, row.factor.data(), depth, row.pivot},
+                                     maps_.update(piece + i, row.coefficients));
+      }
     });
   }
 
  private:
   void clear() override { rows_.clear(); }
 
-  simd::Panels rows_;  ///< V, a piece of the candidates a panel
+  simd::Panels rows_;                     ///< V, a piece of the candidates a panel
+  std::vector<simd::Lines> covariances_;  ///< of a group of pieces with the last tap, one a worker
 };
 
 }  // namespace

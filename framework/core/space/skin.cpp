@@ -414,7 +414,8 @@ Skin::Posterior Skin::posterior(const Places& places) const {
     simd::Update variance{};
     variance.variance = left.data();
     for (Eigen::Index i = 0; i < known_.lower.rows(); ++i)
-      loops_.absorb_dense({k.data(), &known_.lower(i, 0), static_cast<int>(i), known_.lower(i, i)}, variance);
+      loops_.absorb_dense({k.data(), k.col(i).data(), &known_.lower(i, 0), static_cast<int>(i), known_.lower(i, i)},
+                          variance);
     out.variance.segment(first, count) = Eigen::Map<const VectorXd>(left.data(), count);
   });
   out.clamped = static_cast<int>((out.variance.array() < 0.0).count());

@@ -66,17 +66,19 @@ PALPATE_INLINE double select(bool condition, double a, double b) {
 PALPATE_INLINE double min(double a, double b) { return select(a < b, a, b); }
 PALPATE_INLINE double max(double a, double b) { return select(a > b, a, b); }
 
-/// e^x within 1 ulp (measured: 0.70). Never below e^-708 = 3.3e-308; infinity above 709.79; NaN of NaN.
+namespace detail {
+
+/// e^x where 2^n and e^x are doubles: x from -708 to 709.79, and `bounded` is the smaller of x and 709.
 ///
-/// x = n ln 2 + r with |r| <= ln 2 / 2, where what the series leaves out beyond r^13 / 13! is less than 5e-18.
-PALPATE_INLINE double exp(double x) {
-  const double bounded = max(-708.0, x);
+/// x = n ln 2 + r with |r| <= ln 2 / 2 (n that of `bounded`), where what the series leaves out beyond r^13 / 13! is
+/// less than 5e-18.
+PALPATE_INLINE double exp_within(double x, double bounded) {
   // A number of this size ends in its integer: n + 1023, the exponent of 2^n.
   constexpr double kShift = 0x1.8p52 + 1023.0;
-  const double shifted = min(bounded, 709.0) * 0x1.71547652b82fep0 + kShift;  // 1 / ln 2
+  const double shifted = bounded * 0x1.71547652b82fep0 + kShift;  // 1 / ln 2
   const double n = shifted - kShift;
   // ln 2 in two parts, the first of them short enough for n times it to be exact.
-  const double r = (bounded - n * 0x1.62e42feep-1) - n * 0x1.a39ef35793c76p-33;
+  const double r = (x - n * 0x1.62e42feep-1) - n * 0x1.a39ef35793c76p-33;
   double sum = 1.0 / 6227020800;
   sum = sum * r + 1.0 / 479001600;
   sum = sum * r + 1.0 / 39916800;
@@ -96,6 +98,20 @@ PALPATE_INLINE double exp(double x) {
   double power;
   std::memcpy(&power, &bits, sizeof power);
   return sum * power;
+}
+
+}  // namespace detail
+
+/// e^x within 1 ulp (measured: 0.70). Never below e^-708 = 3.3e-308; infinity above 709.79; NaN of NaN.
+PALPATE_INLINE double exp(double x) {
+  const double bounded = max(-708.0, x);
+  return detail::exp_within(bounded, min(bounded, 709.0));
+}
+
+/// e^-x of x >= 0, the same number as exp(-x) in fewer instructions: what covariances fall by. NaN of NaN.
+PALPATE_INLINE double decay(double x) {
+  constexpr double kLeast = 0x1.7c8ab2288c9acp-1022;             // e^-708
+  return select(x > 708.0, kLeast, detail::exp_within(-x, -x));  // nothing waits for the bound
 }
 
 namespace detail {

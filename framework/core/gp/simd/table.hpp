@@ -52,10 +52,11 @@ struct MirroredProduct {
   std::ptrdiff_t mirror;
 };
 
-/// v = (v - sum over i of row_i factor_i) / pivot for one piece of a dense map, taken into its maps. The rows of the
-/// piece follow each other: row_i at rows + i kPiece, and v is the row after the last.
+/// v = (covariance - sum over i of row_i factor_i) / pivot for one piece of a dense map, taken into its maps. The rows
+/// of the piece follow each other: row_i at rows + i kPiece, and v is the row after the last.
 struct DenseRow {
   double* rows;
+  const double* covariance;  ///< aligned to a line; v's own place, too
   const double* factor;
   int depth;
   double pivot;
