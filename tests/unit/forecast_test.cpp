@@ -93,16 +93,44 @@ TEST(VarianceRatio, MakesTheSignalOfTheConfigAConvention) {
 }
 
 TEST(GoodEnough, WantsAnExpectationAndAMargin) {
-  EXPECT_TRUE(good_enough({0.01 / kCaution}, 0.01));
-  EXPECT_FALSE(good_enough({0.0101 / kCaution}, 0.01));
+  EXPECT_TRUE(good_enough({0.01 / kMoreCaution}, 0.01));
+  EXPECT_FALSE(good_enough({0.0101 / kMoreCaution}, 0.01));
   EXPECT_FALSE(good_enough({std::nullopt}, 1.0));
+}
+
+TEST(GoodEnough, WantsLittleToBeLeftWhereThatIsKnownAndThenLessOfAMargin) {
+  EXPECT_TRUE(good_enough({0.01 / kCaution, kMostLeft}, 0.01));
+  EXPECT_FALSE(good_enough({0.01 / kCaution, 1.01 * kMostLeft}, 0.01));
+  EXPECT_FALSE(good_enough({0.0101 / kCaution, 0.0}, 0.01));
+  EXPECT_FALSE(good_enough({0.01 / kCaution}, 0.01)) << "nobody knows what is left";
+  EXPECT_FALSE(good_enough({std::nullopt, 0.0}, 1.0));
+}
+
+TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {
+  for (const char* footprint : {"shape", "classifier", "regression"}) {
+    Finished run("default.yaml", {"taps=12", "stop.expected_rmse=1e-6 mm", std::string("footprint=") + footprint});
+    int told = 0;
+    for (const TapRecord& tap : run.taps) {
+      const std::optional<double> left = tap.forecast->left;
+      told += left ? 1 : 0;
+      if (!left) continue;
+      EXPECT_TRUE(tap.forecast->rmse);
+      const std::vector<FootprintNumber>& numbers = tap.footprint->numbers;
+      const auto number =
+          std::find_if(numbers.begin(), numbers.end(), [](const auto& one) { return one.name == "left"; });
+      ASSERT_NE(number, numbers.end());
+      EXPECT_EQ(*left, number->value);
+    }
+    EXPECT_EQ(told > 5, footprint == std::string("shape")) << footprint;
+    EXPECT_EQ(told == 0, footprint != std::string("shape")) << footprint;
+  }
 }
 
 TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   std::vector<Contact> answers(20, contact_at(0.0));
   answers.push_back(contact_at(0.05));
-  // A hit so late is more probably none where contacts may lie.
-  Finished run("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint.lies=0.0001"},
+  // A hit so late is more probably none where contacts may lie; the classifier knows nothing of what is left.
+  Finished run("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint=classifier"},
                scripted(answers));
   EXPECT_EQ(run.taps.size(), 21U) << "the hit is the 21st";
   for (const TapRecord& tap : run.taps) {
@@ -115,8 +143,10 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
 }
 
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
-  const Finished run("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"},
-                     scripted(std::vector<Contact>(25, contact_at(0.05))));
+  const Finished run(
+      "default.yaml",
+      {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "footprint=classifier"},
+      scripted(std::vector<Contact>(25, contact_at(0.05))));
   EXPECT_EQ(run.taps.size(), 12U);
 }
 

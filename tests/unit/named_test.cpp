@@ -39,6 +39,7 @@ struct BrokenFootprint final : Footprint {
   bool is_weight() const override { fail(); }
   void add(const Touch&) override { fail(); }
   void probability(const PointsView&, VectorOut) override { fail(); }
+  std::optional<double> left() const override { fail(); }
   std::vector<FootprintNumber> numbers() const override { fail(); }
   std::string remark() const override { fail(); }
 };
@@ -100,6 +101,7 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(error_of([&] { footprint->is_weight(); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->add({}); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->probability(points, vector); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->left(); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->numbers(); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->remark(); }), "footprint/mine: it broke");
 

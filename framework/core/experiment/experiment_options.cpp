@@ -182,12 +182,14 @@ void StopOptions::list(Fields& fields) {
             "stop when no candidate's height is less certain than this, all taps seen; builds the height process")
           .in(Unit::metre)
           .above(0));
-  fields.real(expected_rmse,
-              Field("expected_rmse",
-                    "stop when the error of the reconstructed scene, desk included, is most probably below this; never "
-                    "before an object is touched; builds what the reconstruction needs")
-                  .in(Unit::metre)
-                  .above(0));
+  fields.real(
+      expected_rmse,
+      Field("expected_rmse",
+            "stop when the error of the reconstructed scene, desk included, is most probably below this and, where "
+            "the footprint knows of such things, most probably no object is left to find; never before one is "
+            "touched; builds what the reconstruction needs")
+          .in(Unit::metre)
+          .above(0));
   fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
   fields.integer(
       failed_in_a_row,

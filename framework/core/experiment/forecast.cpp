@@ -5,7 +5,10 @@
 
 namespace palpate {
 
-bool good_enough(const Forecast& forecast, double bound) { return forecast.rmse && kCaution * *forecast.rmse <= bound; }
+bool good_enough(const Forecast& forecast, double bound) {
+  const double caution = forecast.left ? kCaution : kMoreCaution;
+  return forecast.rmse && caution * *forecast.rmse <= bound && forecast.left.value_or(0.0) <= kMostLeft;
+}
 
 double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd& mean,
                        const Eigen::VectorXd& variance) {
@@ -35,6 +38,7 @@ Forecast Forecaster::forecast(const TapBelief& belief) const {
       belief.two_part() ? expected_square(belief.probability(), belief.height_mean().array() - belief.desk(), variance)
                         : variance.mean();
   if (std::isfinite(square)) out.rmse = std::sqrt(square);
+  if (belief.footprint() != nullptr) out.left = belief.footprint()->left();
   return out;
 }
 

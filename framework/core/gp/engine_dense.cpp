@@ -9,13 +9,14 @@ constexpr double kMostReserved = 1.0 * (1 << 27);
 
 /// Pieces for which the kernel is asked at once: a call costs what ten candidates do.
 constexpr int kTogether = 4;
+constexpr Eigen::Index kCandidates = Eigen::Index{kTogether} * simd::kPiece;
 
 class Dense final : public Engine {
  public:
   Dense(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
       : Engine("dense", machine, kernel, candidates, Tiling::pieces(candidates.size())),
         rows_(maps_.tiling().strips() * simd::kPiece, simd::kPiece, simd::kPiece) {
-    for (int i = 0; i < machine.workers->threads(); ++i) covariances_.emplace_back(kTogether * simd::kPiece);
+    for (int i = 0; i < machine.workers->threads(); ++i) covariances_.emplace_back(kCandidates);
   }
 
   void reserve(int rows) override {
@@ -30,8 +31,8 @@ class Dense final : public Engine {
     machine_.workers->for_each((pieces + kTogether - 1) / kTogether, [&](int group, int worker) {
       double* covariance = covariances_[static_cast<std::size_t>(worker)].data();
       const int piece = group * kTogether;
-      const Eigen::Index first = static_cast<Eigen::Index>(piece) * simd::kPiece;
-      const Eigen::Index count = std::min<Eigen::Index>(kTogether * simd::kPiece, candidates_.size() - first);
+      const Eigen::Index first = group * kCandidates;
+      const Eigen::Index count = std::min<Eigen::Index>(kCandidates, candidates_.size() - first);
       kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1),
                          Eigen::Map<Eigen::VectorXd>(covariance, count));
       const Eigen::Index padded = (count + simd::kPiece - 1) / simd::kPiece * simd::kPiece;

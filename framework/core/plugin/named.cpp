@@ -145,6 +145,7 @@ class NamedFootprint final : public Named<Footprint> {
   void sample(const PointsView& places, OutlineSample& out) const override { call(&Footprint::sample, places, out); }
   void doubt(VectorOut out) const override { call(&Footprint::doubt, out); }
   void place_now(Points& places) const override { call(&Footprint::place_now, places); }
+  std::optional<double> left() const override { return call(&Footprint::left); }
   std::vector<FootprintNumber> numbers() const override { return call(&Footprint::numbers); }
   std::string remark() const override { return call(&Footprint::remark); }
 };

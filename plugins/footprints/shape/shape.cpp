@@ -94,6 +94,11 @@ class Shape final : public Footprint {
     if (handed_over_at_ == 0 && options_.pushes > 0.0) particles_.place_now(places);
   }
 
+  std::optional<double> left() const override {
+    if (handed_over_at_ > 0) return std::nullopt;
+    return particles_.left(kWorthFinding);
+  }
+
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"mistakes", particles_.mean_mistakes()},
                                      {"pieces", particles_.mean_pieces()},
