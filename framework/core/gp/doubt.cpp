@@ -75,12 +75,22 @@ void DoubtedSurface::read_mean(const Process& process, Eigen::VectorXd& out) {
 void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_variance(0, out);
   cover(process);
-  Eigen::MatrixXd z(candidates_.size(), 1 + 2 * covered_);
-  z << Eigen::VectorXd::Ones(candidates_.size()), covariances_.leftCols(covered_), broad_.leftCols(covered_);
+  // z^T b z by half of the products, as b is symmetric, and so many candidates at a time that theirs stay in the cache.
+  constexpr Eigen::Index kTogether = 128;
+  Eigen::MatrixXd half = judgement_.b.triangularView<Eigen::StrictlyUpper>();
+  half.diagonal() = 0.5 * judgement_.b.diagonal();
+  Eigen::MatrixXd z = Eigen::MatrixXd::Ones(kTogether, half.rows());
   out.resize(candidates_.size());
   process.kernel().variance(candidates_.points, out);
   out *= judgement_.s2;
-  out += (z * judgement_.b).cwiseProduct(z).rowwise().sum();
+  Eigen::MatrixXd products(kTogether, half.cols());
+  for (Eigen::Index first = 0; first < out.size(); first += kTogether) {
+    const Eigen::Index count = std::min(kTogether, out.size() - first);
+    z.block(0, 1, count, covered_) = covariances_.block(first, 0, count, covered_);
+    z.block(0, 1 + covered_, count, covered_) = broad_.block(first, 0, count, covered_);
+    products.noalias() = z * half.triangularView<Eigen::Upper>();
+    out.segment(first, count) += 2.0 * products.cwiseProduct(z).rowwise().sum().head(count);
+  }
   // Rounding may leave less than nothing where taps are close.
   out = out.cwiseMax(0.0);
 }
