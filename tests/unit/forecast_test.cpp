@@ -140,6 +140,13 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   const RunResult result = run.experiment.result();
   EXPECT_EQ(result.stop_reason, "expected_rmse");
   EXPECT_GT(*result.forecast->rmse, 0.0);
+
+  // Where it is known that something is left, it goes on after the hit.
+  const Finished knowing("default.yaml",
+                         {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint.lies=0.0001"},
+                         scripted(answers));
+  EXPECT_GE(knowing.taps.size(), 21U);
+  for (std::size_t i = 0; i < 21; ++i) EXPECT_FALSE(knowing.taps[i].forecast->rmse.has_value()) << i;
 }
 
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
@@ -148,6 +155,9 @@ TEST(Forecast, NeverCutsTheInitialTapsShort) {
       {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "footprint=classifier"},
       scripted(std::vector<Contact>(25, contact_at(0.05))));
   EXPECT_EQ(run.taps.size(), 12U);
+  const Finished knowing("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"},
+                         scripted(std::vector<Contact>(25, contact_at(0.05))));
+  EXPECT_GE(knowing.taps.size(), 12U);
 }
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {

@@ -60,8 +60,9 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
   return design;
 }
 
-/// Visits the allowed candidates whose score is worth it, which by then a lower one at a later place is not: by blocks,
-/// of each thousand or two the highest first, as there most are not worth a look after that.
+/// Visits the allowed candidates that are worth it, each by worth(score, candidate), in no particular order: by blocks,
+/// of which one is left out where its highest score at its first place would not be worth it. Of each two thousand
+/// candidates the highest block comes first, as what is visited there may leave no other worth a look.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const simd::Table& loops, const Worth& worth,
                  const Visit& visit) {

@@ -56,7 +56,7 @@ struct MirroredProduct {
 /// of the piece follow each other: row_i at rows + i kPiece, and v is the row after the last.
 struct DenseRow {
   double* rows;
-  const double* covariance;  ///< aligned to a line; v's own place, too
+  const double* covariance;  ///< may lie in v's own place
   const double* factor;
   int depth;
   double pivot;
