@@ -61,7 +61,7 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
 }
 
 /// Visits the allowed candidates that are worth it, each by worth(score, candidate), in no particular order: by blocks,
-/// of which one is left out where its highest score at its first place would not be worth it. Of each two thousand
+/// of which one is left out where its highest score at its first place would not be worth it. Of each four thousand
 /// candidates the highest block comes first, as what is visited there may leave no other worth a look.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const simd::Table& loops, const Worth& worth,
@@ -72,16 +72,19 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const si
       if (worth(scores(i), static_cast<int>(i)) && allowed(i)) visit(static_cast<int>(i));
     }
   };
-  std::array<double, 32> highest;
+  std::array<double, kBlock> highest;
   const Eigen::Index blocks = scores.size() / kBlock;
-  for (Eigen::Index first = 0; first < blocks; first += static_cast<Eigen::Index>(highest.size())) {
-    const Eigen::Index count = std::min(static_cast<Eigen::Index>(highest.size()), blocks - first);
+  for (Eigen::Index first = 0; first < blocks; first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, blocks - first);
+    highest.fill(-std::numeric_limits<double>::infinity());
     loops.highest(scores.data() + first * kBlock, static_cast<int>(count), highest.data());
     const auto look_at = [&](Eigen::Index block) {
       const Eigen::Index begin = (first + block) * kBlock;
       if (worth(highest[static_cast<std::size_t>(block)], static_cast<int>(begin))) look(begin, begin + kBlock);
     };
-    const Eigen::Index top = std::max_element(highest.begin(), highest.begin() + count) - highest.begin();
+    double most = 0.0;
+    loops.highest(highest.data(), 1, &most);
+    const Eigen::Index top = std::find(highest.begin(), highest.begin() + count - 1, most) - highest.begin();
     look_at(top);
     for (Eigen::Index i = 0; i < count; ++i) {
       if (i != top) look_at(i);

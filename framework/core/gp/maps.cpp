@@ -48,14 +48,17 @@ void Maps::restart(int means, const VectorView& prior) {
     if (map.size() == 0) map = simd::Lines(tiling_.size());
     std::fill_n(map.data(), map.size(), 0.0);
   }
-  const bool same = prior.size() == 1;
   std::fill_n(variance_.data(), variance_.size(), 0.0);
   for (int strip = 0; strip < tiling_.strips(); ++strip) {
     tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
       for (int row = 0; row < block.rows; ++row) {
         double* const to = variance_.data() + block.cell + static_cast<std::ptrdiff_t>(row) * block.width;
+        if (prior.size() == 1) {
+          std::fill_n(to, block.count, prior(0));
+          continue;
+        }
         const int first = block.candidate + row * block.columns;
-        for (int i = 0; i < block.count; ++i) to[i] = prior(same ? 0 : first + (block.mirrored ? -i : i));
+        for (int i = 0; i < block.count; ++i) to[i] = prior(first + (block.mirrored ? -i : i));
       }
     });
   }
