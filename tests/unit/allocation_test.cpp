@@ -65,6 +65,7 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
       if (tap == 2) before = allocations;
       const Target place = candidates.target(static_cast<int>(random.index(3600)));
       process.add(place, Eigen::Vector2d(0.1 * random.uniform(), 1.0));
+      process.update_maps();
       process.read_mean(0, map);
       process.read_relative_variance(map);
     }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <initializer_list>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +57,51 @@ TEST_P(EveryEngine, ServesEverySeparableKernel) {
     EXPECT_LT(apart(process.mean(0), mean), 1e-11) << options;
     EXPECT_LT(apart(process.variance(0), book.variance()), 1e-11) << options;
   }
+}
+
+TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
+  const Data data = draw(30);
+  const Candidates candidates = regular(24, 18);
+  Process followed(rbf(), kOutputs, candidates, settings_of(GetParam()));
+  palpate::Process behind(rbf(), kOutputs, candidates, settings_of(GetParam()));
+  Eigen::VectorXd shares = Eigen::VectorXd::Ones(30);
+  Eigen::VectorXd heights = data.values.col(0);
+  Points places = data.places;
+  shares(3) = 0.4;
+  heights(7) += 0.1;
+  places(11, 0) += 0.02;
+  for (palpate::Process* process : std::initializer_list<palpate::Process*>{&followed, &behind}) {
+    const auto follow = [&] {
+      if (process == &followed) process->update_maps();
+    };
+    process->show(2);
+    follow();
+    for (Eigen::Index i = 0; i < 30; ++i) {
+      process->add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
+      follow();
+    }
+    EXPECT_TRUE(process->trust(shares));
+    follow();
+    EXPECT_TRUE(process->correct(heights));
+    follow();
+    EXPECT_TRUE(process->move(places));
+    follow();
+    process->add({0.1, 0.1}, Eigen::Vector2d(0.2, 1.0));
+  }
+  Eigen::VectorXd map;
+  EXPECT_THROW(behind.read_mean(0, map), std::logic_error);
+  EXPECT_THROW(behind.read_variance(0, map), std::logic_error);
+  EXPECT_THROW(behind.error_bound(), std::logic_error);
+  EXPECT_EQ(behind.log_marginal_likelihood(), followed.log_marginal_likelihood());
+  followed.update_maps();
+  behind.update_maps();
+  for (const int output : {0, 1}) {
+    behind.read_mean(output, map);
+    EXPECT_TRUE(same_bytes(map, followed.mean(output))) << output;
+  }
+  behind.read_variance(0, map);
+  EXPECT_TRUE(same_bytes(map, followed.variance()));
+  EXPECT_EQ(behind.error_bound(), followed.error_bound());
 }
 
 TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {

@@ -238,6 +238,13 @@ void TapBelief::build(Quantities wanted) {
   update();
 }
 
+bool TapBelief::has_models_of(Quantities quantities) const {
+  const Quantities all = known(quantities);
+  const bool of_hits = two_part_ && (all.has(Quantity::height) || all.has(Quantity::doubt));
+  return (height_process() || !all.has(Quantity::uncertainty)) && (weight_process() || !all.has(Quantity::weight)) &&
+         (surface_process() || !of_hits) && (footprint_asked_ || !footprint_ || !all.has(Quantity::probability));
+}
+
 void TapBelief::show(Model& model, int output) {
   if (!model.process) {
     model.process = std::make_unique<Process>(model.kernel, model.outputs, candidates_, posterior_);
@@ -270,6 +277,8 @@ void TapBelief::update() {
   }
   if (heights_.stale) map_heights();
   if (labels_.stale) map_labels();
+  // The judgement has a surface of its own, so that maps of the process are wanted without one, and for the record.
+  if (object_.process && (height_asked_ || !lies_ || !is_judged())) object_.process->update_maps();
   if (object_.stale && height_asked_) map_object();
   current_ = true;
 }
@@ -307,7 +316,8 @@ TapBelief::Output TapBelief::output(const Model& model, int output) {
 }
 
 void TapBelief::map_heights() {
-  const Process& process = *heights_.process;
+  Process& process = *heights_.process;
+  process.update_maps();
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
   if (!two_part_) map_surface(process);
@@ -316,6 +326,7 @@ void TapBelief::map_heights() {
 }
 
 void TapBelief::map_labels() {
+  labels().process->update_maps();
   labels().process->read_mean(label_output(), weight_mean_);
   const auto clipped = weight_mean_.cwiseMax(0.0).cwiseMin(1.0);
   if (clip_) weight_ = clipped;

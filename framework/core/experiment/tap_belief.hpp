@@ -73,6 +73,9 @@ class TapBelief final : public Belief {
   /// The same, but nothing more belongs to the record.
   void build(Quantities wanted);
 
+  /// Whether all models behind some quantities are built: then to build these costs a map, and no model changes.
+  bool has_models_of(Quantities quantities) const;
+
   /// Has the models take in the taps noted since, one by one, fits included, and their maps follow.
   void update();
 

@@ -110,14 +110,17 @@ const Truth* Watch::truth() {
   return &*truth_;
 }
 
-Errors Watch::errors(const TapBelief& belief) {
+Errors Watch::errors(TapBelief& belief) {
   const Truth* real = truth();
   if (real == nullptr) return {};
+  if (belief.has_models_of(kErrorsRead)) {
+    belief.build(kErrorsRead);
+    return errors_of(maps_of(belief, kErrorsRead), *real);
+  }
   SurfaceMaps maps = maps_of(belief, belief.recorded());
   Quantities lacking;
   if (maps.height == nullptr) lacking = lacking | Quantity::height;
   if (maps.probability == nullptr) lacking = lacking | Quantity::probability;
-  if (lacking == Quantities()) return errors_of(maps, *real);
   if (!beside_) {
     beside_ = std::make_unique<TapBelief>(options_, candidates_, context_, unrecorded_);
     for (const auto& [tap, manner] : taps_) beside_->observe(tap.target, tap.contact, manner);

@@ -38,8 +38,9 @@ class Watch {
   /// The scene at the candidates; null where another world is tapped.
   const Truth* truth();
 
-  /// The errors as of now, none where no truth is known. Models that the record does not have are kept apart.
-  Errors errors(const TapBelief& belief);
+  /// The errors as of now, none where no truth is known. Models that `belief` does not have are kept apart, so that
+  /// what is shown decides nothing.
+  Errors errors(TapBelief& belief);
 
   /// The result as of now, where the truth is known with the errors, whoever has read the models.
   RunResult result(TapBelief& belief);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace palpate {
 namespace {
@@ -32,7 +33,6 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
   if (!why.empty()) throw Error("posterior", "cannot be used with this kernel, " + why);
   take_prior();
   choose();
-  restart();
   reserve(1);
 }
 
@@ -62,6 +62,7 @@ void Process::reserve(int taps) {
 
 void Process::choose(double error) {
   choice_ = choose_engine(posterior_, *kernel_, candidates_, error);
+  taken_ = kNothing;
   choice_.engine->reserve(static_cast<int>(targets_.rows()));
 }
 
@@ -73,14 +74,12 @@ void Process::add(const Target& place, const VectorView& values) {
   trust_(size_) = 1.0;
   ++size_;
   if (!append(size_ - 1)) rebuild();
-  keep_accuracy();
 }
 
 bool Process::trust(const VectorView& shares) {
   if (shares == trust_.head(size_)) return false;
   trust_.head(size_) = shares;
   rebuild();
-  keep_accuracy();
   return true;
 }
 
@@ -88,7 +87,6 @@ bool Process::correct(const VectorView& values) {
   if (values == targets_.col(0).head(size_)) return false;
   targets_.col(0).head(size_) = values;
   rebuild();
-  keep_accuracy();
   return true;
 }
 
@@ -97,7 +95,6 @@ bool Process::move(const PointsView& places) {
   points_.topRows(size_) = places;
   ++generation_;
   rebuild();
-  keep_accuracy();
   return true;
 }
 
@@ -120,7 +117,6 @@ bool Process::append(int tap) {
     reduce(k, (targets_(tap, k) - output.mean) / output.signal);
   }
   if (with_constant()) reduce(targets_.cols(), 1.0);
-  absorb(row);
   return true;
 }
 
@@ -140,31 +136,36 @@ void Process::absorb(int row) {
   engine.absorb({factored_.topRows(row + 1), factor_.row(row), factor_.pivot(row), inverse, coefficients.data()});
 }
 
-void Process::restart() {
-  inverse_norms_ = 0.0;
-  choice_.engine->restart(shown_ + (with_constant() ? 1 : 0), prior_);
-}
-
-void Process::replay() {
-  restart();
-  for (int row = 0; row < factor_.size(); ++row) absorb(row);
-}
-
 void Process::show(int outputs) {
   if (outputs <= shown_) return;
   shown_ = outputs;
-  replay();
+  taken_ = kNothing;
 }
 
-void Process::keep_accuracy() {
+void Process::update_maps() {
+  take_rows();
   if (posterior_.engine != PosteriorSettings::Kind::automatic) return;
   const double error = error_bound();
   if (!(error > posterior_.accuracy)) return;
   choose(error);
-  replay();
+  take_rows();
+}
+
+void Process::require_maps() const {
+  if (taken_ != factor_.size()) throw std::logic_error("a map of a process is read that is older than its taps");
+}
+
+void Process::take_rows() {
+  if (taken_ == kNothing) {
+    inverse_norms_ = 0.0;
+    choice_.engine->restart(shown_ + (with_constant() ? 1 : 0), prior_);
+    taken_ = 0;
+  }
+  for (; taken_ < factor_.size(); ++taken_) absorb(taken_);
 }
 
 double Process::error_bound() const {
+  require_maps();
   const VectorView errors = choice_.engine->covariance_errors();
   const int n = factor_.size();
   if (errors.size() == 0 || !(errors.maxCoeff() > 0.0)) return 0.0;
@@ -190,7 +191,7 @@ double Process::error_bound() const {
 
 bool Process::refactor(const std::vector<int>& taps) {
   factor_.clear();
-  restart();
+  taken_ = kNothing;
   return std::all_of(taps.begin(), taps.end(), [this](int tap) { return append(tap); });
 }
 
@@ -247,7 +248,6 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
   jitter_ = 0.0;
   choose();
   rebuild();
-  keep_accuracy();
   return summary;
 }
 

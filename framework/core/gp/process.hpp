@@ -49,7 +49,7 @@ class Process {
   Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
           PosteriorSettings posterior = {});
 
-  /// Adds a tap, a value for each output, and updates the maps.
+  /// Adds a tap, a value for each output.
   void add(const Target& place, const VectorView& values);
 
   int size() const { return size_; }
@@ -69,7 +69,11 @@ class Process {
   void show(int outputs);
   int shown() const { return shown_; }
 
-  // These size `out`.
+  /// Has the maps follow all that was said since: they cost most, so that what is not read is not kept. What reads them
+  /// before, throws std::logic_error.
+  void update_maps();
+
+  // Of the maps. These size `out`.
   /// Posterior mean over the candidates, unit of the targets, of an output that is shown.
   void read_mean(int output, Eigen::VectorXd& out) const;
   /// Posterior variance over the candidates, noise excluded, square of the unit of the targets; in [0, prior].
@@ -92,7 +96,7 @@ class Process {
   int pivoted() const { return pivoted_; }
   /// How many taps do not enter the posterior.
   int set_aside() const { return size_ - factor_.size(); }
-  /// How many candidates' variances rounding has taken out of [0, prior] by now; they read as its ends.
+  /// Of the maps: how many candidates' variances rounding has taken out of [0, prior] by now; they read as its ends.
   int variances_clamped() const;
   /// Estimate of the condition number of the covariance of the taps, noise and jitter included.
   double condition() const { return factor_.condition(); }
@@ -123,15 +127,17 @@ class Process {
   double noise_ratio() const { return outputs_.front().noise / outputs_.front().signal; }
   double prior_of_constant() const { return outputs_.front().mean_ratio * outputs_.front().mean_ratio; }
 
-  const Maps& maps() const { return choice_.engine->maps(); }
+  const Maps& maps() const {
+    require_maps();
+    return choice_.engine->maps();
+  }
+  void require_maps() const;
   void take_prior();
   void reserve(int taps);
   void choose(double error = 0.0);
   bool append(int tap);
   void absorb(int row);
-  void restart();
-  void replay();
-  void keep_accuracy();
+  void take_rows();
   void rebuild();
   bool refactor(const std::vector<int>& taps);
   /// Precision of the unknown constant after the taps: 1 / mean_ratio^2 + 1^T K^-1 1.
@@ -163,6 +169,9 @@ class Process {
   Points factored_;  ///< the points of the rows of factor_: those of the taps unless some are set aside
   /// L^-1 of the standardised targets, an output a column; with an unknown constant, L^-1 1 in the column after.
   Eigen::MatrixXd reduced_;
+  /// Rows of the factor that the maps have; they begin anew where it is kNothing.
+  int taken_ = kNothing;
+  static constexpr int kNothing = -1;
   Eigen::MatrixXd weights_;     ///< L^-T of the same, of the rows that the engine has taken; only where it needs L^-1
   double inverse_norms_ = 0.0;  ///< sum of |c_i|_1^2 over those rows
   Eigen::VectorXd scratch_;
