@@ -147,6 +147,8 @@ RunResult Watch::result(TapBelief& belief) {
     for (const ObjectErrors& errors : object_errors(maps, *real, candidates_))
       out.objects->push_back({errors, touches_[out.objects->size()]});
     out.calibration = calibration(belief, *real, touched_);
+  } else if (belief.surface_process()) {
+    belief.build(Quantity::height);  // what is told of a process is of its maps, too
   }
   const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {
     if (!one) return;
