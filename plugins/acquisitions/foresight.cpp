@@ -117,12 +117,17 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 ///     (n_xc - n_x n_c / S)^2 / (n_x (S - n_x))     (what a covariance takes off a variance),
 /// whichever it is. Summed up over all places it is an extent, as is what a tap is expected to find that nobody has
 /// touched; the score is the sum of both over the largest such sum: 1 where most is learnt.
+///
+/// On a larger desk, where more things may be, to find them comes first: otherwise the last of them are found late, or
+/// never, while each known outline is settled to the millimetre. There something new is worth more by as much as the
+/// sides of the desk are longer, and where most is to be found the score goes up to that, so that it is heard beside
+/// others that know of outlines alone. (46 cm, 200 seeds, 120 taps: every object is found in 79 % of runs, else in 58.)
 struct ForesightOptions : Options {
   double find = 1.5;
   void list(Fields& fields) override {
     fields.real(find, Field("find",
-                            "what the extent of something new is worth, beside as much that is settled of what "
-                            "is known")
+                            "what the extent of something new is worth on 23 cm x 23 cm, beside as much that is "
+                            "settled of what is known; on a larger desk more, as its sides are longer")
                           .at_least(0));
   }
 };
@@ -139,17 +144,26 @@ class Foresight final : public Acquisition {
     if (sample.count == 0) {
       // Nothing is known of how places go together: each tells of itself.
       out = belief.probability().array() * (1.0 - belief.probability().array());
-    } else {
-      look_ahead(sample, belief.area().width * belief.area().depth / static_cast<double>(out.size()), out);
+      return divide_by(out.maxCoeff(), out);
     }
-    const double most = out.maxCoeff();
-    if (most > 0.0) out /= most;
+    const double area = belief.area().width * belief.area().depth;
+    const double larger = std::max(1.0, std::sqrt(area) / kUsualSide);
+    out = options_.find * larger * sample.to_find;
+    const double settled = look_ahead(sample, area / static_cast<double>(out.size()), out);
+    divide_by(settled > 0.0 ? std::max(settled, out.maxCoeff() / larger) : out.maxCoeff(), out);
   }
 
   double prior_scale() const override { return 1.0; }
 
  private:
-  void look_ahead(const OutlineSample& sample, double extent_of_place, VectorOut out) const {
+  static constexpr double kUsualSide = 0.23;  // metres, of the desk that `find` is for
+
+  static void divide_by(double most, VectorOut out) {
+    if (most > 0.0) out /= most;
+  }
+
+  /// Adds what is settled of what is known, and returns the most of it.
+  static double look_ahead(const OutlineSample& sample, double extent_of_place, VectorOut out) {
     const std::vector<int> held = count(sample.holds);
     std::vector<int> open;  // places that are not settled
     for (std::size_t i = 0; i < held.size(); ++i) {
@@ -159,15 +173,18 @@ class Foresight final : public Acquisition {
     constexpr std::size_t kPlaces = 128;
     constexpr std::size_t kTaps = 512;
     const std::vector<int> places = some_of(open, kPlaces);
-    out = options_.find * sample.to_find;
-    if (places.empty()) return;
+    if (places.empty()) return 0.0;
     const double each = extent_of_place * static_cast<double>(open.size()) / static_cast<double>(places.size());
     const Others others(sample.holds, held, places);
+    double most = 0.0;
     for (const int x : some_of(open, kTaps)) {
       const int of_x = held[static_cast<std::size_t>(x)];
-      out(x) += each * squares(sample.holds.col(x).data(), of_x, sample.count, others) /
-                (static_cast<double>(of_x) * (sample.count - of_x));
+      const double settled = each * squares(sample.holds.col(x).data(), of_x, sample.count, others) /
+                             (static_cast<double>(of_x) * (sample.count - of_x));
+      most = std::max(most, settled);
+      out(x) += settled;
     }
+    return most;
   }
 
   Options options_;

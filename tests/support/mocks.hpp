@@ -18,6 +18,7 @@ namespace palpate::test {
 class WrittenBelief final : public Belief {
  public:
   int count = 0;  ///< of taps
+  Area desk{0.23, 0.23};
   Points places;
   Eigen::VectorXd u, w, p, mean, variance;
   OutlineSample sample;
@@ -26,7 +27,7 @@ class WrittenBelief final : public Belief {
   mutable Quantities read;
 
   const Points& candidates() const override { return places; }
-  Area area() const override { return {0.23, 0.23}; }
+  Area area() const override { return desk; }
   int taps() const override { return count; }
   int initial_taps() const override { return std::min(count, 3); }
   const std::vector<Target>& targets() const override { return aims; }

@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace palpate::test {
 namespace {
@@ -53,29 +56,57 @@ double expected_square(const OutlineSample& sample, const std::vector<int>& outl
   return sum;
 }
 
-TEST(Foresight, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpectedToFind) {
-  const WrittenBelief belief = some_belief();
-  for (const double find : {0.0, 1.5}) {
-    std::vector<double> expected;
-    std::vector<int> all;
-    for (int k = 0; k < kOutlines; ++k) all.push_back(k);
-    for (int x = 0; x < kPlaces; ++x) {
-      std::vector<int> with, without;
-      for (const int k : all) (holds(belief.sample, k, x) ? with : without).push_back(k);
-      double gain = 0.0;
-      if (!with.empty() && !without.empty()) {
-        const double share = static_cast<double>(with.size()) / kOutlines;
-        gain = expected_square(belief.sample, all) - share * expected_square(belief.sample, with) -
-               (1.0 - share) * expected_square(belief.sample, without);
-      }
-      expected.push_back(gain * belief.area().width * belief.area().depth / kPlaces + find * belief.sample.to_find(x));
+/// What a tap at each place is expected to settle, square metres.
+std::vector<double> expected_to_settle(const WrittenBelief& belief) {
+  std::vector<int> all(kOutlines);
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<double> out;
+  for (int x = 0; x < kPlaces; ++x) {
+    std::vector<int> with, without;
+    for (const int k : all) (holds(belief.sample, k, x) ? with : without).push_back(k);
+    double gain = 0.0;
+    if (!with.empty() && !without.empty()) {
+      const double share = static_cast<double>(with.size()) / kOutlines;
+      gain = expected_square(belief.sample, all) - share * expected_square(belief.sample, with) -
+             (1.0 - share) * expected_square(belief.sample, without);
     }
-    const double most = *std::max_element(expected.begin(), expected.end());
-    for (double& one : expected) one /= most;
-    Eigen::VectorXd out(kPlaces);
-    make<Acquisition>(shared_host(), "foresight", fmt::format("{{find: {}}}", find))->score(belief, out);
-    EXPECT_THAT(std::vector<double>(out.data(), out.data() + kPlaces),
-                testing::Pointwise(testing::DoubleNear(1e-9), expected));
+    out.push_back(gain * belief.desk.width * belief.desk.depth / kPlaces);
+  }
+  return out;
+}
+
+std::vector<double> scored(const WrittenBelief& belief, double find) {
+  Eigen::VectorXd out(kPlaces);
+  make<Acquisition>(shared_host(), "foresight", fmt::format("{{find: {}}}", find))->score(belief, out);
+  return {out.data(), out.data() + kPlaces};
+}
+
+TEST(Foresight, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpectedToFind) {
+  WrittenBelief belief = some_belief();
+  for (const Area& desk : {Area{0.23, 0.23}, Area{0.12, 0.20}}) {
+    belief.desk = desk;
+    for (const double find : {0.0, 1.5}) {
+      std::vector<double> expected = expected_to_settle(belief);
+      for (int x = 0; x < kPlaces; ++x) expected[static_cast<std::size_t>(x)] += find * belief.sample.to_find(x);
+      const double most = *std::max_element(expected.begin(), expected.end());
+      for (double& one : expected) one /= most;
+      EXPECT_THAT(scored(belief, find), testing::Pointwise(testing::DoubleNear(1e-9), expected));
+    }
+  }
+}
+
+TEST(Foresight, FindsBeforeItSettlesOnADeskWhereMoreThingsMayBe) {
+  WrittenBelief belief = some_belief();
+  belief.desk = {0.46, 0.46};
+  const std::vector<double> settles = expected_to_settle(belief);
+  const double settled = *std::max_element(settles.begin(), settles.end());
+  // Twice the worth, as the sides are twice as long; and a score above 1, up to 2, where most is to be found.
+  for (const auto& [worth, most] : {std::pair{0.1, 1.0}, {1.4, 1.4}, {10.0, 2.0}}) {
+    belief.sample.to_find.setZero();
+    belief.sample.to_find(9) = worth * settled / (2.0 * 1.5);  // a place of which nothing is known else
+    const std::vector<double> scores = scored(belief, 1.5);
+    EXPECT_NEAR(*std::max_element(scores.begin(), scores.end()), most, 1e-9);
+    EXPECT_NEAR(scores[9], worth > 2.0 ? 2.0 : worth, 1e-9);
   }
 }
 
