@@ -278,7 +278,7 @@ void TapBelief::update() {
   if (heights_.stale) map_heights();
   if (labels_.stale) map_labels();
   // The judgement has a surface of its own, so that maps of the process are wanted without one, and for the record.
-  if (object_.process && (height_asked_ || !lies_ || !is_judged())) object_.process->update_maps();
+  if (object_.process && (height_asked_ || !is_judged())) object_.process->update_maps();
   if (object_.stale && height_asked_) map_object();
   current_ = true;
 }
