@@ -64,19 +64,21 @@ std::string stamp_difference(const std::string& theirs, const std::string& ours)
                      here != own.end() ? *here : "");
 }
 
-/// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
-/// promise is compared with the length first. What else may be wrong with a header, dlopen finds and tells.
-void check_complete(const fs::path& file) {
+std::string read_library(const fs::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in) refuse(file, "opening", std::strerror(errno));
-  const auto size = static_cast<std::uint64_t>(in.tellg());
-  const auto holds = [size](std::uint64_t offset, std::uint64_t bytes) {
-    return offset <= size && bytes <= size - offset;
-  };
-  const auto read = [&](std::uint64_t offset, void* to, std::size_t bytes) {
-    in.seekg(static_cast<std::streamoff>(offset));
-    return holds(offset, bytes) &&
-           static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
+  std::string out(static_cast<std::size_t>(in.tellg()), '\0');
+  in.seekg(0);
+  if (!in.read(out.data(), static_cast<std::streamsize>(out.size()))) refuse(file, "reading", std::strerror(errno));
+  return out;
+}
+
+/// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
+/// promise is compared with the length first. What else may be wrong with a header, dlopen finds and tells.
+void check_complete(const fs::path& file, const std::string& bytes) {
+  const auto size = std::uint64_t{bytes.size()};
+  const auto holds = [size](std::uint64_t offset, std::uint64_t count) {
+    return offset <= size && count <= size - offset;
   };
   const auto incomplete = [&] {
     refuse(file, "reading the header", "not a complete shared library", "build or copy it again");
@@ -84,7 +86,7 @@ void check_complete(const fs::path& file) {
 
   ElfW(Ehdr) header{};
   const auto known = std::min<std::uint64_t>(size, sizeof header);
-  read(0, &header, known);
+  std::memcpy(&header, bytes.data(), known);
   if (std::memcmp(header.e_ident, ELFMAG, std::min<std::uint64_t>(known, SELFMAG)) != 0) {
     refuse(file, "reading the header", "not a shared library", "build it with palpate_add_plugin()");
   }
@@ -95,7 +97,8 @@ void check_complete(const fs::path& file) {
   const bool sections = holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize);
   if (known < sizeof header || !sections) incomplete();
   std::vector<ElfW(Phdr)> segments(header.e_phnum);
-  if (!read(header.e_phoff, segments.data(), segments.size() * sizeof(ElfW(Phdr)))) incomplete();
+  if (!holds(header.e_phoff, segments.size() * sizeof(ElfW(Phdr)))) incomplete();
+  std::memcpy(segments.data(), bytes.data() + header.e_phoff, segments.size() * sizeof(ElfW(Phdr)));
   for (const ElfW(Phdr) & segment : segments) {
     if (!holds(segment.p_offset, segment.p_filesz)) incomplete();
   }
@@ -182,14 +185,15 @@ class PluginHost::Library {
     std::error_code trouble;
     if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a file that is not there");
     if (!fs::is_regular_file(file, trouble)) refuse(file, "opening", "not a regular file");
-    check_complete(file);
+    const std::string bytes = read_library(file);
+    check_complete(file, bytes);
     try {
       library.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
     } catch (const std::exception& failure) {
       refuse(file, "loading", dlerror_part(failure.what()), "a plugin links all that it uses");
     }
     manifest = &check_manifest(library, file, kind, name);
-    hash = hash_of_loaded(file);
+    hash = hash_of_loaded(bytes);
   }
 
   fs::path file;
