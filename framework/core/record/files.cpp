@@ -61,8 +61,15 @@ void Neighbour::rename() {
 }
 
 void write_file(const fs::path& file, const std::string& text, bool sync) {
+  write_file(
+      file, [&](const TextOut& out) { out(text); }, sync);
+}
+
+void write_file(const fs::path& file, const Text& text, bool sync) {
   Neighbour neighbour(file);
-  if (!write_all(neighbour.descriptor(), text)) fail(file, "cannot be written");
+  text([&](std::string_view piece) {
+    if (!write_all(neighbour.descriptor(), piece)) fail(file, "cannot be written");
+  });
   if (sync && ::fsync(neighbour.descriptor().number()) != 0) fail(file, "cannot be synced");
   neighbour.rename();
   if (sync) {

@@ -8,16 +8,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace palpate {
 
 /// Writes `text` to a temporary neighbour and renames it to `file`: readers see the old content or the new, never a
 /// part, and a link is replaced. With `sync` content and name are on the disk when it returns. Throws Error.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
+
+/// A text that is handed to `out` piece by piece, so that nobody needs all of it at once.
+using TextOut = std::function<void(std::string_view piece)>;
+using Text = std::function<void(const TextOut& out)>;
+void write_file(const std::filesystem::path& file, const Text& text, bool sync = false);
 
 /// A file on its way to its name: made empty beside it, under one that nobody could have foreseen, and removed where it
 /// does not get there.

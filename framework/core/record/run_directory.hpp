@@ -89,6 +89,7 @@ class RunDirectory final : public Journal {
   std::array<double, kPhases> total_seconds() const { return total_; }
 
   void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text, sync_); }
+  void write(const std::string& name, const Text& text) const { write_file(path_ / name, text, sync_); }
   void write_manifest(const Tree& manifest) { files_.set_manifest(manifest, sync_); }
   void write_objects(const std::vector<Row>& objects) { files_.set_objects(objects, sync_); }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -47,13 +48,18 @@ class NumberText {
 };
 
 /// x, y and one column a map; a null map leaves its cells empty. Thousands of numbers: once for a coordinate, and for a
-/// map that is there twice.
-std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
-  std::string out = "x,y";
-  for (const Column& column : columns) out.append(",").append(column.first);
-  out += '\n';
-  std::vector<char> line((columns.size() + 2) * (kLongestNumber + 1));
-  out.reserve(out.size() + static_cast<std::size_t>(candidates.size()) * (columns.size() + 2) * 20);
+/// map that is there twice. In pieces, since a page of fresh memory costs more than what is written into it.
+void grid_csv(const Candidates& candidates, const std::vector<Column>& columns, const TextOut& out) {
+  std::string head = "x,y";
+  for (const Column& column : columns) head.append(",").append(column.first);
+  out(head += '\n');
+  constexpr std::ptrdiff_t kPiece = 1 << 15;
+  std::vector<char> piece(kPiece + (columns.size() + 2) * (kLongestNumber + 1));
+  char* end = piece.data();
+  const auto hand_over = [&] {
+    out({piece.data(), static_cast<std::size_t>(end - piece.data())});
+    end = piece.data();
+  };
   std::vector<NumberText> xs(static_cast<std::size_t>(candidates.columns));
   NumberText y;
   std::vector<NumberText> texts(columns.size());
@@ -65,7 +71,7 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   }
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
     for (NumberText& x : xs) {
-      char* end = x.write(line.data(), candidates.points(cell, 0));
+      end = x.write(end, candidates.points(cell, 0));
       *end++ = ',';
       end = y.write(end, candidates.points(cell, 1));
       for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -73,11 +79,26 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
         if (columns[i].second != nullptr) end = text_of[i]->write(end, (*columns[i].second)(cell));
       }
       *end++ = '\n';
-      out.append(line.data(), static_cast<std::size_t>(end - line.data()));
+      if (end - piece.data() > kPiece) hand_over();
       ++cell;
     }
   }
-  return out;
+  hand_over();
+}
+
+void surface_csv(FromAbove& experiment, const TextOut& out) {
+  experiment.ask(Quantity::height | Quantity::probability);
+  const TapBelief& belief = experiment.belief();
+  const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
+  const Eigen::VectorXd gated = belief.two_part() ? reconstruction(belief) : Eigen::VectorXd();
+  const Truth* truth = experiment.truth();
+  grid_csv(experiment.candidates(),
+           {{"height_mean", &belief.height_mean()},
+            {"height_standard_deviation", &deviation},
+            {"on_surface_probability", &belief.probability()},
+            {"reconstructed_height", belief.two_part() ? &gated : &belief.height_mean()},
+            {"true_height", truth != nullptr ? &truth->height : nullptr}},
+           out);
 }
 
 }  // namespace
@@ -94,23 +115,10 @@ std::int64_t peak_rss_bytes() {
   return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
-std::string surface_csv(FromAbove& experiment) {
-  experiment.ask(Quantity::height | Quantity::probability);
-  const TapBelief& belief = experiment.belief();
-  const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
-  const Eigen::VectorXd gated = belief.two_part() ? reconstruction(belief) : Eigen::VectorXd();
-  const Truth* truth = experiment.truth();
-  return grid_csv(experiment.candidates(),
-                  {{"height_mean", &belief.height_mean()},
-                   {"height_standard_deviation", &deviation},
-                   {"on_surface_probability", &belief.probability()},
-                   {"reconstructed_height", belief.two_part() ? &gated : &belief.height_mean()},
-                   {"true_height", truth != nullptr ? &truth->height : nullptr}});
-}
-
-std::pair<std::string, std::string> surface_file(Experiment& experiment) {
-  if (auto* const any_side = dynamic_cast<FromAnySide*>(&experiment)) return {"surface.ply", any_side->surface_ply()};
-  return {"surface.csv", surface_csv(from_above_of(experiment, ""))};
+std::pair<std::string, Text> surface_file(Experiment& experiment) {
+  if (auto* const any_side = dynamic_cast<FromAnySide*>(&experiment))
+    return {"surface.ply", [any_side](const TextOut& out) { out(any_side->surface_ply()); }};
+  return {"surface.csv", [&above = from_above_of(experiment, "")](const TextOut& out) { surface_csv(above, out); }};
 }
 
 std::string maps_csv(const FromAbove& experiment) {
@@ -126,7 +134,9 @@ std::string maps_csv(const FromAbove& experiment) {
   if (known.has(Quantity::probability) && !belief.footprint_is_weight()) {
     columns.emplace_back("p", &belief.probability());
   }
-  return columns.empty() ? std::string() : grid_csv(experiment.candidates(), columns);
+  std::string out;
+  if (!columns.empty()) grid_csv(experiment.candidates(), columns, [&](std::string_view piece) { out += piece; });
+  return out;
 }
 
 }  // namespace palpate

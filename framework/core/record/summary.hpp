@@ -2,6 +2,7 @@
 // What is measured for the summary of a run, and its surface; the fields of the summary are in fields.cpp.
 #pragma once
 
+#include "record/files.hpp"
 #include "space/from_any_side.hpp"
 
 #include <chrono>
@@ -26,11 +27,9 @@ class Stopwatch {
 /// The most memory that this process has had.
 std::int64_t peak_rss_bytes();
 
-/// The candidate grid: x, y, height mean and standard deviation, on-surface probability, reconstruction, truth.
-std::string surface_csv(FromAbove& experiment);
-
-/// What the surface came to, as a file and its content: surface.csv, or, of a run from any side, surface.ply.
-std::pair<std::string, std::string> surface_file(Experiment& experiment);
+/// What the surface came to, as a file and its content: surface.csv (the candidate grid: x, y, height mean and standard
+/// deviation, on-surface probability, reconstruction, truth), or, of a run from any side, surface.ply.
+std::pair<std::string, Text> surface_file(Experiment& experiment);
 
 /// The maps of the models that are recorded, as CSV; "" if there are none.
 std::string maps_csv(const FromAbove& experiment);
