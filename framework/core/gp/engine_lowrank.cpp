@@ -2,6 +2,7 @@
 #include "gp/axis_basis.hpp"
 #include "gp/engine.hpp"
 
+#include <cstring>
 #include <limits>
 
 namespace palpate {
@@ -116,12 +117,14 @@ class Lowrank final : public Engine {
     const auto needed = static_cast<std::size_t>(depth) * kRows;
     if (scaled_.size() < needed)
       scaled_ = simd::Lines(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
-    using Rows = Eigen::Array<double, kRows, Eigen::Dynamic>;
     const int lines = in_x_.padded() / kLine;
     double* c = shares_.data();
     for (int strip = 0; strip < in_y_.panels(); ++strip) {
-      const Eigen::Map<const Rows> from(in_y_.panel(strip), kRows, depth);
-      Eigen::Map<Rows>(scaled_.data(), kRows, depth) = from.rowwise() * inverse.transpose().array();
+      const double* const from = in_y_.panel(strip);
+      double* const scaled = scaled_.data();
+      for (std::ptrdiff_t i = 0; i < depth; ++i) {
+        for (std::ptrdiff_t m = 0; m < kRows; ++m) scaled[i * kRows + m] = from[i * kRows + m] * inverse(i);
+      }
       machine_.loops->multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
       // Turn the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
       for (int line = 0; line < lines; ++line) {
@@ -151,9 +154,9 @@ class Lowrank final : public Engine {
     const std::ptrdiff_t within = row % (simd::kPanelLines * kLine);
     const double* tile = rows_.data() + panel * kTile + within;
     const std::ptrdiff_t strip_size = static_cast<std::ptrdiff_t>(basis_y_.padded()) * kRows;
-    for (std::ptrdiff_t k = 0; k < basis_x_.rows(); ++k) {
-      const double* from = tile + k / kRows * strip_size + k % kRows * width;
-      for (std::ptrdiff_t i = 0; i < kRows; ++i) out[k * kRows + i] = from[i];
+    for (std::ptrdiff_t first = 0; first < basis_x_.rows(); first += kRows, tile += strip_size) {
+      const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kRows, basis_x_.rows() - first);
+      for (std::ptrdiff_t k = 0; k < count; ++k, out += kRows) std::memcpy(out, tile + k * width, kRows * sizeof *out);
     }
   }
 
