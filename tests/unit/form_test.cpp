@@ -19,9 +19,10 @@ std::vector<Form> forms(std::size_t count, std::uint64_t seed) {
   Random random(seed, "form test");
   std::vector<Form> out;
   while (out.size() < count) {
-    const Form form = prior.draw_piece(random).form;
-    out.push_back(form);
-    out.push_back(prior.draw_hole(form, random));
+    Piece piece = prior.draw_piece(random);
+    prior.draw_hole(piece, random);
+    out.push_back(piece.form);
+    out.push_back(piece.hole);
   }
   return out;
 }

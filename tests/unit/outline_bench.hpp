@@ -152,12 +152,15 @@ inline double direction_of(const Form& form) {
 }
 
 /// Every number that says what a piece is, where it lies and how large.
-inline std::array<Number, 14> numbers_of(const Piece& piece, const OutlinePrior::Settings& prior) {
+inline std::array<Number, 18> numbers_of(const Piece& piece, const OutlinePrior::Settings& prior) {
   const Form& form = piece.form;
   const Form& hole = piece.hole;
   const double sizes = std::log(prior.largest / prior.smallest);
   const auto size = [&](double half) { return std::log(2.0 * half / prior.smallest) / sizes; };
-  const auto of_hole = [&](double value) { return piece.hollow ? value : -1.0; };
+  const auto of_hole = [&](double value) { return piece.hollow && !piece.fitted() ? value : -1.0; };
+  const bool corner = piece.fitted() && piece.fit == Piece::Fit::corner;
+  // A form that is turned about by half a circle is the same, with its hole at the other corner.
+  const int about = form.sine < 0.0 || (form.sine == 0.0 && form.cosine < 0.0) ? -1 : 1;
   const double dx = hole.x - form.x;
   const double dy = hole.y - form.y;
   return {{{"x", form.x / prior.area.width},
@@ -173,7 +176,11 @@ inline std::array<Number, 14> numbers_of(const Piece& piece, const OutlinePrior:
            {"log a of hole", of_hole(std::log(2.0 * hole.a / prior.smallest + 1e-9) / sizes)},
            {"slenderness of hole", of_hole(std::log(hole.a / hole.b) / sizes)},
            {"direction of hole", of_hole(direction_of(hole))},
-           {"place of hole", of_hole(0.5 + 0.5 * (form.cosine * dx + form.sine * dy) / form.a)}}};
+           {"place of hole", of_hole(0.5 + 0.5 * (form.cosine * dx + form.sine * dy) / form.a)},
+           {"a hole at a corner", piece.hollow ? 0.99 - 0.49 * static_cast<int>(corner) - 0.25 * piece.fitted() : -1.0},
+           {"share along", piece.fitted() ? piece.along : -1.0},
+           {"share across", corner ? piece.across : -1.0},
+           {"corner", corner ? 0.5 + about * (0.25 * piece.side_a + 0.125 * piece.side_b) : -1.0}}};
 }
 
 inline int holes_of(const Outline& outline) {

@@ -116,9 +116,13 @@ std::pair<Piece, double> drawn_evenly(const OutlinePrior::Settings& prior, Rando
     form.family = random.uniform() < 0.5 ? Form::Family::box : Form::Family::ellipse;
     density *= 0.5;
     form.turn(between(0.0, kPi));
-    const double one = between(std::log(0.5 * prior.smallest), std::log(longest));
-    const double other = between(std::log(0.5 * prior.smallest), std::log(longest));
-    density *= 2.0;  // they are put in order
+    const double range = std::log(2.0 * longest / prior.smallest);
+    const double one = std::log(0.5 * prior.smallest) + range * random.uniform();
+    // Half of them about round.
+    constexpr double kRound = 0.1;
+    const double other = random.uniform() < 0.5 ? std::log(0.5 * prior.smallest) + range * random.uniform()
+                                                : one - kRound * random.uniform();
+    density *= 0.5 * 2.0 / (range * range) + (std::abs(one - other) < kRound ? 0.5 / (range * kRound) : 0.0);
     std::tie(form.b, form.a) = std::minmax({std::exp(one), std::exp(other)});
   };
   Piece out;
@@ -127,7 +131,19 @@ std::pair<Piece, double> drawn_evenly(const OutlinePrior::Settings& prior, Rando
   out.form.y = between(0.0, prior.area.depth);
   out.hollow = random.uniform() < 0.5;
   density *= 0.5;
-  if (out.hollow) {
+  if (!out.hollow) return {out, density};
+  out.fit = static_cast<Piece::Fit>(random.index(3));
+  density /= 3.0;
+  if (out.fitted()) {
+    const auto share = [&] { return between(0.0, 1.0); };
+    out.along = share();
+    out.across = share();
+    const auto corner = static_cast<int>(random.index(4));
+    out.side_a = corner % 2 == 0 ? 1 : -1;
+    out.side_b = corner / 2 == 0 ? 1 : -1;
+    if (out.fit == Piece::Fit::corner) density /= 4.0;
+    out.fit_hole();
+  } else {
     axes(out.hole);
     const double along = between(-out.form.a, out.form.a);
     const double across = between(-out.form.b, out.form.b);
@@ -145,6 +161,7 @@ std::string kind_of(const Piece& piece, const OutlinePrior::Settings& prior) {
   std::string out = std::string(piece.form.family == Form::Family::box ? "box" : "ellipse") + half(0, 0.6) +
                     half(2, 0.3) + half(3, 0.45) + half(4, 0.2);
   if (!piece.hollow) return out;
+  if (piece.fitted()) return out + half(14, 0.6) + half(15, 0.5) + half(16, 0.4) + half(17, 0.5);
   return std::string(piece.hole.family == Form::Family::box ? "box" : "ellipse") + " in " +
          (piece.form.family == Form::Family::box ? "box" : "ellipse") + half(3, 0.5) + half(10, 0.15) + half(11, 0.1) +
          half(13, 0.7);

@@ -3,18 +3,63 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace palpate::footprints {
 namespace {
 
-/// Of the ordered logarithms of two half axes up to `longest`, and a direction, none of which is preferred.
-double even_density(double shortest, double longest) {
-  const double range = std::log(longest / shortest);
-  return 2.0 / (range * range * kPi);
-}
+// Shares of a form's axes that a fitted hole takes.
+constexpr double kLeastShare = 0.1;
+constexpr double kMostShare = 0.9;
+
+/// The logarithms of half axes of about round ellipses: up to `most` apart.
+struct Round {
+  Round(double from, double to)
+      : shortest(from), range(std::log(to / from)), most(std::min(std::log(1.06), 0.5 * range)) {}
+
+  /// Half axes within the bounds; `apart` and `size` in [0, 1], even ones for even logarithms.
+  void set(Form& form, double apart, double size) const {
+    const double by = most * apart;
+    form.b = shortest * std::exp((range - by) * size);
+    form.a = form.b * std::exp(by);
+  }
+  double density(const Form& form) const {
+    const double by = std::log(form.a / form.b);
+    return by < most ? 1.0 / (most * (range - by)) : 0.0;
+  }
+
+  double shortest, range, most;
+};
 
 }  // namespace
+
+void Piece::fit_hole() {
+  if (!fitted()) return;
+  hole = form;
+  if (fit == Fit::concentric) {
+    hole.a *= along;
+    hole.b *= along;
+    return;
+  }
+  // About the corner: beyond the sides nothing is left of the form, however a touch there is blurred.
+  const double u = side_a * form.a;
+  const double v = side_b * form.b;
+  hole.x += form.cosine * u - form.sine * v;
+  hole.y += form.sine * u + form.cosine * v;
+  hole.a *= 2.0 * along;
+  hole.b *= 2.0 * across;
+  hole.order_axes();
+}
+
+void Piece::order_axes() {
+  if (form.b <= form.a) return;
+  form.order_axes();
+  if (fit == Fit::corner) std::swap(along, across);
+  std::tie(side_a, side_b) = std::pair(side_b, -side_a);
+}
 
 OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
   const Area& area = settings_.area;
@@ -27,18 +72,26 @@ OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
   const auto half_axis = [&](int i) { return shortest * std::pow(longest_ / shortest, (i + 0.5) / kAxes); };
   std::array<double, kAxes> halves{};
   for (int i = 0; i < kAxes; ++i) halves[static_cast<std::size_t>(i)] = half_axis(i);
+  const Round round(shortest, longest_);
   for (int turn = 0; turn < kTurns; ++turn) {
     Form form;
     form.turn(kPi * (turn + 0.5) / kTurns);
     for (const Form::Family family : {Form::Family::box, Form::Family::ellipse}) {
       form.family = family;
       const double share = this->family(form);
+      const double of_round = family == Form::Family::ellipse ? settings_.round : 0.0;
       for (const double a : halves) {
         for (const double b : halves) {
           if (b > a) break;
           form.a = a;
           form.b = b;
-          if (fits(form)) form_ += (b == a ? 1.0 : 2.0) * share;
+          if (fits(form)) form_ += (b == a ? 1.0 : 2.0) * share * (1.0 - of_round);
+        }
+      }
+      for (int i = 0; i < kAxes && of_round > 0.0; ++i) {
+        for (int k = 0; k < kAxes; ++k) {
+          round.set(form, (i + 0.5) / kAxes, (k + 0.5) / kAxes);
+          if (fits(form)) form_ += share * of_round;
         }
       }
     }
@@ -48,7 +101,7 @@ OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
     throw Error("footprint", "hardly any outline of this prior fits into the area",
                 "make smallest and largest smaller");
   }
-  form_ = even_density(shortest, longest_) / form_;
+  form_ = 1.0 / form_;
 }
 
 Form OutlinePrior::draw_form(double longest, Random& random) const {
@@ -56,7 +109,12 @@ Form OutlinePrior::draw_form(double longest, Random& random) const {
   const auto half_axis = [&] { return shortest * std::pow(longest / shortest, random.uniform()); };
   Form out;
   out.family = random.uniform() < settings_.ellipses ? Form::Family::ellipse : Form::Family::box;
-  std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
+  if (out.family == Form::Family::ellipse && random.uniform() < settings_.round) {
+    const double apart = random.uniform();
+    Round(shortest, longest).set(out, apart, random.uniform());
+  } else {
+    std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
+  }
   out.turn(kPi * random.uniform());
   return out;
 }
@@ -83,23 +141,36 @@ Piece OutlinePrior::draw_piece(Random& random) const {
   return out;
 }
 
-Form OutlinePrior::draw_hole(const Form& form, Random& random) const {
-  Form out = draw_form(form.a, random);
+void OutlinePrior::draw_hole(Piece& piece, Random& random) const {
+  const Form& form = piece.form;
+  piece.hollow = true;
+  if (random.uniform() < settings_.fitted) {
+    const auto share = [&] { return kLeastShare + (kMostShare - kLeastShare) * random.uniform(); };
+    const auto side = [&] { return random.uniform() < 0.5 ? 1 : -1; };
+    const bool corner = form.family == Form::Family::box && random.uniform() < 0.5;
+    piece.fit = corner ? Piece::Fit::corner : Piece::Fit::concentric;
+    piece.along = share();
+    piece.across = share();
+    piece.side_a = side();
+    piece.side_b = side();
+    piece.fit_hole();
+    return;
+  }
+  piece.fit = Piece::Fit::free;
+  piece.hole = draw_form(form.a, random);
   double u, v;
   do {
     u = 2.0 * random.uniform() - 1.0;
     v = 2.0 * random.uniform() - 1.0;
   } while (form.family == Form::Family::ellipse && u * u + v * v > 1.0);
-  out.x = form.x + form.cosine * u * form.a - form.sine * v * form.b;
-  out.y = form.y + form.sine * u * form.a + form.cosine * v * form.b;
-  return out;
+  piece.hole.x = form.x + form.cosine * u * form.a - form.sine * v * form.b;
+  piece.hole.y = form.y + form.sine * u * form.a + form.cosine * v * form.b;
 }
 
 Piece OutlinePrior::draw_piece_or_hollow(Random& random) const {
   Piece out = draw_piece(random);
   if (random.uniform() >= whole(out.form)) {
-    out.hole = draw_hole(out.form, random);
-    out.hollow = true;
+    draw_hole(out, random);
     out.density = density(out);
   }
   return out;
@@ -135,14 +206,36 @@ double OutlinePrior::hole_centre_density(const Form& form, const Form& hole) con
   return form.contains(hole.x, hole.y) ? 1.0 / form.extent() : 0.0;
 }
 
+double OutlinePrior::axes(const Form& form, double longest) const {
+  const double shortest = 0.5 * settings_.smallest;
+  const double range = std::log(longest / shortest);
+  const double even = 2.0 / (range * range);
+  if (form.family == Form::Family::box) return even / kPi;
+  return ((1.0 - settings_.round) * even + settings_.round * Round(shortest, longest).density(form)) / kPi;
+}
+
+double OutlinePrior::fitted_hole(const Piece& piece) const {
+  constexpr double kEven = 1.0 / (kMostShare - kLeastShare);
+  const auto possible = [](double share) { return share > kLeastShare && share < kMostShare; };
+  const bool box = piece.form.family == Form::Family::box;
+  if (!possible(piece.along)) return 0.0;
+  if (piece.fit == Piece::Fit::concentric) return (box ? 0.5 : 1.0) * kEven;
+  // One of four corners.
+  return box && possible(piece.across) ? 0.5 * 0.25 * kEven * kEven : 0.0;
+}
+
 double OutlinePrior::density(const Piece& piece) const {
-  const double of_form = centre_density(piece.form) * family(piece.form) * form_;
+  const double centre = centre_density(piece.form);
+  if (!(centre > 0.0)) return 0.0;
+  const double of_form = centre * family(piece.form) * axes(piece.form, longest_) * form_;
   // Nothing can be taken from a piece that is smaller.
   if (!piece.hollow) return of_form * whole(piece.form);
-  const double hollow = 1.0 - whole(piece.form);
-  if (of_form <= 0.0 || hollow <= 0.0) return 0.0;
-  return of_form * hollow * hole_centre_density(piece.form, piece.hole) * family(piece.hole) *
-         even_density(0.5 * settings_.smallest, piece.form.a);
+  const double of_hollow = of_form * (1.0 - whole(piece.form));
+  if (!(of_hollow > 0.0)) return 0.0;
+  if (piece.fitted()) return of_hollow * settings_.fitted * fitted_hole(piece);
+  const double of_hole = hole_centre_density(piece.form, piece.hole);
+  if (!(of_hole > 0.0)) return 0.0;
+  return of_hollow * (1.0 - settings_.fitted) * of_hole * family(piece.hole) * axes(piece.hole, piece.form.a);
 }
 
 }  // namespace palpate::footprints

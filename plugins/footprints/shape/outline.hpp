@@ -16,9 +16,18 @@ namespace palpate::footprints {
 
 /// A box or an ellipse, or one with a hole in it, which may reach beyond it: a block or a cylinder, a ring, a U, an L.
 struct Piece {
+  /// Where a hole is: anywhere; in the middle, of the same family and proportions; or at a corner of a box, along its
+  /// sides.
+  enum class Fit { free, concentric, corner };
+
   Form form;
   Form hole;  ///< of no meaning unless `hollow`
   bool hollow = false;
+  Fit fit = Fit::free;
+  // Of a hole that is not free: the shares of the form's axes that it takes (`along` alone where it is concentric), and
+  // at which corner it is: on which sides, 1 or -1.
+  double along = 0.0, across = 0.0;
+  int side_a = 1, side_b = 1;
   double density = 0.0;  ///< see OutlinePrior, kept beside it
 
   bool contains(double x, double y) const { return form.contains(x, y) && !(hollow && hole.contains(x, y)); }
@@ -27,6 +36,12 @@ struct Piece {
     const double in_form = form.depth(x, y);
     return hollow ? std::min(in_form, -hole.depth(x, y)) : in_form;
   }
+
+  bool fitted() const { return hollow && fit != Fit::free; }
+  /// A hole that is not free follows the form.
+  void fit_hole();
+  /// Names the longer axis of the form `a` again; form and hole stay.
+  void order_axes();
 };
 
 /// Pieces in no particular order, which may overlap: what one of them holds is on an object. None is an empty desk.
@@ -69,8 +84,10 @@ class Outline {
 /// What is thought of an outline before any touch. So many pieces are `expected`, by the law of Poisson up to `most`;
 /// they know nothing of each other. A piece lies wholly on the
 /// area, anywhere with equal probability; the logarithms of its half axes are uniform and independent, as far as they
-/// keep the bounds and leave room to lie in. A hole has its centre on the piece, and half axes whose logarithms are
-/// uniform from half of `smallest` to the longer one of the piece; only pieces twice as long as `smallest` have one.
+/// keep the bounds and leave room to lie in. Of ellipses most are about round: their mean half axis is uniform so, and
+/// the longer one up to 6 % above the other. A hole that is free has its centre on the piece, and such half axes from
+/// half of `smallest` to the longer one of the piece; one that is fitted takes a tenth to nine tenths of the piece's
+/// axes, in the middle or, as often of a box, at a corner. Only pieces twice as long as `smallest` have a hole.
 class OutlinePrior {
  public:
   struct Settings {
@@ -80,7 +97,9 @@ class OutlinePrior {
     double most_slender = 8.0;  ///< greatest ratio of length to width
     double ellipses = 0.3;      ///< probability that a piece or a hole is an ellipse, in (0, 1)
     double expected = 2.0;      ///< pieces, above 0
+    double round = 0.8;         ///< probability that an ellipse is about round, in [0, 1)
     double hollow = 0.25;       ///< probability of a hole, in [0, 1)
+    double fitted = 0.8;        ///< probability that a hole is not free, in [0, 1)
     int most = Outline::kMost;  ///< at least 1
   };
 
@@ -90,11 +109,11 @@ class OutlinePrior {
   const Settings& settings() const { return settings_; }
 
   Outline draw(Random& random) const;
-  /// A piece without a hole, and a hole for it.
+  /// A piece without a hole; and gives it one, but for the density.
   Piece draw_piece(Random& random) const;
-  /// And one that may have a hole.
+  void draw_hole(Piece& piece, Random& random) const;
+  /// One that may have a hole.
   Piece draw_piece_or_hollow(Random& random) const;
-  Form draw_hole(const Form& form, Random& random) const;
 
   /// That a piece has no hole.
   double whole(const Form& form) const { return form.a >= settings_.smallest ? 1.0 - settings_.hollow : 1.0; }
@@ -108,13 +127,16 @@ class OutlinePrior {
   /// Family, half axes up to `longest` and direction, at the origin.
   Form draw_form(double longest, Random& random) const;
   double family(const Form& form) const;
+  /// Of ordered logarithms of half axes up to `longest`, and of a direction.
+  double axes(const Form& form, double longest) const;
+  double fitted_hole(const Piece& piece) const;
   /// Whether it keeps the bounds of lengths and widths, and, to fit, whether there is room for it.
   bool in_bounds(const Form& form) const;
   bool fits(const Form& form) const;
 
   Settings settings_;
   double longest_;     ///< of half axes
-  double form_ = 0.0;  ///< density of what fits, but for its centre and family
+  double form_ = 0.0;  ///< one over the share of all forms that fits
 };
 
 }  // namespace palpate::footprints

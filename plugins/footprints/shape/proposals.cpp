@@ -16,6 +16,7 @@ namespace {
 constexpr double kShift = 0.05;   // metres
 constexpr double kTurn = 0.6;     // tangent of half an angle
 constexpr double kStretch = 0.3;  // see stretch()
+constexpr double kShare = 0.2;    // of a form's axes, for a fitted hole
 
 constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of a new piece from a wrong label
 
@@ -66,8 +67,8 @@ void turn(Form& form, double tangent) {
 }
 double stretch(double step) { return (1.0 + step) / (1.0 - step); }
 
-/// Moves a side and leaves the one across from it. Returns the correction: even steps in the length of a half axis are
-/// uneven ones in its logarithm.
+/// Moves a side and leaves the one across from it; the axes are to be put in order. Returns the correction: even steps
+/// in the length of a half axis are uneven ones in its logarithm.
 double move_side(Form& form, const Steps& steps) {
   const bool along = steps.heads;
   double& half = along ? form.a : form.b;
@@ -78,9 +79,7 @@ double move_side(Form& form, const Steps& steps) {
   const double side = steps.also_heads ? change : -change;
   form.x += side * (along ? form.cosine : -form.sine);
   form.y += side * (along ? form.sine : form.cosine);
-  const double correction = before / half;
-  form.order_axes();
-  return correction;
+  return before / half;
 }
 
 void change_family(Form& form) {
@@ -225,30 +224,40 @@ void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const Seen
   const std::vector<Target>& near = wrongly_held(seen, piece.form, out);
   out.changes(one);
   if (adds) {
-    piece.hole = prior.draw_hole(piece.form, random);
-    draw_near(piece.hole, near, random);
+    prior.draw_hole(piece, random);
+    if (piece.fit == Piece::Fit::free) draw_near(piece.hole, near, random);
   }
-  const double odds = prior.settings().hollow / (1.0 - prior.settings().hollow);
-  const double by_prior = prior.hole_centre_density(piece.form, piece.hole);
-  if (!(by_prior > 0.0)) return;
-  const double correction = odds * correction_near(by_prior, near, piece.hole);
+  double correction = prior.settings().hollow / (1.0 - prior.settings().hollow);
+  if (piece.fit == Piece::Fit::free) {
+    const double by_prior = prior.hole_centre_density(piece.form, piece.hole);
+    if (!(by_prior > 0.0)) return;
+    correction *= correction_near(by_prior, near, piece.hole);
+  }
   out.correction = adds ? correction : 1.0 / correction;
   piece.hollow = adds;
   piece.density = prior.density(piece);
 }
 
-/// Moves a form, or the hole in it, or both.
-void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, double which, Random& random) {
-  if (out.outline.size() == 0) return;
-  const Choice choice(out.outline, here, random);
-  Piece& piece = out.outline[choice.one()];
-  const double before = piece.density;
-  out.changes(choice.one());
-  const double target = piece.hollow ? random.uniform() : 0.0;
-  Form& form = target < 0.5 ? piece.form : piece.hole;
-  const bool both = target > 0.8;
-  const Steps steps(random);
-  out.correction = 1.0;
+/// Stretches a form; an ellipse one time in two so that a round one stays round.
+void stretch(Form& form, const Steps& steps) {
+  const double one = stretch(kStretch * steps.one);
+  form.a *= one;
+  form.b *= form.family == Form::Family::ellipse && steps.heads ? one : stretch(kStretch * steps.other);
+}
+
+/// A fitted hole takes more or less, or may be at another corner.
+void move_fitted(Piece& piece, double which, const Steps& steps) {
+  constexpr double kOtherCorner = 0.05;
+  piece.along += kShare * steps.one;
+  if (piece.fit != Piece::Fit::corner) return;
+  piece.across += kShare * steps.other;
+  if (which < kOtherCorner) (steps.heads ? piece.side_a : piece.side_b) *= -1;
+}
+
+/// Moves the form of a piece, or its hole, or both. Returns the correction, but for the prior.
+double move_part(Piece& piece, bool of_form, bool both, double which, const Steps& steps) {
+  Form& form = of_form ? piece.form : piece.hole;
+  double correction = 1.0;
   if (which < 0.38) {
     const double dx = kShift * steps.one;
     const double dy = kShift * steps.other;
@@ -261,14 +270,36 @@ void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, d
   } else if (which < 0.59) {
     turn(form, kTurn * steps.one);
   } else if (which < 0.78) {
-    form.a *= stretch(kStretch * steps.one);
-    form.b *= stretch(kStretch * steps.other);
-    form.order_axes();
+    stretch(form, steps);
   } else if (which < 0.965) {
-    out.correction = move_side(form, steps);
+    correction = move_side(form, steps);
   } else {
     change_family(form);
   }
+  if (of_form) {
+    piece.order_axes();
+  } else {
+    form.order_axes();
+  }
+  return correction;
+}
+
+/// Moves a form, or the hole in it, or both.
+void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, double which, Random& random) {
+  if (out.outline.size() == 0) return;
+  const Choice choice(out.outline, here, random);
+  Piece& piece = out.outline[choice.one()];
+  const double before = piece.density;
+  out.changes(choice.one());
+  const double target = piece.hollow ? random.uniform() : 0.0;
+  const Steps steps(random);
+  if (piece.fitted() && target > 0.6) {
+    move_fitted(piece, which, steps);
+    out.correction = 1.0;
+  } else {
+    out.correction = move_part(piece, piece.fitted() || target<0.5, target> 0.8, which, steps);
+  }
+  piece.fit_hole();
   piece.density = out.correction > 0.0 ? prior.density(piece) : 0.0;
   out.correction *= piece.density / before * choice.correction(piece, here);
 }
