@@ -152,7 +152,8 @@ inline double direction_of(const Form& form) {
 }
 
 /// Every number that says what a piece is, where it lies and how large.
-inline std::array<Number, 18> numbers_of(const Piece& piece, const OutlinePrior::Settings& prior) {
+inline constexpr std::size_t kNumbers = 18;
+inline std::array<Number, kNumbers> numbers_of(const Piece& piece, const OutlinePrior::Settings& prior) {
   const Form& form = piece.form;
   const Form& hole = piece.hole;
   const double sizes = std::log(prior.largest / prior.smallest);
@@ -276,7 +277,7 @@ class Drift {
   double moved() const { return static_cast<double>(moved_) / static_cast<double>(count_); }
 
  private:
-  static constexpr std::size_t kSums = 20;
+  static constexpr std::size_t kSums = 6 + kNumbers;
   /// Over all pieces, how many have each number and what these come to, in so far as that says something.
   std::array<Number, kSums> sums(const Outline& outline) const {
     std::array<Number, kSums> out{};
@@ -284,7 +285,7 @@ class Drift {
     std::copy(whole.begin(), whole.end(), out.begin());
     out[4] = {"none", outline.size() == 0 ? 1.0 : 0.0};
     out[5] = {"small", 0.0};
-    for (std::size_t i = 0; i < 14; ++i) out[6 + i].name = numbers_of(Piece(), prior_)[i].name;
+    for (std::size_t i = 0; i < kNumbers; ++i) out[6 + i].name = numbers_of(Piece(), prior_)[i].name;
     for (const Piece& piece : outline) {
       out[5].value += piece.form.a < prior_.smallest ? 1.0 : 0.0;
       const auto numbers = numbers_of(piece, prior_);

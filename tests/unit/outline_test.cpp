@@ -168,7 +168,7 @@ std::string kind_of(const Piece& piece, const OutlinePrior::Settings& prior) {
 }
 
 TEST(OutlinePrior, HasADensityThatComesToOneAndSaysHowOftenEachKindOfPieceIsDrawn) {
-  const int draws = test::brief() ? 300000 : 1000000;
+  const int draws = test::brief() ? 400000 : 1000000;
   for (const OutlinePrior::Settings& settings : priors()) {
     const OutlinePrior prior(settings);
     Random random(14, "outline test");
