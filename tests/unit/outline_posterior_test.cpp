@@ -13,6 +13,7 @@ namespace {
 OutlinePrior::Settings about_two_pieces() {
   OutlinePrior::Settings out;
   out.area = {0.23, 0.23};
+  out.expected = 2.2;
   return out;
 }
 
