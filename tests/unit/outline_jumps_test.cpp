@@ -325,7 +325,7 @@ INSTANTIATE_TEST_SUITE_P(
                     FalseRatio{"Split", Kind::split, Kind::merge, 0.0, 0.1, 5.0, 0.5, 20, 15000},
                     FalseRatio{"Merge", Kind::merge, Kind::split, 0.0, 0.1, 5.0, 0.5, 20, 15000},
                     FalseRatio{"Replace", Kind::replace, Kind::replace, 0.45, 0.15, 5.0, 0.8, 200, 40000},
-                    FalseRatio{"ChangeForm", Kind::change_form, Kind::change_form, 0.45, 0.15, 5.0, 0.8, 20, 60000}),
+                    FalseRatio{"ChangeForm", Kind::change_form, Kind::change_form, 0.45, 0.15, 5.0, 0.8, 20, 90000}),
     [](const auto& one) { return one.param.name; });
 
 /// Pieces that were touched, together with all labels.

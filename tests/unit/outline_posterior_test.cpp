@@ -10,10 +10,10 @@
 namespace palpate::footprints {
 namespace {
 
-OutlinePrior::Settings about_two_pieces() {
+OutlinePrior::Settings about_three_pieces() {
   OutlinePrior::Settings out;
   out.area = {0.23, 0.23};
-  out.expected = 2.2;
+  out.expected = 3.0;
   return out;
 }
 
@@ -139,7 +139,7 @@ struct Estimate {
 
 /// By `draws` of the prior.
 Estimate weighed(const Case& one, int draws, const Points& places) {
-  const OutlinePrior prior(about_two_pieces());
+  const OutlinePrior prior(about_three_pieces());
   Random random(1, "outline posterior test");
   double sum = 0.0;
   const Eigen::Index count = kShares;
@@ -191,7 +191,7 @@ TEST_P(Posteriors, AreWhatDrawsOfThePriorComeToThatAreWeighedByLabelsAndHeights)
   const int runs = test::brief() ? 3 : 10;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(kShares), squares = sum;
   for (int run = 0; run < runs; ++run) {
-    Particles belief(OutlinePrior(about_two_pieces()), GetParam().how,
+    Particles belief(OutlinePrior(about_three_pieces()), GetParam().how,
                      Random(static_cast<std::uint64_t>(run), "outline posterior test: a belief"));
     for (const Touch& touch : *GetParam().touches) belief.add(touch);
     Eigen::VectorXd of_run = Eigen::VectorXd::Zero(kShares);
@@ -215,7 +215,7 @@ TEST_P(Posteriors, AreWhatDrawsOfThePriorComeToThatAreWeighedByLabelsAndHeights)
 }
 
 TEST(Particles, KnowHowProbableTheLabelsWere) {
-  const OutlinePrior prior(about_two_pieces());
+  const OutlinePrior prior(about_three_pieces());
   ParticleSettings how = settled(0.0, false);
   Random random(2, "outline posterior test");
   const int draws = test::brief() ? 30000 : 300000;
@@ -248,7 +248,7 @@ TEST(Particles, KnowHowProbableTheLabelsWere) {
 }
 
 TEST(Particles, DoubtALabelAsOftenAsTheDrawsDoThatAreWeighedByAllLabels) {
-  OutlinePrior::Settings settings = about_two_pieces();
+  OutlinePrior::Settings settings = about_three_pieces();
   settings.expected = 0.5;  // with few pieces a lie is soon one
   const OutlinePrior prior(settings);
   ParticleSettings how = settled(0.004, false);
