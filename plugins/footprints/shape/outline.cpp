@@ -15,23 +15,27 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.9;
 
-/// The logarithms of half axes of about round ellipses: up to `most` apart.
-struct Round {
-  Round(double from, double to)
-      : shortest(from), range(std::log(to / from)), most(std::min(std::log(1.06), 0.5 * range)) {}
+/// Half axes of about round ellipses, from `shortest` on over a range of logarithms.
+class Round {
+ public:
+  Round(double shortest, double range) : shortest_(shortest), range_(range), most_(std::min(kMost, 0.5 * range)) {}
 
-  /// Half axes within the bounds; `apart` and `size` in [0, 1], even ones for even logarithms.
+  /// `apart` and `size` in [0, 1], even ones for even logarithms.
   void set(Form& form, double apart, double size) const {
-    const double by = most * apart;
-    form.b = shortest * std::exp((range - by) * size);
+    const double by = most_ * apart;
+    form.b = shortest_ * std::exp((range_ - by) * size);
     form.a = form.b * std::exp(by);
   }
   double density(const Form& form) const {
+    if (form.a > kRatio * form.b) return 0.0;
     const double by = std::log(form.a / form.b);
-    return by < most ? 1.0 / (most * (range - by)) : 0.0;
+    return by < most_ ? 1.0 / (most_ * (range_ - by)) : 0.0;
   }
 
-  double shortest, range, most;
+ private:
+  static constexpr double kRatio = 1.06;
+  static constexpr double kMost = 0.058268908123975775;  // its logarithm
+  double shortest_, range_, most_;
 };
 
 }  // namespace
@@ -69,10 +73,19 @@ OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
   constexpr int kAxes = 48;
   constexpr int kTurns = 32;
   const double shortest = 0.5 * settings_.smallest;
+  range_ = std::log(longest_ / shortest);
   const auto half_axis = [&](int i) { return shortest * std::pow(longest_ / shortest, (i + 0.5) / kAxes); };
   std::array<double, kAxes> halves{};
   for (int i = 0; i < kAxes; ++i) halves[static_cast<std::size_t>(i)] = half_axis(i);
-  const Round round(shortest, longest_);
+  // About round ones are hardly other from one to the next.
+  constexpr int kApart = 3;
+  std::array<Form, kAxes * kApart> rounds;
+  for (std::size_t i = 0; i < rounds.size(); ++i) {
+    rounds[i].family = Form::Family::ellipse;
+    Round(shortest, range_)
+        .set(rounds[i], (static_cast<double>(i % kApart) + 0.5) / kApart,
+             (static_cast<double>(i / kApart) + 0.5) / kAxes);
+  }
   for (int turn = 0; turn < kTurns; ++turn) {
     Form form;
     form.turn(kPi * (turn + 0.5) / kTurns);
@@ -88,11 +101,11 @@ OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
           if (fits(form)) form_ += (b == a ? 1.0 : 2.0) * share * (1.0 - of_round);
         }
       }
-      for (int i = 0; i < kAxes && of_round > 0.0; ++i) {
-        for (int k = 0; k < kAxes; ++k) {
-          round.set(form, (i + 0.5) / kAxes, (k + 0.5) / kAxes);
-          if (fits(form)) form_ += share * of_round;
-        }
+      if (!(of_round > 0.0)) continue;
+      for (Form& one : rounds) {
+        one.cosine = form.cosine;
+        one.sine = form.sine;
+        if (fits(one)) form_ += kAxes * share * of_round / kApart;
       }
     }
   }
@@ -111,7 +124,7 @@ Form OutlinePrior::draw_form(double longest, Random& random) const {
   out.family = random.uniform() < settings_.ellipses ? Form::Family::ellipse : Form::Family::box;
   if (out.family == Form::Family::ellipse && random.uniform() < settings_.round) {
     const double apart = random.uniform();
-    Round(shortest, longest).set(out, apart, random.uniform());
+    Round(shortest, std::log(longest / shortest)).set(out, apart, random.uniform());
   } else {
     std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
   }
@@ -206,12 +219,11 @@ double OutlinePrior::hole_centre_density(const Form& form, const Form& hole) con
   return form.contains(hole.x, hole.y) ? 1.0 / form.extent() : 0.0;
 }
 
-double OutlinePrior::axes(const Form& form, double longest) const {
-  const double shortest = 0.5 * settings_.smallest;
-  const double range = std::log(longest / shortest);
+double OutlinePrior::axes(const Form& form, double range) const {
   const double even = 2.0 / (range * range);
   if (form.family == Form::Family::box) return even / kPi;
-  return ((1.0 - settings_.round) * even + settings_.round * Round(shortest, longest).density(form)) / kPi;
+  const double round = Round(0.5 * settings_.smallest, range).density(form);
+  return ((1.0 - settings_.round) * even + settings_.round * round) / kPi;
 }
 
 double OutlinePrior::fitted_hole(const Piece& piece) const {
@@ -227,7 +239,7 @@ double OutlinePrior::fitted_hole(const Piece& piece) const {
 double OutlinePrior::density(const Piece& piece) const {
   const double centre = centre_density(piece.form);
   if (!(centre > 0.0)) return 0.0;
-  const double of_form = centre * family(piece.form) * axes(piece.form, longest_) * form_;
+  const double of_form = centre * family(piece.form) * axes(piece.form, range_) * form_;
   // Nothing can be taken from a piece that is smaller.
   if (!piece.hollow) return of_form * whole(piece.form);
   const double of_hollow = of_form * (1.0 - whole(piece.form));
@@ -235,7 +247,8 @@ double OutlinePrior::density(const Piece& piece) const {
   if (piece.fitted()) return of_hollow * settings_.fitted * fitted_hole(piece);
   const double of_hole = hole_centre_density(piece.form, piece.hole);
   if (!(of_hole > 0.0)) return 0.0;
-  return of_hollow * (1.0 - settings_.fitted) * of_hole * family(piece.hole) * axes(piece.hole, piece.form.a);
+  return of_hollow * (1.0 - settings_.fitted) * of_hole * family(piece.hole) *
+         axes(piece.hole, std::log(piece.form.a / (0.5 * settings_.smallest)));
 }
 
 }  // namespace palpate::footprints

@@ -127,8 +127,8 @@ class OutlinePrior {
   /// Family, half axes up to `longest` and direction, at the origin.
   Form draw_form(double longest, Random& random) const;
   double family(const Form& form) const;
-  /// Of ordered logarithms of half axes up to `longest`, and of a direction.
-  double axes(const Form& form, double longest) const;
+  /// Of ordered logarithms of half axes over such a range, and of a direction.
+  double axes(const Form& form, double range) const;
   double fitted_hole(const Piece& piece) const;
   /// Whether it keeps the bounds of lengths and widths, and, to fit, whether there is room for it.
   bool in_bounds(const Form& form) const;
@@ -136,6 +136,7 @@ class OutlinePrior {
 
   Settings settings_;
   double longest_;     ///< of half axes
+  double range_;       ///< of their logarithms
   double form_ = 0.0;  ///< one over the share of all forms that fits
 };
 
