@@ -74,6 +74,30 @@ TEST(Outline, OfTwelvePiecesLosesTheOneThatIsTakenAwayAndCopiesAreWhole) {
   }
 }
 
+TEST(Outline, KeepsAHoleThatFitsWhereItIsWhenAxesAreNamedAnew) {
+  const OutlinePrior prior(common_prior());
+  Random random(15, "outline test");
+  const Points places = test::lattice(61, 61);
+  int corners = 0;
+  for (int k = 0; k < 400; ++k) {
+    Piece piece = prior.draw_piece_or_hollow(random);
+    if (!piece.fitted()) continue;
+    corners += piece.fit == Piece::Fit::corner ? 1 : 0;
+    piece.form.b = 1.7 * piece.form.a;
+    piece.fit_hole();
+    Piece ordered = piece;
+    ordered.order_axes();
+    ordered.fit_hole();
+    ASSERT_LE(ordered.form.b, ordered.form.a);
+    for (Eigen::Index i = 0; i < places.rows(); ++i) {
+      // Depths are those of forms whose axes are in order.
+      const bool held = piece.contains(places(i, 0), places(i, 1));
+      ASSERT_EQ(ordered.contains(places(i, 0), places(i, 1)), held) << k;
+    }
+  }
+  EXPECT_GT(corners, 10);
+}
+
 /// Priors that have little in common.
 std::vector<OutlinePrior::Settings> priors() {
   OutlinePrior::Settings crowded = common_prior();
