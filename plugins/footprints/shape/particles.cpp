@@ -184,10 +184,14 @@ double Particles::add(const Touch& touch) {
     sum += weight;
     sum_of_squares += weight * weight;
   }
-  resample(weights, sum);
+  const double of_new = something_new * exact_.probability(LabelModel::kInside, true);
+  since_found_ = touch.on && 2.0 * of_new * size() > of_label ? 0 : since_found_ + 1;
+  const double probability = of_label / size();
+  const double left = sum * sum / (sum_of_squares * size());
+  resample(weights, sum, count());
   if (touch.on && something_new > 0.0) find(number, unseen, something_new);
   unseen_.add(touch, labels(settings_.blur > 0.0));
-  const int moves = this->moves(sum * sum / (sum_of_squares * size()));
+  const int moves = this->moves(left);
   for (Particle& particle : particles_) {
     proposal_.begin(particle);
     for (int i = 0; i < moves; ++i) move(particle);
@@ -197,7 +201,15 @@ double Particles::add(const Touch& touch) {
   std::vector<const Outline*> asked;
   for (std::size_t k = 0; k < kAsked; ++k) asked.push_back(&particles_[k * particles_.size() / kAsked].outline);
   unseen_.lie_apart_from(asked);
-  return of_label / size();
+  return probability;
+}
+
+/// What was just found may be of any kind, and a kind that no outline has is hardly thought of again.
+std::size_t Particles::count() const {
+  constexpr int kLeast = 64;  // see sample()
+  const int usual = settings_.count;
+  if (since_found_ < kNew) return static_cast<std::size_t>(2 * usual);
+  return static_cast<std::size_t>(since_found_ < 2 * kNew ? usual : std::max(usual / 2, kLeast));
 }
 
 /// Of each outline after a touch of which the label left such a share of them.
@@ -235,25 +247,32 @@ void Particles::find(std::size_t number, const Unseen::Holding& unseen, double s
 
 /// Systematic resampling: one draw, and each outline comes as often as its weight says but for less than one. Those
 /// that come stay where they are, and further copies take the places of those that do not.
-void Particles::resample(const std::vector<double>& weights, double sum) {
-  const double step = sum / static_cast<double>(weights.size());
+void Particles::resample(const std::vector<double>& weights, double sum, std::size_t count) {
+  const double step = sum / static_cast<double>(count);
   const double first = random_.uniform() * step;
-  std::vector<int> times(weights.size(), 0);
+  particles_.resize(std::max(count, weights.size()));
+  std::vector<int> times(particles_.size(), 0);
   std::size_t from = 0;
   double reached = weights.front();
-  for (std::size_t i = 0; i < weights.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double wanted = first + static_cast<double>(i) * step;
     while (reached < wanted && from + 1 < weights.size()) reached += weights[++from];
     ++times[from];
   }
   std::size_t free = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    for (; times[i] > 1; --times[i]) {
-      while (times[free] > 0) ++free;
-      particles_[free] = particles_[i];
-      times[free] = 1;
-    }
+  const auto next_free = [&]() -> Particle& {
+    while (times[free] > 0) ++free;
+    times[free] = 1;
+    return particles_[free];
+  };
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (; times[i] > 1; --times[i]) next_free() = particles_[i];
   }
+  // Where they are fewer, those behind move forward.
+  for (std::size_t i = count; i < particles_.size(); ++i) {
+    if (times[i] > 0) std::swap(next_free(), particles_[i]);
+  }
+  particles_.resize(count);
 }
 
 void Particles::move(Particle& particle) {

@@ -18,7 +18,9 @@
 namespace palpate::footprints {
 
 struct ParticleSettings {
-  int count = 384;
+  /// Outlines before the first touch. For eight touches after something was found there are twice as many, for eight
+  /// more as many, and half of them where all is long known.
+  int count = 512;
   double mistaken = 0.01;  ///< probability that a touch of an object has the label of the desk
   double lies = 0.01;      ///< probability that a touch of the desk has the label of an object
   /// Standard deviation of the place of a touch, along x and y, metres, if there is any: half of the outlines believe
@@ -49,7 +51,7 @@ class Particles {
   /// Draws the outlines from the prior.
   Particles(const OutlinePrior& prior, const ParticleSettings& settings, Random random);
 
-  /// Weighs all outlines by a touch, draws as many of them by their weights, and moves each. Returns the probability
+  /// Weighs all outlines by a touch, draws some of them by their weights, and moves each. Returns the probability
   /// that its label had before.
   double add(const Touch& touch);
 
@@ -91,7 +93,9 @@ class Particles {
  private:
   /// What each outline holds of a lattice.
   LatticeBits held(const Lattice& lattice) const;
-  void resample(const std::vector<double>& weights, double sum);
+  /// How many outlines there are to be now.
+  std::size_t count() const;
+  void resample(const std::vector<double>& weights, double sum, std::size_t count);
   void find(std::size_t number, const Unseen::Holding& unseen, double something_new);
   void move(Particle& particle);
   int moves(double left) const;
@@ -116,6 +120,8 @@ class Particles {
   HeightModel heights_;
   Unseen unseen_;
   std::optional<LatticeBits> held_;  ///< by each outline, of the lattice asked about since the latest touch
+  static constexpr int kNew = 8;  ///< touches for which something is new
+  int since_found_ = 2 * kNew;    ///< touches since then
   long tried_ = 0;
   long moved_ = 0;
 
