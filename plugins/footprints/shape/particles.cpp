@@ -204,12 +204,9 @@ double Particles::add(const Touch& touch) {
   return probability;
 }
 
-/// What was just found may be of any kind, and a kind that no outline has is hardly thought of again.
+/// What was just found may be of any kind, and a kind that no outline has by then is hardly thought of again.
 std::size_t Particles::count() const {
-  constexpr int kLeast = 64;  // see sample()
-  const int usual = settings_.count;
-  if (since_found_ < kNew) return static_cast<std::size_t>(2 * usual);
-  return static_cast<std::size_t>(since_found_ < 2 * kNew ? usual : std::max(usual / 2, kLeast));
+  return static_cast<std::size_t>(since_found_ < kNew ? 2 * settings_.count : settings_.count);
 }
 
 /// Of each outline after a touch of which the label left such a share of them.

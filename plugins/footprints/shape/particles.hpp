@@ -18,9 +18,8 @@
 namespace palpate::footprints {
 
 struct ParticleSettings {
-  /// Outlines before the first touch. For eight touches after something was found there are twice as many, for eight
-  /// more as many, and half of them where all is long known.
-  int count = 512;
+  /// Outlines; twice as many for ten touches from when something was found.
+  int count = 384;
   double mistaken = 0.01;  ///< probability that a touch of an object has the label of the desk
   double lies = 0.01;      ///< probability that a touch of the desk has the label of an object
   /// Standard deviation of the place of a touch, along x and y, metres, if there is any: half of the outlines believe
@@ -120,8 +119,8 @@ class Particles {
   HeightModel heights_;
   Unseen unseen_;
   std::optional<LatticeBits> held_;  ///< by each outline, of the lattice asked about since the latest touch
-  static constexpr int kNew = 8;  ///< touches for which something is new
-  int since_found_ = 2 * kNew;    ///< touches since then
+  static constexpr int kNew = 10;    ///< touches for which what was found is new
+  int since_found_ = kNew;           ///< touches since then
   long tried_ = 0;
   long moved_ = 0;
 

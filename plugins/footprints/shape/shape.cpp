@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -23,7 +22,7 @@ struct ShapeOptions : LaplaceOptions {
   double pushes = 0.0;
   bool heights = true;
   double contradictions = 4.0;
-  std::int64_t particles = 512;
+  std::int64_t particles = 384;
   void list(Fields& fields) override {
     fields.real(smallest, Field("smallest", "least width of a piece").in(Unit::metre).above(0));
     fields.real(largest, Field("largest", "greatest length of a piece").in(Unit::metre).above(0));
@@ -50,9 +49,10 @@ struct ShapeOptions : LaplaceOptions {
                                       "hand over to the classifier when an outline has so many more touches wrong, on "
                                       "average, than mistaken lets expect")
                                     .above(0));
-    fields.integer(particles, Field("particles",
-                                    "outlines that stand for the belief: twice as many while something new is "
-                                    "settled, half as many where all is known").at_least(100).at_most(100000));
+    fields.integer(particles,
+                   Field("particles", "outlines that stand for the belief; twice as many while something is new")
+                       .at_least(100)
+                       .at_most(100000));
     LaplaceOptions::list(fields);
     fields.require(smallest < largest, "largest", "is not larger than smallest");
   }
@@ -85,7 +85,7 @@ class Shape final : public Footprint {
 
   void sample(const PointsView& places, OutlineSample& out) const override {
     if (handed_over_at_ > 0) return Footprint::sample(places, out);
-    particles_.sample(places, std::min(kSample, particles_.size() / 64 * 64), out);
+    particles_.sample(places, kSample, out);
   }
 
   void doubt(VectorOut out) const override {
