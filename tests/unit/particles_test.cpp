@@ -74,8 +74,7 @@ TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTh
 
 TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
   constexpr int kSample = 6400;
-  constexpr int kCount = 320;
-  Particles belief = belief_of(kCount, 4, 0.02, 5);
+  Particles belief = belief_of(320, 4, 0.02, 5);
   const std::vector<Touch> touches{test::touch_at(0.08, 0.08, true), test::touch_at(0.03, 0.10, false),
                                    test::touch_at(0.09, 0.14, false), test::touch_at(0.12, 0.05, false)};
   for (const Touch& touch : touches) belief.add(touch);
@@ -89,7 +88,7 @@ TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
     Eigen::VectorXd touched = Eigen::VectorXd::Zero(where.rows());
     for (int k = 0; k < kSample; ++k) {
       // Words of 64 of them, each as often as any.
-      const int one = k / 64 / (kSample / kCount) * 64 + k % 64;
+      const int one = k / 64 / (kSample / belief.size()) * 64 + k % 64;
       const Outline& outline = belief.particles()[static_cast<std::size_t>(one)].outline;
       for (Eigen::Index i = 0; i < where.rows(); ++i) {
         const bool holds = bit(sample.holds, k, i);
@@ -139,18 +138,33 @@ TEST(Particles, ExpectToFindWhatThePriorHasWhereNothingWasTouchedAndLessBesideAn
   EXPECT_TRUE((beside.array() <= mean.array() + 1e-15).all());
 }
 
+TEST(Particles, AreTwiceAsManyForTenTouchesFromWhenSomethingIsFound) {
+  Particles belief = belief_of(100, 1.0, 0.02, 3);
+  const auto add = [&](double x, double y, bool on) {
+    belief.add(test::touch_at(x, y, on));
+    return belief.size();
+  };
+  EXPECT_EQ(add(0.02, 0.02, false), 100) << "nothing was found";
+  EXPECT_EQ(add(0.11, 0.12, true), 200);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(add(0.11 + 0.001 * i, 0.12, true), 200) << "it was known";
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(add(0.15, 0.08 + 0.02 * i, false), 200);
+  EXPECT_EQ(add(0.02, 0.02, false), 100);
+  EXPECT_EQ(add(0.19, 0.12, true), 200) << "another thing";
+}
+
 TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
   constexpr std::size_t kCount = 100;
   const int seeds = test::brief() ? 40 : 400;
   constexpr double kWrong = 0.2;
   const std::array<std::size_t, 3> looked_at{0, kCount / 2, kCount - 1};
+  constexpr int kLooks = 12;  // after some of which there are fewer
   std::array<double, 3> excess{};
   std::array<int, 3> times{};
   for (int seed = 1; seed <= seeds; ++seed) {
     Particles belief = belief_of(static_cast<int>(kCount), 0.0, kWrong, static_cast<std::uint64_t>(seed));  // no moves
     belief.add(test::touch_at(0.11, 0.12, true));  // of which each outline makes its own
     Random random(static_cast<std::uint64_t>(seed), "particles test: places");
-    for (int touch = 0; touch < 5; ++touch) {
+    for (int touch = 0; touch < kLooks; ++touch) {
       const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
       const std::vector<Outline> before = outlines(belief);
       const double evidence = belief.add({place, 0.0, false});
@@ -158,7 +172,7 @@ TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
       // Evidence is the mean weight; from it is seen how probable it was that something new is there.
       const auto weight = [&](const Outline& one) { return one.contains(place.x, place.y) ? kWrong : 1.0 - kWrong; };
       double mean = 0.0;
-      for (const Outline& one : before) mean += weight(one) / kCount;
+      for (const Outline& one : before) mean += weight(one) / static_cast<double>(before.size());
       if (mean < kWrong + 1e-9) continue;  // all hold it
       const double something_new = (mean - evidence) / (mean - kWrong);
       ASSERT_GE(something_new, -1e-9);
@@ -168,7 +182,8 @@ TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
         const auto equal = [&](const Outline& other) { return equal_outlines(other, one); };
         const auto alike = static_cast<double>(std::count_if(before.begin(), before.end(), equal));
         const auto copies = static_cast<double>(std::count_if(after.begin(), after.end(), equal));
-        const double expected = ((1.0 - something_new) * weight(one) + something_new * kWrong) / evidence;
+        const double expected = ((1.0 - something_new) * weight(one) + something_new * kWrong) / evidence *
+                                static_cast<double>(after.size()) / static_cast<double>(before.size());
         ASSERT_LT(std::abs(copies - alike * expected), alike + 1e-9);
         if (alike > 1.0) continue;
         excess[k] += copies - expected;

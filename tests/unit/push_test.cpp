@@ -152,7 +152,7 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
     for (const auto& [place, on] : kLabels) belief.add({place, 0.0, on});
     found += belief.pushed().share / kRuns;
     for (const Particle& one : belief.particles()) {
-      if (one.push) found_since(one.push.before) += 1.0 / (how.count * kRuns);
+      if (one.push) found_since(one.push.before) += 1.0 / (belief.size() * kRuns);
     }
   }
   EXPECT_GT(pushed, 0.2) << "the labels say something";
