@@ -17,6 +17,8 @@ namespace {
 // Shares of the moves.
 constexpr double kBlurMoves = 0.02;
 constexpr double kPushMoves = 0.10;
+// Touches for which what was found is new.
+constexpr std::size_t kNew = 10;
 constexpr double kLogOfTwo = 0.69314718055994531;
 
 /// How deep a place lies in a piece. Most pieces are elsewhere, where how far away they are makes no difference.
@@ -184,14 +186,13 @@ double Particles::add(const Touch& touch) {
     sum += weight;
     sum_of_squares += weight * weight;
   }
-  const double of_new = something_new * exact_.probability(LabelModel::kInside, true);
-  since_found_ = touch.on && 2.0 * of_new * size() > of_label ? 0 : since_found_ + 1;
-  const double probability = of_label / size();
-  const double left = sum * sum / (sum_of_squares * size());
+  const int before = size();
+  const double of_new = before * something_new * exact_.probability(LabelModel::kInside, true);
+  if (touch.on && 2.0 * of_new > of_label) new_until_ = touches_.size() + kNew;
   resample(weights, sum, count());
   if (touch.on && something_new > 0.0) find(number, unseen, something_new);
   unseen_.add(touch, labels(settings_.blur > 0.0));
-  const int moves = this->moves(left);
+  const int moves = this->moves(sum * sum / (sum_of_squares * before));
   for (Particle& particle : particles_) {
     proposal_.begin(particle);
     for (int i = 0; i < moves; ++i) move(particle);
@@ -201,12 +202,12 @@ double Particles::add(const Touch& touch) {
   std::vector<const Outline*> asked;
   for (std::size_t k = 0; k < kAsked; ++k) asked.push_back(&particles_[k * particles_.size() / kAsked].outline);
   unseen_.lie_apart_from(asked);
-  return probability;
+  return of_label / before;
 }
 
 /// What was just found may be of any kind, and a kind that no outline has by then is hardly thought of again.
 std::size_t Particles::count() const {
-  return static_cast<std::size_t>(since_found_ < kNew ? 2 * settings_.count : settings_.count);
+  return static_cast<std::size_t>(touches_.size() < new_until_ ? 2 * settings_.count : settings_.count);
 }
 
 /// Of each outline after a touch of which the label left such a share of them.
@@ -267,7 +268,7 @@ void Particles::resample(const std::vector<double>& weights, double sum, std::si
   }
   // Where they are fewer, those behind move forward.
   for (std::size_t i = count; i < particles_.size(); ++i) {
-    if (times[i] > 0) std::swap(next_free(), particles_[i]);
+    if (times[i] > 0) next_free() = std::move(particles_[i]);
   }
   particles_.resize(count);
 }

@@ -119,8 +119,7 @@ class Particles {
   HeightModel heights_;
   Unseen unseen_;
   std::optional<LatticeBits> held_;  ///< by each outline, of the lattice asked about since the latest touch
-  static constexpr int kNew = 10;    ///< touches for which what was found is new
-  int since_found_ = kNew;           ///< touches since then
+  std::size_t new_until_ = 0;        ///< so many touches are made, what was found last is new
   long tried_ = 0;
   long moved_ = 0;
 
