@@ -9,7 +9,6 @@ namespace palpate {
 namespace {
 
 using ::testing::Contains;
-using ::testing::IsEmpty;
 using ::testing::Not;
 
 class Looks : public test::SweepPages {
@@ -112,13 +111,14 @@ const std::string kWidths =
 
 TEST_P(Looks, OfARunOnAPhoneAreOneColumnWithTheSurfaceFirst) {
   const fs::path directory = run_with_page({"taps=6", "candidates.count=16", "name=" + std::string(90, 'x')});
-  const Browsed seen = browse(
-      directory, {kPhone, "reload", drawn(6), kWidths,
-                  "const top = (s) => document.querySelector(s).getBoundingClientRect().top; return {surface: "
-                  "top('#surface'), bottom: document.querySelector('#surface').getBoundingClientRect().bottom, slider: "
-                  "top('#slider'), facts: top('.facts'), maps: top('#map_u')}",
-                  "return [...document.querySelectorAll('#maps_row figure')].map((f) => "
-                  "Math.round(f.getBoundingClientRect().left))"});
+  const std::string ask_tops =
+      "const top = (s) => document.querySelector(s).getBoundingClientRect().top; return {surface: "
+      "top('#surface'), bottom: document.querySelector('#surface').getBoundingClientRect().bottom, slider: "
+      "top('#slider'), facts: top('.facts'), maps: top('#map_u')}";
+  const std::string ask_lefts =
+      "return [...document.querySelectorAll('#maps_row figure')].map((f) => "
+      "Math.round(f.getBoundingClientRect().left))";
+  const Browsed seen = browse(directory, {kPhone, "reload", drawn(6), kWidths, ask_tops, ask_lefts});
   const json& widths = seen.values.at(0);
   EXPECT_EQ(widths.at(0), 360);
   EXPECT_LE(widths.at(1), 360) << "nothing to scroll sideways";
