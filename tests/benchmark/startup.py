@@ -50,6 +50,10 @@ def main():
     parser.add_argument("--vs", type=pathlib.Path, metavar="CHECKOUT", help="another checkout, with its release build")
     arguments = parser.parse_args()
     checkouts = [ROOT] + ([arguments.vs.resolve()] if arguments.vs else [])
+    if arguments.runs < 1:
+        parser.error(f"--runs {arguments.runs}: takes 1 or more")
+    for missing in (one for one in map(program_of, checkouts) if not os.access(one, os.X_OK)):
+        parser.error(f"{missing} is not there: build that checkout, ./palpate --version does")
     seeds = range(1, arguments.runs + 1)
     memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
     tell("empty process", [milliseconds([shutil.which("true")]) for _ in seeds])
