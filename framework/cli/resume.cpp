@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/gate.hpp"
+#include "experiment/room.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
@@ -42,6 +43,7 @@ int resume(Program& program, const ResumeArguments& arguments) {
                 fmt::format("--launcher {}: {} is no sweep", arguments.launch.launcher, arguments.directory),
                 "leave it out");
   }
+  make_room();
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
   if (arguments.launch.watch) output.watched = arguments.directory;

@@ -8,6 +8,7 @@
 #include "config/expand.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
+#include "experiment/room.hpp"
 #include "record/run_directory.hpp"
 
 #include <fmt/format.h>
@@ -81,6 +82,7 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
 }  // namespace
 
 int run(Program& program, const RunArguments& arguments) {
+  make_room();
   std::vector<Override> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
   Tree composed;

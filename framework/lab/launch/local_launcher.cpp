@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/local_launcher.hpp"
 
+#include "experiment/room.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -11,15 +12,12 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
 
-#include <malloc.h>
 #include <pthread.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 
 namespace palpate {
@@ -31,21 +29,6 @@ constexpr std::chrono::milliseconds kBusyPause{200};
 bool is_crash(int signal) {
   constexpr std::array<int, 7> kCrashes{SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
   return std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
-}
-
-/// Has the arena of this thread hold at once what a run of the paper takes of it. It would grow page by page, and each is
-/// a call of the system and a fault.
-void make_room() {
-  constexpr std::size_t kRoom = std::size_t{640} << 10U;
-  constexpr std::uintptr_t kPage = 4096;
-  // Room that is given back stays with the arena. Both are what the C library would come to where much is taken.
-  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
-  void* const room = std::malloc(kRoom);
-  if (room == nullptr) return;
-  const std::uintptr_t skipped = -reinterpret_cast<std::uintptr_t>(room) % kPage;
-  ::madvise(static_cast<char*>(room) + skipped, kRoom - kPage, MADV_POPULATE_WRITE);  // older systems know none
-  std::free(room);
 }
 
 /// Runs `work` in a thread, whose memory the C library takes from an arena of its own. The heap of a conductor has as
