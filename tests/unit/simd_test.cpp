@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The hot loops, on every instruction set that this processor has, against the same sums written down plainly.
 #include "gp/simd/panels.hpp"
+#include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/random.hpp>
@@ -9,6 +10,8 @@
 
 #include <array>
 #include <cstdint>
+
+#include <sys/resource.h>
 
 namespace palpate::simd {
 
@@ -244,6 +247,21 @@ TEST(Lines, BeginWithACacheLineAndWithAHugePageWhereTheyWouldFillHalfOfOne) {
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(numbers.data()) % unit, 0U) << size;
     numbers.data()[size - 1] = 1.0;
   }
+}
+
+TEST(Panels, OfWhichFewRowsAreWrittenTakeLittleOfTheMemoryThatTheyReserve) {
+  if (test::kSanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  const auto most_memory = [] {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;  // in kB
+  };
+  Panels panels(53361, 192, 8);
+  panels.reserve(1000);  // 427 MB
+  const std::vector<double> row(53361, 1.0);
+  const long before = most_memory();
+  for (int i = 0; i < 17; ++i) panels.append(row.data());
+  EXPECT_LT(most_memory() - before, 30000);
 }
 
 TEST(Panels, KeepTheirRowsWhenTheyGrow) {

@@ -7,10 +7,10 @@
 
 namespace palpate::simd {
 
-double* Lines::allocate(std::size_t size) {
+double* Lines::allocate(std::size_t size, Written written) {
   constexpr std::size_t kHuge = std::size_t{2} << 20U;
   const std::size_t bytes = size * sizeof(double);
-  const bool huge = bytes >= kHuge / 2;
+  const bool huge = written == Written::in_order && bytes >= kHuge / 2;
   const std::size_t unit = huge ? kHuge : std::size_t{kLineBytes};
   const std::size_t rounded = (bytes + unit - 1) / unit * unit;
   void* const out = std::aligned_alloc(unit, rounded);
