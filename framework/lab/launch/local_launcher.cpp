@@ -17,6 +17,7 @@
 #include <cstring>
 #include <functional>
 
+#include <malloc.h>
 #include <pthread.h>
 #include <sys/wait.h>
 
@@ -64,6 +65,8 @@ std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order) { return std:
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
+  // What planning them took and gave back would be copied with the process of every job.
+  ::malloc_trim(0);
 }
 
 bool LocalLauncher::start(std::size_t job) {

@@ -77,7 +77,8 @@ class Planner {
     sink(job, *resolved.config);
     jobs_.push_back(std::move(job));
     combinations_.push_back(&combination);
-    configs_.push_back({many_ ? nullptr : resolved.config, seed != nullptr ? *seed : Tree()});
+    configs_.push_back({many_ ? nullptr : resolved.config, {}});
+    if (seed != nullptr) configs_.back().seed = seed->place;
   }
 
   /// Throws Error for a key that no job has.
@@ -319,10 +320,15 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
 }
 
 ResolvedConfig planned_config(const SweepPlan& plan, const PluginHost& host, std::size_t index) {
-  const auto& [kept, seed] = plan.configs[index];
-  if (kept == nullptr) return load_run(host, job_directory(plan.sweep, plan.sweep.jobs[index]));
+  const auto& [kept, seeded] = plan.configs[index];
+  const auto& [directory, keys, jobs] = plan.sweep;
+  if (kept == nullptr) return load_run(host, job_directory(plan.sweep, jobs[index]));
   ResolvedConfig config = *kept;
-  if (seed.is_scalar()) set_seed(config, seed, host);
+  if (!seeded) return config;
+  const auto at = std::find(keys.begin(), keys.end(), "seed") - keys.begin();
+  Tree seed = Tree::scalar(jobs[index].values[static_cast<std::size_t>(at)]);
+  seed.place = *seeded;
+  set_seed(config, seed, host);
   return config;
 }
 
