@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <system_error>
 
@@ -63,17 +64,19 @@ const PluginHost& contract_host() {
 }
 
 std::vector<std::string> plugins_under_contract(const std::string& kind) {
+  // A process for each, and many suites ask for the same kind.
+  static std::map<std::string, std::vector<std::string>> known;
+  const auto [entry, is_new] = known.try_emplace(kind);
+  std::vector<std::string>& names = entry->second;
+  if (!is_new) return names;
   std::set<std::string> files;
   std::error_code none;
   for (const fs::path& folder : PluginHost::search_path(plugin_folder())) {
-    for (const auto& entry : fs::directory_iterator(folder / kind, none)) {
-      files.insert(entry.path().stem().string());
-    }
+    for (const auto& file : fs::directory_iterator(folder / kind, none)) files.insert(file.path().stem().string());
   }
   // Of a program that runs one case of one plugin, most of the time would go into looking at the others.
   const std::string cases = GTEST_FLAG_GET(filter);
   const bool one = cases.find('*') == std::string::npos && cases.find('/') != std::string::npos;
-  std::vector<std::string> names;
   for (const std::string& name : files) {
     if (one && cases.find(test_name(name)) == std::string::npos) continue;
     const std::vector<PluginListing> rows = contract_host().list(kind, name);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // README and the pages of framework/docs tell the truth: their commands run, and what they quote is what comes out.
+#include "support/sanitizers.hpp"
 #include "system/shell.hpp"
 
 #include <fmt/format.h>
@@ -106,6 +107,8 @@ struct Page {
 class Document : public testing::TestWithParam<Page> {};
 
 TEST_P(Document, ShowsCommandsThatRunAndTablesThatTheyPrint) {
+  if (test::kSanitized && GetParam().name == std::string("framework/docs/any_side.md"))
+    GTEST_SKIP() << "the tests of touch from any side have the same commands do less";
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
   const std::string page = text_of(test::source_folder() / GetParam().name);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The shipped scenes and meshes as a user meets them: on the command line.
+#include "support/sanitizers.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
@@ -11,8 +12,10 @@ namespace {
 using Scenes = Shell;
 
 TEST_F(Scenes, ThatAreShippedRunWithinThePapersBudget) {
+  int number = 0;
   for (const auto& entry : fs::directory_iterator(config("scene"))) {
     if (entry.path().extension() != ".yaml") continue;
+    if (test::kSanitized && number++ % 4 != 0) continue;
     const std::string name = entry.path().stem().string();
     const bool any_side = text_of(entry.path()).find("touch: any") != std::string::npos;
     // From the folder of the sources, where the path of the shipped mesh starts.

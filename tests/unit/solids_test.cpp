@@ -4,6 +4,7 @@
 
 #include "space/cloud.hpp"
 #include "support/runs.hpp"
+#include "support/sanitizers.hpp"
 #include "support/shape_laws.hpp"
 #include "support/testing.hpp"
 
@@ -67,13 +68,14 @@ TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
   SolidsSettings settings;
   settings.count = 8;
   int hollow = 0;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
-    Solids solids({0.26, 0.26}, settings, Random(seed, "solids"));
+  const int seeds = test::brief() ? 1 : 4;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    Solids solids({0.26, 0.26}, settings, Random(static_cast<std::uint64_t>(seed), "solids"));
     solids.look(seen(bowl));
     const Composition& best = solids.best();
     hollow += std::abs(best.distance({0.13, 0.13, 0.002})) < 0.008 && best.distance({0.13, 0.13, 0.05}) > 0.02 ? 1 : 0;
   }
-  EXPECT_GE(hollow, 3) << "the rest may have stayed in a mode that is wrong";
+  EXPECT_GE(hollow, seeds == 1 ? 1 : seeds - 1) << "the rest may have stayed in a mode that is wrong";
 }
 
 TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
