@@ -4,11 +4,15 @@
 
 #include "config/yaml.hpp"
 #include "support/runs.hpp"
+#include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include <malloc.h>
 
 namespace palpate {
 namespace {
@@ -104,6 +108,24 @@ TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhereverTheSeedStands) {
       EXPECT_EQ(all_of(planned_config(out.plan, test::shared_host(), i)), all_of(out.configs[i])) << i;
     }
   }
+}
+
+TEST(Plan, OfManyJobsKeepsLittleOfEachAsTheProcessOfEveryJobBeginsWithACopyOfAll) {
+  if (test::kSanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  const auto in_use = [] {
+    const struct mallinfo2 now = ::mallinfo2();
+    return now.uordblks + now.hblkhd;
+  };
+  Composer composer(kConfigs, config_keys());
+  const auto plan_seeds = [&](std::size_t count) {
+    return plan_sweep(composer, test::shared_host(), kPaper, {fmt::format("seed=range(0,{})", count)}, "runs");
+  };
+  plan_seeds(2);
+  const std::size_t before = in_use();
+  constexpr std::size_t kJobs = 32000;  // of which vectors that double have room for hardly more
+  const SweepPlan plan = plan_seeds(kJobs);
+  ASSERT_EQ(plan.sweep.jobs.size(), kJobs);
+  EXPECT_LT((in_use() - before) / kJobs, 230U) << "bytes";
 }
 
 TEST(Plan, RefusesWhatIsNoSeedAsASingleRunDoes) {

@@ -18,8 +18,8 @@
 
 namespace palpate {
 
-/// The config of a job but for its seed, which many jobs share: another costs a tenth of what reading a file does. Small,
-/// because the process of every job begins with a copy of all of them.
+/// The config of a job but for its seed, which many jobs share: another costs a tenth of what reading a file does.
+/// Small, because the process of every job begins with a copy of all of them.
 struct PlannedConfig {
   std::shared_ptr<const ResolvedConfig> config;  ///< null where there are too many: the job's config.yaml has it
   std::optional<Place> seed;                     ///< where its value was written; none where the sweep sets none
