@@ -238,6 +238,7 @@ TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedR
   break_off(broken);
   ASSERT_EQ(resume(broken).status, 0);
   EXPECT_EQ(text_of(broken / "taps.csv"), text_of(whole / "taps.csv"));
+  if (test::kSanitized) return;  // what follows makes the same of other numbers
   const Ended replayed = palpate({"replay", whole});
   EXPECT_EQ(replayed.status, 0) << replayed.err;
   EXPECT_THAT(replayed.out, testing::HasSubstr("all equal"));
