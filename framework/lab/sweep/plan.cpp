@@ -77,8 +77,10 @@ class Planner {
     sink(job, *resolved.config);
     jobs_.push_back(std::move(job));
     combinations_.push_back(&combination);
-    configs_.push_back({many_ ? nullptr : resolved.config, {}});
-    if (seed != nullptr) configs_.back().seed = seed->place;
+    configs_.push_back({many_ ? nullptr : resolved.config});
+    if (seed == nullptr) return;
+    configs_.back().seed = seed->place;
+    configs_.back().layer = seed->layer;
   }
 
   /// Throws Error for a key that no job has.
@@ -320,14 +322,15 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
 }
 
 ResolvedConfig planned_config(const SweepPlan& plan, const PluginHost& host, std::size_t index) {
-  const auto& [kept, seeded] = plan.configs[index];
-  const auto& [directory, keys, jobs] = plan.sweep;
-  if (kept == nullptr) return load_run(host, job_directory(plan.sweep, jobs[index]));
-  ResolvedConfig config = *kept;
-  if (!seeded) return config;
-  const auto at = std::find(keys.begin(), keys.end(), "seed") - keys.begin();
-  Tree seed = Tree::scalar(jobs[index].values[static_cast<std::size_t>(at)]);
-  seed.place = *seeded;
+  const PlannedConfig& planned = plan.configs[index];
+  const Job& job = plan.sweep.jobs[index];
+  if (planned.config == nullptr) return load_run(host, job_directory(plan.sweep, job));
+  ResolvedConfig config = *planned.config;
+  if (!planned.seed) return config;
+  const auto at = std::find(plan.sweep.keys.begin(), plan.sweep.keys.end(), "seed") - plan.sweep.keys.begin();
+  Tree seed = Tree::scalar(job.values[static_cast<std::size_t>(at)]);
+  seed.place = *planned.seed;
+  seed.layer = planned.layer;
   set_seed(config, seed, host);
   return config;
 }

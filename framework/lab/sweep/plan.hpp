@@ -22,7 +22,9 @@ namespace palpate {
 /// Small, because the process of every job begins with a copy of all of them.
 struct PlannedConfig {
   std::shared_ptr<const ResolvedConfig> config;  ///< null where there are too many: the job's config.yaml has it
-  std::optional<Place> seed;                     ///< where its value was written; none where the sweep sets none
+  // Of the seed, whose value the job has: where it was written, none where the sweep sets none, and its layer.
+  std::optional<Place> seed{};
+  Layer layer = kSweepLayer;
 };
 
 /// What a sweep will run.
