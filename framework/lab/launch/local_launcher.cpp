@@ -99,7 +99,7 @@ JobEnd LocalLauncher::run(std::size_t job) const {
 
 Launcher::State LocalLauncher::poll(double seconds) {
   if (again_ <= Clock::now()) {
-    submit(later_);
+    waiting_.insert(waiting_.end(), later_.begin(), later_.end());
     later_.clear();
   }
   while (!waiting_.empty() && static_cast<int>(running_.size()) < order_.options.workers && start(waiting_.front())) {
