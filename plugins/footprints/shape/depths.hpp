@@ -41,6 +41,9 @@ class Places {
     std::array<int, Outline::kMost> changed;                   ///< pieces whose rows are to be made
     int changes = 0;
     std::array<LabelModel::Step*, Outline::kMost> to;  ///< these rows
+    /// Where one piece is another and all else is as before: what its row was. Touches that are far from the piece as
+    /// it was and as it is are skipped.
+    const LabelModel::Step* row_before = nullptr;
     int since, until;  ///< the touches of which anything may be otherwise; multiples of kWord
     const LabelModel* labels;
     const LabelModel* labels_before;
@@ -105,6 +108,9 @@ void holders_of(const LabelModel::Step* const* rows, int count, int length, std:
 
 /// Whether a row holds any of the touches that are marked by all bits of a byte.
 bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int length);
+/// Whether two rows hold the same one of them.
+bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
+                   int length);
 /// Whether it holds others of them than another row.
 bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
                        int length);

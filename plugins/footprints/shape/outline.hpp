@@ -37,6 +37,14 @@ struct Piece {
     return hollow ? std::min(in_form, -hole.depth(x, y)) : in_form;
   }
 
+  /// Whether a touch there may tell of it: no farther than 3 cm from it, or not much.
+  bool near(const Target& place) const {
+    constexpr double kMargin = 0.03;  // metres
+    const double dx = place.x - form.x;
+    const double dy = place.y - form.y;
+    return dx * dx + dy * dy <= 2.0 * (form.a * form.a + form.b * form.b + kMargin * kMargin);
+  }
+
   bool fitted() const { return hollow && fit != Fit::free; }
   /// A hole that is not free follows the form.
   void fit_hole();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "particles.hpp"
 
+#include "exchange.hpp"
 #include "lattice.hpp"
 
 #include <algorithm>
@@ -17,6 +18,8 @@ namespace {
 // Shares of the moves.
 constexpr double kBlurMoves = 0.02;
 constexpr double kPushMoves = 0.10;
+// Moves for the sake of forms that the touch tells nothing of are as many as for so many of them at most.
+constexpr double kElsewhere = 3.0;
 // Touches for which what was found is new.
 constexpr std::size_t kNew = 10;
 constexpr double kLogOfTwo = 0.69314718055994531;
@@ -212,9 +215,12 @@ std::size_t Particles::count() const {
 
 /// Of each outline after a touch of which the label left such a share of them.
 int Particles::moves(double left) const {
+  const Target& here = touches_.back().place;
   double forms = 0.0;
   for (const Particle& particle : particles_) {
-    for (const Piece& piece : particle.outline) forms += piece.hollow ? 2.0 : 1.0;
+    double elsewhere = 0.0;
+    for (const Piece& piece : particle.outline) (piece.near(here) ? forms : elsewhere) += piece.hollow ? 2.0 : 1.0;
+    forms += std::min(elsewhere, kElsewhere);
   }
   const double each = settings_.moves + settings_.moves_apart * (1.0 / left - 1.0);
   return std::min(settings_.most_moves, static_cast<int>(std::ceil(std::max(1.0, forms / size()) * each)));
@@ -233,18 +239,25 @@ void Particles::find(std::size_t number, const Unseen::Holding& unseen, double s
     particle.outline.add(unseen.draw(random_));
     seen_after(particle.push).steps(particle.outline[one], labels, depths.row(one));
     deepest_of(depths.rows().data(), one + 1, places_.length(), depths.deepest());
-    particle.mistakes = 0;
-    particle.labels = 0.0;
-    for (std::size_t i = 0; i <= number; ++i) {
-      particle.mistakes += labels.mistake(depths.deepest()[i], touches_[i].on) ? 1 : 0;
-      particle.labels += labels.loss(depths.deepest()[i], touches_[i].on);
-    }
-    particle.heights = evidence(depths.rows().data(), one + 1);
+    weigh_again(particle);
   }
 }
 
+void Particles::weigh_again(Particle& particle) {
+  const LabelModel& labels = this->labels(particle.blurred);
+  particle.mistakes = 0;
+  particle.labels = 0.0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const LabelModel::Step deepest = particle.depths.deepest()[i];
+    particle.mistakes += labels.mistake(deepest, touches_[i].on) ? 1 : 0;
+    particle.labels += labels.loss(deepest, touches_[i].on);
+  }
+  particle.heights = evidence(particle.depths.rows().data(), particle.outline.size());
+}
+
 /// Systematic resampling: one draw, and each outline comes as often as its weight says but for less than one. Those
-/// that come stay where they are, and further copies take the places of those that do not.
+/// that come stay where they are, and further copies take the places of those that do not: whole, or what the touch
+/// tells of.
 void Particles::resample(const std::vector<double>& weights, double sum, std::size_t count) {
   const double step = sum / static_cast<double>(count);
   const double first = random_.uniform() * step;
@@ -257,18 +270,33 @@ void Particles::resample(const std::vector<double>& weights, double sum, std::si
     while (reached < wanted && from + 1 < weights.size()) reached += weights[++from];
     ++times[from];
   }
-  std::size_t free = 0;
-  const auto next_free = [&]() -> Particle& {
-    while (times[free] > 0) ++free;
-    times[free] = 1;
-    return particles_[free];
+  // Outlines that are drawn no more, those that have a blur and those that have none, the first ones last.
+  std::array<std::vector<std::size_t>, 2> free;
+  for (std::size_t i = particles_.size(); i-- > 0;) {
+    if (times[i] == 0) free[particles_[i].blurred ? 1 : 0].push_back(i);
+  }
+  const auto next_free = [&](bool blurred) -> Particle& {
+    std::vector<std::size_t>& alike = free[blurred ? 1 : 0];
+    std::vector<std::size_t>& chosen = alike.empty() ? free[blurred ? 0 : 1] : alike;
+    const std::size_t one = chosen.back();
+    chosen.pop_back();
+    return particles_[one];
   };
+  const Target& here = touches_.back().place;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    for (; times[i] > 1; --times[i]) next_free() = particles_[i];
+    const Particle& one = particles_[i];
+    for (int more = times[i]; more > 1; --more) {
+      Particle& other = next_free(one.blurred);
+      if (take_over(one, here, objects_.data(), prior_.settings().most, other)) {
+        weigh_again(other);
+      } else {
+        other = one;
+      }
+    }
   }
   // Where they are fewer, those behind move forward.
   for (std::size_t i = count; i < particles_.size(); ++i) {
-    if (times[i] > 0) next_free() = std::move(particles_[i]);
+    if (times[i] > 0) next_free(particles_[i].blurred) = std::move(particles_[i]);
   }
   particles_.resize(count);
 }
@@ -319,6 +347,8 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     change.rows[at] = change.to[static_cast<std::size_t>(change.changes)] = depths_.row(i);
     change.changed[static_cast<std::size_t>(change.changes++)] = i;
   }
+  if (change.changes == 1 && outline.size() == particle.outline.size() && proposal.kind != Proposal::Kind::push)
+    change.row_before = particle.depths.row(change.changed[0]);
   const auto down = [](int touch) { return touch & -Places::kWord; };
   const bool some = seen_otherwise && !any_new;
   change.since = some ? down(proposal.since) : 0;

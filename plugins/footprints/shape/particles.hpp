@@ -3,9 +3,9 @@
 // (resample-move: Gilks and Berzuini 2001).
 #pragma once
 
-#include "depths.hpp"
 #include "labels.hpp"
 #include "lattice.hpp"
+#include "particle.hpp"
 #include "proposals.hpp"
 #include "unseen.hpp"
 
@@ -30,19 +30,10 @@ struct ParticleSettings {
   bool heights = true;  ///< whether heights tell pieces apart
   /// Moves after a touch, of each piece and each hole of an outline, and so many more over the odds that an outline is
   /// left by its label (of the effective sample size: Kong, Liu and Wong 1994): a label that nobody expected leaves
-  /// many copies of few outlines, which have to part.
+  /// many copies of few outlines, which have to part. What the touch tells nothing of counts for three at most.
   double moves = 2.5;
   double moves_apart = 7.5;
   int most_moves = 200;
-};
-
-/// An outline, and what its moves ask for again and again. It is that of after its push.
-struct Particle : State {
-  bool blurred = false;
-  int mistakes = 0;      ///< touches so far that it has wrong
-  double labels = 0.0;   ///< what the labels of all of them say against it
-  double heights = 0.0;  ///< what their heights say for it
-  Depths depths;         ///< of each touch
 };
 
 class Particles {
@@ -95,6 +86,8 @@ class Particles {
   /// How many outlines there are to be now.
   std::size_t count() const;
   void resample(const std::vector<double>& weights, double sum, std::size_t count);
+  /// By all touches, from its depths.
+  void weigh_again(Particle& particle);
   void find(std::size_t number, const Unseen::Holding& unseen, double something_new);
   void move(Particle& particle);
   int moves(double left) const;

@@ -23,13 +23,7 @@ constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of
 // How much more often a piece at the latest touch is moved than another.
 constexpr double kHere = 30.0;
 
-double wish_to_move(const Piece& piece, const Target& here) {
-  constexpr double kMargin = 0.03;  // metres
-  const double reach = piece.form.radius() + kMargin;
-  const double dx = here.x - piece.form.x;
-  const double dy = here.y - piece.form.y;
-  return dx * dx + dy * dy <= reach * reach ? kHere : 1.0;
-}
+double wish_to_move(const Piece& piece, const Target& here) { return piece.near(here) ? kHere : 1.0; }
 
 /// Which piece is moved.
 class Choice {
