@@ -280,6 +280,20 @@ PALPATE_CLONES void carry(const Push& push, int count, const float* __restrict x
   }
 }
 
+/// Whether both rows hold any of those that are marked, or one of them does and not the other.
+PALPATE_INLINE bool any_held_by(bool both, const LabelModel::Step* one, const LabelModel::Step* other,
+                                const LabelModel::Step* marked, int length) {
+  Bytes of_one, of_other, which;
+  Bytes out{};
+  for (int from = 0; from < length; from += kRound) {
+    load_held(one + from, of_one);
+    load_held(other + from, of_other);
+    load(marked + from, which);
+    out |= (both ? of_one & of_other : of_one ^ of_other) & which;
+  }
+  return any(out);
+}
+
 PALPATE_CLONES void add_holder(const LabelModel::Step* __restrict row, std::uint16_t bit, int length,
                                std::uint16_t* __restrict out) {
   for (int i = 0; i < length; ++i) out[i] = static_cast<std::uint16_t>(out[i] | (LabelModel::holds(row[i]) ? bit : 0));
@@ -339,28 +353,12 @@ void deepest_of(const LabelModel::Step* const* rows, int count, int length, Labe
 
 PALPATE_CLONES bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other,
                                       const LabelModel::Step* marked, int length) {
-  Bytes of_one, of_other, which;
-  Bytes out{};
-  for (int from = 0; from < length; from += kRound) {
-    load_held(one + from, of_one);
-    load_held(other + from, of_other);
-    load(marked + from, which);
-    out |= (of_one ^ of_other) & which;
-  }
-  return any(out);
+  return any_held_by(false, one, other, marked, length);
 }
 
 PALPATE_CLONES bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other,
                                   const LabelModel::Step* marked, int length) {
-  Bytes of_one, of_other, which;
-  Bytes out{};
-  for (int from = 0; from < length; from += kRound) {
-    load_held(one + from, of_one);
-    load_held(other + from, of_other);
-    load(marked + from, which);
-    out |= of_one & of_other & which;
-  }
-  return any(out);
+  return any_held_by(true, one, other, marked, length);
 }
 
 PALPATE_CLONES bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int length) {
