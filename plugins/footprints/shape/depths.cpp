@@ -127,19 +127,6 @@ struct SinglePiece {
   SingleForm form, hole;
   bool hollow;
 };
-/// Whether any of a word of places is so near to a form that it matters how near.
-PALPATE_INLINE bool any_near(const SingleForm& form, float reach, const float* xs, const float* ys) {
-  Places8 x, y;
-  std::memcpy(&x, xs, sizeof(x));
-  std::memcpy(&y, ys, sizeof(y));
-  x -= form.x;
-  y -= form.y;
-  const Bits8 near = x * x + y * y <= 2.0F * (form.a * form.a + form.b * form.b + reach * reach);
-  std::uint64_t parts[kWord / 2];
-  std::memcpy(parts, &near, sizeof(parts));
-  return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
-}
-
 PALPATE_INLINE void take(const Piece& piece, SinglePiece& out) {
   out.form = single(piece.form);
   if (piece.hollow) out.hole = single(piece.hole);
@@ -226,19 +213,7 @@ PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const floa
   double loss_before = 0.0;
   int mistakes = 0;
   std::uint64_t any = 0;
-  const bool skips = change.row_before != nullptr && in_any_case == 0 && pieces > 1;
-  const auto reach = static_cast<float>(labels.reach());
   for (int from = change.until - kWord; from >= change.since; from -= kWord) {
-    if (skips) {
-      std::uint64_t held;
-      std::memcpy(&held, change.row_before + from, sizeof(held));
-      if (held == 0 && !any_near(changed[0].form, reach, xs + from, ys + from)) {
-        static_assert(LabelModel::kOutside == 0);
-        std::memset(change.to[0] + from, 0, kWord);
-        std::memcpy(change.deepest + from, change.deepest_before + from, kWord);
-        continue;
-      }
-    }
     for (int k = 0; k < change.changes; ++k)
       steps_in(changed[k], exact, per_metre, xs + from, ys + from, change.to[static_cast<std::size_t>(k)] + from);
     Word deepest;

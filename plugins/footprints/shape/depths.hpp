@@ -41,9 +41,6 @@ class Places {
     std::array<int, Outline::kMost> changed;                   ///< pieces whose rows are to be made
     int changes = 0;
     std::array<LabelModel::Step*, Outline::kMost> to;  ///< these rows
-    /// Where one piece is another and all else is as before: what its row was. Touches that are far from the piece as
-    /// it was and as it is are skipped.
-    const LabelModel::Step* row_before = nullptr;
     int since, until;  ///< the touches of which anything may be otherwise; multiples of kWord
     const LabelModel* labels;
     const LabelModel* labels_before;

@@ -347,8 +347,6 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     change.rows[at] = change.to[static_cast<std::size_t>(change.changes)] = depths_.row(i);
     change.changed[static_cast<std::size_t>(change.changes++)] = i;
   }
-  if (change.changes == 1 && outline.size() == particle.outline.size() && proposal.kind != Proposal::Kind::push)
-    change.row_before = particle.depths.row(change.changed[0]);
   const auto down = [](int touch) { return touch & -Places::kWord; };
   const bool some = seen_otherwise && !any_new;
   change.since = some ? down(proposal.since) : 0;
