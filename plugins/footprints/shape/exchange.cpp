@@ -57,7 +57,7 @@ class Told {
     return come_near(form(one), form(other)) || hold_the_same(row(one), row(other), objects_, of_[0]->depths.length());
   }
 
-  const std::array<const Particle*, 2>& of_;
+  std::array<const Particle*, 2> of_;
   const LabelModel::Step* objects_;
   std::array<std::array<bool, Outline::kMost>, 2> has_{};
   std::array<One, 2 * Outline::kMost> list_;
