@@ -60,7 +60,7 @@ class Told {
   std::array<const Particle*, 2> of_;
   const LabelModel::Step* objects_;
   std::array<std::array<bool, Outline::kMost>, 2> has_{};
-  std::array<One, 2 * Outline::kMost> list_;
+  std::array<One, std::size_t{2} * Outline::kMost> list_;
   int count_ = 0;
 };
 
