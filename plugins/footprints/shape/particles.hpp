@@ -36,6 +36,7 @@ struct ParticleSettings {
   int most_moves = 200;
 };
 
+/// Weighing, drawing again and moving: particles.cpp. What is asked of the outlines: particles_asked.cpp.
 class Particles {
  public:
   /// Draws the outlines from the prior.
