@@ -37,12 +37,12 @@ struct Piece {
     return hollow ? std::min(in_form, -hole.depth(x, y)) : in_form;
   }
 
-  /// Whether a touch there may tell of it: no farther than 3 cm from it, or not much.
-  bool near(const Target& place) const {
-    constexpr double kMargin = 0.03;  // metres
+  /// Whether a place is no farther from it than `margin`, or not much: metres, by default those within which a touch
+  /// may tell of it.
+  bool near(const Target& place, double margin = 0.03) const {
     const double dx = place.x - form.x;
     const double dy = place.y - form.y;
-    return dx * dx + dy * dy <= 2.0 * (form.a * form.a + form.b * form.b + kMargin * kMargin);
+    return dx * dx + dy * dy <= 2.0 * (form.a * form.a + form.b * form.b + margin * margin);
   }
 
   bool fitted() const { return hollow && fit != Fit::free; }

@@ -24,11 +24,7 @@ constexpr double kLogOfTwo = 0.69314718055994531;
 
 /// How deep a place lies in a piece. Most pieces are elsewhere, where how far away they are makes no difference.
 double depth_of(const Piece& piece, const Target& place, double reach) {
-  const Form& form = piece.form;
-  const double dx = place.x - form.x;
-  const double dy = place.y - form.y;
-  if (dx * dx + dy * dy > 2.0 * (form.a * form.a + form.b * form.b + reach * reach)) return -1.0;
-  return std::max(-1.0, piece.depth(place.x, place.y));
+  return piece.near(place, reach) ? std::max(-1.0, piece.depth(place.x, place.y)) : -1.0;
 }
 
 /// The logarithm of a number above 0, or up to 0.06 more: between the powers of two that of base two is above a line,
