@@ -22,6 +22,7 @@ constexpr double kStalls = 0.03;     // of the periods
 constexpr double kSpike = 9.0;       // N
 constexpr double kStall = 0.05;      // s
 constexpr double kTouched = 0.5;     // N of true force from which on a tap has touched
+constexpr double kEven = 0.012;      // m around a place: springs that sag put the tip up to 5 mm beside it
 constexpr double kAfterwards = 3.0;  // s after which an arm that is left alone stands
 
 /// Of the same kind whatever was measured: digits are left out.
@@ -38,14 +39,21 @@ class Session {
       : scene_(scene),
         random_(seed, "campaign"),
         robot_(scene, body_of(condition, seed)),
-        tapper_(shipped_options(), scene, robot_, nullptr, [](const std::string&) {}) {
+        tapper_(options_of(condition), scene, robot_, nullptr, [](const std::string&) {}) {
+    for (const fake_baxter::Fault& fault : condition.faults) robot_.body.inject(fault);
     if (condition.spikes) {
       robot_.spoil = [this](Snapshot& seen) { spike(*seen.endpoint); };
     }
     if (condition.stalls) {
       robot_.late = [this] { return random_.uniform() < kStalls ? kStall * random_.uniform() : 0.0; };
     }
-    robot_.every_period = [this] { peak_ = std::max(peak_, robot_.body.arm().peak); };
+    robot_.every_period = [this] {
+      peak_ = std::max(peak_, robot_.body.arm().peak);
+      if (robot_.body.pressing() > 0.0) {
+        if (!touched_at_) touched_at_ = robot_.body.now();
+        pressed_until_ = robot_.body.now();
+      }
+    };
   }
 
   /// Whether the run goes on.
@@ -56,11 +64,15 @@ class Session {
     request.previous = previous_;
     previous_ = request.target;
     peak_ = 0.0;
+    touched_at_.reset();
     const Contact contact = tapper_.tap(request);
     ++tally.taps;
     const bool touched = peak_ > kTouched;
     tally.touched += touched ? 1 : 0;
     tally.peak = std::max(tally.peak, peak_);
+    tally.too_strong += peak_ > Tally::kMostForce ? 1 : 0;
+    tally.seconds += contact.seconds;
+    if (touched_at_) tally.found = std::max(tally.found, pressed_until_ - *touched_at_);
     if (contact.outcome == Outcome::contact) {
       ++tally.contacts;
       const double error = std::abs(contact.height - scene_.height(request.target.x, request.target.y));
@@ -86,6 +98,12 @@ class Session {
     return out;
   }
 
+  static BaxterOptions options_of(const Condition& condition) {
+    BaxterOptions out = shipped_options();
+    if (!condition.motion.empty()) out.motion = palpate::test::filled<tapping::BackendMotion>(condition.motion);
+    return out;
+  }
+
   void spike(EndpointReading& reading) {
     if (reading.received == spiked_at_) return;  // once for every message
     spiked_at_ = reading.received;
@@ -95,7 +113,7 @@ class Session {
   Target draw_place() {
     for (;;) {
       const Target out{0.01 + 0.21 * random_.uniform(), 0.01 + 0.21 * random_.uniform()};
-      if (is_even(scene_, out, 0.006)) return out;
+      if (is_even(scene_, out, kEven)) return out;
     }
   }
 
@@ -106,6 +124,8 @@ class Session {
   int taps_ = 0;
   double peak_ = 0.0;  ///< N, of this tap
   double spiked_at_ = -1.0;
+  std::optional<double> touched_at_;  ///< s, of this tap
+  double pressed_until_ = 0.0;        ///< s
   std::optional<Target> previous_;
 };
 
@@ -134,6 +154,9 @@ void Tally::add(const Tally& other) {
   pressing += other.pressing;
   peak = std::max(peak, other.peak);
   error = std::max(error, other.error);
+  seconds += other.seconds;
+  found = std::max(found, other.found);
+  too_strong += other.too_strong;
   for (const auto& [reason, count] : other.reasons) reasons[reason] += count;
 }
 
@@ -152,10 +175,10 @@ Tally campaign(const Condition& condition, int taps, std::uint64_t seed) {
 std::string in_words(const Tally& tally) {
   return fmt::format(
       "{} taps, {} contacts, {} touched: {} phantom, {} rejected, {} ended the run, {} left pressing; at most {:.1f} "
-      "N, "
-      "{:.1f} mm",
+      "N ({} above {:.0f} N), {:.1f} mm; pressed {:.1f} s at most; {:.1f} s a tap",
       tally.taps, tally.contacts, tally.touched, tally.phantoms, tally.rejected, tally.ended, tally.pressing,
-      tally.peak, 1e3 * tally.error);
+      tally.peak, tally.too_strong, Tally::kMostForce, 1e3 * tally.error, tally.found,
+      tally.seconds / std::max(1, tally.taps));
 }
 
 }  // namespace palpate::baxter::test

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace palpate::baxter::test {
 
@@ -18,6 +19,8 @@ struct Condition {
   double stiffness = 1500.0;  ///< of the object, N/m
   bool spikes = false;        ///< one reading of the force in a hundred is 9 N off
   bool stalls = false;        ///< three periods in a hundred take up to 50 ms longer
+  std::vector<fake_baxter::Fault> faults;  ///< from the start: delay, jitter, wrench_filter, force_drift
+  std::string motion;                      ///< YAML of backend.motion; empty: the shipped one
 };
 
 /// What became of them.
@@ -31,9 +34,13 @@ struct Tally {
   int pressing = 0;                    ///< taps that left the arm pressing on something
   double peak = 0.0;                   ///< of the true force, N
   double error = 0.0;                  ///< the largest of the heights, m
+  double seconds = 0.0;                ///< of all taps together
+  double found = 0.0;                  ///< s, the longest from a first touch to the end of the contact
+  int too_strong = 0;                  ///< taps with more than kMostForce
   std::map<std::string, int> reasons;  ///< of taps without a contact
 
-  static constexpr double kFar = 0.01;  ///< m
+  static constexpr double kFar = 0.01;        ///< m
+  static constexpr double kMostForce = 16.0;  ///< N, at which the firmware stops the arm
 
   void add(const Tally& other);
   double rejection() const { return touched > 0 ? static_cast<double>(rejected) / touched : 0.0; }

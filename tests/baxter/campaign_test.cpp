@@ -6,12 +6,19 @@
 #include "fake_baxter/mujoco.hpp"
 #include "support/sanitizers.hpp"
 
+#include <boost/random/sobol.hpp>
+#include <boost/random/uniform_01.hpp>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace palpate::baxter {
 namespace {
@@ -106,6 +113,126 @@ TEST_P(Campaign, RunsThirtyTapsOnSoftAndOnHardThings) {
     EXPECT_EQ(tally.contacts, tally.taps);
     EXPECT_LE(tally.peak, kMostForce);
     EXPECT_LT(tally.error, 0.005);
+  }
+}
+
+/// A condition under which a robot with Rethink's springs taps: the object's stiffness in N/m, either a delay or a jitter
+/// of every message and a time constant of the force's filter in seconds, and how much the force's zero changes, N/m.
+struct Trouble {
+  double stiffness = 20000.0;
+  double delay = 0.0;
+  double jitter = 0.0;
+  double filter = 0.0;
+  double drift = 0.0;
+
+  /// Up to these no robot may be rejected.
+  bool is_common() const { return delay <= 0.04 && jitter <= 0.04 && filter <= 0.1; }
+};
+
+constexpr double kMostDelay = 0.07;
+constexpr double kMostFilter = 0.2;
+constexpr double kMostDrift = 50.0;
+constexpr double kSoftest = 1000.0;
+constexpr double kHardest = 50000.0;
+
+/// Each extreme alone, and all of them together.
+const std::vector<Trouble>& extremes() {
+  static const std::vector<Trouble> all = {{kSoftest},
+                                           {kHardest},
+                                           {kHardest, kMostDelay},
+                                           {kHardest, 0.0, kMostDelay},
+                                           {kHardest, 0.0, 0.0, kMostFilter},
+                                           {kSoftest, 0.0, 0.0, 0.0, kMostDrift},
+                                           {kHardest, 0.0, 0.0, 0.0, -kMostDrift},
+                                           {kSoftest, kMostDelay, 0.0, kMostFilter, kMostDrift},
+                                           {kHardest, kMostDelay, 0.0, kMostFilter, -kMostDrift},
+                                           {kHardest, 0.04, 0.0, 0.1}};
+  return all;
+}
+
+/// The next points of a Sobol sequence.
+class Troubles {
+ public:
+  Trouble next() {
+    std::array<double, 4> at{};
+    for (double& one : at) one = uniform_(sequence_);
+    const bool jitters = at[1] > 0.5;
+    const double late = kMostDelay * (jitters ? 2.0 * at[1] - 1.0 : 2.0 * at[1]);
+    return {kSoftest * std::pow(kHardest / kSoftest, at[0]), jitters ? 0.0 : late, jitters ? late : 0.0,
+            kMostFilter * at[2], kMostDrift * (2.0 * at[3] - 1.0)};
+  }
+
+ private:
+  boost::random::sobol sequence_{4};
+  boost::random::uniform_01<double> uniform_;
+};
+
+Condition condition_of(const Trouble& trouble, const std::string& motion = {}) {
+  Condition out;
+  out.arm.type = Type::springs;
+  out.stiffness = trouble.stiffness;
+  out.motion = motion;
+  const auto add = [&](fake_baxter::FaultKind kind, double amount) {
+    if (amount != 0.0) out.faults.push_back({kind, amount, {}});
+  };
+  add(fake_baxter::FaultKind::delay, trouble.delay);
+  add(fake_baxter::FaultKind::jitter, trouble.jitter);
+  add(fake_baxter::FaultKind::wrench_filter, trouble.filter);
+  add(fake_baxter::FaultKind::force_drift, trouble.drift);
+  return out;
+}
+
+std::string name_of(const Trouble& trouble) {
+  return fmt::format("{:.1f} kN/m, delay {:.0f} ms, jitter {:.0f} ms, filter {:.0f} ms, drift {:.0f} N/m",
+                     1e-3 * trouble.stiffness, 1e3 * trouble.delay, 1e3 * trouble.jitter, 1e3 * trouble.filter,
+                     trouble.drift);
+}
+
+/// s per tap of this robot without trouble, at the speed that configs/backend/baxter.yaml asks for.
+constexpr double kUntroubled = 16.5;
+
+TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
+  const char* wanted = std::getenv("PALPATE_CAMPAIGN");
+  const int at_extremes = wanted != nullptr ? 40 : palpate::test::kSanitized ? 2 : 4;
+  const int in_between = wanted != nullptr ? std::atoi(wanted) : palpate::test::kSanitized ? 4 : 40;
+  constexpr int kOneRun = 8;
+  std::vector<std::pair<Trouble, int>> all;
+  for (const Trouble& one : extremes()) all.emplace_back(one, at_extremes);
+  Troubles troubles;
+  for (int taps = 0; taps < in_between; taps += kOneRun) all.emplace_back(troubles.next(), std::min(kOneRun, in_between));
+  Tally sum;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& [trouble, taps] = all[i];
+    const Tally one = campaign(condition_of(trouble), taps, 2000 + i);
+    report(name_of(trouble), one);
+    EXPECT_EQ(one.phantoms, 0) << name_of(trouble);
+    EXPECT_EQ(one.too_strong, 0) << name_of(trouble);
+    EXPECT_LT(one.found, 10.0) << name_of(trouble) << ": s from a touch to its end";
+    if (trouble.is_common()) {
+      EXPECT_EQ(one.ended, 0) << name_of(trouble);
+      EXPECT_LT(one.seconds / one.taps, 2.2 * kUntroubled) << name_of(trouble);
+    }
+    sum.add(one);
+  }
+  report("all", sum);
+  EXPECT_LE(sum.rejection(), 0.01);
+}
+
+TEST(ForceBound, HoldsForEveryMotionThatIsAccepted) {
+  const std::string rest = "hover: 13.5 cm, travel_speed: 15 cm/s, retreat_speed: 10 cm/s, tare: 500 ms, overrun: 2 cm}";
+  const std::string motions[] = {
+      "{type: continuous, speed: 10 cm/s, threshold: 5 N, " + rest,
+      "{type: continuous, speed: 3 cm/s, threshold: 12 N, " + rest,
+      "{type: paper, speed: 6 cm/s, threshold: 8 N, " + rest,
+      "{type: two_stage, speed: 10 cm/s, fine_speed: 5 cm/s, threshold: 8 N, fine_threshold: 5 N, " + rest,
+      "{type: continuous, speed: 3 cm/s, threshold: 5 N, adaptive_hover: {speed: 10 cm/s}, " + rest};
+  const int taps = std::getenv("PALPATE_CAMPAIGN") != nullptr ? 40 : palpate::test::kSanitized ? 1 : 4;
+  for (const std::string& motion : motions) {
+    const Tally one = campaign(condition_of({kHardest}, motion), taps, 3000);
+    report(motion, one);
+    EXPECT_EQ(one.too_strong, 0) << motion;
+    EXPECT_EQ(one.phantoms, 0) << motion;
+    EXPECT_EQ(one.contacts, one.taps) << motion;
   }
 }
 

@@ -52,8 +52,8 @@ TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
     o.motion.type = Type::chosen;
     o.motion.of = {alone, alone};
     for (tapping::MotionOptions& one : o.motion.of) one.type = Type::continuous;
-    o.motion.of[0].speed = 0.01;
-    o.motion.of[1].speed = 0.03;
+    o.motion.of[0].speed = 0.005;
+    o.motion.of[1].speed = 0.01;
   }));
   bench.check();
   const auto seconds = [&](int motion) {
@@ -62,8 +62,8 @@ TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
     EXPECT_EQ(contact.outcome, Outcome::contact);
     return contact.seconds;
   };
-  // The way down alone differs: 14.5 cm at 1 cm/s and at 3 cm/s.
-  EXPECT_NEAR(seconds(0) - seconds(1), 14.5 - 14.5 / 3.0, 1.0);
+  // The way down alone differs: 13.5 cm at 0.5 cm/s and at 1 cm/s.
+  EXPECT_NEAR(seconds(0) - seconds(1), 13.5 / 0.5 - 13.5 / 1.0, 1.0);
 }
 
 TEST(ATap, CanBeMadeInEveryMotion) {
@@ -122,7 +122,9 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
       bench.describe({0.1, 0.2}),
       ElementsAre("rise from 5.0 cm above the desk", "before it, a calibration tap on the bare desk at (2.0, 2.0) cm",
                   "travel from (4.0, 7.0) cm to (10.0, 20.0) cm at 13.5 cm above the desk, 15.0 cm/s",
-                  "descend at 1.5 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
+                  "descend at 0.4 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
+                  "press with at most about 14.0 N on something rigid: the arm's springs have 4.5 kN/m there, and 535 ms "
+                  "pass from 5.0 N to standstill, so that motion.speed is not reached",
                   "stop whatever it does when the force changes by 14.0 N upwards or downwards, and by half as much "
                   "again sideways"));
   EXPECT_TRUE(bench.robot.commands.empty());
@@ -240,8 +242,7 @@ TEST(ATap, IsBelievedThoughTheForceIsAnotherWhileTheArmMoves) {
     Bench bench;
     bench.robot.spoil = moves(offset, bench);
     for (const Target& place : {kOnObject, kOnDesk, Target{0.2, 0.03}, Target{0.115, 0.08}}) bench.touch(place, 0.003);
-    ASSERT_FALSE(bench.notes.empty());
-    EXPECT_THAT(bench.notes.front(), StartsWith("coming down in the air the force along z reads "));
+    EXPECT_THAT(bench.notes, testing::Contains(StartsWith("coming down in the air the force along z reads ")));
   }
 }
 

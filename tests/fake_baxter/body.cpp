@@ -50,7 +50,8 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       normal_(Random(options.seed, "fake_baxter/noise")),
       spikes_(options.seed, "fake_baxter/spikes"),
       timeout_(options.command_timeout),
-      speed_ratio_(options.speed_ratio) {
+      speed_ratio_(options.speed_ratio),
+      network_(Random(options.seed, "fake_baxter/commands")) {
   const Effects& effects = scene.effects();
   if (effects.force_noise) noise_ = std::max(kLeastNoise, effects.force_noise->deviation);
   backends::Normal bias(Random(options.seed, "fake_baxter/bias"));
@@ -78,6 +79,12 @@ double Body::now() const { return begin_ + static_cast<double>(periods_) * kPeri
 
 void Body::command(const Joints& target) {
   ++commands_;
+  const double arrives = network_.arrival(now(), amount(FaultKind::delay), amount(FaultKind::jitter));
+  if (arrives <= now() + kSlack) return obey(target);
+  sent_.push_back({target, arrives});
+}
+
+void Body::obey(const Joints& target) {
   if (!target.allFinite() || active(FaultKind::drop_commands) != nullptr) return;
   target_ = target.cwiseMax(baxter::lower_limits()).cwiseMin(baxter::upper_limits());
   commanded_ = now();
@@ -109,6 +116,11 @@ const Fault* Body::active(FaultKind kind) const {
     return &one.fault;
   }
   return nullptr;
+}
+
+double Body::amount(FaultKind kind) const {
+  const Fault* fault = active(kind);
+  return fault != nullptr ? fault->amount : 0.0;
 }
 
 bool Body::faulty() const {
@@ -200,6 +212,12 @@ void Body::measure() {
   const Eigen::Vector3d way = pose.position - endpoint_.pose.position;
   endpoint_speed_ = periods_ == 0 ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(way / kPeriod);
   Eigen::Vector3d force = bias_ + bias_by_joints_ * (joints() - untucked()) - arm().felt;
+  force.z() += amount(FaultKind::force_drift) * (tip().z() - scene_.desk());
+  if (const double constant = amount(FaultKind::wrench_filter); constant > 0.0) {
+    if (!filtered_) filtered_ = force;
+    *filtered_ += (1.0 - std::exp(-kPeriod / constant)) * (force - *filtered_);
+    force = *filtered_;
+  }
   for (double& one : force.reshaped()) one += noise_ * normal_();
   spoil(force);
   if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
@@ -225,6 +243,7 @@ void Body::spoil(Eigen::Vector3d& force) {
 void Body::step() {
   const double height_before = tip().z();
   ++periods_;
+  for (; !sent_.empty() && sent_.front().arrives <= now() + kSlack; sent_.pop_front()) obey(sent_.front().target);
   const Mode mode = choose_mode();
   const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
   if (mode != mode_ && mode != Mode::following) hold(brakes);

@@ -8,10 +8,12 @@
 #include "fake_baxter/assembly.hpp"
 #include "fake_baxter/faults.hpp"
 #include "fake_baxter/mechanics.hpp"
+#include "fake_baxter/network.hpp"
 #include "simulator/arm.hpp"
 
 #include <palpate/scene.hpp>
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -68,7 +70,8 @@ class Body {
   /// `scene` must outlive it. Throws Error if the arm cannot stand where it should start.
   Body(const Scene& scene, const BodyOptions& options);
 
-  /// A set-point for all joints, radians, as of now; values that are not finite are ignored.
+  /// Takes a set-point for all joints, radians, which arrives after what the faults `delay` and `jitter` say; values
+  /// that are not finite are ignored.
   void command(const Joints& target);
   /// For how long a set-point is followed, seconds; and the share of their greatest speed at which the joints go after
   /// it, clamped to 0 to 1. What is not finite is ignored.
@@ -82,6 +85,8 @@ class Body {
   void inject(const Fault& fault, const Trigger& trigger = {});
   /// The fault of this kind if it has begun, else null.
   const Fault* active(FaultKind kind) const;
+  /// Its amount, 0 if it has not begun.
+  double amount(FaultKind kind) const;
   /// Whether any has begun.
   bool faulty() const;
 
@@ -117,6 +122,7 @@ class Body {
   void begin(Armed& armed);
   void watch_faults(double height_before);
   Mode choose_mode() const;
+  void obey(const Joints& target);
   void hold(bool brakes);
   void stand(const Joints& joints);
   void follow();
@@ -148,7 +154,14 @@ class Body {
   Joints target_;     ///< of the latest command
   Joints reference_;  ///< what the joints follow
   double held_until_ = -1e9;
+  struct Sent {
+    Joints target;
+    double arrives;  ///< s
+  };
+  Network network_;  ///< from the driver
+  std::deque<Sent> sent_;
   baxter::EndpointReading endpoint_;
+  std::optional<Eigen::Vector3d> filtered_;  ///< N, behind the fault `wrench_filter`
   Eigen::Vector3d endpoint_speed_ = Eigen::Vector3d::Zero();
 };
 

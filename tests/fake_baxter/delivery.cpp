@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fake_baxter/delivery.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace palpate::fake_baxter {
@@ -16,19 +17,25 @@ void arrive(std::optional<Reading>& reading, double now) {
 }  // namespace
 
 std::vector<Said> Delivery::take(const Body& body) {
-  waiting_.push_back(body.said());
+  const double now = body.now();
+  waiting_.push_back({body.said(), network_.arrival(now, body.amount(FaultKind::delay), body.amount(FaultKind::jitter))});
   const Fault* bursts = body.active(FaultKind::bursts);
-  const bool between = bursts != nullptr && body.now() < latest_ + bursts->amount - kSlack;
+  const bool between = bursts != nullptr && now < latest_ + bursts->amount - kSlack;
   if (between || body.active(FaultKind::stall) != nullptr) return {};
-  latest_ = body.now();
-  for (Said& said : waiting_) {
-    arrive(said.joints, latest_);
-    arrive(said.endpoint, latest_);
-    arrive(said.state, latest_);
-    arrive(said.collision, latest_);
-    arrive(said.avoidance, latest_);
+  const auto end = std::find_if(waiting_.begin(), waiting_.end(),
+                                [now](const Sent& sent) { return sent.arrives > now + kSlack; });
+  std::vector<Said> out;
+  for (auto it = waiting_.begin(); it != end; ++it) out.push_back(std::move(it->said));
+  waiting_.erase(waiting_.begin(), end);
+  if (!out.empty()) latest_ = now;
+  for (Said& said : out) {
+    arrive(said.joints, now);
+    arrive(said.endpoint, now);
+    arrive(said.state, now);
+    arrive(said.collision, now);
+    arrive(said.avoidance, now);
   }
-  return std::exchange(waiting_, {});
+  return out;
 }
 
 }  // namespace palpate::fake_baxter

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fake_baxter/body.hpp"
+#include "fake_baxter/network.hpp"
 
 #include <vector>
 
@@ -10,13 +11,18 @@ namespace palpate::fake_baxter {
 
 class Delivery {
  public:
-  /// What arrives in this period, in the order in which it was said: by itself what is said in it, behind a stall or
-  /// between two bursts nothing, after it all that was held up. `received` is when it arrives, stamps are as they were.
-  /// To be called once a period.
+  /// Returns what arrives in this period, in the order in which it was said. Without a fault that is what is said in
+  /// it; `delay` and `jitter` hold each message up, `stall` and `bursts` all of them. `received` is the time of
+  /// arrival, stamps are as they were. Call it once per period.
   std::vector<Said> take(const Body& body);
 
  private:
-  std::vector<Said> waiting_;
+  struct Sent {
+    Said said;
+    double arrives;  ///< s
+  };
+  std::vector<Sent> waiting_;
+  Network network_{Random(1, "fake_baxter/said")};
   double latest_ = 0.0;  ///< when something arrived, s
 };
 

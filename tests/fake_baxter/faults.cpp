@@ -79,6 +79,14 @@ constexpr Known kKnown[] = {
      Takes::number, 0.045, "", 0.0, kAny},
     {"stall", "for VALUE seconds (0.05) nothing comes, then all of it", FaultKind::stall, Takes::number, 0.05, "", 0.0,
      kAny},
+    {"delay", "every message, either way, takes VALUE seconds (0.04)", FaultKind::delay, Takes::number, 0.04, "", 0.0,
+     kAny},
+    {"jitter", "every message, either way, takes up to VALUE seconds (0.04) more", FaultKind::jitter, Takes::number,
+     0.04, "", 0.0, kAny},
+    {"wrench_filter", "the force passes a low-pass filter with a time constant of VALUE seconds (0.1)",
+     FaultKind::wrench_filter, Takes::number, 0.1, "", 0.0, kAny},
+    {"force_drift", "the force rises by VALUE newtons (35) per metre that the tip comes down, as though something "
+     "pressed the tool upwards", FaultKind::force_drift, Takes::number, 35.0},
     {"die", "the program is gone at once", FaultKind::die},
 };
 

@@ -42,6 +42,10 @@ enum class FaultKind {
   slow_endpoint,
   bursts,
   stall,
+  delay,
+  jitter,
+  wrench_filter,
+  force_drift,
   die
 };
 

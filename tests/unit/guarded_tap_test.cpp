@@ -209,12 +209,12 @@ TEST(GuardedTap, PutsItsSetPointWhereTheArmIsOnceItFeelsAContact) {
 
 TEST(GuardedTap, OfARealArmGoesOnWhereTheForceDoesNotLast) {
   for (const char* yaml : {"{type: continuous}", "{type: paper}"}) {
-    // A zero that has wandered by 60 % of the threshold in the air, and noise on it that goes three times too far.
+    // A zero that wanders by 20 N/m, and noise on it that goes three times too far.
     const double threshold = motion(yaml).threshold;
     int loud = 0;
     const auto wandered = [&](int, double position) {
-      if (position > 0.101) return 0.0;
-      return loud++ < 3 ? 1.2 * threshold : 0.6 * threshold;
+      const double zero = 20.0 * (0.135 - position);
+      return position < 0.101 && loud++ < 3 ? zero + 1.2 * threshold : zero;
     };
     const Trial run(yaml, 0.03, 1e6, wandered, GuardedTap::Arm::real);
     EXPECT_EQ(run.tap.result().outcome, Outcome::contact) << yaml;

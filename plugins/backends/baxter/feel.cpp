@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One descent of Tapper, and what it makes of the force that the robot tells.
 #include "baxter/tapper.hpp"
+#include "baxter/words.hpp"
 #include "tapping/motion.hpp"
 
 #include <algorithm>
@@ -26,6 +27,7 @@ constexpr int kPulled = 6;          ///< new readings of a force that pulls: wha
 constexpr double kEvenFrom = 0.7;   ///< s after which an arm that trails by 0.35 s comes down evenly
 constexpr double kEvenTo = 1.0;     ///< s, for so long its force is looked at
 constexpr std::size_t kFewestEven = 10;
+constexpr double kStiffest = 8000.0;  ///< N/m of the arm where its posture is not known
 constexpr double kSteady = 1.5;  ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
 
 /// Of each component; at least one reading.
@@ -60,6 +62,23 @@ class EvenDescent {
   std::vector<double> forces_;
 };
 
+/// The periods in which the set-point comes down evenly, those up to now and those up to the latest notice.
+struct EvenPeriods {
+  std::vector<Reaction::Period> now;
+  std::vector<Reaction::Period> at_notice;
+  int noticed = 0;
+
+  /// `even_for`: since when it comes down so, seconds; 0 if it does not.
+  void add(const Reaction::Period& period, double even_for) {
+    if (even_for < kEvenFrom) now.clear();
+    if (even_for >= kEvenFrom) now.push_back(period);
+  }
+  void notice(int count) {
+    noticed = count;
+    at_notice = now;
+  }
+};
+
 /// While the sign is not known there are two taps, one for each. They are led alike until one of them feels a contact;
 /// that one goes on, and its sign is the robot's, if the contact is one.
 class SignedTap {
@@ -87,7 +106,12 @@ class SignedTap {
     return taps_.front().set_point;
   }
 
+  void slow_to(double speed) {
+    for (One& one : taps_) one.tap.slow_to(speed);
+  }
   const tapping::GuardedTap& tap() const { return taps_.front().tap; }
+  /// The force along z that it compares with, as the robot tells it.
+  double zero() const { return taps_.front().sign * tap().zero(); }
   /// 0 while nothing has shown it.
   double sign() const { return taps_.size() == 1 ? taps_.front().sign : 0.0; }
 
@@ -106,13 +130,54 @@ void Tapper::rest_from_above(const Path& column) {
   settle(column.at(kFromAbove));
 }
 
-Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column) {
+/// The greatest vertical stiffness of the arm on its way down there, N/m.
+double Tapper::stiffness_at(const Target& place) const {
+  double out = 0.0;
+  std::optional<Joints> joints = untucked();
+  for (const double height : {travel_height(), scene_.desk() + 0.5 * motion_.hover, scene_.desk()}) {
+    joints = arm_.solve(planner_.pose(place, height), joints.value_or(untucked()));
+    if (joints) out = std::max(out, arm_.vertical_stiffness(*joints));
+  }
+  return out > 0.0 ? out : kStiffest;
+}
+
+/// The motion at speeds at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault where such a
+/// speed is not worth having.
+tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double stiffness) const {
+  const double slowest = reaction_.greatest_speed(motion.threshold, stiffness);
+  if (slowest < Reaction::kSlowest) {
+    throw Fault{fmt::format("a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
+                            "to {:.0f} ms late: at {:.1f} N that allows {:.1f} mm/s, and {:.0f} mm/s are needed. "
+                            "Connect by cable, end other load, or lower motion.threshold",
+                            1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(),
+                            motion.threshold, 1e3 * slowest, 1e3 * Reaction::kSlowest),
+                Then::hold};
+  }
+  const double configured = motion.speed;
+  motion.speed = std::min(motion.speed, slowest);
+  motion.fine_speed =
+      std::min(motion.fine_speed, reaction_.greatest_speed(motion.fine_threshold, stiffness));
+  if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, slowest);
+  const double way = motion.hover + motion.overrun;
+  motion.timeout += way / motion.speed - way / configured;
+  return motion;
+}
+
+Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& wanted, const Path& column) {
+  rest_from_above(column);
+  const double stiffness = stiffness_at(request.target);
+  const tapping::MotionOptions motion = bounded(wanted, stiffness);
+  note_(fmt::format("tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is noticed after {:.0f} ms and stopped {:.0f} "
+                    "ms later, messages come up to {:.0f} ms late; at most {} are expected",
+                    request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(),
+                    1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(),
+                    newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
   const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
   const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
-  rest_from_above(column);
   SignedTap signed_tap(motion, plan, sign_);
   std::vector<Eigen::Vector3d> tare;
   EvenDescent even;
+  EvenPeriods periods;
   std::optional<double> moving;
   int pulled = 0;
   double set_point = plan.hover;
@@ -124,8 +189,13 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     const bool fresh = watch_.fresh();
     const Eigen::Vector3d reading = seen_.endpoint->force;
     const bool coming_down = signed_tap.tap().coming_down();
-    const double felt = reading.z() - (coming_down ? moving_ : 0.0);
+    const double beside = coming_down ? moving_ : 0.0;
+    const double felt = reading.z() - beside;
+    reaction_.late(watch_.lateness(), seen_.now);
+    periods.add({seen_.now, set_point, height()}, signed_tap.tap().even_for());
     set_point = signed_tap.next(height(), felt, fresh);
+    if (signed_tap.tap().noticed() > periods.noticed) periods.notice(signed_tap.tap().noticed());
+    signed_tap.slow_to(std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.threshold, stiffness)));
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
@@ -143,15 +213,17 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
         watch_.set_tare(zero_);
       }
     } else if (fresh) {
-      const double against = sign_ == 0.0 ? std::abs(felt - zero_.z()) : sign_ * (felt - zero_.z());
+      const double zero = signed_tap.zero();
+      const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
       peak_ = std::max(peak_.value_or(0.0), against);
+      watch_.set_tare({zero_.x(), zero_.y(), zero + beside});
       // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
       // expected a soft contact.
       if (!moving && plan.start >= plan.hover) {
         if (const auto mean = even.add(signed_tap.tap().even_for(), reading.z())) moving = *mean - zero_.z();
       }
       // An arm that goes up rubs the other way, which is no pull.
-      pulled = coming_down && sign_ * (felt - zero_.z()) < -motion.threshold ? pulled + 1 : 0;
+      pulled = coming_down && sign_ * (felt - zero) < -motion.threshold ? pulled + 1 : 0;
       if (pulled >= kPulled) {
         throw Fault{
             "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
@@ -174,6 +246,11 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
                   "the contact may be none");
   }
   if (moving) learn_moving(*moving);
+  if (!periods.at_notice.empty()) {
+    // Something soft may have been touched that far above.
+    const double free = std::max(contact.height, periods.at_notice.back().height + motion.threshold / tapping::GuardedTap::kSoftest);
+    reaction_.learn_noticing(periods.at_notice, free, motion.threshold, stiffness);
+  }
   shown_sign_ = signed_tap.sign();
   return contact;
 }

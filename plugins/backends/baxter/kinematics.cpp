@@ -6,6 +6,7 @@
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
 
 namespace palpate::baxter {
 namespace {
@@ -32,6 +33,7 @@ struct Arm::Chain {
   explicit Chain(const Eigen::Vector3d& tip) : arm(left_arm(tip)) {}
   KDL::Chain arm;
   KDL::ChainFkSolverPos_recursive forward{arm};
+  KDL::ChainJntToJacSolver jacobian{arm};
   KDL::ChainIkSolverPos_LMA inverse{arm, (Eigen::Matrix<double, 6, 1>() << 1, 1, 1, kLever, kLever, kLever).finished(),
                                     kAccuracy, kIterations};
 };
@@ -47,6 +49,14 @@ Pose Arm::tip(const Joints& joints) const {
   Eigen::Quaterniond& q = out.rotation;
   at.M.GetQuaternion(q.x(), q.y(), q.z(), q.w());
   return out;
+}
+
+double Arm::vertical_stiffness(const Joints& joints) const {
+  KDL::Jacobian jacobian(7);
+  chain_->jacobian.JntToJac(array_of(joints), jacobian);
+  double give = 0.0;  // m/N
+  for (int i = 0; i < 7; ++i) give += jacobian.data(2, i) * jacobian.data(2, i) / kSprings[i];
+  return 1.0 / give;
 }
 
 std::optional<Joints> Arm::solve(const Pose& tip, const Joints& seed, double margin) const {

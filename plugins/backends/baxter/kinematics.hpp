@@ -33,6 +33,9 @@ constexpr Step kSteps[] = {
 };
 constexpr double kHand = 0.11355;  // left_wrist -> left_hand, along z
 
+/// Stiffness of the springs between motors and joints, Nm/rad: Rethink's hardware specification.
+constexpr double kSprings[] = {843, 843, 843, 843, 250, 250, 250};
+
 }  // namespace description
 
 /// The arm with something fixed to its flange (the frame `left_hand`). Safe to share; solve() is not.
@@ -44,6 +47,10 @@ class Arm {
 
   /// Where the tip is, and how the hand is turned.
   Pose tip(const Joints& joints) const;
+
+  /// Returns the vertical stiffness of the tip in `base`, N/m, with the motors held: (J_z K^-1 J_z^T)^-1, where J_z is
+  /// the vertical row of the Jacobian and K the stiffness of the springs. 2.2 to 6.4 kN/m over a usual area.
+  double vertical_stiffness(const Joints& joints) const;
 
   /// The solution of the inverse problem that Levenberg and Marquardt's method finds from `seed`, to 1e-6 m and rad;
   /// none if there is none nearby or it leaves the limits of the joints by less than `margin` radians. It does not jump

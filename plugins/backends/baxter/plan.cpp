@@ -183,9 +183,21 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   if (options_.calibration && !calibrated_) {
     out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare()));
   }
-  const std::vector<std::string> motion =
-      tapping::describe(options_.motion.of_request(request), scene_.desk(), request, from);
-  out.insert(out.end(), motion.begin(), motion.end());
+  const tapping::MotionOptions& wanted = options_.motion.of_request(request);
+  const double stiffness = stiffness_at(request.target);
+  tapping::MotionOptions motion = wanted;
+  try {
+    motion = bounded(wanted, stiffness);
+  } catch (const Fault& slow) {
+    return {slow.reason};
+  }
+  const std::vector<std::string> words = tapping::describe(motion, scene_.desk(), request, from);
+  out.insert(out.end(), words.begin(), words.end());
+  out.push_back(fmt::format("press with at most about {} on something rigid: the arm's springs have {:.1f} kN/m there, "
+                            "and {:.0f} ms pass from {} to standstill{}",
+                            tapping::newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness)),
+                            1e-3 * stiffness, 1e3 * reaction_.seconds(), tapping::newtons(motion.threshold),
+                            motion.speed < wanted.speed ? ", so that motion.speed is not reached" : ""));
   out.push_back("stop whatever it does when the force changes by " + tapping::newtons(options_.force_stop) +
                 " upwards or downwards, and by half as much again sideways");
   return out;

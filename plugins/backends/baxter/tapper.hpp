@@ -4,6 +4,7 @@
 #pragma once
 
 #include "baxter/path.hpp"
+#include "baxter/reaction.hpp"
 #include "baxter/watch.hpp"
 #include "tapping/guarded_tap.hpp"
 
@@ -66,6 +67,8 @@ class Tapper {
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up);
+  double stiffness_at(const Target& place) const;
+  tapping::MotionOptions bounded(tapping::MotionOptions motion, double stiffness) const;
   void learn_moving(double difference);
   Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
@@ -106,6 +109,8 @@ class Tapper {
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
   double moving_ = 0.0;         ///< N along z that it reads beside while the arm comes down in the air
   double shown_sign_ = 0.0;     ///< by the latest contact that was believed; 0 if nothing showed it
+  Reaction reaction_;
+  std::vector<Reaction::Step>* motion_log_ = nullptr;  ///< gets every period while it is there
   int told_ = 0;                ///< of how many taps moving_ was noted
   std::optional<double> peak_;  ///< N, the most that was felt of this tap against the tool; none before its descent
 };

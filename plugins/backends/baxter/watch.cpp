@@ -15,6 +15,8 @@ using Button = StateReading::Button;
 
 double degrees(double radians) { return radians * 180.0 / 3.14159265358979323846; }
 
+constexpr double kPeriod = 0.01;  ///< s from one look to the next
+
 constexpr const char* kReset =
     "reset it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun baxter_tools enable_robot.py -e)";
 
@@ -65,11 +67,12 @@ std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Del
   // Two clocks that nobody sets drift apart, by more than kLate within hours.
   best.least = std::min(delay, best.least + Watch::kDrift * std::max(0.0, arrival.received - best.at));
   best.at = arrival.received;
-  if (delay - best.least <= Watch::kLate) return std::nullopt;
+  best.excess = delay - best.least;
+  if (best.excess <= Watch::kLate) return std::nullopt;
   return Fault{
       fmt::format("{} comes with stamps {:.2f} s older than before: its data are stale, see to the network and "
                   "to the robot's processes",
-                  stream, delay - best.least),
+                  stream, best.excess),
       then};
 }
 
@@ -97,6 +100,12 @@ void Watch::begin() {
   joint_stream_.begin();
   endpoint_stream_.begin();
   motion_ = {};
+}
+
+double Watch::lateness() const {
+  const std::size_t looks = motion_.looks.size();
+  const double own = looks < 2 ? 0.0 : motion_.looks[looks - 1] - motion_.looks[looks - 2] - kPeriod;
+  return std::max({0.0, own, 2.0 * joint_delay_.excess, 2.0 * endpoint_delay_.excess});
 }
 
 void Watch::sent(double time, const Joints& target) {

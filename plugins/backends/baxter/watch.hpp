@@ -103,6 +103,7 @@ class Watch {
   struct Delay {
     double least = std::numeric_limits<double>::infinity();
     double at = 0.0;
+    double excess = 0.0;  ///< by which the latest came later than that
   };
 
   Watch(const Workspace& workspace, double force_stop) : workspace_(workspace), force_stop_(force_stop) {}
@@ -127,6 +128,9 @@ class Watch {
   /// The part of look() that needs no arm of ours: which readings are new, and whether they come often enough, which is
   /// known half a second after begin().
   std::optional<Fault> listen(const Snapshot& seen);
+  /// By how much set-points and readings together may be late now, seconds: twice the time by which the latest joints or
+  /// force came later after their stamps than the earliest did, or the time by which this program looked too late.
+  double lateness() const;
   /// Whether the force that was looked at last was a new reading, and not the one of the look before.
   bool fresh() const { return fresh_; }
   /// Tells what is sent, so that look() can judge whether the arm follows.

@@ -16,6 +16,8 @@ constexpr double kNear = 0.001;
 constexpr double kHeldUp = 2.0;
 /// s by which an arm trails its set-point: for so long it does not move yet.
 constexpr double kTrail = 0.35;
+/// s after which it comes down evenly.
+constexpr double kEven = 0.7;
 
 /// The shortest part of a descent that is looked at, metres, and the share of it that the rise may take.
 constexpr double kFirstWindow = 0.02;
@@ -44,6 +46,20 @@ double explained(const std::vector<Sample>& samples, double kink) {
 }
 
 }  // namespace
+
+double slope_below(const std::vector<Sample>& samples, double kink) {
+  const auto n = static_cast<double>(samples.size());
+  double depth = 0.0;
+  for (const Sample& one : samples) depth += std::max(0.0, kink - one.height) / n;
+  double square = 0.0;
+  double product = 0.0;
+  for (const Sample& one : samples) {
+    const double d = std::max(0.0, kink - one.height) - depth;
+    square += d * d;
+    product += d * one.force;
+  }
+  return square > 0.0 ? product / square : 0.0;
+}
 
 std::optional<double> onset(const std::vector<Sample>& samples) {
   if (samples.size() < 4) return std::nullopt;
@@ -92,7 +108,11 @@ std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
 }
 
 GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
-    : motion_(motion), descent_(descent), arm_(arm), set_point_(descent.hover) {}
+    : motion_(motion),
+      descent_(descent),
+      arm_(arm),
+      set_point_(descent.hover),
+      free_(motion.threshold / kSoftest) {}
 
 double GuardedTap::next(double height, double force, bool fresh) {
   if (done()) return set_point_;
@@ -107,6 +127,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
     case Stage::settle:
       if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) && summed_ > 0) {
         zero_ = sum_ / summed_;
+        free_.tare(zero_);
         enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
       }
       break;
@@ -133,7 +154,10 @@ double GuardedTap::next(double height, double force, bool fresh) {
         // The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which
         // must not be tared away.
         const double mean = sum_ / summed_;
-        if (std::abs(mean - zero_) < 0.5 * motion_.threshold) zero_ = mean;
+        if (std::abs(mean - zero_) < 0.5 * motion_.threshold) {
+          zero_ = mean;
+          free_.tare(zero_);
+        }
       }
       if (above_ >= kConsecutive) {
         touched(height);
@@ -142,7 +166,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::rest:
-      if (waited(motion_.pause)) conclude(height);
+      if (waited(motion_.pause)) conclude(height, arm_ == Arm::simulated || rise().is_contact);
       break;
     case Stage::back_off:
       if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
@@ -157,13 +181,14 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
     case Stage::fine:
       if (above_ >= kConsecutive) {
+        ++noticed_;
         finish({Outcome::contact, height, peak_, 0.0, {}});
       } else if (ramp(goal_, motion_.fine_speed)) {
         enter(Stage::descend);
       }
       break;
     case Stage::stop:
-      if (waited(kWatched)) conclude(onset_of_descent(trace_).value_or(first_));
+      if (waited(kWatched)) conclude_at_onset();
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {
@@ -195,24 +220,51 @@ void GuardedTap::feel(double height, double force) {
     ++summed_;
   }
   if (taring()) return;
+  const bool descending = stage_ == Stage::descend || stage_ == Stage::bottom;
+  if (arm_ == Arm::real && descending) {
+    zero_ = free_.line(height).at(height);
+    if (even_for() >= kEven) free_.add({height, force});
+  }
   const double felt = force - zero_;
   peak_ = std::max(peak_, felt);
   above_ = felt > threshold() ? above_ + 1 : 0;
-  const bool coming_down = stage_ == Stage::descend || stage_ == Stage::bottom;
-  if (coming_down || stage_ == Stage::stop) trace_.push_back({height, force});
+  if (descending || stage_ == Stage::stop) trace_.push_back({height, force});
 }
 
-/// The contact is one, or the descent goes on where it is. What followed the three loud readings is above the threshold
-/// on average if something is touched, the more so as the arm trails and still comes down; if noise was all that they
-/// had, on a zero that has wandered, it is not. To stand there longer would be to press longer.
-void GuardedTap::conclude(double height) {
+/// The contact is one, or the descent goes on where it is. If something is touched, the mean of the force that followed
+/// the three loud readings is high; if they were noise it is about zero. It is not above the threshold everywhere: a
+/// set-point that is put where the arm is lets its springs relax, on something soft to less than the threshold.
+void GuardedTap::conclude(double height, bool rises) {
   // An arm that brakes presses less meanwhile.
-  const double least = motion_.brake > 0.0 ? 0.5 * motion_.threshold : motion_.threshold;
-  const bool lasts = summed_ == 0 || sum_ / summed_ - zero_ > least;
+  const bool relaxes = motion_.brake > 0.0 || arm_ == Arm::real;
+  const double least = relaxes ? 0.5 * motion_.threshold : motion_.threshold;
+  const bool lasts = rises && (summed_ == 0 || sum_ / summed_ - zero_ > least);
   const bool asks = arm_ == Arm::real || motion_.confirm;
   if (given_up_ && !lasts) return finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
-  if (!asks || lasts) return finish({Outcome::contact, height, peak_, 0.0, {}});
+  const bool again = arm_ == Arm::real && refused_ && std::abs(*refused_ - first_) < kSamePlace;
+  if (!asks || lasts || again) return finish({Outcome::contact, height, peak_, 0.0, {}});
+  refused_ = first_;
   enter(Stage::descend);
+}
+
+/// Of `continuous`: the height is that of the onset.
+void GuardedTap::conclude_at_onset() {
+  if (arm_ == Arm::simulated) return conclude(onset_of_descent(trace_).value_or(first_), true);
+  const Rise found = rise();
+  conclude(found.height, found.is_contact);
+}
+
+/// How the force of a real arm rose above the line that it had in free travel.
+GuardedTap::Rise GuardedTap::rise() const {
+  const FreeForce::Line free = free_.line(first_);
+  std::vector<Sample> above;
+  for (const Sample& one : trace_) {
+    if (one.height < first_ + 2.0 * kFarthestOnset) above.push_back({one.height, one.force - free.at(one.height)});
+  }
+  const std::optional<double> found = onset_of_descent(above);
+  const bool is_contact =
+      found && *found - first_ < kFarthestOnset && slope_below(above, *found) > kSoftestRise;
+  return {is_contact ? *found : first_, is_contact};
 }
 
 bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for() >= kTrail; }
@@ -259,6 +311,7 @@ void GuardedTap::enter(Stage stage) {
 
 void GuardedTap::touched(double height) {
   first_ = height;
+  ++noticed_;
   // Wherever the arm trails its set-point, holding that would press on.
   if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
   if (motion_.type == MotionOptions::Type::continuous) set_point_ = std::min(descent_.hover, height + motion_.brake);

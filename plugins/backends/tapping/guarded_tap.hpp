@@ -3,18 +3,14 @@
 // from what was felt before and after it was noticed. It owns no arm: a simulator and a robot run the same one.
 #pragma once
 
+#include "tapping/free_force.hpp"
 #include "tapping/motion.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 namespace palpate::tapping {
-
-/// One sample of a descent: the height of the tip, metres, and the force, newtons.
-struct Sample {
-  double height;
-  double force;
-};
 
 /// The height at which the force begins to rise: the kink of the hinge force = zero + slope * max(0, kink - height)
 /// that is nearest to `samples` in the sense of least squares, zero and slope being free. The height at which a
@@ -28,6 +24,10 @@ std::optional<double> onset(const std::vector<Sample>& samples);
 /// at, since the zero of the force may wander on the way: as much as shows the whole rise, which is long on a soft
 /// object, with air above it.
 std::optional<double> onset_of_descent(const std::vector<Sample>& descent);
+
+/// Returns how steeply the force rises below a kink, N/m: the slope of the hinge that fits `samples` best; 0 where no
+/// sample lies below it.
+double slope_below(const std::vector<Sample>& samples, double kink);
 
 /// Why a tap has the outcome `timeout`.
 constexpr const char* kTooLong = "the tap took longer than motion.timeout";
@@ -44,7 +44,8 @@ constexpr const char* kTooLong = "the tap took longer than motion.timeout";
 ///   slowly to a gentler threshold; the height is that of the second contact. No second contact within twice the way
 ///   back means that the first was none, and the descent goes on.
 /// - continuous: the set-point is put where the arm is, and the height is that of the onset.
-/// A contact of a real arm is believed if the force lasts; if not, the descent goes on.
+/// A real arm's contact is believed if the force lasts and rises as on an object: within kFarthestOnset and by at least
+/// kSoftestRise. If not, the descent goes on; a second one within kSamePlace of the first is believed.
 class GuardedTap {
  public:
   /// Of the control loop: Baxter's joint states come at 100 Hz.
@@ -60,11 +61,26 @@ class GuardedTap {
   /// milliradian until they slip.
   static constexpr double kFromAbove = 0.01;
 
+  /// A real arm's contact begins at most so far above the place where it was noticed, metres, and its force rises by at
+  /// least so much, N/m: what rises more slowly is a zero that changes with the pose.
+  static constexpr double kFarthestOnset = 0.03;
+  static constexpr double kSoftestRise = 200.0;
+  /// N/m of the softest contact, whose beginning is kept out of the force of free travel.
+  static constexpr double kSoftest = 600.0;
+  /// Two contacts within so much, metres, that do not last are one with something soft.
+  static constexpr double kSamePlace = 0.002;
+
   GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
 
   /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m). A
   /// force that is not `fresh` was told before: time goes on, but it counts for nothing.
   double next(double height, double force, bool fresh = true);
+
+  /// Comes down no faster than this from now on, m/s.
+  void slow_to(double speed) {
+    motion_.speed = std::min(motion_.speed, speed);
+    motion_.fine_speed = std::min(motion_.fine_speed, speed);
+  }
 
   /// The arm has stopped by itself, at a force that it has felt: what it presses on with is let go. Where that force is
   /// seen here, too, if late, it was a contact like any other; else the tap comes to nothing.
@@ -75,8 +91,12 @@ class GuardedTap {
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
   /// Whether a contact was noticed and the arm is being stopped.
   bool stopping() const { return stage_ == Stage::stop; }
+  /// How many contacts were noticed so far, believed or not.
+  int noticed() const { return noticed_; }
   /// Whether the arm comes down, or is being stopped at a contact: its force then is that of an arm that moves.
   bool coming_down() const;
+  /// The force that a reading is compared with, newtons: that of the tare, or of free travel as far as it is known.
+  double zero() const { return zero_; }
   /// For how long the set-point has been coming down evenly in this stage, seconds.
   double even_for() const;
   /// When done, what came of it, but for the time: `contact`, with the largest force above the tare, `no_contact` (the
@@ -91,7 +111,13 @@ class GuardedTap {
   void feel(double height, double force);
   void enter(Stage stage);
   void touched(double height);
-  void conclude(double height);
+  void conclude(double height, bool rises);
+  void conclude_at_onset();
+  struct Rise {
+    double height;  ///< where it begins, m
+    bool is_contact;
+  };
+  Rise rise() const;
   bool ramp(double goal, double speed);
   bool arrived(double height);
   bool waited(double seconds) const;
@@ -106,14 +132,17 @@ class GuardedTap {
   long entered_ = 0;  ///< the period in which the stage began
   double set_point_;
   double goal_ = 0.0;  ///< of the ramp of this stage
-  double zero_ = 0.0;  ///< force of the tare
+  double zero_ = 0.0;  ///< force without a contact, N
+  FreeForce free_;     ///< the same of a real arm that comes down
   double sum_ = 0.0;   ///< of forces while taring
   int summed_ = 0;     ///< how many
   double peak_ = 0.0;
-  double first_ = 0.0;  ///< height of the first contact of two_stage
+  double first_ = 0.0;  ///< height at which the latest contact was noticed
+  std::optional<double> refused_;  ///< `first_` of the latest that was not believed
   double gap_ = 0.0;    ///< least distance of arm and set-point in this stage
   long nearer_ = 0;     ///< the period in which it last became less
   bool given_up_ = false;
+  int noticed_ = 0;
   int above_ = 0;              ///< readings above the threshold, without a break
   std::vector<Sample> trace_;  ///< of the descent, for the onset
   Contact result_;

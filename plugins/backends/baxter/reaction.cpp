@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/reaction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::baxter {
+namespace {
+
+constexpr std::size_t kKept = 5;         ///< motions and contacts whose worst counts
+constexpr double kFades = 30.0;          ///< s in which a lateness fades to a third
+constexpr std::size_t kFewest = 30;      ///< periods of a free descent
+constexpr double kClear = 0.001;         ///< m above that height that counts as free
+constexpr double kLeastNoticing = 0.03;  ///< s: three readings at 100 Hz
+constexpr double kMostNoticing = 0.5;    ///< s: what takes longer was no steady rise
+/// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
+/// stop: those of a critically damped joint, 1 / (2 e).
+constexpr double kLeastLag = 0.3;
+constexpr double kGoOn = 0.184;
+
+void keep(std::deque<double>& values, double value) {
+  values.push_back(value);
+  if (values.size() > kKept) values.pop_front();
+}
+
+double most(const std::deque<double>& values, double without) {
+  return values.empty() ? without : *std::max_element(values.begin(), values.end());
+}
+
+/// A straight line through heights over time, by least squares.
+struct Line {
+  double height, time;  ///< m and s, of its middle
+  double velocity;      ///< m/s
+  double at(double other) const { return height + velocity * (other - time); }
+};
+
+using Periods = std::vector<Reaction::Period>;
+
+/// The last kLookedAt seconds of the periods whose tip was free; empty if they are too few.
+Periods last_free(const Periods& periods, double free_down_to) {
+  Periods out;
+  for (const Reaction::Period& one : periods) {
+    if (one.height > free_down_to + kClear) out.push_back(one);
+  }
+  if (out.size() < kFewest) return {};
+  const double from = out.back().time - Reaction::kLookedAt;
+  out.erase(out.begin(), std::find_if(out.begin(), out.end(), [from](const auto& one) { return one.time >= from; }));
+  return out;
+}
+
+Line fit(const Periods& periods) {
+  Line out{0.0, 0.0, 0.0};
+  const auto count = static_cast<double>(periods.size());
+  for (const Reaction::Period& one : periods) {
+    out.time += one.time / count;
+    out.height += one.height / count;
+  }
+  double square = 0.0;
+  double product = 0.0;
+  for (const Reaction::Period& one : periods) {
+    square += (one.time - out.time) * (one.time - out.time);
+    product += (one.time - out.time) * (one.height - out.height);
+  }
+  out.velocity = product / square;
+  return out;
+}
+
+}  // namespace
+
+void Reaction::late(double seconds, double now) {
+  late_ = std::max(seconds, late_ * std::exp(-std::max(0.0, now - late_at_) / kFades));
+  late_at_ = now;
+}
+
+void Reaction::learn_trailing(const std::vector<Step>& motion) {
+  if (motion.size() < 2) return;
+  const Eigen::Vector3d way = motion.back().commanded - motion.front().commanded;
+  if (way.norm() < kShortestWay) return;
+  const Eigen::Vector3d along = way.normalized();
+  const auto behind = [&](const Step& one) { return along.dot(one.commanded - one.reached); };
+  const double at_begin = behind(motion.front());
+  const double at_end = behind(motion.back());
+  double area = 0.0;
+  for (std::size_t i = 1; i < motion.size(); ++i) {
+    const double share = along.dot(motion[i].commanded - motion.front().commanded) / way.norm();
+    const double offset = at_begin + share * (at_end - at_begin);
+    area += (behind(motion[i]) - offset) * (motion[i].time - motion[i - 1].time);
+  }
+  keep(trailing_, std::max(0.0, area / way.norm()));
+}
+
+void Reaction::learn_noticing(const Periods& periods, double free_down_to, double threshold, double stiffness) {
+  const Periods free = last_free(periods, free_down_to);
+  if (free.empty()) return;
+  const Line descent = fit(free);
+  double reached = periods.back().time;  // when the true force was at the threshold
+  for (auto it = periods.rbegin(); it != periods.rend(); ++it) {
+    if (stiffness * (it->height - descent.at(it->time)) < threshold) break;
+    reached = it->time;
+  }
+  keep(noticing_, std::clamp(periods.back().time - reached, kLeastNoticing, kMostNoticing));
+}
+
+double Reaction::noticing() const { return most(noticing_, kFirstNoticing); }
+double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }
+
+/// An arm that trails by less than a Baxter's joints do is another arm: all of that may be delay.
+double Reaction::stopping() const {
+  const double trails = trailing();
+  const double goes_on = kGoOn * kLeastLag;
+  return trails < kLeastLag ? std::max(trails, goes_on) : trails - kLeastLag + goes_on;
+}
+
+double Reaction::greatest_speed(double threshold, double stiffness) const {
+  return (kGreatestForce - threshold) / (stiffness * seconds());
+}
+
+double Reaction::expected_force(double threshold, double speed, double stiffness) const {
+  return threshold + stiffness * speed * seconds();
+}
+
+}  // namespace palpate::baxter

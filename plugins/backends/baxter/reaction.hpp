@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// How long an arm takes from a contact to standstill, measured while it taps; and how fast it may come down, then.
+//
+// The tip is held by springs. An arm that comes down with speed v onto something rigid presses with
+//     F = threshold + k v T,    T = noticing + stopping + lateness,
+// k being the vertical stiffness of its springs. None of the times is published, and each depends on the robot, its
+// firmware and its network:
+// - noticing: from the true force being at the threshold to the set-point that stops the arm. It holds the filter of the
+//   force, the delay of its messages and the readings that make a contact. Within a contact the true force follows from
+//   positions alone, which no filter delays: k times the distance by which the tip stays behind its free descent.
+// - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and what the joints go on
+//   by. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what is
+//   certain to be the lag of its joints.
+// - lateness: by how much messages, or this program, may come later than they did then.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <deque>
+#include <vector>
+
+namespace palpate::baxter {
+
+class Reaction {
+ public:
+  /// One period of a descent.
+  struct Period {
+    double time;       ///< s
+    double set_point;  ///< height that was commanded, m
+    double height;     ///< of the tip, m
+  };
+
+  /// N, which a contact is to reach at most: the arm's firmware stops it at 16 N, and noise delays a notice.
+  static constexpr double kGreatestForce = 14.0;
+  /// m/s: an arm that would have to be slower is rejected.
+  static constexpr double kSlowest = 0.002;
+  static constexpr double kLookedAt = 1.5;      ///< s of a descent
+  static constexpr double kShortestWay = 0.02;  ///< m
+  /// s of noticing and trailing until they were measured: those of the slowest robot that is driven.
+  static constexpr double kFirstNoticing = 0.23;
+  static constexpr double kFirstTrailing = 0.55;
+
+  /// Takes how late messages or this program are at `now`, seconds; the worst counts, and fades within kFades.
+  void late(double seconds, double now);
+
+  /// One period of a free motion from rest to rest: where the tip was sent and where it was, metres.
+  struct Step {
+    double time;  ///< s
+    Eigen::Vector3d commanded;
+    Eigen::Vector3d reached;
+  };
+
+  /// Learns from a motion along a straight line: the area between both curves, divided by the way, is the mean delay of
+  /// any linear system, whatever the profile of the motion. Offsets at rest do not count. A way below kShortestWay shows
+  /// nothing.
+  void learn_trailing(const std::vector<Step>& motion);
+
+  /// Learns from a contact that was noticed in the last of `periods`; the tip was free down to `free_down_to` (m).
+  /// `stiffness` in N/m, `threshold` in N. Too short a descent shows nothing.
+  void learn_noticing(const std::vector<Period>& periods, double free_down_to, double threshold, double stiffness);
+
+  double noticing() const;  ///< s, the longest of the latest kKept contacts
+  double trailing() const;  ///< s, the longest of the latest kKept motions
+  double stopping() const;  ///< s
+  double lateness() const { return late_; }
+  /// T, seconds.
+  double seconds() const { return noticing() + stopping() + late_; }
+
+  /// The greatest speed (m/s) at which a contact with something rigid stays within kGreatestForce.
+  double greatest_speed(double threshold, double stiffness) const;
+  /// The force (N) that a contact with something rigid is expected to reach.
+  double expected_force(double threshold, double speed, double stiffness) const;
+
+ private:
+  std::deque<double> noticing_;
+  std::deque<double> trailing_;
+  double late_ = 0.0;
+  double late_at_ = 0.0;
+};
+
+}  // namespace palpate::baxter

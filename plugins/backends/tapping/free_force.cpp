@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "tapping/free_force.hpp"
+
+namespace palpate::tapping {
+namespace {
+
+/// (noise of a reading / expected slope)^2 in m^2, for 1.5 N and 50 N/m: the prior of the slope in units of the sum of
+/// squared heights.
+constexpr double kSlopePrior = 0.0009;
+/// Readings that the tare counts for: it holds the line while there are few others.
+constexpr double kTareWeight = 5.0;
+
+}  // namespace
+
+void FreeForce::tare(double zero) {
+  tare_ = zero;
+  samples_.clear();
+}
+
+FreeForce::Line FreeForce::line(double height) const {
+  double count = 0.0;
+  double heights = 0.0;
+  double forces = 0.0;
+  const auto counts = [&](const Sample& one) {
+    return one.height >= height + gap_ && one.height <= height + gap_ + kLength;
+  };
+  for (const Sample& one : samples_) {
+    if (!counts(one)) continue;
+    count += 1.0;
+    heights += one.height;
+    forces += one.force;
+  }
+  if (count == 0.0) return {tare_, height, 0.0};
+  const double middle = heights / count;
+  const double level = (forces + kTareWeight * tare_) / (count + kTareWeight);
+  double square = kSlopePrior;
+  double product = 0.0;
+  for (const Sample& one : samples_) {
+    if (!counts(one)) continue;
+    square += (one.height - middle) * (one.height - middle);
+    product += (one.height - middle) * (one.force - forces / count);
+  }
+  return {level, middle, product / square};
+}
+
+}  // namespace palpate::tapping

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "baxter/reaction.hpp"
+
+#include "simulator/arm.hpp"
+#include "support/testing.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace palpate::baxter {
+namespace {
+
+constexpr double kPeriod = 0.01;
+
+/// An axis that follows a ramp of `way` metres at `speed` with a lag and, either way, a delay; from rest to rest. At rest
+/// it is off by `begin`, and by `end`.
+std::vector<Reaction::Step> motion(double lag, double delay, double way, double speed, double begin, double end) {
+  backends::Arm axis(JointLag{lag, 0.0}, kPeriod, 0.0);
+  std::vector<Reaction::Step> out;
+  const auto commanded = [&](double time) { return std::clamp(speed * time, 0.0, way); };
+  for (double time = 0.0; time < way / speed + 3.0; time += kPeriod) {
+    axis.follow(commanded(time - 2.0 * delay));
+    const double sag = begin + (end - begin) * commanded(time) / way;
+    out.push_back({time, {commanded(time), 0.2, 0.1}, {axis.position() + sag, 0.2, 0.1}});
+  }
+  return out;
+}
+
+TEST(Reaction, MeasuresTheMeanDelayOfAMotionWhateverItsProfile) {
+  for (const double lag : {0.05, 0.35, 0.7}) {
+    for (const double delay : {0.0, 0.02, 0.07}) {
+      for (const double way : {0.03, 0.2}) {
+        Reaction reaction;
+        reaction.learn_trailing(motion(lag, delay, way, 0.15, 0.002, -0.001));
+        EXPECT_NEAR(reaction.trailing(), lag + 2.0 * delay, 0.012) << lag << ", " << delay << ", " << way;
+      }
+    }
+  }
+}
+
+TEST(Reaction, LearnsNothingFromAShortWay) {
+  Reaction reaction;
+  reaction.learn_trailing(motion(0.35, 0.0, 0.015, 0.15, 0.0, 0.0));
+  EXPECT_EQ(reaction.trailing(), Reaction::kFirstTrailing);
+}
+
+/// A descent at `speed` onto something rigid at height 0, by springs of `stiffness`, noticed `late` seconds after the
+/// force was at `threshold`.
+std::vector<Reaction::Period> contact(double speed, double stiffness, double threshold, double late) {
+  std::vector<Reaction::Period> out;
+  const double noticed = threshold / (stiffness * speed) + late;  // s after the first touch
+  for (double time = -3.0; time <= noticed + 1e-9; time += kPeriod) {
+    out.push_back({time, -speed * (time + 0.35), std::max(0.0, -speed * time)});
+  }
+  return out;
+}
+
+TEST(Reaction, MeasuresByPositionsHowLateAContactIsNoticed) {
+  for (const double speed : {0.004, 0.015}) {
+    for (const double late : {0.05, 0.1, 0.25}) {
+      Reaction reaction;
+      reaction.learn_noticing(contact(speed, 4000.0, 5.0, late), 0.0, 5.0, 4000.0);
+      EXPECT_NEAR(reaction.noticing(), late, 0.012) << speed;
+    }
+  }
+}
+
+TEST(Reaction, KeepsTheLatestContactsAndTheWorstOfThem) {
+  Reaction reaction;
+  EXPECT_EQ(reaction.noticing(), Reaction::kFirstNoticing) << "nothing was measured";
+  const auto learn = [&](double late) {
+    reaction.learn_noticing(contact(0.015, 4000.0, 5.0, late), 0.0, 5.0, 4000.0);
+  };
+  learn(0.15);
+  learn(0.05);
+  EXPECT_NEAR(reaction.noticing(), 0.15, 0.012);
+  for (int i = 0; i < 5; ++i) learn(0.05);
+  EXPECT_NEAR(reaction.noticing(), 0.05, 0.012);
+}
+
+TEST(Reaction, BoundsTheSpeedByTheForceThatIsExpected) {
+  Reaction reaction;
+  for (const double stiffness : {2200.0, 6400.0}) {
+    const double speed = reaction.greatest_speed(5.0, stiffness);
+    EXPECT_NEAR(reaction.expected_force(5.0, speed, stiffness), Reaction::kGreatestForce, 1e-9);
+  }
+  EXPECT_GT(reaction.greatest_speed(5.0, 2200.0), reaction.greatest_speed(5.0, 6400.0));
+  EXPECT_GT(reaction.greatest_speed(4.0, 6400.0), reaction.greatest_speed(5.0, 6400.0));
+}
+
+TEST(Reaction, CountsLatenessUntilItHasFaded) {
+  Reaction reaction;
+  const double before = reaction.seconds();
+  reaction.late(0.04, 10.0);
+  EXPECT_NEAR(reaction.seconds(), before + 0.04, 1e-12);
+  reaction.late(0.0, 20.0);
+  EXPECT_GT(reaction.lateness(), 0.02);
+  reaction.late(0.0, 200.0);
+  EXPECT_LT(reaction.lateness(), 0.001);
+}
+
+}  // namespace
+}  // namespace palpate::baxter
