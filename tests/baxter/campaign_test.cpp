@@ -222,7 +222,7 @@ TEST(ForceBound, HoldsForEveryMotionThatIsAccepted) {
   const std::string rest = "hover: 13.5 cm, travel_speed: 15 cm/s, retreat_speed: 10 cm/s, tare: 500 ms, overrun: 2 cm}";
   const std::string motions[] = {
       "{type: continuous, speed: 10 cm/s, threshold: 5 N, " + rest,
-      "{type: continuous, speed: 3 cm/s, threshold: 12 N, " + rest,
+      "{type: continuous, speed: 3 cm/s, threshold: 10 N, " + rest,
       "{type: paper, speed: 6 cm/s, threshold: 8 N, " + rest,
       "{type: two_stage, speed: 10 cm/s, fine_speed: 5 cm/s, threshold: 8 N, fine_threshold: 5 N, " + rest,
       "{type: continuous, speed: 3 cm/s, threshold: 5 N, adaptive_hover: {speed: 10 cm/s}, " + rest};

@@ -33,7 +33,7 @@ TEST(BaxterOptions, OfTheShippedMotionsAreTaken) {
 }
 
 TEST(BaxterOptions, WithWhichTheFirmwareWouldStopTheArmAreRefused) {
-  EXPECT_THAT(refusal("{type: paper, threshold: 12.5 N}"), HasSubstr("take at most 12 N"));
+  EXPECT_THAT(refusal("{type: paper, threshold: 12.5 N}"), HasSubstr("take at most 10 N"));
   EXPECT_THAT(refusal("{type: two_stage, threshold: 6 N, fine_threshold: 20 N}"),
               HasSubstr("must not lie above motion.threshold"));
   EXPECT_THAT(refusal("{type: paper, threshold: 10 N}", ", force_stop: 9 N"),

@@ -144,20 +144,21 @@ double Tapper::stiffness_at(const Target& place) const {
 /// The motion at speeds at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault where such a
 /// speed is not worth having.
 tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double stiffness) const {
-  const double slowest = reaction_.greatest_speed(motion.threshold, stiffness);
-  if (slowest < Reaction::kSlowest) {
+  double greatest = reaction_.greatest_speed(motion.threshold, stiffness);
+  if (greatest < Reaction::kSlowest && reaction_.measured()) {
     throw Fault{fmt::format("a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
                             "to {:.0f} ms late: at {:.1f} N that allows {:.1f} mm/s, and {:.0f} mm/s are needed. "
                             "Connect by cable, end other load, or lower motion.threshold",
                             1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(),
-                            motion.threshold, 1e3 * slowest, 1e3 * Reaction::kSlowest),
+                            motion.threshold, 1e3 * greatest, 1e3 * Reaction::kSlowest),
                 Then::hold};
   }
+  greatest = std::max(greatest, Reaction::kSlowest);
   const double configured = motion.speed;
-  motion.speed = std::min(motion.speed, slowest);
+  motion.speed = std::min(motion.speed, greatest);
   motion.fine_speed =
-      std::min(motion.fine_speed, reaction_.greatest_speed(motion.fine_threshold, stiffness));
-  if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, slowest);
+      std::min(motion.fine_speed, std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.fine_threshold, stiffness)));
+  if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, greatest);
   const double way = motion.hover + motion.overrun;
   motion.timeout += way / motion.speed - way / configured;
   return motion;

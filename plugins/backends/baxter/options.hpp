@@ -13,8 +13,8 @@
 namespace palpate::baxter {
 
 /// The arm's firmware stops at 16 N ("squish"), for two seconds. A threshold must leave room for what the arm presses
-/// on while three samples are taken and it comes to rest.
-constexpr double kGreatestThreshold = 12.0;
+/// on while a contact is noticed and it comes to rest, at the slowest that it is driven.
+constexpr double kGreatestThreshold = 10.0;
 constexpr double kGreatestStop = 15.0;
 constexpr double kLeastThreshold = 3.0;  ///< N: twice the noise of the tests' robot; nobody published a real one's
 constexpr double kShortestTare = 0.1;    ///< s
@@ -156,7 +156,7 @@ struct BaxterOptions : Options {
       fields.require(holds, (at + name).c_str(), why);
     };
     require(motion.threshold <= kGreatestThreshold, "threshold",
-            "is too near to the 16 N at which the arm's firmware stops it, take at most 12 N");
+            "is too near to the 16 N at which the arm's firmware stops it, take at most 10 N");
     require(motion.threshold >= kLeastThreshold, "threshold", noise);
     require(motion.tare >= kShortestTare, "tare", "is too short for a zero, take at least 100 ms");
     require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "travel_speed",

@@ -11,7 +11,7 @@ constexpr std::size_t kKept = 5;         ///< motions and contacts whose worst c
 constexpr double kFades = 30.0;          ///< s in which a lateness fades to a third
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
 constexpr double kClear = 0.001;         ///< m above that height that counts as free
-constexpr double kLeastNoticing = 0.03;  ///< s: three readings at 100 Hz
+constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and the period in which they are looked at
 constexpr double kMostNoticing = 0.5;    ///< s: what takes longer was no steady rise
 /// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
 /// stop: those of a critically damped joint, 1 / (2 e).

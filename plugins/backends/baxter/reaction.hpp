@@ -31,8 +31,8 @@ class Reaction {
   };
 
   /// N, which a contact is to reach at most: the arm's firmware stops it at 16 N, and noise delays a notice.
-  static constexpr double kGreatestForce = 14.0;
-  /// m/s: an arm that would have to be slower is rejected.
+  static constexpr double kGreatestForce = 13.5;
+  /// m/s: an arm that was measured and would have to be slower is rejected.
   static constexpr double kSlowest = 0.002;
   static constexpr double kLookedAt = 1.5;      ///< s of a descent
   static constexpr double kShortestWay = 0.02;  ///< m
@@ -59,6 +59,8 @@ class Reaction {
   /// `stiffness` in N/m, `threshold` in N. Too short a descent shows nothing.
   void learn_noticing(const std::vector<Period>& periods, double free_down_to, double threshold, double stiffness);
 
+  /// Whether a contact has shown how late it is noticed.
+  bool measured() const { return !noticing_.empty(); }
   double noticing() const;  ///< s, the longest of the latest kKept contacts
   double trailing() const;  ///< s, the longest of the latest kKept motions
   double stopping() const;  ///< s
