@@ -19,7 +19,7 @@ enum class FaultKind {
   kill_joints,
   kill_state,
   stale_stamps,
-  second_state,
+  second_sender,
   nan_wrench,
   zero_wrench,
   bias,
@@ -40,8 +40,10 @@ enum class FaultKind {
   speed_ratio,
   command_timeout,
   slow_endpoint,
+  slow_force,
   bursts,
   stall,
+  caught,
   die
 };
 
