@@ -131,7 +131,6 @@ INSTANTIATE_TEST_SUITE_P(
         BeforeFlight{"SecondJoints",
                      {"--fault", "second_sender=joints"},
                      "/robot/joint_states of the left arm comes from more than one node"},
-        BeforeFlight{"SlowForce", {"--fault", "slow_force=5"}, "had another force only 10 times in the last 0.5 s"},
         BeforeFlight{"OldFirmware",
                      {"--fault", "old_state"},
                      "/robot/state: /realtime_loop sends baxter_core_msgs/AssemblyState with md5 sum "
