@@ -57,11 +57,14 @@ inline Snapshot sound(double now, const Joints& joints) {
   out.joints = JointReading{{now, now + 5.0}, joints};  // its clock is another
   const Pose gripper = Arm({0.0, 0.0, 0.025}).tip(joints);
   // No sensor says the same twice.
-  out.endpoint = EndpointReading{{now, now + 5.0}, gripper, {0.3, -0.2, 1.0 + 0.1 * std::sin(1000.0 * now)}};
+  const long period = std::lround(100.0 * now);
+  out.endpoint =
+      EndpointReading{{now, now + 5.0, period}, gripper, {0.3, -0.2, 1.0 + 0.1 * std::sin(1000.0 * now)}, period};
   out.state = StateReading{now, true, true, false, false, StateReading::Button::unpressed, StateReading::Source::none};
   out.collision = CollisionReading{{now, now + 5.0}, false};
-  out.joint_senders = {"/realtime_loop"};
-  out.state_senders = {"/realtime_loop"};
+  for (auto* nodes : {&out.senders.joints, &out.senders.endpoint, &out.senders.state, &out.senders.collision}) {
+    *nodes = {"/realtime_loop"};
+  }
   return out;
 }
 

@@ -97,17 +97,38 @@ class BodyRobot final : public Robot {
     };
     heard_.speed_ratio = told(FaultKind::speed_ratio);
     heard_.command_timeout = told(FaultKind::command_timeout);
-    heard_.joint_senders = heard_.state_senders = {"/realtime_loop"};
-    if (body.active(FaultKind::second_state) != nullptr) heard_.state_senders.push_back("/mock_robot");
+    hear_second();
     if (spoil) spoil(heard_);
+  }
+
+  /// Who sends what, and of a second sender what that says after every message of the robot: that nothing is felt.
+  void hear_second() {
+    const fake_baxter::Fault* fault = body.active(FaultKind::second_sender);
+    const std::string second = fault != nullptr ? fault->text : "";
+    Senders& all = heard_.senders;
+    for (const auto& [stream, nodes] : {std::pair{"state", &all.state},
+                                        {"endpoint", &all.endpoint},
+                                        {"joints", &all.joints},
+                                        {"collision", &all.collision},
+                                        {"avoidance", &all.avoidance}}) {
+      *nodes = {"/realtime_loop"};
+      if (second == stream) nodes->push_back("/mock_robot");
+    }
+    if (second == "endpoint" && heard_.endpoint) {
+      EndpointReading calm = *heard_.endpoint;
+      calm.force = {0.0, 0.0, 0.1 * std::sin(1000.0 * body.now())};
+      count_after(heard_.endpoint, calm);
+      heard_.endpoint = calm;
+    }
+    if (second == "collision" && heard_.collision) heard_.collision->collision = false;
   }
 
   template <class Reading>
   static void keep(std::optional<Reading>& latest, const std::optional<Reading>& said) {
     if (!said) return;
-    const long before = latest ? latest->count : 0;
-    latest = said;
-    latest->count = before + 1;
+    Reading next = *said;
+    count_after(latest, next);
+    latest = next;
   }
 
   Arm gripper_;

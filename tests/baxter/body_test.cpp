@@ -319,6 +319,43 @@ TEST(FakeBody, SaysWhatItsFaultsMakeOfIt) {
   EXPECT_NEAR(none.second.endpoint->force.z() - jump.second.endpoint->force.z(), 12.0, 1e-9);
 }
 
+TEST(FakeBody, OfWhichTheToolIsCaughtPullsByItsSpringAndTheArmsAndIsHeldByItsFirmware) {
+  BodyBench bench(kBare, kQuiet);
+  bench.inject("caught=3000");
+  bench.lead({0.115, 0.115, 0.03}, 0.05);
+  bench.hold(2.0);
+  EXPECT_EQ(bench.body.pressing(), 0.0) << "before a contact nothing holds it";
+  bench.lead({0.115, 0.115, -0.002}, 0.01);
+  bench.hold(2.0);
+  EXPECT_NEAR(bench.body.pressing(), 3.0, 0.02);
+  const double zero = bench.force().z() + 3.0;
+  bench.lead({0.115, 0.115, 0.005}, 0.01);
+  bench.hold(3.0);
+  const double pull = 3000.0 * bench.body.tip().z();
+  EXPECT_NEAR(bench.body.pressing(), -pull, 0.01 * pull) << "the arm gives way to the side, too";
+  EXPECT_GT(pull, 5.0);
+  EXPECT_LT(pull, 3000.0 * 0.005) << "the arm gives way";
+  EXPECT_NEAR(bench.force().z() - zero, pull, 1.0) << "pulled it rises";
+  bench.lead({0.115, 0.115, 0.05}, 0.05, [&] { return bench.reflex(); });
+  EXPECT_LT(bench.body.pressing(), -Body::kReflex);
+  bench.body.release();
+  bench.hold(3.0);
+  EXPECT_EQ(bench.body.pressing(), 0.0);
+}
+
+TEST(FakeBody, RenewsASlowForceInEveryFifthMessage) {
+  BodyBench bench;
+  bench.inject("slow_force");
+  int renewed = 0;
+  Eigen::Vector3d before = bench.force();
+  for (int i = 0; i < 100; ++i) {
+    bench.hold(Body::kPeriod);
+    renewed += bench.force() != before ? 1 : 0;
+    before = bench.force();
+  }
+  EXPECT_EQ(renewed, 20);
+}
+
 TEST(FakeBody, DroppedCommandsLetTheArmStopAndGoOnWhenTheyAreHeardAgain) {
   BodyBench bench;
   bench.inject("drop_commands=1");

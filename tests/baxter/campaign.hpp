@@ -16,9 +16,9 @@ namespace palpate::baxter::test {
 /// What the taps are done under.
 struct Condition {
   fake_baxter::MechanicsOptions arm;
-  double stiffness = 1500.0;  ///< of the object, N/m
-  bool spikes = false;        ///< one reading of the force in a hundred is 9 N off
-  bool stalls = false;        ///< three periods in a hundred take up to 50 ms longer
+  double stiffness = 1500.0;               ///< of the object, N/m
+  bool spikes = false;                     ///< one reading of the force in a hundred is 9 N off
+  bool stalls = false;                     ///< three periods in a hundred take up to 50 ms longer
   std::vector<fake_baxter::Fault> faults;  ///< from the start: delay, jitter, wrench_filter, force_drift
   std::string motion;                      ///< YAML of backend.motion; empty: the shipped one
 };

@@ -6,10 +6,10 @@
 #include "fake_baxter/mujoco.hpp"
 #include "support/sanitizers.hpp"
 
-#include <boost/random/sobol.hpp>
-#include <boost/random/uniform_01.hpp>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <boost/random/sobol.hpp>
+#include <boost/random/uniform_01.hpp>
 
 #include <algorithm>
 #include <array>
@@ -116,8 +116,9 @@ TEST_P(Campaign, RunsThirtyTapsOnSoftAndOnHardThings) {
   }
 }
 
-/// A condition under which a robot with Rethink's springs taps: the object's stiffness in N/m, either a delay or a jitter
-/// of every message and a time constant of the force's filter in seconds, and how much the force's zero changes, N/m.
+/// A condition under which a robot with Rethink's springs taps: the object's stiffness in N/m, either a delay or a
+/// jitter of every message and a time constant of the force's filter in seconds, and how much the force's zero changes,
+/// N/m.
 struct Trouble {
   double stiffness = 20000.0;
   double delay = 0.0;
@@ -199,7 +200,8 @@ TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
   std::vector<std::pair<Trouble, int>> all;
   for (const Trouble& one : extremes()) all.emplace_back(one, at_extremes);
   Troubles troubles;
-  for (int taps = 0; taps < in_between; taps += kOneRun) all.emplace_back(troubles.next(), std::min(kOneRun, in_between));
+  for (int taps = 0; taps < in_between; taps += kOneRun)
+    all.emplace_back(troubles.next(), std::min(kOneRun, in_between));
   Tally sum;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto& [trouble, taps] = all[i];
@@ -219,7 +221,8 @@ TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
 }
 
 TEST(ForceBound, HoldsForEveryMotionThatIsAccepted) {
-  const std::string rest = "hover: 13.5 cm, travel_speed: 15 cm/s, retreat_speed: 10 cm/s, tare: 500 ms, overrun: 2 cm}";
+  const std::string rest =
+      "hover: 13.5 cm, travel_speed: 15 cm/s, retreat_speed: 10 cm/s, tare: 500 ms, overrun: 2 cm}";
   const std::string motions[] = {
       "{type: continuous, speed: 10 cm/s, threshold: 5 N, " + rest,
       "{type: continuous, speed: 3 cm/s, threshold: 10 N, " + rest,

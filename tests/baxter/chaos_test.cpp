@@ -54,7 +54,8 @@ const Kind kKinds[] = {
     {"kill_joints", FaultKind::kill_joints, 0, 0, Watch::kFresh, true, kBent, false},
     {"kill_state", FaultKind::kill_state, 0, 0, Watch::kStateFresh, true, kBent, false},
     {"stale_stamps", FaultKind::stale_stamps, 0, 0, Watch::kLate, true, kBent, false},
-    {"second_state", FaultKind::second_state, 0, 0, 0.0, true, kBent, false},
+    {"second_sender", FaultKind::second_sender, 0, 0, 0.0, true, kBent, false},
+    {"second_sender=endpoint", FaultKind::second_sender, 0, 0, kNever, false, kBent, false},
     {"nan_wrench", FaultKind::nan_wrench, 0, 0, kNever, false, kBent, false},
     {"zero_wrench", FaultKind::zero_wrench, 0, 0, kNever, false, kBent, false},
     {"bias", FaultKind::bias, -25, 25, kNever, true, kBent, false},
@@ -219,7 +220,9 @@ class Chaos {
 
   void begin_fault() {
     if (kind_.fault) {
-      robot_.body.inject({*kind_.fault, amount_, {}});
+      fake_baxter::Fault fault = fake_baxter::parse_fault(kind_.name);
+      fault.amount = amount_;
+      robot_.body.inject(fault);
       begun_ = robot_.body.now();
     } else if (kind_.most > 0.0) {
       interrupted_ = true;

@@ -114,7 +114,7 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
 }
 
 TEST(FakeRobot, ASecondNodeMayClaimToBeTheRobotAndOldFirmwareIsNotUnderstood) {
-  const RobotLab two(robot_words({"--fault", "second_state"}));
+  const RobotLab two(robot_words({"--fault", "second_sender=state"}));
   const auto states = heard(two, "5");
   EXPECT_EQ(states.count("/second_robot /robot/state 1"), 1U);
   EXPECT_EQ(states.count("/realtime_loop /robot/state 1"), 1U);
@@ -176,7 +176,7 @@ TEST(FakeRobot, LeavesNothingRunningAndKilledTakesItsCompanionsAlong) {
     std::vector<long> all;
     std::filesystem::path folder;
     {
-      RobotLab lab(robot_words({"--fault", "second_state"}));
+      RobotLab lab(robot_words({"--fault", "second_sender=state"}));
       folder = lab.folder();
       all = children_of(lab.robot().pid());
       ASSERT_EQ(all.size(), 2U) << "nodes of their own";

@@ -118,9 +118,19 @@ INSTANTIATE_TEST_SUITE_P(
         BeforeFlight{"EmergencyStop", {"--fault", "estop=1000"}, "the emergency stop is pressed"},
         BeforeFlight{"ForceIsZero", {"--fault", "zero_wrench"}, "a force of exactly zero"},
         BeforeFlight{"SecondState",
-                     {"--fault", "second_state"},
+                     {"--fault", "second_sender"},
                      "/robot/state: comes from more than one node, /realtime_loop and /second_robot, end what is no "
                      "robot; rosnode cleanup removes what has ended already"},
+        BeforeFlight{
+            "SecondEndpoint",
+            {"--fault", "second_sender=endpoint"},
+            "/robot/limb/left/endpoint_state: comes from more than one node, /realtime_loop and /second_robot"},
+        BeforeFlight{"SecondCollision",
+                     {"--fault", "second_sender=collision"},
+                     "/robot/limb/left/collision_detection_state: comes from more than one node"},
+        BeforeFlight{"SecondJoints",
+                     {"--fault", "second_sender=joints"},
+                     "/robot/joint_states of the left arm comes from more than one node"},
         BeforeFlight{"OldFirmware",
                      {"--fault", "old_state"},
                      "/robot/state: /realtime_loop sends baxter_core_msgs/AssemblyState with md5 sum "

@@ -74,7 +74,7 @@ TEST(Heard, OfAProgramThatHasGoneTheSettingsAreNot) {
 }
 
 TEST(Heard, IsEveryMessageOnceByItsCount) {
-  RobotLab lab(robot_words({"--fault", "slow_endpoint=25"}));
+  RobotLab lab(robot_words({"--fault", "slow_endpoint=25", "--fault", "slow_force=8"}));
   const Elsewhere result = elsewhere(lab.environment(), [] {
     const auto robot = connect({});
     const Snapshot first = robot->read();
@@ -84,10 +84,13 @@ TEST(Heard, IsEveryMessageOnceByItsCount) {
     });
     const double rate = static_cast<double>(last.endpoint->count - first.endpoint->count) /
                         (last.endpoint->stamp - first.endpoint->stamp);
-    return fmt::format("{:.3f} a second, joints {}, collision {}", rate, last.joints->count > first.joints->count,
-                       last.collision->count > 0);
+    const long renewed = last.endpoint->renewals - first.endpoint->renewals;
+    return fmt::format(
+        "{:.3f} a second, {} with another force, joints {}, collision {}", rate,
+        std::abs(2 * renewed - (last.endpoint->count - first.endpoint->count)) <= 2 ? "half" : "not half",
+        last.joints->count > first.joints->count, last.collision->count > 0);
   });
-  EXPECT_EQ(result.printed, "25.000 a second, joints true, collision true");
+  EXPECT_EQ(result.printed, "25.000 a second, half with another force, joints true, collision true");
 }
 
 TEST(Heard, SilenceOfThisComputerIsToldFromThatOfTheRobot) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPeriod = 0.01;
 
-/// An axis that follows a ramp of `way` metres at `speed` with a lag and, either way, a delay; from rest to rest. At rest
-/// it is off by `begin`, and by `end`.
+/// An axis that follows a ramp of `way` metres at `speed` with a lag and, either way, a delay; from rest to rest. At
+/// rest it is off by `begin`, and by `end`.
 std::vector<Reaction::Step> motion(double lag, double delay, double way, double speed, double begin, double end) {
   backends::Arm axis(JointLag{lag, 0.0}, kPeriod, 0.0);
   std::vector<Reaction::Step> out;
@@ -68,9 +68,7 @@ TEST(Reaction, MeasuresByPositionsHowLateAContactIsNoticed) {
 TEST(Reaction, KeepsTheLatestContactsAndTheWorstOfThem) {
   Reaction reaction;
   EXPECT_EQ(reaction.noticing(), Reaction::kFirstNoticing) << "nothing was measured";
-  const auto learn = [&](double late) {
-    reaction.learn_noticing(contact(0.015, 4000.0, 5.0, late), 0.0, 5.0, 4000.0);
-  };
+  const auto learn = [&](double late) { reaction.learn_noticing(contact(0.015, 4000.0, 5.0, late), 0.0, 5.0, 4000.0); };
   learn(0.15);
   learn(0.05);
   EXPECT_NEAR(reaction.noticing(), 0.15, 0.012);

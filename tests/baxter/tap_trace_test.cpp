@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Records descents of the robot of the tests under what is dangerous, with the verdict that follows from the truth; with
-// PALPATE_WRITE_TRACES=FOLDER into files there, as tests/data/guarded_taps holds them.
+// Records descents of the robot of the tests under what is dangerous, with the verdict that follows from the truth;
+// with PALPATE_WRITE_TRACES=FOLDER into files there, as tests/data/guarded_taps holds them.
+#include "support/tap_trace.hpp"
 #include "baxter/body_bench.hpp"
 #include "baxter/campaign.hpp"
 #include "support/filled.hpp"
-#include "support/tap_trace.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -30,12 +30,23 @@ const std::vector<Case>& cases() {
   static const std::vector<Case> all = {
       {"hard", "something hard, 50 kN/m", 50000, {}},
       {"soft", "something soft, 1 kN/m: a set-point put where the arm is relaxes its springs", 1000, {}},
-      {"late_and_filtered", "messages take 40 ms, the force is filtered with 100 ms", 20000,
+      {"late_and_filtered",
+       "messages take 40 ms, the force is filtered with 100 ms",
+       20000,
        {{FaultKind::delay, 0.04, {}}, {FaultKind::wrench_filter, 0.1, {}}}},
       {"jitter", "messages take up to 70 ms", 20000, {{FaultKind::jitter, 0.07, {}}}},
-      {"zero_rises", "the zero of the force rises by 50 N/m on the way down", 20000, {{FaultKind::force_drift, 50.0, {}}}},
-      {"zero_falls", "the zero of the force falls by 50 N/m on the way down", 20000, {{FaultKind::force_drift, -50.0, {}}}},
-      {"spikes", "of the readings of the force one in a hundred is 9 N too high", 20000, {{FaultKind::spikes, 0.01, {}}}},
+      {"zero_rises",
+       "the zero of the force rises by 50 N/m on the way down",
+       20000,
+       {{FaultKind::force_drift, 50.0, {}}}},
+      {"zero_falls",
+       "the zero of the force falls by 50 N/m on the way down",
+       20000,
+       {{FaultKind::force_drift, -50.0, {}}}},
+      {"spikes",
+       "of the readings of the force one in a hundred is 9 N too high",
+       20000,
+       {{FaultKind::spikes, 0.01, {}}}},
   };
   return all;
 }
@@ -48,8 +59,8 @@ constexpr double kLimit = 16.0;       // N
 
 /// The second tap on the bare desk at a place: the first shows the driver what robot it has.
 TapTrace record(const Case& one) {
-  const auto scene = palpate::test::scene_of(palpate::test::kBare,
-                                             fmt::format("{{stiffness: {{object: {} N/m}}}}", one.stiffness));
+  const auto scene =
+      palpate::test::scene_of(palpate::test::kBare, fmt::format("{{stiffness: {{object: {} N/m}}}}", one.stiffness));
   const BaxterOptions& options = test::shipped_options();
   test::BodyOptions body = test::body_options(options);
   body.mechanics.type = fake_baxter::MechanicsOptions::Type::springs;
@@ -96,7 +107,8 @@ TapTrace record(const Case& one) {
   const double stiffness = springs * one.stiffness / (springs + one.stiffness);
   const double delay = one.faults.empty() || one.faults[0].kind != FaultKind::delay ? 0.0 : one.faults[0].amount;
   out.by = out.not_before + kLimit / (stiffness * speed) - 2.0 * delay - kGoesOn;
-  out.motion = fmt::format("{{type: continuous, speed: {:.1f} mm/s, threshold: 5 N, tare: 500 ms, hover: 13.5 cm}}", 1e3 * speed);
+  out.motion = fmt::format("{{type: continuous, speed: {:.1f} mm/s, threshold: 5 N, tare: 500 ms, hover: 13.5 cm}}",
+                           1e3 * speed);
   out.height = 0.0;
   out.tolerance = 0.003;
   return out;

@@ -140,16 +140,21 @@ TEST(BeforeFlight, AnArmThatIsNotAsTheConfigHasItIsRefused) {
 }
 
 TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
-  const std::pair<FaultKind, const char*> cases[] = {
-      {FaultKind::disabled, "the robot is disabled: enable it"},
-      {FaultKind::zero_wrench, "a force of exactly zero"},
-      {FaultKind::second_state, "more than one node, /realtime_loop and /mock_robot"},
-      {FaultKind::estop, "the emergency stop is pressed"},
-      {FaultKind::error, "the robot reports an error and is disabled"},
+  const std::pair<const char*, const char*> cases[] = {
+      {"disabled", "the robot is disabled: enable it"},
+      {"zero_wrench", "a force of exactly zero"},
+      {"second_sender=state", "/robot/state comes from more than one node, /realtime_loop and /mock_robot"},
+      {"second_sender=endpoint", "endpoint_state of the left arm comes from more than one node"},
+      {"second_sender=joints", "/robot/joint_states of the left arm comes from more than one node"},
+      {"second_sender=collision", "collision_detection_state of the left arm comes from more than one node"},
+      {"second_sender=avoidance", "collision_avoidance_state of the left arm comes from more than one node"},
+      {"slow_force=5", "had another force only"},
+      {"estop=100", "the emergency stop is pressed"},
+      {"error", "the robot reports an error and is disabled"},
   };
-  for (const auto& [kind, reason] : cases) {
+  for (const auto& [fault, reason] : cases) {
     Bench bench;
-    bench.robot.body.inject({kind, 100.0, {}});
+    bench.robot.body.inject(fake_baxter::parse_fault(fault));
     bench.robot.wait_until(bench.robot.body.now() + 0.1);
     expect_check(bench, reason);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What goes wrong in a tap, and in which state that leaves the arm.
+#include "baxter/body_bench.hpp"
 #include "baxter/tapper_bench.hpp"
 #include "baxter/troubles.hpp"
 
@@ -165,6 +166,52 @@ TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
   const Contact contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.reason, "interrupted; the arm was raised to the height of travel");
   EXPECT_NEAR(bench.tip(), kHover, 0.01);
+}
+
+/// N with which an arm with springs presses at most on 8 kN/m, where this goes wrong when it has pressed with 2 N.
+double hardest_press(const char* fault, std::string& reason) {
+  const auto scene = palpate::test::scene_of("[]", "{stiffness: {object: 8000 N/m}}");
+  test::BodyOptions body = test::body_options(fake_options());
+  body.mechanics = {fake_baxter::MechanicsOptions::Type::springs, 0.0, 1e-3};
+  test::BodyRobot robot(*scene, body);
+  Tapper tapper(fake_options(), *scene, robot, nullptr, [](const std::string&) {});
+  double peak = 0.0;
+  robot.every_period = [&] {
+    peak = std::max(peak, robot.body.arm().peak);
+    if (robot.body.pressing() > 2.0 && !robot.body.faulty()) robot.body.inject(fake_baxter::parse_fault(fault));
+  };
+  TapRequest request;
+  request.target = kOnDesk;
+  const Contact contact = tapper.tap(request);
+  reason = contact.reason;
+  EXPECT_TRUE(contact.ends_run);
+  robot.wait_until(robot.body.now() + 3.0);
+  return peak;
+}
+
+TEST(AFault, OfTheForceAtTheMomentOfAContactIsNoticedBeforeTheArmPressesHard) {
+  const std::pair<const char*, const char*> cases[] = {{"freeze_endpoint", "the same force to the last digit"},
+                                                       {"second_sender=endpoint", "comes from more than one node"}};
+  for (const auto& [fault, words] : cases) {
+    std::string reason;
+    EXPECT_LT(hardest_press(fault, reason), 12.0) << fault;
+    EXPECT_THAT(reason, HasSubstr(words));
+  }
+}
+
+TEST(ATap, FeelsAForceThatIsRenewedWithEverySecondMessageOnly) {
+  Bench bench;
+  bench.robot.body.inject(fake_baxter::parse_fault("slow_force=2"));
+  bench.check();
+  bench.touch(kOnObject);
+}
+
+TEST(Travel, OfARobotAtHalfItsSpeedSaysWhatToSet) {
+  Bench bench(fake_options(), [](test::BodyOptions& body) { body.speed_ratio = 0.15; });
+  const Contact contact = bench.tap({0.21, 0.02});
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_THAT(contact.reason, HasSubstr("set that to 0.3 on /robot/limb/left/set_speed_ratio, or take a lower "
+                                        "motion.travel_speed"));
 }
 
 TEST(Travel, StopsWhenItMeetsSomething) {

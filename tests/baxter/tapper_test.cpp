@@ -120,13 +120,14 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
   Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.02, 0.02); }), starts({0.04, 0.07, 0.05}));
   EXPECT_THAT(
       bench.describe({0.1, 0.2}),
-      ElementsAre("rise from 5.0 cm above the desk", "before it, a calibration tap on the bare desk at (2.0, 2.0) cm",
-                  "travel from (4.0, 7.0) cm to (10.0, 20.0) cm at 13.5 cm above the desk, 15.0 cm/s",
-                  "descend at 0.4 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
-                  "press with at most about 14.0 N on something rigid: the arm's springs have 4.5 kN/m there, and 535 ms "
-                  "pass from 5.0 N to standstill, so that motion.speed is not reached",
-                  "stop whatever it does when the force changes by 14.0 N upwards or downwards, and by half as much "
-                  "again sideways"));
+      ElementsAre(
+          "rise from 5.0 cm above the desk", "before it, a calibration tap on the bare desk at (2.0, 2.0) cm",
+          "travel from (4.0, 7.0) cm to (10.0, 20.0) cm at 13.5 cm above the desk, 15.0 cm/s",
+          "descend at 0.4 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
+          "press with at most about 14.0 N on something rigid: the arm's springs have 4.5 kN/m there, and 535 ms "
+          "pass from 5.0 N to standstill, so that motion.speed is not reached",
+          "stop whatever it does when the force changes by 14.0 N upwards or downwards, and by half as much "
+          "again sideways"));
   EXPECT_TRUE(bench.robot.commands.empty());
   ASSERT_EQ(bench.tap(kOnObject).outcome, Outcome::contact);
   EXPECT_THAT(bench.describe(kOnDesk)[0], StartsWith("travel from (11.")) << "calibrated, and at the height of travel";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fake_baxter/body.hpp"
 
+#include "fake_baxter/series_elastic.hpp"
+
 #include <palpate/error.hpp>
 
 #include <algorithm>
@@ -46,6 +48,7 @@ Body::Body(const Scene& scene, const BodyOptions& options)
       seed_(options.seed),
       begin_(options.begin),
       mechanics_(make_mechanics(options.mechanics, ground_, Eigen::Vector3d(options.tool.tip))),
+      dynamics_(Eigen::Vector3d(options.tool.tip)),
       noise_(kForceNoise),
       normal_(Random(options.seed, "fake_baxter/noise")),
       spikes_(options.seed, "fake_baxter/spikes"),
@@ -108,6 +111,11 @@ void Body::inject(const Fault& fault, const Trigger& trigger) {
   if (trigger.descent == 0) begin(faults_.back());
 }
 
+void Body::release() {
+  const auto caught = [](const Armed& one) { return one.fault.kind == FaultKind::caught; };
+  faults_.erase(std::remove_if(faults_.begin(), faults_.end(), caught), faults_.end());
+}
+
 const Fault* Body::active(FaultKind kind) const {
   for (const Armed& one : faults_) {
     if (one.fault.kind != kind || !one.since) continue;
@@ -160,6 +168,7 @@ void Body::stand(const Joints& joints) {
   target_ = joints;
   mechanics_->put(joints);
   hold(true);
+  hang();
   measure();
 }
 
@@ -196,12 +205,30 @@ void Body::follow() {
     reference_ += (target_ - reference_).cwiseMax(-most).cwiseMin(most);
   }
   mechanics_->advance(reference_);
+  hang();
+}
+
+/// A tool that is caught hangs, where it touched, by a spring that only pulls: the arm gives way to that by the springs
+/// in its joints, at once, whatever its mechanics.
+void Body::hang() {
+  arm_ = mechanics_->state();
+  const Fault* caught = active(FaultKind::caught);
+  if (caught == nullptr) return anchor_.reset();
+  if (arm_.pressing > 0.0) anchor_ = tip().z() + arm_.depth;
+  if (!anchor_ || tip().z() <= *anchor_) return;
+  const Joints lever = dynamics_.jacobian(arm_.position).row(2).transpose();
+  const Joints turned = lever.cwiseQuotient(spring_stiffness());  // by each newton
+  const double pull = (tip().z() - *anchor_) / (1.0 / caught->amount + lever.dot(turned));
+  arm_.position -= pull * turned;
+  arm_.effort += pull * lever;
+  arm_.felt.z() -= pull;
+  arm_.pressing = -pull;
 }
 
 /// An arm that is left pressing is held again and again, and let go in between for as long as it takes to feel that.
 void Body::feel_reflex() {
   if (now() < held_until_ + kLetGo - kSlack) return;
-  if (!assembly_.state().enabled || pressing() <= kReflex) return;
+  if (!assembly_.state().enabled || std::abs(pressing()) <= kReflex) return;
   held_until_ = now() + kHeld;
   mode_ = Mode::reflex;
   hold(false);
@@ -222,7 +249,8 @@ void Body::measure() {
   spoil(force);
   if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
   endpoint_.pose = pose;
-  endpoint_.force = force;
+  const Fault* slow = active(FaultKind::slow_force);
+  if (slow == nullptr || periods_ % std::lround(slow->amount) == 0) endpoint_.force = force;
 }
 
 /// What faults make of the force that is estimated.

@@ -6,6 +6,7 @@
 #include "baxter/kinematics.hpp"
 #include "baxter/options.hpp"
 #include "fake_baxter/assembly.hpp"
+#include "fake_baxter/dynamics.hpp"
 #include "fake_baxter/faults.hpp"
 #include "fake_baxter/mechanics.hpp"
 #include "fake_baxter/network.hpp"
@@ -83,6 +84,8 @@ class Body {
 
   /// Lets something go wrong from `trigger` on.
   void inject(const Fault& fault, const Trigger& trigger = {});
+  /// Somebody frees a tool that is caught.
+  void release();
   /// The fault of this kind if it has begun, else null.
   const Fault* active(FaultKind kind) const;
   /// Its amount, 0 if it has not begun.
@@ -102,8 +105,8 @@ class Body {
   const Joints& set_point() const { return reference_; }               ///< that the joints follow
   Eigen::Vector3d tip() const { return in_scene(joints()); }           ///< in the scene's frame, metres
   double set_point_height() const { return in_scene(reference_)(2); }  ///< of the tip, in the scene's frame, metres
-  const ArmState& arm() const { return mechanics_->state(); }
-  double pressing() const { return arm().pressing; }    ///< N, upwards on the tool
+  const ArmState& arm() const { return arm_; }
+  double pressing() const { return arm().pressing; }    ///< N, upwards on the tool; negative where it is caught
   long commands() const { return commands_; }           ///< received so far
   double latest_command() const { return commanded_; }  ///< its time; before any, the distant past
   double command_timeout() const { return timeout_; }
@@ -126,6 +129,7 @@ class Body {
   void hold(bool brakes);
   void stand(const Joints& joints);
   void follow();
+  void hang();
   void feel_reflex();
   void measure();
   void spoil(Eigen::Vector3d& force);
@@ -137,7 +141,10 @@ class Body {
   std::uint64_t seed_;
   double begin_;
   std::unique_ptr<Mechanics> mechanics_;
-  double noise_;  ///< N
+  Dynamics dynamics_;
+  ArmState arm_;                  ///< of the mechanics, and what hangs on to the tool
+  std::optional<double> anchor_;  ///< height in the scene from which that pulls, m; none where nothing does
+  double noise_;                  ///< N
   backends::Normal normal_;
   Random spikes_;
   Eigen::Vector3d bias_;                        ///< N, in the untucked posture

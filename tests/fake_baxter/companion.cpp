@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "fake_baxter/companion.hpp"
 
+#include "baxter/kinematics.hpp"
+
 #include <palpate/error.hpp>
 
 #include <baxter_core_msgs/AssemblyState.h>
+#include <baxter_core_msgs/CollisionAvoidanceState.h>
+#include <baxter_core_msgs/CollisionDetectionState.h>
+#include <baxter_core_msgs/EndpointState.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -41,31 +47,66 @@ void publish_gripper(const ros::Publisher& publisher, double stamp) {
   publisher.publish(message);
 }
 
-void publish_state(const ros::Publisher& publisher) {
-  baxter_core_msgs::AssemblyState message;
-  message.ready = true;
-  message.enabled = true;
-  publisher.publish(message);
+using Act = std::function<void(double stamp)>;
+
+/// Publishes what `fill` makes of a message and a stamp.
+template <class Message, class Fill>
+Act publish(ros::NodeHandle& node, const char* topic, const Fill& fill) {
+  const ros::Publisher publisher = node.advertise<Message>(topic, 1);
+  return [publisher, fill](double stamp) {
+    Message message;
+    fill(message, stamp);
+    publisher.publish(message);
+  };
+}
+
+/// What a robot says on one of its streams that stands and feels nothing.
+Act second_sender(const std::string& stream, ros::NodeHandle& node) {
+  using namespace baxter_core_msgs;
+  const auto calm = [](auto& message, double stamp) { message.header.stamp.fromSec(stamp); };
+  if (stream == "state") {
+    return publish<AssemblyState>(node, "/robot/state", [](AssemblyState& message, double) {
+      message.ready = true;
+      message.enabled = true;
+    });
+  }
+  if (stream == "collision") {
+    return publish<CollisionDetectionState>(node, "/robot/limb/left/collision_detection_state", calm);
+  }
+  if (stream == "avoidance") {
+    return publish<CollisionAvoidanceState>(node, "/robot/limb/left/collision_avoidance_state", calm);
+  }
+  if (stream == "joints") {
+    return publish<sensor_msgs::JointState>(
+        node, "/robot/joint_states", [calm](sensor_msgs::JointState& message, double stamp) {
+          calm(message, stamp);
+          const baxter::Joints joints = baxter::untucked();
+          message.name.assign(baxter::kJointNames.begin(), baxter::kJointNames.end());
+          message.position.assign(joints.begin(), joints.end());
+        });
+  }
+  return publish<EndpointState>(node, "/robot/limb/left/endpoint_state", [calm](EndpointState& message, double stamp) {
+    calm(message, stamp);
+    message.pose.orientation.x = 1.0;
+    message.wrench.force.z = 0.1 * std::sin(1000.0 * stamp);
+  });
 }
 
 /// Of the node.
 std::string name_of(const std::string& role) {
   if (role == "end_effector") return "end_effector_publisher";
-  if (role == "second_state") return "second_robot";
+  if (role.rfind("second_sender=", 0) == 0) return "second_robot";
   return "other_program_" + role.substr(0, role.find('='));
 }
 
 /// What to do whenever it is told to, with the stamp.
-std::function<void(double)> publisher_of(const std::string& role, ros::NodeHandle& node) {
+Act publisher_of(const std::string& role, ros::NodeHandle& node) {
   if (role == "end_effector") {
     const ros::Publisher publisher = node.advertise<sensor_msgs::JointState>("/robot/joint_states", 1);
     return [publisher](double stamp) { publish_gripper(publisher, stamp); };
   }
-  if (role == "second_state") {
-    const ros::Publisher publisher = node.advertise<baxter_core_msgs::AssemblyState>("/robot/state", 1);
-    return [publisher](double) { publish_state(publisher); };
-  }
   const std::size_t equals = role.find('=');
+  if (role.substr(0, equals) == "second_sender") return second_sender(role.substr(equals + 1), node);
   const ros::Publisher publisher =
       node.advertise<std_msgs::Float64>("/robot/limb/left/" + role.substr(0, equals), 1, true);
   std_msgs::Float64 message;
@@ -124,7 +165,7 @@ int serve_companion(const std::string& role) {
   ros::init(no_remappings, name_of(role), ros::init_options::NoSigintHandler);
   {
     ros::NodeHandle node;
-    const std::function<void(double)> publish = publisher_of(role, node);
+    const Act publish = publisher_of(role, node);
     ::send(STDIN_FILENO, "u", 1, MSG_NOSIGNAL);
     do {
       publish(stamp);

@@ -10,8 +10,9 @@ namespace palpate::fake_baxter {
 /// A process with a node of its own. Make it before ROS and before any thread.
 class Companion {
  public:
-  /// `role`: "end_effector", which publishes the gripper's joint on /robot/joint_states; "second_state", which
-  /// publishes /robot/state of a healthy robot; "set_speed_ratio=0.03" or "joint_command_timeout=0.02", a program that
+  /// `role`: "end_effector", which publishes the gripper's joint on /robot/joint_states; "second_sender=state",
+  /// which publishes /robot/state of a healthy robot, or likewise endpoint, joints, collision, avoidance: what one says
+  /// that stands and feels nothing; "set_speed_ratio=0.03" or "joint_command_timeout=0.02", a program that
   /// has set that of the left arm, latched. Its node begins at the first tell(). Throws Error.
   explicit Companion(const std::string& role);
   ~Companion();

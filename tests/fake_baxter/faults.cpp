@@ -45,7 +45,10 @@ constexpr Known kKnown[] = {
     {"kill_joints", "joint_states of the arm stop", FaultKind::kill_joints},
     {"kill_state", "/robot/state stops", FaultKind::kill_state},
     {"stale_stamps", "messages go on, but their stamps stay the same", FaultKind::stale_stamps},
-    {"second_state", "another node publishes /robot/state, too: a healthy robot's", FaultKind::second_state},
+    {"second_sender",
+     "another node publishes the stream VALUE (state; endpoint, joints, collision, avoidance), too: that of a healthy "
+     "robot that feels nothing",
+     FaultKind::second_sender, Takes::text, 0.0, "state"},
     {"nan_wrench", "the force is not a number", FaultKind::nan_wrench},
     {"zero_wrench", "the force is exactly zero, as in Rethink's simulator", FaultKind::zero_wrench},
     {"bias", "the force gets VALUE newtons (12) on top, as though the tool were pressed upwards", FaultKind::bias,
@@ -75,6 +78,10 @@ constexpr Known kKnown[] = {
      Takes::number, 0.02, "", 0.0, kAny},
     {"slow_endpoint", "endpoint_state comes VALUE times a second (25)", FaultKind::slow_endpoint, Takes::number, 25.0,
      "", 0.1, 100.0},
+    {"slow_force", "the force in endpoint_state is another in every VALUE-th message (5) only", FaultKind::slow_force,
+     Takes::number, 5.0, "", 1.0, kAny},
+    {"caught", "from the next contact on the tool hangs on to what it touched, by a spring of VALUE N/m (3000)",
+     FaultKind::caught, Takes::number, 3000.0, "", 1.0, kAny},
     {"bursts", "all that the robot says comes in bursts, one every VALUE seconds (0.045)", FaultKind::bursts,
      Takes::number, 0.045, "", 0.0, kAny},
     {"stall", "for VALUE seconds (0.05) nothing comes, then all of it", FaultKind::stall, Takes::number, 0.05, "", 0.0,
@@ -85,8 +92,10 @@ constexpr Known kKnown[] = {
      0.04, "", 0.0, kAny},
     {"wrench_filter", "the force passes a low-pass filter with a time constant of VALUE seconds (0.1)",
      FaultKind::wrench_filter, Takes::number, 0.1, "", 0.0, kAny},
-    {"force_drift", "the force rises by VALUE newtons (35) per metre that the tip comes down, as though something "
-     "pressed the tool upwards", FaultKind::force_drift, Takes::number, 35.0},
+    {"force_drift",
+     "the force rises by VALUE newtons (35) per metre that the tip comes down, as though something "
+     "pressed the tool upwards",
+     FaultKind::force_drift, Takes::number, 35.0},
     {"die", "the program is gone at once", FaultKind::die},
 };
 
@@ -118,9 +127,9 @@ Fault parse_fault(const std::string& words) {
     if (one.takes == Takes::nothing) throw Error("--fault", name + " takes no value");
     if (one.takes == Takes::number) out.amount = number(one, value);
     if (one.takes == Takes::text) out.text = value;
-    if (one.kind == FaultKind::no_data &&
+    if ((one.kind == FaultKind::no_data || one.kind == FaultKind::second_sender) &&
         std::find(std::begin(kStreams), std::end(kStreams), value) == std::end(kStreams)) {
-      throw Error("--fault", "no_data takes endpoint, joints, state, collision or avoidance, not '" + value + "'");
+      throw Error("--fault", name + " takes endpoint, joints, state, collision or avoidance, not '" + value + "'");
     }
     return out;
   }

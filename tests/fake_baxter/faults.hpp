@@ -19,7 +19,7 @@ enum class FaultKind {
   kill_joints,
   kill_state,
   stale_stamps,
-  second_state,
+  second_sender,
   nan_wrench,
   zero_wrench,
   bias,
@@ -40,12 +40,14 @@ enum class FaultKind {
   speed_ratio,
   command_timeout,
   slow_endpoint,
+  slow_force,
   bursts,
   stall,
   delay,
   jitter,
   wrench_filter,
   force_drift,
+  caught,
   die
 };
 

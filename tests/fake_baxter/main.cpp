@@ -74,8 +74,8 @@ BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter
 /// The role of the node that a fault brings along; "" for none.
 std::string companion_of(const Fault& fault) {
   switch (fault.kind) {
-    case FaultKind::second_state:
-      return "second_state";
+    case FaultKind::second_sender:
+      return "second_sender=" + fault.text;
     case FaultKind::speed_ratio:
       return fmt::format("set_speed_ratio={}", fault.amount);
     case FaultKind::command_timeout:

@@ -27,6 +27,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -146,7 +147,8 @@ void join_network(bool clock) {
 }
 
 /// One row a period of what is so, whatever is said: t, x, y, z of the tip in the scene's frame, height of the
-/// set-point, pressing force, mode, commands so far, whether a fault has begun.
+/// set-point, pressing force, what the robot says of the force along z, mode, commands so far, whether a fault has
+/// begun.
 class Trace {
  public:
   /// "" writes nothing. Throws Error.
@@ -154,14 +156,16 @@ class Trace {
     if (file.empty()) return;
     out_.open(file);
     if (!out_) throw Error(file, "cannot be written");
-    out_ << "t,x,y,z,set_z,force,mode,commands,fault\n";
+    out_ << "t,x,y,z,set_z,force,said,mode,commands,fault\n";
   }
 
   void write(const Body& body) {
     if (!out_.is_open()) return;
     const Eigen::Vector3d tip = body.tip();
-    out_ << fmt::format("{:.2f},{:.5f},{:.5f},{:.5f},{:.5f},{:.3f},{},{},{}\n", body.now(), tip.x(), tip.y(), tip.z(),
-                        body.set_point_height(), body.pressing(), name_of(body.mode()), body.commands(),
+    const auto endpoint = body.said().endpoint;
+    const double said = endpoint ? endpoint->force.z() : std::numeric_limits<double>::quiet_NaN();
+    out_ << fmt::format("{:.2f},{:.5f},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{},{},{}\n", body.now(), tip.x(), tip.y(),
+                        tip.z(), body.set_point_height(), body.pressing(), said, name_of(body.mode()), body.commands(),
                         body.faulty() ? 1 : 0);
     if (++rows_ % 50 == 0) flush();
   }

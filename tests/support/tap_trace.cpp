@@ -51,7 +51,8 @@ void write_trace(const TapTrace& trace, const std::filesystem::path& file) {
       << fmt::format("\n# not_before_s: {:.2f}\n# by_s: {:.2f}\n# height_m: {:.4f}\n# tolerance_m: {:.4f}\n",
                      trace.not_before, trace.by, trace.height, trace.tolerance)
       << "time_s,height_m,force_n\n";
-  for (const TapTrace::Row& row : trace.rows) out << fmt::format("{:.2f},{:.5f},{:.2f}\n", row.time, row.height, row.force);
+  for (const TapTrace::Row& row : trace.rows)
+    out << fmt::format("{:.2f},{:.5f},{:.2f}\n", row.time, row.height, row.force);
   if (!out.flush()) throw std::runtime_error(file.string() + " cannot be written");
 }
 

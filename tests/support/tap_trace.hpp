@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recorded descents with a verdict, tests/data/guarded_taps: what a guarded tap in any language must decide, and by when.
+// Recorded descents with a verdict, tests/data/guarded_taps: what a guarded tap in any language must decide, and by
+// when.
 #pragma once
 
 #include <filesystem>

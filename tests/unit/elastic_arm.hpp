@@ -12,10 +12,10 @@
 namespace palpate::test {
 
 struct ElasticArm {
-  double surface = 0.0;       ///< m
-  double object = 20000.0;    ///< N/m
-  double springs = 3800.0;    ///< N/m
-  double noise = 0.5;         ///< N
+  double surface = 0.0;     ///< m
+  double object = 20000.0;  ///< N/m
+  double springs = 3800.0;  ///< N/m
+  double noise = 0.5;       ///< N
   std::uint64_t seed = 1;
   std::function<double(double)> zero = [](double) { return 0.0; };  ///< N, by the height
 

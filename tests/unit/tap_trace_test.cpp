@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The guarded tap decides on recorded descents as their verdicts say: tests/data/guarded_taps/README.md.
-#include "support/filled.hpp"
 #include "support/tap_trace.hpp"
+#include "support/filled.hpp"
 #include "support/testing.hpp"
 #include "tapping/guarded_tap.hpp"
 

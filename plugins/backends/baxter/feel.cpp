@@ -22,13 +22,21 @@ constexpr int kTold = 3;                   ///< taps of a run for which that is 
 constexpr double kMostMoving = 0.8;        ///< of the threshold: more may be a contact that begins
 constexpr double kLeastMoved = 2.5;        ///< N that the zero may move, whatever the threshold: noise makes 0.4
 
-constexpr double kUnloading = 0.6;  ///< s after which an arm that trails by 0.35 s has turned around and is clear
-constexpr int kPulled = 6;          ///< new readings of a force that pulls: what moving takes away from it is noisy
-constexpr double kEvenFrom = 0.7;   ///< s after which an arm that trails by 0.35 s comes down evenly
-constexpr double kEvenTo = 1.0;     ///< s, for so long its force is looked at
+/// m above what it touched to where an arm goes up gently: there it is clear, and its joints rub the other way.
+constexpr double kClear = 0.003;
+/// Of what the joints rub at one place of the area: so much they do elsewhere, and while they move.
+constexpr double kRubsElsewhere = 2.6;
+constexpr double kGentle = 0.01;   ///< m/s: an arm of 6.4 kN/m that is held feels 2 N more in three readings
+constexpr double kSpeedUp = 0.15;  ///< m/s^2, afterwards
+/// N that an arm which goes up freely reads less by its speed (3), by a zero that changes by 50 N/m (2.5), by noise.
+constexpr double kFreely = 8.0;
+constexpr double kLatest = 0.2;    ///< of a force that is followed, the part of the latest reading
+constexpr int kPulled = 6;         ///< new readings of a force that pulls: what moving takes away from it is noisy
+constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
+constexpr double kEvenTo = 1.0;    ///< s, for so long its force is looked at
 constexpr std::size_t kFewestEven = 10;
 constexpr double kStiffest = 8000.0;  ///< N/m of the arm where its posture is not known
-constexpr double kSteady = 1.5;  ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
+constexpr double kSteady = 1.5;       ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
 
 /// Of each component; at least one reading.
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
@@ -156,8 +164,8 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
   greatest = std::max(greatest, Reaction::kSlowest);
   const double configured = motion.speed;
   motion.speed = std::min(motion.speed, greatest);
-  motion.fine_speed =
-      std::min(motion.fine_speed, std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.fine_threshold, stiffness)));
+  motion.fine_speed = std::min(
+      motion.fine_speed, std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.fine_threshold, stiffness)));
   if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, greatest);
   const double way = motion.hover + motion.overrun;
   motion.timeout += way / motion.speed - way / configured;
@@ -165,14 +173,15 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
 }
 
 Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& wanted, const Path& column) {
+  if (!rubbing_) learn_rubbing(column);
   rest_from_above(column);
   const double stiffness = stiffness_at(request.target);
   const tapping::MotionOptions motion = bounded(wanted, stiffness);
-  note_(fmt::format("tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is noticed after {:.0f} ms and stopped {:.0f} "
-                    "ms later, messages come up to {:.0f} ms late; at most {} are expected",
-                    request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(),
-                    1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(),
-                    newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
+  note_(fmt::format(
+      "tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is noticed after {:.0f} ms and stopped {:.0f} "
+      "ms later, messages come up to {:.0f} ms late; at most {} are expected",
+      request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(),
+      1e3 * reaction_.lateness(), newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
   const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
   const auto at = [&](double height) { return column.at(plan.hover + kFromAbove - height); };
   SignedTap signed_tap(motion, plan, sign_);
@@ -198,6 +207,8 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     if (signed_tap.tap().noticed() > periods.noticed) periods.notice(signed_tap.tap().noticed());
     signed_tap.slow_to(std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.threshold, stiffness)));
     // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
+    if (set_point > before && sign_ != 0.0) watch_.expect_rise(Watch::Rise{signed_tap.zero(), sign_, most_rubbing()});
+    if (set_point < before) watch_.expect_rise(std::nullopt);
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
     } else if (set_point != before) {
@@ -234,8 +245,8 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     }
     step(command);
   }
-  retreat(column.back(plan.hover + kFromAbove - height()));
   const Contact contact = signed_tap.tap().result();
+  retreat(column.back(plan.hover + kFromAbove - height()), signed_tap.sign(), signed_tap.zero(), contact);
   if (contact.outcome != Outcome::contact) return contact;
   rest_from_above(column);
   // The two zeros must be the same. Sideways the robot's estimate is at its worst.
@@ -249,29 +260,64 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   if (moving) learn_moving(*moving);
   if (!periods.at_notice.empty()) {
     // Something soft may have been touched that far above.
-    const double free = std::max(contact.height, periods.at_notice.back().height + motion.threshold / tapping::GuardedTap::kSoftest);
+    const double free =
+        std::max(contact.height, periods.at_notice.back().height + motion.threshold / tapping::GuardedTap::kSoftest);
     reaction_.learn_noticing(periods.at_notice, free, motion.threshold, stiffness);
   }
   shown_sign_ = signed_tap.sign();
   return contact;
 }
 
-/// Goes up from where it may press. What it presses with goes, and so does what the joints rub against, which turns
-/// around: only what comes after that is a force of something that holds the tool.
-void Tapper::retreat(const Path& up) {
+/// Once a run, in the air above the first column: how much more the force at rest reads after coming down than after
+/// coming up.
+void Tapper::learn_rubbing(const Path& column) {
+  rest_from_above(column);
+  const double down = force_at_rest(column.at(kFromAbove)).z();
+  const Path up = column.back(kFromAbove);
+  follow(up, motion_.speed, up.length());
+  settle(up.end());
+  rubbing_ = std::abs(down - force_at_rest(up.end()).z());
+}
+
+/// N of a pull that an arm may feel, against its zero at rest, that goes up and is not held. Where its joints rub less
+/// than where that was felt, it may be held with force_stop by then.
+double Tapper::most_rubbing() const {
+  if (!rubbing_) return options_.force_stop;
+  return std::min(motion_.threshold + kRubsElsewhere * *rubbing_, options_.force_stop + *rubbing_ / kRubsElsewhere);
+}
+
+/// Goes up from where it may press, of which only a pull is a fault. `zero`: of the force along z down there, N.
+void Tapper::retreat(const Path& up, double sign, double zero, const Contact& contact) {
   watch_.forget_tare();
-  const double free = seen_.now + kUnloading;
-  bool tared = false;
-  for (double along = 0.0; along < up.length();) {
-    along = up.advance(along, motion_.retreat_speed, kPeriod);
-    step(up.at(along));
-    if (!tared && seen_.now >= free) {
-      tared = true;
-      watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
+  if (sign != 0.0) watch_.expect_rise(Watch::Rise{zero, sign, most_rubbing()});
+  const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kMostGentle;
+  rise(up, sign, std::clamp(touched - height(), 0.0, kMostGentle) + kClear);
+}
+
+/// Goes up gently until the tip has come up by `gently` (m), and faster from there on. On the first part what it
+/// presses with goes, and what its joints rub against turns around: the force of an arm that goes up freely is its zero
+/// then.
+void Tapper::rise(const Path& up, double sign, double gently) {
+  const double clear = height() + gently;
+  double speed = std::min(motion_.speed, kGentle);
+  Eigen::Vector3d force = seen_.endpoint->force;
+  const auto set_free = [&] {
+    watch_.set_tare(force, Watch::Zero::follows);
+    if (sign != 0.0) {
+      watch_.expect_rise(Watch::Rise{force.z(), sign, kFreely, Watch::Zero::follows});
     }
+  };
+  bool free = false;
+  for (double along = 0.0; along < up.length();) {
+    along = up.advance(along, speed, kPeriod);
+    step(up.at(along));
+    if (watch_.fresh()) force += kLatest * (seen_.endpoint->force - force);
+    if (height() < clear) continue;
+    if (!std::exchange(free, true)) set_free();
+    speed = std::min(motion_.retreat_speed, speed + kSpeedUp * kPeriod);
   }
   await_height(up.end());
-  if (!tared) watch_.set_tare(seen_.endpoint->force, Watch::Zero::follows);
+  if (!free) set_free();
 }
 
 std::string Tapper::learnt_sign() const {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate::baxter {
 namespace {
@@ -25,11 +24,6 @@ constexpr double kListen = Stream::kWindow + 0.05;
 constexpr double kAgreement = 0.005;   ///< m between kinematics and endpoint_state: both come from the same joints
 constexpr double kAgreedTurn = 0.035;  ///< rad, likewise
 constexpr double kUpright = 0.35;      ///< rad that the tool may lean before the first motion puts it upright
-
-/// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
-constexpr double kLeastRatio = 0.27;
-constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
-constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
 
 /// Finer than what is said of taps.
 std::string fine_centimetres(double length) { return fmt::format("{:.2f} cm", 100.0 * length); }
@@ -56,32 +50,18 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
 }
 
 /// What others have left on the robot and what it takes to be mounted, one line each for the diary. Throws Error where
-/// that would keep the arm from doing what it is told: a speed ratio at which it could not follow, a time-out of
-/// set-points shorter than five periods or longer than half a second, a collision avoidance that pushes it.
+/// its collision avoidance pushes the arm.
 std::vector<std::string> check_settings(const Snapshot& seen) {
   const struct {
     const char* topic;
     const std::optional<Setting>& setting;
     const char* own;
-    double least, most;
-    const char* reason;
-    const char* remedy;
-  } settings[] = {
-      {"set_speed_ratio", seen.speed_ratio, "0.3", kLeastRatio, std::numeric_limits<double>::infinity(),
-       ", at which the arm cannot follow", "set it to 0.3, on /robot/limb/left/set_speed_ratio"},
-      {"joint_command_timeout", seen.command_timeout, "0.2 s", kLeastTimeout, kMostTimeout,
-       " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the next",
-       "set it to 0.2, on /robot/limb/left/joint_command_timeout"},
-  };
+  } settings[] = {{"set_speed_ratio", seen.speed_ratio, "0.3"},
+                  {"joint_command_timeout", seen.command_timeout, "0.2 s"}};
   std::vector<std::string> out;
-  for (const auto& [topic, setting, own, least, most, reason, remedy] : settings) {
-    if (!setting) {
-      out.push_back(fmt::format("{}: nobody says it now, taken for the robot's own {}", topic, own));
-      continue;
-    }
-    out.push_back(fmt::format("{}: {:g} from {}", topic, setting->value, setting->sender));
-    if (setting->value >= least && setting->value <= most) continue;
-    throw trouble(topic, fmt::format("{} has set it to {:g}{}", setting->sender, setting->value, reason), remedy);
+  for (const auto& [topic, setting, own] : settings) {
+    out.push_back(setting ? fmt::format("{}: {:g} from {}", topic, setting->value, setting->sender)
+                          : fmt::format("{}: nobody says it now, taken for the robot's own {}", topic, own));
   }
   if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
     std::vector<std::string> from = seen.avoidance->objects;
@@ -118,8 +98,8 @@ void Tapper::check() {
   }
   const std::optional<Fault> slow = listen();
   await_fit(!options_.dry_run);
-  if (slow && !options_.dry_run) throw trouble("", slow->reason);
   check_robot();
+  if (slow && !options_.dry_run) throw trouble("", slow->reason);
   if (!options_.dry_run) {
     for (const std::string& line : check_settings(seen_)) note_(line);
   }
@@ -193,11 +173,12 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   }
   const std::vector<std::string> words = tapping::describe(motion, scene_.desk(), request, from);
   out.insert(out.end(), words.begin(), words.end());
-  out.push_back(fmt::format("press with at most about {} on something rigid: the arm's springs have {:.1f} kN/m there, "
-                            "and {:.0f} ms pass from {} to standstill{}",
-                            tapping::newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness)),
-                            1e-3 * stiffness, 1e3 * reaction_.seconds(), tapping::newtons(motion.threshold),
-                            motion.speed < wanted.speed ? ", so that motion.speed is not reached" : ""));
+  out.push_back(
+      fmt::format("press with at most about {} on something rigid: the arm's springs have {:.1f} kN/m there, "
+                  "and {:.0f} ms pass from {} to standstill{}",
+                  tapping::newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness)),
+                  1e-3 * stiffness, 1e3 * reaction_.seconds(), tapping::newtons(motion.threshold),
+                  motion.speed < wanted.speed ? ", so that motion.speed is not reached" : ""));
   out.push_back("stop whatever it does when the force changes by " + tapping::newtons(options_.force_stop) +
                 " upwards or downwards, and by half as much again sideways");
   return out;

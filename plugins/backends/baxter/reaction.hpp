@@ -5,12 +5,14 @@
 //     F = threshold + k v T,    T = noticing + stopping + lateness,
 // k being the vertical stiffness of its springs. None of the times is published, and each depends on the robot, its
 // firmware and its network:
-// - noticing: from the true force being at the threshold to the set-point that stops the arm. It holds the filter of the
+// - noticing: from the true force being at the threshold to the set-point that stops the arm. It holds the filter of
+// the
 //   force, the delay of its messages and the readings that make a contact. Within a contact the true force follows from
 //   positions alone, which no filter delays: k times the distance by which the tip stays behind its free descent.
-// - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and what the joints go on
-//   by. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what is
-//   certain to be the lag of its joints.
+// - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and what the joints go
+// on
+//   by. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what
+//   is certain to be the lag of its joints.
 // - lateness: by how much messages, or this program, may come later than they did then.
 #pragma once
 
@@ -51,8 +53,8 @@ class Reaction {
   };
 
   /// Learns from a motion along a straight line: the area between both curves, divided by the way, is the mean delay of
-  /// any linear system, whatever the profile of the motion. Offsets at rest do not count. A way below kShortestWay shows
-  /// nothing.
+  /// any linear system, whatever the profile of the motion. Offsets at rest do not count. A way below kShortestWay
+  /// shows nothing.
   void learn_trailing(const std::vector<Step>& motion);
 
   /// Learns from a contact that was noticed in the last of `periods`; the tip was free down to `free_down_to` (m).

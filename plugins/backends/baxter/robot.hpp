@@ -45,7 +45,21 @@ struct JointReading : Arrival {
 struct EndpointReading : Arrival {
   Pose pose;
   Eigen::Vector3d force;
+  /// How many of its stream so far brought another force, to the last digit, than the one before: a robot may send an
+  /// estimate more often than it makes one.
+  long renewals = 0;
 };
+
+/// Counts a reading as the one after `before`, the latest of its stream.
+template <class Reading>
+void count_after(const std::optional<Reading>& before, Reading& reading) {
+  reading.count = (before ? before->count : 0) + 1;
+}
+inline void count_after(const std::optional<EndpointReading>& before, EndpointReading& reading) {
+  reading.count = (before ? before->count : 0) + 1;
+  const bool renewed = !before || reading.force != before->force;
+  reading.renewals = (before ? before->renewals : 0) + (renewed ? 1 : 0);
+}
 
 /// /robot/state. It has no stamp.
 struct StateReading {
@@ -84,6 +98,14 @@ struct EndEffector {
   std::optional<double> mass;  ///< kg, of all that its description has beyond left_hand; absent without a description
 };
 
+/// The nodes that have sent each stream since the beginning. Of two senders of one stream only the message that came
+/// last is seen: one of them hides what the other says.
+struct Senders {
+  std::vector<std::string> joints;  ///< of the left arm: another node may send a gripper's
+  std::vector<std::string> endpoint, state, collision, avoidance;
+  std::vector<std::string> clock;  ///< a simulated one
+};
+
 /// The latest of every stream, and who has been sending. A stream that has not been heard is absent.
 struct Snapshot {
   double now = 0.0;        ///< protocol time: the clock of the robot's network
@@ -99,9 +121,8 @@ struct Snapshot {
   /// The longest time, of those that ended within the last second and the one that is going on, for which this program
   /// did not get to receive anything, seconds of real time. A stream that is silent for no longer may have been sent.
   double own_gap = 0.0;
-  std::vector<std::string> joint_senders;  ///< the nodes that have sent joints of the left arm
-  std::vector<std::string> state_senders;  ///< the nodes that have sent /robot/state
-  std::vector<std::string> commanders;     ///< the nodes other than this one that have sent set-points of the left arm
+  Senders senders;
+  std::vector<std::string> commanders;  ///< the nodes other than this one that have sent set-points of the left arm
   std::string malformed;  ///< the first message whose parts do not fit together, told in words; empty if none did
 };
 

@@ -25,7 +25,7 @@ constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
 
 constexpr double kHeld = 0.5;         ///< s for which the measured joints are sent at a stop
 constexpr double kReflexEnds = 4.0;   ///< s: the firmware's own stop lasts two
-constexpr int kReflexes = 20;         ///< how often it may fire on the way up
+constexpr int kReflexes = 20;         ///< how often it may fire on the way up of an arm that presses
 constexpr double kAboveTravel = 0.3;  ///< m that the arm may be above the height of travel
 constexpr double kBelowFloor = 0.01;  ///< m that the tip may be below the end of a descent
 
@@ -142,7 +142,7 @@ void Tapper::go_to(const Joints& hover) {
   expect_fit();  // the robot's own inverse kinematics takes its time
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
-  climb(up);
+  climb(up, sign_);
   std::vector<Reaction::Step> motion;
   motion_log_ = &motion;
   follow(across, motion_.travel_speed, across.length());
@@ -151,10 +151,10 @@ void Tapper::go_to(const Joints& hover) {
   reaction_.learn_trailing(motion);
 }
 
-void Tapper::climb(const Path& up) {
-  if (!(up.length() > 0.0)) return;
-  follow(up, motion_.retreat_speed, up.length());
-  await_height(up.end());
+/// Goes up from wherever a run or a fault has left the arm. `sign`: of the force when something presses the tool
+/// upwards, 0 if it is not known.
+void Tapper::climb(const Path& up, double sign) {
+  if (up.length() > 0.0) rise(up, sign, kMostGentle);
 }
 
 /// Waits until the arm has come up after its set-point: one that went sideways before would cut the corner, and what
@@ -234,32 +234,52 @@ void Tapper::take(Snapshot seen) {
 /// Does what may still be done and tells, in half a sentence, where that left the arm.
 std::string Tapper::recover(const Fault& fault) {
   if (fault.then == Then::silence) return kSilent;
-  const std::string where = "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk";
+  const auto silent = [](const Fault& other) { return std::string(kSilent) + ": " + other.reason; };
+  const auto where = [&] { return "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk"; };
   recovering_ = true;
-  if (const auto other = hold(seen_.joints->position)) return std::string(kSilent) + ": " + other->reason;
-  if (fault.then == Then::hold) return where;
+  // While nobody knows the sign, what was felt on the way down has it.
+  const double sign = sign_ != 0.0 ? sign_ : std::copysign(1.0, seen_.endpoint->force.z() - zero_.z());
+  const auto presses = [&] { return sign * (seen_.endpoint->force.z() - zero_.z()); };
+  if (const auto other = stay(fault)) return silent(*other);
+  if (fault.then == Then::hold) return where();
   try {
     for (int attempt = 1;; ++attempt) {
       try {
         outlast_reflex();
-        climb(way_up());
+        // Where the zero has moved, what seems to pull at rest does not count.
+        const double zero = zero_.z() + sign * std::min(0.0, presses());
+        watch_.expect_rise(Watch::Rise{zero, sign, most_rubbing()});
+        climb(way_up(), sign);
         settle(*watch_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {
-        if (!again.reflex || attempt == kReflexes) throw;
+        if (!again.reflex || again.then == Then::hold || !(presses() > 0.0) || attempt == kReflexes) throw;
       }
     }
   } catch (const NoPath& none) {
-    return where + ", it could not be raised: " + none.reason;
+    return where() + ", it could not be raised: " + none.reason;
   } catch (const Fault& other) {
-    if (other.then == Then::silence) return std::string(kSilent) + ": " + other.reason;
-    hold(seen_.joints->position);
-    return where + ", it was not raised: " + other.reason;
+    if (other.then == Then::silence) return silent(other);
+    if (const auto another = stay(other)) return silent(*another);
+    return where() + ", it was not raised: " + other.reason;
   }
 }
 
-/// Waits, where the arm is, until its own reflex lets it go. One that is left pressing fires again as soon as that: a
-/// little way up is made each time, until there is less than 16 N.
+/// Holds the arm where it is. One that is held by its tool, and therefore by its own reflex, is held once more when
+/// that has let it go: its springs then pull by less.
+std::optional<Fault> Tapper::stay(const Fault& fault) {
+  if (const auto other = hold(seen_.joints->position)) return other;
+  if (!fault.reflex || fault.then != Then::hold) return std::nullopt;
+  try {
+    outlast_reflex();
+  } catch (const Fault& other) {
+    if (other.then == Then::silence) return other;
+  }
+  return hold(seen_.joints->position);
+}
+
+/// Waits, where the arm is, until its own reflex lets it go. Of an arm that is left pressing it fires again as soon as
+/// that: a little way up is made each time, until there is less than 16 N.
 void Tapper::outlast_reflex() {
   watch_.begin();
   watch_.expect_collision(true);

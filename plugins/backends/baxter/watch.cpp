@@ -13,6 +13,11 @@ namespace {
 using Then = Fault::Then;
 using Button = StateReading::Button;
 
+/// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
+constexpr double kLeastRatio = 0.27;
+constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
+constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
+
 double degrees(double radians) { return radians * 180.0 / 3.14159265358979323846; }
 
 constexpr double kPeriod = 0.01;  ///< s from one look to the next
@@ -76,9 +81,42 @@ std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Del
       then};
 }
 
-std::optional<Fault> many(const char* stream, const std::vector<std::string>& senders) {
-  if (senders.size() < 2) return std::nullopt;
-  return Fault{fmt::format("{} from more than one node, {}: one of them is no robot, end it", stream, listed(senders))};
+constexpr const char* kJoints = "/robot/joint_states of the left arm";
+constexpr const char* kEndpoint = "endpoint_state of the left arm";
+
+/// Two nodes that send one stream, of those after which so much may still be done.
+std::optional<Fault> many(const Senders& senders, Then then) {
+  const struct {
+    const char* stream;
+    const std::vector<std::string>& nodes;
+    Then then;
+  } streams[] = {{"/robot/state", senders.state, Then::silence},
+                 {kJoints, senders.joints, Then::silence},
+                 {"/clock", senders.clock, Then::silence},
+                 {kEndpoint, senders.endpoint, Then::hold},
+                 {"collision_detection_state of the left arm", senders.collision, Then::hold},
+                 {"collision_avoidance_state of the left arm", senders.avoidance, Then::hold}};
+  for (const auto& one : streams) {
+    if (one.then != then || one.nodes.size() < 2) continue;
+    return Fault{fmt::format("{} comes from more than one node, {}: one of them is no robot, end it", one.stream,
+                             listed(one.nodes)),
+                 then};
+  }
+  return std::nullopt;
+}
+
+/// N by which the force is less than its zero, in the direction of a press.
+double pull_of(const Watch::Rise& rise, const EndpointReading& endpoint) {
+  return rise.sign * (rise.zero - endpoint.force.z());
+}
+
+/// `reflex`: the arm's own has stopped it, too.
+Fault held(double newtons, const Eigen::Vector3d& tip, bool reflex) {
+  return {
+      fmt::format("something holds the tool: it pulls with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene: see "
+                  "what the tool hangs on to, and free it by hand before the arm goes up again",
+                  newtons, 100 * tip.x(), 100 * tip.y(), 100 * tip.z()),
+      Then::hold, true, reflex};
 }
 
 }  // namespace
@@ -109,13 +147,14 @@ double Watch::lateness() const {
 }
 
 void Watch::sent(double time, const Joints& target) {
-  motion_.sent.push_back({time, target});
+  motion_.sent.push_back({time, target, motion_.joints ? motion_.joints->position : target});
   while (motion_.sent.front().time < time - kTrail) motion_.sent.pop_front();
 }
 
 std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
   if (auto fault = known(seen, moving, 0.0)) return fault;
-  return feels(seen, 0.0);
+  if (auto fault = feels(seen, 0.0)) return fault;
+  return moving ? settings(seen) : std::nullopt;
 }
 
 /// For how long this program did not get to the arm: since the look before, or to receive what came.
@@ -135,7 +174,15 @@ void Watch::hear(const Snapshot& seen) {
   motion_.looks.push_back(seen.now);
   while (motion_.looks.front() < seen.now - Stream::kWindow) motion_.looks.pop_front();
   if (seen.joints) joint_stream_.hear(*seen.joints, seen.now);
-  fresh_ = seen.endpoint && endpoint_stream_.hear(*seen.endpoint, seen.now);
+  fresh_ = false;
+  if (!seen.endpoint) return;
+  const EndpointReading& endpoint = *seen.endpoint;
+  endpoint_stream_.hear(endpoint, seen.now);
+  fresh_ = force_stream_.hear({endpoint.received, static_cast<double>(endpoint.renewals), endpoint.renewals}, seen.now);
+  if (!fresh_) return;
+  renewed_ = endpoint.count;
+  if (force_stream_.heard() < Stream::kFewest) return;
+  renewal_ = std::max(1.0, static_cast<double>(endpoint_stream_.heard()) / force_stream_.heard());
 }
 
 /// Whoever feels too seldom presses too hard before he notices. A simulated clock runs on while this program is late,
@@ -150,15 +197,18 @@ std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
     return Fault{fmt::format("this computer got to the arm {}{}", in_window(looks), kOwnSlowness), Then::hold};
   }
   const int fewest = seen.simulated ? std::min(Stream::kFewest, looks / 2) : Stream::kFewest;
-  for (const auto& [name, stream] : {std::pair{"/robot/joint_states of the left arm", &joint_stream_},
-                                     std::pair{"endpoint_state of the left arm", &endpoint_stream_}}) {
+  for (const auto& [name, stream] : {std::pair{kJoints, &joint_stream_}, std::pair{kEndpoint, &endpoint_stream_}}) {
     if (stream->heard() >= fewest) continue;
     return Fault{
         fmt::format("{} came only {}: see to the network, and to /robot/joint_state_publish_rate, which should be 100",
                     name, in_window(stream->heard())),
         Then::hold};
   }
-  return std::nullopt;
+  if (force_stream_.heard() >= fewest) return std::nullopt;
+  return Fault{fmt::format("endpoint_state came {} times and had another force only {}: a contact would be felt too "
+                           "late, see what filters or repeats the force, or restart the robot",
+                           endpoint_stream_.heard(), in_window(force_stream_.heard())),
+               Then::hold};
 }
 
 /// Whatever forbids to command even the measured joints.
@@ -167,14 +217,11 @@ std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap)
   if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"not all of joints, endpoint and state were heard"};
   if (auto fault = stale("/robot/state", seen.now - seen.state->received, kStateFresh, gap)) return fault;
   if (auto fault = state_forbids(*seen.state, seen.joints, moving)) return fault;
-  if (auto fault = many("/robot/state comes", seen.state_senders)) return fault;
-  if (auto fault = many("joints of the left arm come", seen.joint_senders)) return fault;
+  if (auto fault = many(seen.senders, Then::silence)) return fault;
   if (!seen.commanders.empty()) {
     return Fault{fmt::format("the arm is commanded by {}, too: end that first", listed(seen.commanders))};
   }
-  if (auto fault = stale("/robot/joint_states of the left arm", seen.now - seen.joints->received, kFresh, gap)) {
-    return fault;
-  }
+  if (auto fault = stale(kJoints, seen.now - seen.joints->received, kFresh, gap)) return fault;
   if (seen.joints->position.allFinite()) return std::nullopt;
   return Fault{"/robot/joint_states has a position that is no number: restart the robot"};
 }
@@ -182,15 +229,37 @@ std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap)
 /// Where the arm is, is known: it may be held there.
 std::optional<Fault> Watch::feels(const Snapshot& seen, double gap) {
   const EndpointReading& endpoint = *seen.endpoint;
-  if (auto fault = stale("endpoint_state of the left arm", seen.now - endpoint.received, kFresh, gap, Then::hold)) {
-    return fault;
-  }
+  if (auto fault = many(seen.senders, Then::hold)) return fault;
+  if (auto fault = stale(kEndpoint, seen.now - endpoint.received, kFresh, gap, Then::hold)) return fault;
   if (!endpoint.force.allFinite() || !endpoint.pose.position.allFinite()) {
     return Fault{"endpoint_state has a force or a place that is no number: restart the robot", Then::hold};
   }
   if (!endpoint.force.isZero(0.0)) return std::nullopt;
   return Fault{"endpoint_state has a force of exactly zero: this robot, a Gazebo simulation perhaps, does not feel",
                Then::hold};
+}
+
+/// What another program has told the robot, and the robot keeps, so that the arm would not do what it is sent.
+std::optional<Fault> Watch::settings(const Snapshot& seen) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const struct {
+    const char* topic;
+    const std::optional<Setting>& setting;
+    double least, most;
+    const char* reason;
+    const char* own;
+  } rules[] = {{"set_speed_ratio", seen.speed_ratio, kLeastRatio, kAny, ", at which the arm cannot follow", "0.3"},
+               {"joint_command_timeout", seen.command_timeout, kLeastTimeout, kMostTimeout,
+                " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the "
+                "next",
+                "0.2"}};
+  for (const auto& [topic, setting, least, most, reason, own] : rules) {
+    if (!setting || (setting->value >= least && setting->value <= most)) continue;
+    return Fault{fmt::format("{0}: {1} has set it to {2:g}{3}: set it to {4}, on /robot/limb/left/{0}", topic,
+                             setting->sender, setting->value, reason, own),
+                 Then::hold};
+  }
+  return std::nullopt;
 }
 
 /// Of several rules that are broken at once that counts which leaves the least to do: so all that ask for silence are
@@ -203,6 +272,7 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
   if (auto fault = feels(seen, own)) return fault;
   if (auto fault = endpoint(seen, own)) return fault;
   if (auto fault = too_slow(seen)) return fault;
+  if (auto fault = settings(seen)) return fault;
   if (const int joint = beyond_limits(seen.joints->position, 0.0); joint >= 0) {
     return Fault{fmt::format("{} is at {:.1f} deg, beyond its limit: move the arm by hand",
                              kJointNames[static_cast<std::size_t>(joint)], degrees(seen.joints->position(joint))),
@@ -211,13 +281,20 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
   const std::string breach = workspace_.breach(tip);
   if (!breach.empty()) return Fault{breach + ": see whether place and tool are as the config has them", Then::hold};
   if (auto fault = follows(seen)) return fault;
-  if (!motion_.collision_expected && seen.collision && seen.collision->collision) {
-    return Fault{
-        "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
-        "motion.threshold, or see what the arm met",
-        Then::retreat, true, true};
+  if (!motion_.collision_expected && seen.collision && seen.collision->collision) return reflex(seen, tip);
+  return force(seen, tip);
+}
+
+/// What the arm's own reflex is about: an arm that it stops on its way up may be held by what it touched.
+std::optional<Fault> Watch::reflex(const Snapshot& seen, const Eigen::Vector3d& tip) const {
+  if (motion_.rise) {
+    const double pulls = pull_of(*motion_.rise, *seen.endpoint);
+    if (pulls > 0.25 * motion_.rise->limit) return held(pulls, tip, true);
   }
-  return force(seen);
+  return Fault{
+      "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
+      "motion.threshold, or see what the arm met",
+      Then::retreat, true, true};
 }
 
 std::optional<Fault> Watch::joints(const Snapshot& seen) {
@@ -233,17 +310,17 @@ std::optional<Fault> Watch::joints(const Snapshot& seen) {
 
 std::optional<Fault> Watch::endpoint(const Snapshot& seen, double gap) {
   if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_, Then::hold)) return fault;
-  const Eigen::Vector3d& now = seen.endpoint->force;
-  if (!motion_.force || now != *motion_.force) {
-    motion_.force = now;
-    motion_.force_changed = seen.now;
-  }
-  const double frozen = seen.now - motion_.force_changed;
-  if (frozen <= kFrozen) return collision_silent(seen, gap);
+  if (auto fault = frozen(*seen.endpoint)) return fault;
+  return collision_silent(seen, gap);
+}
+
+std::optional<Fault> Watch::frozen(const EndpointReading& endpoint) const {
+  const long equal = endpoint.count - renewed_;
+  if (static_cast<double>(equal) < kFrozen * renewal_) return std::nullopt;
   return Fault{
-      fmt::format("endpoint_state has had the same force to the last digit for {:.2f} s: its sender is frozen, "
-                  "restart the robot",
-                  frozen),
+      fmt::format("endpoint_state has had the same force to the last digit for {} messages, and before another "
+                  "every {:.1f}: its sender is frozen, restart the robot",
+                  equal, renewal_),
       Then::hold};
 }
 
@@ -259,10 +336,21 @@ std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
   return stale("collision_detection_state of the left arm", seen.now - received, kStateFresh, gap, Then::hold);
 }
 
-std::optional<Fault> Watch::force(const Snapshot& seen) {
+std::optional<Fault> Watch::pull(const Snapshot& seen, const Eigen::Vector3d& tip, double since) {
+  if (!motion_.rise) return std::nullopt;
+  Rise& rise = *motion_.rise;
+  const double pulls = pull_of(rise, *seen.endpoint);
+  if (rise.follows == Zero::follows) rise.zero -= rise.sign * pulls * std::min(1.0, since / kZeroFollows);
+  motion_.pulled = pulls > rise.limit ? motion_.pulled + 1 : 0;
+  if (motion_.pulled < kForceSamples) return std::nullopt;
+  return held(pulls, tip, false);
+}
+
+std::optional<Fault> Watch::force(const Snapshot& seen, const Eigen::Vector3d& tip) {
   if (!fresh_) return std::nullopt;
   const double since = motion_.felt_at ? seen.now - *motion_.felt_at : 0.0;
   motion_.felt_at = seen.now;
+  if (auto fault = pull(seen, tip, since)) return fault;
   if (!motion_.tare) return std::nullopt;
   const Eigen::Vector3d felt = seen.endpoint->force - *motion_.tare;
   const double change =
@@ -284,10 +372,32 @@ std::optional<Fault> Watch::follows(const Snapshot& seen) const {
   for (const Sent& one : motion_.sent) nearest = std::min(nearest, from(one.target));
   const double behind = from(motion_.sent.back().target);
   if (behind <= kFollowing && nearest <= kOffTheWay) return std::nullopt;
-  return Fault{fmt::format("the arm does not follow, a joint is {:.1f} deg from where it was sent: see what blocks it, "
-                           "and whether others command it",
-                           degrees(behind)),
+  return Fault{fmt::format("the arm does not follow, a joint is {:.1f} deg from where it was sent{}", degrees(behind),
+                           why_behind(now, seen.now)),
                Then::hold};
+}
+
+/// Of an arm that is `now` behind its set-point: whether it goes after it, too slowly, or stands. How fast the joint
+/// goes that is farthest behind, over the last kRecent seconds, says so.
+std::string Watch::why_behind(const Joints& now, double time) const {
+  constexpr double kRecent = 0.2;    // s
+  constexpr double kTurning = 0.05;  // rad/s: one that is blocked turns less
+  const Sent& last = motion_.sent.back();
+  const Sent& then = *std::find_if(motion_.sent.begin(), motion_.sent.end() - 1,
+                                   [&](const Sent& one) { return one.time >= time - kRecent; });
+  Eigen::Index joint = 0;
+  (last.target - now).cwiseAbs().maxCoeff(&joint);
+  const double taken = std::max(time - then.time, 1e-3);
+  const double turns = (now(joint) - then.arm(joint)) / taken;
+  const double led = (last.target(joint) - then.target(joint)) / taken;
+  if (turns * (last.target(joint) - now(joint)) <= 0.0 || std::abs(turns) < kTurning) {
+    return ": see what blocks it, and whether others command it";
+  }
+  return fmt::format(
+      " and turns at {:.0f} deg/s where it is led at {:.0f}: it is slower than a Baxter is at its own speed "
+      "ratio, so set that to 0.3 on /robot/limb/left/set_speed_ratio, or take a lower "
+      "motion.travel_speed",
+      degrees(std::abs(turns)), degrees(std::abs(led)));
 }
 
 }  // namespace palpate::baxter

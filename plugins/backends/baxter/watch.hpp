@@ -41,7 +41,8 @@ struct Workspace {
 
 /// How often something new comes: the new readings of one stream within the last half second. The robot sends a hundred
 /// times a second and the driver looks as often; but either may be late, and then the latest reading is one that was
-/// looked at before. What counts readings must count new ones.
+/// looked at before. What counts readings must count new ones; of the force those that brought another force, however
+/// often it was sent.
 class Stream {
  public:
   static constexpr double kWindow = 0.5;  ///< s
@@ -88,7 +89,7 @@ class Watch {
   static constexpr double kStateFresh = 0.5;   ///< s, greatest age of /robot/state
   static constexpr double kLate = 0.3;         ///< s by which a stamp may lie farther back than the best so far
   static constexpr double kDrift = 1e-3;       ///< s per second by which the robot's clock and ours may drift apart
-  static constexpr double kFrozen = 0.5;       ///< s for which a force may be the same to the last digit
+  static constexpr int kFrozen = 10;           ///< times in which the robot renews its force, with the same force
   static constexpr double kJump = 0.06;        ///< rad between two readings; 4 rad/s of the wrist are 0.04 in a period
   static constexpr double kFollowing = 0.2;    ///< rad from the set-point
   static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
@@ -118,8 +119,23 @@ class Watch {
     motion_.tare = force;
     zero_ = zero;
   }
-  /// No force stops from now on.
+  /// No force stops from now on, but one that pulls.
   void forget_tare() { motion_.tare.reset(); }
+  /// While the arm goes up nothing presses against it, and what pulls holds the tool: `zero` (N) of the force along z,
+  /// the sign of it when something presses the tool upwards, and the pull (N) from which it stops the arm. The joints
+  /// rub the other way than when the zero was felt, which reads as a pull of up to 13 N at 0.4 Nm; so where the arm has
+  /// begun to go up freely the zero is felt anew, and `follows` as in Zero.
+  struct Rise {
+    double zero;
+    double sign;
+    double limit;
+    Zero follows = Zero::stays;
+  };
+  /// From now on until begin() or the next call; nullopt: the arm does not go up.
+  void expect_rise(const std::optional<Rise>& rise) {
+    motion_.rise = rise;
+    motion_.pulled = 0;
+  }
   /// Whether a collision felt by the robot's firmware is a fault; not while one waits for its end.
   void expect_collision(bool expected) { motion_.collision_expected = expected; }
 
@@ -128,10 +144,11 @@ class Watch {
   /// The part of look() that needs no arm of ours: which readings are new, and whether they come often enough, which is
   /// known half a second after begin().
   std::optional<Fault> listen(const Snapshot& seen);
-  /// By how much set-points and readings together may be late now, seconds: twice the time by which the latest joints or
-  /// force came later after their stamps than the earliest did, or the time by which this program looked too late.
+  /// By how much set-points and readings together may be late now, seconds: twice the time by which the latest joints
+  /// or force came later after their stamps than the earliest did, or the time by which this program looked too late.
   double lateness() const;
-  /// Whether the force that was looked at last was a new reading, and not the one of the look before.
+  /// Whether the force that was looked at last was a new reading: neither that of the look before nor that one sent
+  /// again.
   bool fresh() const { return fresh_; }
   /// Tells what is sent, so that look() can judge whether the arm follows.
   void sent(double time, const Joints& target);
@@ -140,37 +157,43 @@ class Watch {
     return motion_.sent.empty() ? std::nullopt : std::optional<Joints>(motion_.sent.back().target);
   }
 
-  /// The rules of the robot's state, of who sends it, and of the age and soundness of the data: what must hold even
-  /// while nothing moves. `moving`: the arm must be enabled.
+  /// The rules of the robot's state, of who sends it, of the age and soundness of the data, and, where it is `moving`,
+  /// of being enabled and of what other programs have set: what must hold even while nothing moves.
   static std::optional<Fault> fit(const Snapshot& seen, bool moving);
 
  private:
   static std::optional<Fault> known(const Snapshot& seen, bool moving, double gap);
   static std::optional<Fault> feels(const Snapshot& seen, double gap);
+  static std::optional<Fault> settings(const Snapshot& seen);
   double gap(const Snapshot& seen) const;
   void hear(const Snapshot& seen);
   std::optional<Fault> too_slow(const Snapshot& seen) const;
   std::optional<Fault> joints(const Snapshot& seen);
   std::optional<Fault> endpoint(const Snapshot& seen, double gap);
+  std::optional<Fault> frozen(const EndpointReading& endpoint) const;
   std::optional<Fault> collision_silent(const Snapshot& seen, double gap);
   std::optional<Fault> follows(const Snapshot& seen) const;
-  std::optional<Fault> force(const Snapshot& seen);
+  std::string why_behind(const Joints& now, double time) const;
+  std::optional<Fault> reflex(const Snapshot& seen, const Eigen::Vector3d& tip) const;
+  std::optional<Fault> pull(const Snapshot& seen, const Eigen::Vector3d& tip, double since);
+  std::optional<Fault> force(const Snapshot& seen, const Eigen::Vector3d& tip);
 
   struct Sent {
     double time;
     Joints target;
+    Joints arm;  ///< where it was seen then
   };
   /// What begin() forgets.
   struct Motion {
     std::deque<Sent> sent;
-    std::deque<double> looks;              ///< within Stream::kWindow
-    double began = 0.0;                    ///< the first look
-    std::optional<JointReading> joints;    ///< the reading before
-    std::optional<Eigen::Vector3d> force;  ///< the reading before
-    double force_changed = 0.0;            ///< when it last was another
-    std::optional<double> felt_at;         ///< when the latest reading of the force was looked at
+    std::deque<double> looks;            ///< within Stream::kWindow
+    double began = 0.0;                  ///< the first look
+    std::optional<JointReading> joints;  ///< the reading before
+    std::optional<double> felt_at;       ///< when the latest reading of the force was looked at
     std::optional<Eigen::Vector3d> tare;
     int too_strong = 0;
+    std::optional<Rise> rise;
+    int pulled = 0;  ///< readings, one after the other
     bool collision_expected = false;
   };
 
@@ -180,6 +203,9 @@ class Watch {
   Zero zero_ = Zero::stays;
   Stream joint_stream_;
   Stream endpoint_stream_;
+  Stream force_stream_;   ///< of its messages those that renewed the force
+  long renewed_ = 0;      ///< the count of the message that was seen with the latest of them
+  double renewal_ = 1.0;  ///< messages that the robot takes to renew the force once, as measured
   bool fresh_ = false;
   double collision_received_ = -std::numeric_limits<double>::infinity();  ///< the latest
   bool collision_streams_ = false;                                        ///< it came twice within kStateFresh

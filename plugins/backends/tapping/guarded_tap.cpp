@@ -108,11 +108,7 @@ std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
 }
 
 GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
-    : motion_(motion),
-      descent_(descent),
-      arm_(arm),
-      set_point_(descent.hover),
-      free_(motion.threshold / kSoftest) {}
+    : motion_(motion), descent_(descent), arm_(arm), set_point_(descent.hover), free_(motion.threshold / kSoftest) {}
 
 double GuardedTap::next(double height, double force, bool fresh) {
   if (done()) return set_point_;
@@ -262,8 +258,7 @@ GuardedTap::Rise GuardedTap::rise() const {
     if (one.height < first_ + 2.0 * kFarthestOnset) above.push_back({one.height, one.force - free.at(one.height)});
   }
   const std::optional<double> found = onset_of_descent(above);
-  const bool is_contact =
-      found && *found - first_ < kFarthestOnset && slope_below(above, *found) > kSoftestRise;
+  const bool is_contact = found && *found - first_ < kFarthestOnset && slope_below(above, *found) > kSoftestRise;
   return {is_contact ? *found : first_, is_contact};
 }
 

@@ -137,10 +137,10 @@ class GuardedTap {
   double sum_ = 0.0;   ///< of forces while taring
   int summed_ = 0;     ///< how many
   double peak_ = 0.0;
-  double first_ = 0.0;  ///< height at which the latest contact was noticed
+  double first_ = 0.0;             ///< height at which the latest contact was noticed
   std::optional<double> refused_;  ///< `first_` of the latest that was not believed
-  double gap_ = 0.0;    ///< least distance of arm and set-point in this stage
-  long nearer_ = 0;     ///< the period in which it last became less
+  double gap_ = 0.0;               ///< least distance of arm and set-point in this stage
+  long nearer_ = 0;                ///< the period in which it last became less
   bool given_up_ = false;
   int noticed_ = 0;
   int above_ = 0;              ///< readings above the threshold, without a break

@@ -31,7 +31,9 @@ constexpr const char* kDescriptionParameter = "/robot_description";
 /// All that there is to hear, and where this program is heard.
 constexpr const char* kTopics[] = {kJointTopic,     kEndpointTopic,    kStateTopic,      kCollisionTopic,
                                    kAvoidanceTopic, kEndEffectorTopic, kSpeedRatioTopic, kCommandTimeoutTopic,
-                                   kCommandTopic,   "/clock"};
+                                   kCommandTopic,   kClockTopic};
+/// Of those, what one node alone must send. Joints come from two, of which one sends a gripper's.
+constexpr const char* kOfOneNode[] = {kStateTopic, kEndpointTopic, kCollisionTopic, kAvoidanceTopic, kClockTopic};
 constexpr const char* kOldState = "d7ff2b9fa7d5f688665ce44db4ee2af8";  ///< AssemblyState before 1.2
 
 /// One attempt to join the network.
@@ -94,12 +96,15 @@ class Visit {
     }
   }
 
-  /// Of two states one is a lie, perhaps a mock's that somebody forgot; a node that ended without leaving counts, too.
+  /// Of two that send one stream one is a lie, perhaps a mock's that somebody forgot; a node that ended without leaving
+  /// counts, too.
   static void expect_one_robot(const Graph& graph) {
-    const auto& nodes = Graph::of(graph.publishers, kStateTopic);
-    if (nodes.size() < 2) return;
-    throw trouble(kStateTopic, "comes from more than one node, " + listed(nodes),
-                  "end what is no robot; rosnode cleanup removes what has ended already");
+    for (const char* topic : kOfOneNode) {
+      const auto& nodes = Graph::of(graph.publishers, topic);
+      if (nodes.size() < 2) continue;
+      throw trouble(topic, "comes from more than one node, " + listed(nodes),
+                    "end what is no robot; rosnode cleanup removes what has ended already");
+    }
   }
 
   /// roscpp looks names up while it subscribes, for as long as that takes; so it is done here before.

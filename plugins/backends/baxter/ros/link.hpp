@@ -29,6 +29,7 @@ constexpr const char* kEndEffectorTopic = "/robot/end_effector/left_gripper/prop
 constexpr const char* kSpeedRatioTopic = "/robot/limb/left/set_speed_ratio";
 constexpr const char* kCommandTimeoutTopic = "/robot/limb/left/joint_command_timeout";
 constexpr const char* kCommandTopic = "/robot/limb/left/joint_command";
+constexpr const char* kClockTopic = "/clock";
 constexpr const char* kSolverService = "/ExternalTools/left/PositionKinematicsNode/IKService";
 
 /// The robot, perhaps not yet heard in full.

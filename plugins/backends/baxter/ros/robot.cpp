@@ -19,6 +19,7 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
+#include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Float64.h>
 #include <boost/algorithm/string/trim.hpp>
@@ -263,24 +264,29 @@ class RosRobot final : public Link {
 
   void listen() {
     subscribe<sensor_msgs::JointState>(kJointTopic, take_joints);
-    subscribe<msgs::EndpointState>(
-        kEndpointTopic, [](const msgs::EndpointState& message, const Heard& heard, Snapshot& latest) {
-          const auto& at = message.pose.position;
-          const auto& turn = message.pose.orientation;
-          const auto& force = message.wrench.force;
-          latest.endpoint = EndpointReading{heard.next(message, latest.endpoint),
-                                            {{at.x, at.y, at.z}, {turn.w, turn.x, turn.y, turn.z}},
-                                            {force.x, force.y, force.z}};
-        });
+    subscribe<msgs::EndpointState>(kEndpointTopic,
+                                   [](const msgs::EndpointState& message, const Heard& heard, Snapshot& latest) {
+                                     const auto& at = message.pose.position;
+                                     const auto& turn = message.pose.orientation;
+                                     const auto& force = message.wrench.force;
+                                     EndpointReading reading{heard.next(message, latest.endpoint),
+                                                             {{at.x, at.y, at.z}, {turn.w, turn.x, turn.y, turn.z}},
+                                                             {force.x, force.y, force.z}};
+                                     count_after(latest.endpoint, reading);
+                                     latest.endpoint = reading;
+                                     add_once(latest.senders.endpoint, heard.sender);
+                                   });
     subscribe<msgs::AssemblyState>(kStateTopic, take_state);
     subscribe<msgs::CollisionDetectionState>(
         kCollisionTopic, [](const auto& message, const Heard& heard, Snapshot& latest) {
           latest.collision = CollisionReading{heard.next(message, latest.collision), message.collision_state != 0};
+          add_once(latest.senders.collision, heard.sender);
         });
     subscribe<msgs::CollisionAvoidanceState>(
         kAvoidanceTopic, [](const auto& message, const Heard& heard, Snapshot& latest) {
           latest.avoidance =
               AvoidanceReading{heard.next(message, latest.avoidance), message.other_arm != 0, message.collision_object};
+          add_once(latest.senders.avoidance, heard.sender);
         });
     subscribe<msgs::EndEffectorProperties>(kEndEffectorTopic, [](const auto& message, const Heard&, Snapshot& latest) {
       latest.end_effector.product = boost::trim_copy(message.manufacturer + " " + message.product);
@@ -291,6 +297,18 @@ class RosRobot final : public Link {
         latest.*kept = Setting{message.data, heard.sender};
       });
     }
+    if (ros::Time::isSimTime()) listen_to_clock();
+  }
+
+  /// roscpp takes the time from whoever sends it. Here only the senders count, and the bag has times of its own.
+  void listen_to_clock() {
+    using Event = ros::MessageEvent<const rosgraph_msgs::Clock>;
+    const boost::function<void(const Event&)> heard = [this](const Event& event) {
+      const std::lock_guard lock(mutex_);
+      add_once(latest_.senders.clock, event.getPublisherName());
+    };
+    subscribers_.push_back(handle_.subscribe<const Event&>(kClockTopic, 1, heard, ros::VoidConstPtr(),
+                                                           ros::TransportHints().tcpNoDelay()));
   }
 
   static void take_joints(const sensor_msgs::JointState& message, const Heard& heard, Snapshot& latest) {
@@ -298,11 +316,11 @@ class RosRobot final : public Link {
     if (part.count == 0) return;  // the gripper's, or the other arm's
     if (!part.malformed.empty()) return malformed(latest, fmt::format("{} has {}", kJointTopic, part.malformed));
     latest.joints = JointReading{heard.next(message, latest.joints), part.position};
-    add_once(latest.joint_senders, heard.sender);
+    add_once(latest.senders.joints, heard.sender);
   }
 
   static void take_state(const msgs::AssemblyState& message, const Heard& heard, Snapshot& latest) {
-    add_once(latest.state_senders, heard.sender);
+    add_once(latest.senders.state, heard.sender);
     if (message.estop_button > msgs::AssemblyState::ESTOP_BUTTON_RELEASED ||
         message.estop_source > msgs::AssemblyState::ESTOP_SOURCE_BRAIN) {
       return malformed(latest, fmt::format("{} has estop_button {} and estop_source {}", kStateTopic,

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// A tap after which the tool hangs on to what it touched, by a spring that pulls: a handle, tape, a magnet.
+#include "baxter/body_bench.hpp"
+#include "baxter/tapper_bench.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate::baxter {
+namespace {
+
+using fake_baxter::Body;
+using fake_baxter::FaultKind;
+using fake_baxter::MechanicsOptions;
+using test::fake_options;
+using test::kHover;
+using test::kOnDesk;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// An arm with springs over a hard desk, and what came of its taps.
+class HardDesk {
+ public:
+  explicit HardDesk(double friction, const BaxterOptions& options = fake_options())
+      : scene_(palpate::test::scene_of("[]", "{stiffness: {object: 20000 N/m}}")),
+        robot(*scene_, body(friction)),
+        tapper_(options, *scene_, robot, nullptr, [](const std::string&) {}) {
+    robot.every_period = [this] {
+      const bool reflex = robot.body.mode() == Body::Mode::reflex;
+      reflexes += reflex && !before_ ? 1 : 0;
+      before_ = reflex;
+      pull = std::max(pull, -robot.body.pressing());
+    };
+  }
+
+  Contact tap(const Target& place) {
+    TapRequest request;
+    request.number = ++taps_;
+    request.target = place;
+    return tapper_.tap(request);
+  }
+  void wait(double seconds) { robot.wait_until(robot.body.now() + seconds); }
+
+ private:
+  static test::BodyOptions body(double friction) {
+    test::BodyOptions out = test::body_options(fake_options());
+    out.mechanics = {MechanicsOptions::Type::springs, friction, 1e-3};
+    return out;
+  }
+
+  std::unique_ptr<const Scene> scene_;
+
+ public:
+  test::BodyRobot robot;
+  int reflexes = 0;   ///< of the arm's own
+  double pull = 0.0;  ///< N, the most that held the tool
+
+ private:
+  Tapper tapper_;
+  int taps_ = 0;
+  bool before_ = false;
+};
+
+TEST(ACaughtTool, IsHeldWhereItIsAndToldAndNotPulledAgainstTheReflex) {
+  for (const auto& [friction, stiffness] : {std::pair{0.0, 3000.0}, {0.0, 20000.0}, {0.2, 20000.0}}) {  // Nm, N/m
+    {
+      HardDesk bench(friction);
+      bench.robot.body.inject({FaultKind::caught, stiffness, {}});
+      const double begin = bench.robot.body.now();
+      const Contact contact = bench.tap(kOnDesk);
+      const std::string where = fmt::format("{} Nm, {} N/m", friction, stiffness);
+      EXPECT_EQ(contact.outcome, Outcome::aborted) << where;
+      EXPECT_TRUE(contact.ends_run);
+      EXPECT_THAT(contact.reason, StartsWith("something holds the tool: it pulls with ")) << where;
+      EXPECT_THAT(contact.reason, HasSubstr("free it by hand before the arm goes up again; the arm holds "));
+      EXPECT_EQ(bench.reflexes, 0) << where;
+      EXPECT_LT(bench.pull, Body::kReflex) << where;
+      EXPECT_LT(bench.robot.body.now() - begin, 30.0);
+      const std::size_t sent = bench.robot.commands.size();
+      bench.wait(3.0);
+      EXPECT_EQ(bench.robot.commands.size(), sent);
+      EXPECT_LT(std::abs(bench.robot.body.pressing()), 8.0) << where << ": held by half of what it pulled with";
+    }
+  }
+}
+
+TEST(ACaughtTool, IsFreedByAPersonAndTheNextTapGoesOn) {
+  HardDesk bench(0.0);
+  bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
+  ASSERT_THAT(bench.tap(kOnDesk).reason, StartsWith("something holds the tool"));
+  const Contact again = bench.tap(kOnDesk);
+  EXPECT_TRUE(again.ends_run) << "nobody has freed it: the next run does not pull on either";
+  EXPECT_THAT(again.reason, HasSubstr("the arm holds "));
+  EXPECT_LE(bench.reflexes, 2);
+  bench.robot.body.release();
+  bench.wait(3.0);
+  EXPECT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
+}
+
+TEST(AReflex, OfAnArmThatIsPulledFiresOnceAndOfOneThatPressesAsOftenAsItTakes) {
+  // The tool is caught by something that gives way, so that the arm is fast when it pulls.
+  HardDesk caught(0.0);
+  caught.robot.body.inject({FaultKind::caught, 600.0, {}});
+  const Contact contact = caught.tap(kOnDesk);
+  EXPECT_THAT(contact.reason, StartsWith("something holds the tool"));
+  EXPECT_LE(caught.reflexes, 1);
+  caught.wait(10.0);
+  EXPECT_LE(caught.reflexes, 1) << "its springs are let off";
+}
+
+TEST(AnArmThatIsFree, IsNotHeldByTheFrictionOfItsJoints) {
+  for (const Target& place : {Target{0.02, 0.21}, Target{0.21, 0.02}}) {  // where they rub most and least
+    HardDesk bench(0.4);
+    for (int tap = 0; tap < 2; ++tap) {
+      const Contact contact = bench.tap(place);
+      EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::baxter

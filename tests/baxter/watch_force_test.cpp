@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// The rules that count readings of the force: how often it is another, whether it is frozen, whether something holds
+// the tool. Each begins with what a robot says, message by message, whose force is known.
+#include "baxter/watch_bench.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+namespace palpate::baxter {
+namespace {
+
+using test::IsFault;
+using test::IsNothing;
+using test::kZero;
+using test::Rules;
+using testing::AllOf;
+using testing::HasSubstr;
+using Then = Fault::Then;
+
+/// A robot that sends a force `messages` times a period of 10 ms, of which the driver sees the last.
+class Sender {
+ public:
+  explicit Sender(int messages = 1) : messages_(messages) {}
+
+  /// One period, in which the force along z is `force(number)` of each message; the fault that the rules find.
+  std::optional<Fault> send(Rules& rules, const std::function<double(long)>& force) {
+    for (int i = 0; i < messages_; ++i) {
+      EndpointReading next = *test::sound(now_, test::pose()).endpoint;
+      next.force = {0.0, 0.0, force(sent_++)};
+      count_after(latest_, next);
+      latest_ = next;
+    }
+    const std::optional<Fault> fault = rules.at(now_, [&](Snapshot& seen) { seen.endpoint = latest_; });
+    now_ += 0.01;
+    return fault;
+  }
+  /// The same until a fault, for so many periods at most.
+  std::optional<Fault> send(Rules& rules, int periods, const std::function<double(long)>& force) {
+    std::optional<Fault> fault;
+    for (taken_ = 0; taken_ < periods && !fault; ++taken_) fault = send(rules, force);
+    return fault;
+  }
+  int taken() const { return taken_; }  ///< periods of the latest send()
+  long sent() const { return sent_; }
+
+ private:
+  int messages_;
+  double now_ = 1.0;
+  long sent_ = 0;
+  int taken_ = 0;
+  std::optional<EndpointReading> latest_;
+};
+
+/// Of a robot that estimates the force once in `every` messages: noise that no two of its estimates have in common.
+std::function<double(long)> renewed(int every) {
+  return [every](long number) { return 0.1 * std::sin(1.0 + 1000.0 * static_cast<double>(number / every)); };
+}
+
+TEST(AFrozenForce, IsNoticedAfterTenOfTheTimesInWhichTheRobotRenewsIt) {
+  for (const auto& [every, messages, periods] :
+       {std::tuple{1, 1, 10}, {1, 5, 2}, {3, 2, 15}}) {  // 100, 500 and 67 renewals a second
+    Rules rules;
+    Sender robot(messages);
+    ASSERT_THAT(robot.send(rules, 120, renewed(every)), IsNothing()) << every;
+    const double last = renewed(every)(robot.sent() - 1);
+    const std::optional<Fault> fault = robot.send(rules, 100, [&](long) { return last; });
+    EXPECT_THAT(fault, IsFault("the same force to the last digit", Then::hold));
+    EXPECT_NEAR(robot.taken(), periods, 1) << every << " of " << messages << " a period";
+  }
+}
+
+TEST(AFrozenForce, IsFoundInAForceThatIsRenewedSeldomOnlyWhereItIsFrozen) {
+  for (const int every : {1, 2}) {
+    Rules rules;
+    Sender robot;
+    EXPECT_THAT(robot.send(rules, 1000, renewed(every)), IsNothing()) << every;
+  }
+}
+
+TEST(AForce, ThatIsRenewedSeldomEndsNoRunByOneNoisyValue) {
+  for (const int every : {2, 5, 10}) {
+    Rules rules;
+    Sender robot;
+    rules.set_tare(Eigen::Vector3d::Zero());
+    const auto noisy = [every](long number) { return number < every ? 30.0 : renewed(every)(number); };
+    EXPECT_THAT(robot.send(rules, 2 * every, noisy), IsNothing()) << every;
+    const auto pressed = [every](long number) { return 30.0 + renewed(every)(number); };
+    EXPECT_THAT(robot.send(rules, 3 * every, pressed), IsFault("more than force_stop allows", Then::retreat));
+    EXPECT_GT(robot.taken(), 2 * every) << "three renewals, however often each was sent";
+  }
+}
+
+TEST(AForce, ThatIsRenewedTooSeldomToBeSafeIsToldWithHowOften) {
+  for (const int every : {5, 10}) {
+    Rules rules;
+    Sender robot;
+    const std::optional<Fault> fault = robot.send(rules, 60, renewed(every));
+    EXPECT_THAT(fault, IsFault(every == 5 ? "had another force only 11 times in the last 0.5 s, 25 are needed"
+                                          : "had another force only 6 times",
+                               Then::hold));
+  }
+  Rules rules;
+  EXPECT_THAT(Sender().send(rules, 300, renewed(2)), IsNothing()) << "fifty times a second is enough";
+}
+
+TEST(AForce, ThatComesInBurstsIsCountedByTheMessageAndNotByTheLook) {
+  // Of five messages that come at once the last is seen; each has a force of its own.
+  Rules rules;
+  Sender robot(5);
+  EXPECT_THAT(robot.send(rules, 300, renewed(1)), IsNothing());
+}
+
+/// An arm that goes up with a force that is a function of the period, in newtons of a press; `sign` as of Watch::Rise.
+std::optional<Fault> rising(double sign, const Watch::Rise& rise, const std::function<double(int)>& press) {
+  Rules rules;
+  Sender robot;
+  rules.expect_rise(rise);
+  std::optional<Fault> fault;
+  for (int period = 0; period < 100 && !fault; ++period) {
+    fault = robot.send(rules, [&](long number) { return rise.zero + sign * press(period) + renewed(1)(number); });
+  }
+  return fault;
+}
+
+TEST(AnArmThatGoesUp, IsHeldByWhatPullsAndByNothingElse) {
+  for (const double sign : {-1.0, 1.0}) {
+    const Watch::Rise rise{1.0, sign, 6.0};
+    EXPECT_THAT(rising(sign, rise, [](int) { return 30.0; }), IsNothing()) << "it presses still";
+    EXPECT_THAT(rising(sign, rise, [](int) { return -5.5; }), IsNothing()) << "its joints rub";
+    EXPECT_THAT(rising(sign, rise, [](int period) { return period % 3 == 0 ? -5.0 : -9.0; }), IsNothing()) << "noise";
+    EXPECT_THAT(
+        rising(sign, rise, [](int period) { return 10.0 - 0.5 * period; }),
+        AllOf(IsFault("something holds the tool: it pulls with ", Then::hold),
+              IsFault("at (10.0, 10.0, 10.0) cm of the scene", Then::hold), IsFault("free it by hand", Then::hold)));
+  }
+}
+
+TEST(AnArmThatGoesUp, FollowsAZeroThatChangesWithThePoseAndNoSpring) {
+  const Watch::Rise rise{1.0, -1.0, 6.0, Watch::Zero::follows};
+  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.05 * period; }), IsNothing()) << "5 N/s: 50 N/m at 10 cm/s";
+  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("something holds", Then::hold));
+}
+
+TEST(AReflex, OfAnArmThatGoesUpAndIsPulledIsToldAsThatAndHeld) {
+  const auto reflex = [](double press, bool goes_up) {
+    Rules rules;
+    if (goes_up) rules.expect_rise(Watch::Rise{kZero.z(), -1.0, 14.0});
+    return rules.at(1.0, [&](Snapshot& seen) {
+      seen.endpoint->force.z() = kZero.z() - press;
+      seen.collision->collision = true;
+    });
+  };
+  EXPECT_THAT(reflex(-12.0, true), IsFault("something holds the tool: it pulls with 12 N", Then::hold));
+  EXPECT_TRUE(reflex(-12.0, true)->reflex);
+  EXPECT_THAT(reflex(17.0, true), IsFault("the arm's own reflex", Then::retreat)) << "left pressing";
+  EXPECT_THAT(reflex(-12.0, false), IsFault("the arm's own reflex", Then::retreat));
+}
+
+}  // namespace
+}  // namespace palpate::baxter
