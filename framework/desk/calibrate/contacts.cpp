@@ -120,6 +120,24 @@ class Maximisation {
 
 }  // namespace
 
+double beyond_surface(const KnownContact& contact, double offset) {
+  constexpr int kRings = 4;
+  constexpr int kSpokes = 16;
+  double lowest = contact.scene->height(contact.place.x, contact.place.y);
+  double highest = lowest;
+  for (int k = 0; k < kRings * kSpokes; ++k) {
+    const int ring = k / kSpokes + 1;
+    const double radius = kFarthestPlace * ring / kRings;
+    const double angle = 2.0 * kPi * (k % kSpokes) / kSpokes;
+    const double height =
+        contact.scene->height(contact.place.x + radius * std::cos(angle), contact.place.y + radius * std::sin(angle));
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  const double height = contact.height - offset;
+  return height - std::clamp(height, lowest, highest);
+}
+
 Estimated share_of(double count, double all) {
   const double z2 = kNormal975 * kNormal975;
   const double share = count / all;
