@@ -68,7 +68,7 @@ void words(const std::string& bytes) {
 void answer(const std::string& bytes) {
   constexpr double kLowest = -0.04;
   constexpr double kHighest = 0.135;
-  const process::Answer answer = process::read_answer(bytes, 2, {kLowest, kHighest});
+  const process::Answer answer = process::read_answer(bytes, 2, {kLowest, kHighest, ""});
   if (!answer.accepted) return;
   if (!answer.in_step) throw std::logic_error("an answer to another tap was accepted");
   const Contact& contact = answer.contact;

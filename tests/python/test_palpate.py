@@ -228,7 +228,7 @@ class Module(unittest.TestCase):
     def test_where_the_callers_arm_travels_is_an_option_of_the_config(self):
         experiment = self.begun("taps=1", "backend.hover=25cm", "backend.overrun=0cm")
         experiment.ask()
-        self.refuses("tell", "height -0.02 m is outside -0.01 to 0.25 m", "hover and overrun",
+        self.refuses("tell", "height -0.02 m is outside -0.01 to 0.25 m", "scene's frame",
                      lambda: experiment.tell(-0.02))
         experiment.tell(0.24)
 

@@ -35,7 +35,7 @@ std::vector<Odd> odd_answers() {
   const auto height = [](const std::string& value) {
     return "is refused, height " + value +
            " m is outside -0.04 to 0.135 m (1 cm below desk - overrun to desk + hover), " +
-           "give metres in the scene's frame (are these millimetres?), or adapt hover and overrun";
+           "give metres in the scene's frame (are these millimetres?)";
   };
   const auto force = [](const std::string& value) {
     return "is refused, force " + value +

@@ -47,15 +47,14 @@ bool is_unprintable(std::uint32_t code) {
 }  // namespace
 
 HeightBounds height_bounds(double desk, double overrun, double hover) {
-  return {desk - overrun - kBelowFloor, desk + hover};
+  return {desk - overrun - kBelowFloor, desk + hover, "1 cm below desk - overrun to desk + hover"};
 }
 
 std::optional<AnswerFault> find_fault(const Contact& answer, const HeightBounds& bounds) {
   if (answer.outcome == Outcome::contact && !is_within(answer.height, bounds.lowest, bounds.highest)) {
-    return AnswerFault{fmt::format("height {:.6g} m is outside {:.4g} to {:.4g} m (1 cm below desk - overrun to desk + "
-                                   "hover)",
-                                   answer.height, bounds.lowest, bounds.highest),
-                       "give metres in the scene's frame (are these millimetres?), or adapt hover and overrun"};
+    return AnswerFault{fmt::format("height {:.6g} m is outside {:.4g} to {:.4g} m ({})", answer.height, bounds.lowest,
+                                   bounds.highest, bounds.meaning),
+                       "give metres in the scene's frame (are these millimetres?)"};
   }
   if (!is_within(answer.force, 0.0, kMostForce)) {
     return AnswerFault{fmt::format("force {:.6g} N is outside 0 to {:g} N", answer.force, kMostForce),

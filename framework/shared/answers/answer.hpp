@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Checks answers to taps that come from outside: from the program of the backend `process`, and from tell() in Python.
+// Checks answers to taps that come from outside: from the program of the backend `process`, from tell() in Python, and
+// from the table of the backend `replay`.
 #pragma once
 
 #include <palpate/types.hpp>
@@ -9,15 +10,19 @@
 
 namespace palpate {
 
-/// The heights that an arm can have touched in one tap from above, metres, in the frame of the scene.
+/// The heights that an arm can have touched, metres, in the frame of the scene.
 struct HeightBounds {
-  double lowest = 0.0;
-  double highest = 0.0;
+  double lowest;
+  double highest;
+  const char* meaning;  ///< of both, in a few words
 };
 
-/// Returns the bounds for a tap that travels at `desk` + `hover` and ends at `desk` - `overrun`, all in metres. They
-/// leave 1 cm below that floor for the error of an arm's height. Above the height of travel they leave nothing: the arm
-/// would have hit the thing on its way.
+/// The bounds where nothing is known of arm and motion.
+constexpr HeightBounds kAnyArm{-10.0, 10.0, "no arm is that long"};
+
+/// Returns the bounds for a tap from above that travels at `desk` + `hover` and ends at `desk` - `overrun`, all in
+/// metres. They leave 1 cm below that floor for the error of an arm's height. Above the height of travel they leave
+/// nothing: the arm would have hit the thing on its way.
 HeightBounds height_bounds(double desk, double overrun, double hover);
 
 /// A value that no arm can have measured: which, its bounds, and what to do about it. Both are parts of one line.
