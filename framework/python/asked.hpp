@@ -69,7 +69,7 @@ class Asked {
                   "give one a candidate, " + std::to_string(wanted));
     }
     const py::array_t<double, py::array::c_style | py::array::forcecast> dense(scores);
-    const Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
+    Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
     if (!out.allFinite()) throw Error("scores", "has a value that is not a finite number", "0 is worth nothing");
     return out;
   }

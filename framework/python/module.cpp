@@ -97,6 +97,7 @@ PYBIND11_MODULE(_palpate, module) {
   static PyObject* const input_error = PyErr_NewException(
       "palpate.InputError", py::make_tuple(py::handle(error), py::handle(PyExc_ValueError)).ptr(), nullptr);
   module.attr("InputError") = py::handle(input_error);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): so pybind11 wants it
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
