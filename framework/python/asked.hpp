@@ -2,13 +2,13 @@
 // A run whose taps the caller makes, for Python.
 #pragma once
 
+#include "answers/answer.hpp"
 #include "experiment/from_above.hpp"
 #include "record/callers_run.hpp"
 #include "record/tap_row.hpp"
 #include "shop.hpp"
 #include "values.hpp"
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,7 +69,7 @@ class Asked {
                   "give one a candidate, " + std::to_string(wanted));
     }
     const py::array_t<double, py::array::c_style | py::array::forcecast> dense(scores);
-    const Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
+    Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
     if (!out.allFinite()) throw Error("scores", "has a value that is not a finite number", "0 is worth nothing");
     return out;
   }
@@ -78,19 +78,15 @@ class Asked {
   std::unique_ptr<CallersRun> run_;
 };
 
-/// What was told of a tap, as a backend would have said it. Throws Error.
+/// The result of a tap as a backend would have returned it. Throws Error for an outcome that no answer may have.
 inline Contact contact_of(const std::string& outcome, double height, double force, double seconds,
                           const std::string& reason, bool ends_run) {
-  for (const Outcome one : {Outcome::contact, Outcome::no_contact, Outcome::unreachable, Outcome::timeout,
-                            Outcome::aborted, Outcome::unknown}) {
-    if (outcome != outcome_name(one)) continue;
-    if (one == Outcome::contact && !std::isfinite(height))
-      throw Error("tell", "the height of a contact is not a finite number",
-                  "tell outcome=\"no_contact\" if there was none");
-    return {one, height, force, seconds, reason, ends_run};
+  const std::optional<Outcome> known = answered_outcome(outcome);
+  if (!known) {
+    throw Error("tell", "there is no outcome '" + plain_line(outcome) + "'",
+                "it is contact, no_contact, unreachable, timeout or aborted");
   }
-  throw Error("tell", "there is no outcome '" + outcome + "'",
-              "it is contact, no_contact, unreachable, timeout, aborted or unknown");
+  return {*known, height, force, seconds, reason, ends_run};
 }
 
 }  // namespace palpate

@@ -94,15 +94,20 @@ PYBIND11_MODULE(_palpate, module) {
   // Made by palpate/__init__.py, which gives it its words.
   static PyObject* const error = PyErr_NewException("palpate.Error", PyExc_Exception, nullptr);
   module.attr("Error") = py::handle(error);
+  static PyObject* const input_error = PyErr_NewException(
+      "palpate.InputError", py::make_tuple(py::handle(error), py::handle(PyExc_ValueError)).ptr(), nullptr);
+  module.attr("InputError") = py::handle(input_error);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): so pybind11 wants it
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& trouble) {
-      const py::object one = py::reinterpret_borrow<py::object>(error)(trouble.what());
+      PyObject* const type = trouble.kind() == Error::Kind::usage ? input_error : error;
+      const py::object one = py::reinterpret_borrow<py::object>(type)(trouble.what());
       one.attr("place") = trouble.where();
       one.attr("reason") = trouble.reason();
       one.attr("remedy") = trouble.hint();
-      PyErr_SetObject(error, one.ptr());
+      PyErr_SetObject(type, one.ptr());
     }
   });
   py::class_<Record>(module, "Record")

@@ -1,15 +1,36 @@
 // SPDX-License-Identifier: MIT
 // No arm: whoever runs the experiment makes the taps and tells what came of them, as Experiment of the Python module
-// does. Of the scene only the area and the desk count.
+// does. Of the scene only the area and the desk count. CallersRun reads the options.
 #include <palpate/backend.hpp>
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
 namespace palpate::backends {
 
+/// The defaults are those of the tapping motion.
+struct CallerOptions : Options {
+  double hover = 0.135;
+  double overrun = 0.03;
+
+  void list(Fields& fields) override {
+    fields.real(hover,
+                Field("hover", "height above the desk at which the caller's arm travels: higher contacts are rejected")
+                    .in(Unit::metre)
+                    .above(0)
+                    .from("as motion.hover of the other backends"));
+    fields.real(overrun,
+                Field("overrun",
+                      "how far below the desk the caller's arm goes at most: contacts more than 1 cm below that "
+                      "are rejected")
+                    .in(Unit::metre)
+                    .at_least(0)
+                    .from("as motion.overrun of the other backends"));
+  }
+};
+
 class Caller final : public Backend {
  public:
-  using Options = NoOptions;
+  using Options = CallerOptions;
   Caller(const Options&, const Context&) {}
 
   /// Nobody asks: see CallersRun.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Answers from a record instead of a robot: a former run, or any table of contacts that has the same columns. A dense
 // scan of a real object, recorded once, becomes a bench for strategies.
+#include "answers/answer.hpp"
+
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
 
@@ -154,6 +156,7 @@ std::vector<Recorded> read_record(const std::string& path) {
       one.contact.reason = "so recorded";
     }
     if (std::isnan(one.place.x + one.place.y + one.contact.height)) throw Error(table.where(), "lacks x, y or height");
+    if (const auto fault = find_fault(one.contact, kAnyArm)) throw Error(table.where(), fault->reason, fault->remedy);
     taps.push_back(std::move(one));
   }
   return taps;

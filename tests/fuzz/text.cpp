@@ -66,13 +66,15 @@ void words(const std::string& bytes) {
 }
 
 void answer(const std::string& bytes) {
+  constexpr double kLowest = -0.04;
   constexpr double kHighest = 0.135;
-  const process::Answer answer = process::read_answer(bytes, 2, kHighest);
+  const process::Answer answer = process::read_answer(bytes, 2, {kLowest, kHighest, ""});
   if (!answer.accepted) return;
   if (!answer.in_step) throw std::logic_error("an answer to another tap was accepted");
   const Contact& contact = answer.contact;
   const bool plain = std::isfinite(contact.height) && std::isfinite(contact.force) && std::isfinite(contact.seconds);
-  if (!plain || contact.height > kHighest || contact.force < 0.0 || contact.seconds < 0.0) {
+  if (!plain || contact.height < kLowest || contact.height > kHighest || contact.force < 0.0 ||
+      contact.force > 1000.0 || contact.seconds < 0.0) {
     throw std::logic_error("a number that no arm can have felt was accepted");
   }
 }

@@ -158,6 +158,42 @@ TEST_F(Calibrate, HasTheSimulatorErrAsTheArmDidThatTheTapsAreOf) {
   }
 }
 
+TEST(Contacts, AreBesideTheSceneByHowFarTheyAreOffAllHeightsWithinOneCentimetre) {
+  const auto scene = block();  // 5 cm high, over x from 0 to 14 cm and y from 0 to 8 cm about its middle
+  const double edge = 0.115 + 0.07;
+  const auto beyond = [&](double x, double height) {
+    return beyond_surface({scene.get(), {x, 0.115}, 0.0, height + 0.004}, 0.004);
+  };
+  EXPECT_NEAR(beyond(0.115, 0.05), 0.0, 1e-12);
+  EXPECT_NEAR(beyond(0.115, 0.03), -0.02, 1e-12);
+  EXPECT_NEAR(beyond(0.02, 0.03), 0.03, 1e-12);
+  EXPECT_NEAR(beyond(edge + 0.009, 0.03), 0.0, 1e-12) << "between the heights of block and desk";
+  EXPECT_NEAR(beyond(edge + 0.011, 0.03), 0.03, 1e-12);
+  EXPECT_NEAR(beyond(edge - 0.011, 0.03), -0.02, 1e-12);
+}
+
+TEST_F(Calibrate, RejectsARunWhoseSceneDoesNotStandAsItsConfigSays) {
+  const Recording arm = recorded(
+      test::shipped_config("default.yaml", {"scene=block", "acquisition=random", "taps=40", "scene.effects=standard"}));
+  EXPECT_EQ(error_of({arm}), "no error");
+  const auto said_to_be = [&](const char* scene) {
+    Tree tree = arm.config.tree;
+    const Tree changes = parse_yaml(scene, "scene");
+    for (const Tree::Entry& one : changes.entries) tree.at("scene").at(one.key) = one.value;
+    Recording out = arm;
+    out.config = resolve_experiment(tree, shared_host());
+    return out;
+  };
+  const std::string block = "{type: block, length: 12 cm, width: 8 cm, height: 5 cm, rotation: 30 deg, at: ";
+  EXPECT_THAT(error_of({said_to_be("{objects: []}")}),
+              HasSubstr("contacts are nowhere near its scene, where one in 5 may be, calibrate takes taps of a scene"));
+  EXPECT_THAT(error_of({said_to_be(("{objects: [" + block + "[8 cm, 11.5 cm]}]}").c_str())}),
+              HasSubstr("contacts are within an object of its scene, where one in 20 may be"));
+  EXPECT_THAT(error_of({said_to_be("{desk: 4 cm}")}), HasSubstr("the heights are off by -40."));
+  const Recording moved = said_to_be("{objects: []}");
+  EXPECT_THAT(error_of({arm, arm, arm, moved}), HasSubstr("nowhere near its scene")) << "among others, too";
+}
+
 TEST_F(Calibrate, SaysWhatItLacksOfARun) {
   EXPECT_THAT(error_of({recorded(test::shipped_config("default.yaml", {"taps=9", "scene=block"}))}),
               HasSubstr("contacts, and it takes 10"));

@@ -183,8 +183,8 @@ class Module(unittest.TestCase):
         self.refuses("tell", "no tap is asked for", "ask first", lambda: experiment.tell(0.0))
         experiment.ask()
         self.refuses("tell", "neither a height nor an outcome", "no_contact", experiment.tell)
-        self.refuses("tell", "no outcome 'missed'", "no_contact", lambda: experiment.tell(outcome="missed"))
-        self.refuses("tell", "not a finite number", "no_contact", lambda: experiment.tell(math.inf))
+        for name in ("missed", "unknown"):
+            self.refuses("tell", f"no outcome '{name}'", "no_contact", lambda: experiment.tell(outcome=name))
         self.refuses("tell", "belongs to a contact", "leave one", lambda: experiment.tell(0.1, outcome="timeout"))
         self.refuses("tap 1", "is asked for", "tell first", experiment.finish)
         experiment.tell(0.0)
@@ -195,6 +195,42 @@ class Module(unittest.TestCase):
         empty = self.folder / "empty"
         empty.mkdir()
         self.refuses(str(empty), "not a run directory", "config.yaml", lambda: palpate.load(empty))
+
+    def test_what_no_arm_can_have_measured_is_a_value_error_and_the_tap_is_still_to_be_told(self):
+        experiment = self.begun("taps=3")
+        tap = experiment.ask()
+        record = pathlib.Path(experiment.directory) / "taps.jsonl"
+        asked = record.read_bytes()
+        wrong = [({"height": height}, "is outside -0.04 to 0.135 m", "millimetres")
+                 for height in (40.0, 1e300, -1e300, -3.0, -0.0401, 0.1351, math.inf, math.nan)]
+        wrong += [({"height": 0.0, "force": force}, "is outside 0 to 1000 N", "millinewtons")
+                  for force in (-1.0, 1000.1, 1e200, math.nan)]
+        wrong += [({"height": 0.0, "seconds": seconds}, "is outside 0 to 86400", "milliseconds")
+                  for seconds in (-5.0, 86401.0, math.nan)]
+        wrong += [({"outcome": "timeout", "seconds": -1.0}, "seconds -1 is", "milliseconds")]
+        for fields, reason, remedy in wrong:
+            self.refuses("tell", reason, remedy, lambda: experiment.tell(**fields))
+            with self.assertRaises(ValueError):
+                experiment.tell(**fields)
+            self.assertEqual(record.read_bytes(), asked)
+            self.assertEqual((experiment.ask().number, experiment.ask().x, len(experiment)), (1, tap.x, 0))
+        experiment.tell(-0.0399, force=1000.0, seconds=86400.0)
+        experiment.ask()
+        experiment.tell(outcome="aborted", reason="a\u202eb\nc\x9bd")
+        experiment.ask()
+        experiment.tell(0.135)
+        experiment.finish()
+        taps = palpate.load(experiment.directory).taps
+        self.assertEqual([*taps["outcome"]], ["contact", "aborted", "contact"])
+        self.assertEqual(taps["height"][0], -0.0399)
+        self.assertEqual(taps["reason"][1], "a b c d")
+
+    def test_where_the_callers_arm_travels_is_an_option_of_the_config(self):
+        experiment = self.begun("taps=1", "backend.hover=25cm", "backend.overrun=0cm")
+        experiment.ask()
+        self.refuses("tell", "height -0.02 m is outside -0.01 to 0.25 m", "scene's frame",
+                     lambda: experiment.tell(-0.02))
+        experiment.tell(0.24)
 
     def test_a_run_that_was_killed_goes_on_and_the_tap_that_nobody_told_is_unknown(self):
         script = ("import os, sys, palpate\n"
@@ -239,6 +275,7 @@ class Module(unittest.TestCase):
         with self.assertRaises(palpate.Error) as caught:
             experiment.tell(outcome="aborted", reason="the arm is stuck", ends_run=True)
         self.assertIn("the arm is stuck", str(caught.exception))
+        self.assertNotIsInstance(caught.exception, ValueError, "what was told was right")
         self.assertTrue(experiment.finished)
         self.assertIsNone(experiment.ask())
         experiment.close()

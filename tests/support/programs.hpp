@@ -5,6 +5,7 @@
 #include "support/support.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -12,7 +13,7 @@
 namespace palpate::test {
 
 /// `body` as a Python program, for which `asks()` yields what it is asked, and `contact(ask)` answers with a height of
-/// 7 cm, 5.5 s, and its own process id for the force; `tell(ask, ...)` with any fields.
+/// 7 cm, 5.5 s, and a millionth of its own process id for the force; `tell(ask, ...)` with any fields.
 inline std::string python(const std::string& body) {
   return R"(import json, os, sys, time
 
@@ -24,10 +25,13 @@ def tell(ask, **fields):
     print(json.dumps({"tap": ask["tap"], **fields}), flush=True)
 
 def contact(ask, **fields):
-    tell(ask, outcome="contact", height=0.07, force=os.getpid(), seconds=5.5, **fields)
+    tell(ask, outcome="contact", height=0.07, force=os.getpid() / 1e6, seconds=5.5, **fields)
 
 )" + body;
 }
+
+/// The process id in the force of such a contact.
+inline long pid_in(double force) { return std::lround(1e6 * force); }
 
 /// `text` as a YAML value.
 inline std::string yaml_quoted(const std::string& text) {

@@ -42,5 +42,13 @@ TEST_F(CalibrateCommand, RefusesInOneLineWhatSaysTooLittle) {
   EXPECT_THAT(refused({"calibrate", again}), HasSubstr("its backend, replay, has no motion to be simulated by"));
 }
 
+TEST_F(CalibrateCommand, RefusesTapsOfADomeThatTheConfigDoesNotHave) {
+  const std::string example = (test::source_folder() / "plugins/backends/process/example.py").string();
+  const fs::path run =
+      ran(Words{"acquisition=random", "taps=30", "backend.command=python3 '" + example + "'"}, config("process.yaml"));
+  EXPECT_THAT(refused({"calibrate", run}), HasSubstr("contacts are nowhere near its scene, where one in 5 may be, "
+                                                     "calibrate takes taps of a scene that stands as its config says"));
+}
+
 }  // namespace
 }  // namespace palpate

@@ -89,6 +89,24 @@ for ask in asks():
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 6"));
 }
 
+TEST_F(ProcessRun, OneHeightInMillimetresFailsItsTapAndLeavesTheSurfaceAsItIs) {
+  const fs::path run =
+      ran({"acquisition=random", "backend.scene_is_truth=true",
+           "scene.objects=[{type: dome, diameter: 12 cm, height: 6 cm, at: [11.5 cm, 11.5 cm]}]", command(R"(
+for ask in asks():
+    away = ((ask["x"] - 0.115) ** 2 + (ask["y"] - 0.115) ** 2) ** 0.5
+    height = max(0.0, 0.06**2 - away**2) ** 0.5
+    tell(ask, outcome="contact", height=-3.0 if ask["tap"] == 5 else height, force=8, seconds=3)
+)")},
+          config("process.yaml"));
+  EXPECT_EQ(outcomes(run)[4], "aborted");
+  const std::string summary = text_of(run / "summary.json");
+  EXPECT_THAT(summary, HasSubstr("\"failed_taps\": 1"));
+  const auto value = summary.find("\"rmse_m\": ");
+  ASSERT_NE(value, std::string::npos);
+  EXPECT_LT(std::stod(summary.substr(value + 10)), 0.03) << "0.012 m without that tap";
+}
+
 TEST_F(ProcessRun, KilledWithinATapItLeavesNoProgramAndResumesWithAnUnknownTap) {
   const std::string program = command(R"(
 print("begin", os.getpid(), file=sys.stderr, flush=True)

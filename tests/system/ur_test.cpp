@@ -65,7 +65,45 @@ TEST_F(UrArm, TapsTheDomeAndLeavesTheRobotInOrder) {
   for (const Cells& tap : taps()) expect_on_the_dome(tap);
   EXPECT_THAT(log(), StartsWith("connected\ndown\nstop\ndown\nstop\n"));
   EXPECT_THAT(log(), EndsWith("script stopped\ndisconnected\nreceive disconnected\n"));
-  EXPECT_EQ(text_of(directory() / "process.stderr.txt"), "as ur_rtde does, this prints on stdout\n");
+  EXPECT_EQ(text_of(directory() / "process.stderr.txt"),
+            "as ur_rtde does, this prints on stdout\n"
+            "the TCP is at 0.0, 0.0, 150.0 mm from the flange; the speed slider stands at 100 %\n");
+}
+
+TEST_F(UrArm, NoisySamplesOfItsSpeedDoNotKeepItFromComingToRest) {
+  const Ended ended = run_with("noisy");
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  for (const Cells& tap : taps()) expect_on_the_dome(tap);
+}
+
+TEST_F(UrArm, WhoseTcpIsItsFlangeIsNotMoved) {
+  const Ended ended = run_with("flange");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, StartsWith("backend/process: the robot's TCP is its flange: set that of the tool"));
+  EXPECT_EQ(log(), "connected\nscript stopped\ndisconnected\nreceive disconnected\n");
+}
+
+TEST_F(UrArm, ThatStandsHighAboveTheAreaMakesItsFirstWayNoFasterThanADescent) {
+  ASSERT_EQ(run_with("high").status, 0);
+  EXPECT_EQ(noted("fast approach"), 0);
+  for (const Cells& tap : taps()) expect_on_the_dome(tap);
+}
+
+TEST_F(UrArm, MovesNeverWithoutAWatchdogThoughUrRtdeReconnectsByItself) {
+  ASSERT_EQ(run_with("reconnect@2").status, 0);
+  EXPECT_EQ(noted("reconnected"), 1);
+  EXPECT_EQ(noted("unguarded move"), 0);
+  EXPECT_EQ(taps()[1].at("outcome"), "timeout");
+  EXPECT_THAT(record(), HasSubstr("no contact within 60 s; the speed slider stands at 100 %, the arm was raised"));
+}
+
+TEST_F(UrArm, AKickThatIsRefusedBetweenTwoTapsEndsTheRunBeforeTheNextMove) {
+  const Ended ended = run_with("idle@3");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, StartsWith("backend/process: ur_rtde's script no longer runs on the robot"));
+  EXPECT_EQ(noted("kick refused"), 1);
+  EXPECT_EQ(noted("down"), 3);
+  EXPECT_EQ(taps().size(), 4U);
 }
 
 TEST_F(UrArm, OneReadingThatSpikesIsNoContact) {
@@ -138,6 +176,7 @@ INSTANTIATE_TEST_SUITE_P(By, UrArmInTrouble,
                                          Trouble{"emergency", "emergency stop: release the button"},
                                          Trouble{"lost", "unable to get state data"},
                                          Trouble{"frozen", "no new state of the robot for 0.2 s"},
+                                         Trouble{"cable", "no new state of the robot for 0.2 s"},
                                          Trouble{"script", "ur_rtde's script no longer runs on the robot"},
                                          Trouble{"pushed", "something pushes the arm with 50 N"}),
                          [](const auto& one) { return std::string(one.param.kind); });

@@ -32,8 +32,19 @@ std::vector<Odd> odd_answers() {
   const std::string deep(60000, '[');
   const std::string endless(70000, 'x');
   const std::string nan = "is not JSON, which has no NaN and no Infinity";
-  const std::string far =
-      "has a 'height' that is more than 10 m down or above the arm's way, desk and motion.hover: it is in metres";
+  const auto height = [](const std::string& value) {
+    return "is refused, height " + value +
+           " m is outside -0.04 to 0.135 m (1 cm below desk - overrun to desk + hover), " +
+           "give metres in the scene's frame (are these millimetres?)";
+  };
+  const auto force = [](const std::string& value) {
+    return "is refused, force " + value +
+           " N is outside 0 to 1000 N, give the size of the push in newtons (are these " + "millinewtons?)";
+  };
+  const auto seconds = [](const std::string& value) {
+    return "is refused, seconds " + value + " is outside 0 to 86400, give the time of the tap in seconds (are these " +
+           "milliseconds?)";
+  };
   return {
       odd("Nothing", "", "is not JSON", false),
       odd("Garbage", "moving to 3", "is not JSON", false),
@@ -56,14 +67,21 @@ std::vector<Odd> odd_answers() {
       odd("OutcomeAsNumber", R"({"tap": 2, "outcome": 1})", "has a 'outcome' that is not a text", true),
       odd("NoHeight", R"({"tap": 2, "outcome": "contact", "seconds": 1})", "lacks 'height'", true),
       odd("NullHeight", R"({"tap": 2, "outcome": "contact", "height": null, "seconds": 1})", "lacks 'height'", true),
-      odd("Millimetres", R"({"tap": 2, "outcome": "contact", "height": 70, "seconds": 1})", far, true),
-      odd("AboveTheWayOfTheArm", R"({"tap": 2, "outcome": "contact", "height": 0.1351, "seconds": 1})", far, true),
-      odd("FarBelow", R"({"tap": 2, "outcome": "contact", "height": -1e300, "seconds": 1})", far, true),
+      odd("Millimetres", R"({"tap": 2, "outcome": "contact", "height": 70, "seconds": 1})", height("70"), true),
+      odd("AboveTheWayOfTheArm", R"({"tap": 2, "outcome": "contact", "height": 0.1351, "seconds": 1})",
+          height("0.1351"), true),
+      odd("FarBelow", R"({"tap": 2, "outcome": "contact", "height": -1e300, "seconds": 1})", height("-1e+300"), true),
+      odd("MillimetresBelowTheDesk", R"({"tap": 2, "outcome": "contact", "height": -3.0, "seconds": 1})", height("-3"),
+          true),
+      odd("BelowTheFloor", R"({"tap": 2, "outcome": "contact", "height": -0.0401, "seconds": 1})", height("-0.0401"),
+          true),
+      odd("ForceBeyondReason", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "force": 1e200})",
+          force("1e+200"), true),
+      odd("Pull", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "force": -8})", force("-8"), true),
       odd("NoSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07})", "lacks 'seconds'", true),
-      odd("NegativeSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07, "seconds": -1})",
-          "has a 'seconds' that is negative or longer than a day", true),
+      odd("NegativeSeconds", R"({"tap": 2, "outcome": "contact", "height": 0.07, "seconds": -1})", seconds("-1"), true),
       odd("SecondsOfAnAge", R"({"tap": 2, "outcome": "contact", "height": 0.07, "seconds": 86400.1})",
-          "has a 'seconds' that is negative or longer than a day", true),
+          seconds("86400.1"), true),
       odd("FlagForForce", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "force": true})",
           "has a 'force' that is not a number", true),
       odd("NoReason", R"({"tap": 2, "outcome": "no_contact", "seconds": 1})", "lacks 'reason'", true),

@@ -68,7 +68,7 @@ class ProcessBackend : public InFolder {
     const Contact third = tap(*backend, 3);
     expect_contact(third);
     EXPECT_EQ(first.force == third.force, kept) << "whether the same process goes on";
-    EXPECT_EQ(running(static_cast<long>(first.force)), kept);
+    EXPECT_EQ(running(pid_in(first.force)), kept);
     return second;
   }
 

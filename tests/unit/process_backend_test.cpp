@@ -104,6 +104,25 @@ TEST_F(ProcessBackend, ControlCharactersAndLengthOfAReasonDoNotReachTheRecord) {
   EXPECT_EQ(contact.reason.substr(contact.reason.size() - 5), "\u00e9...") << "cut between characters";
 }
 
+TEST_F(ProcessBackend, MarksThatTurnTheDirectionOfWritingDoNotReachTheRecord) {
+  const Contact contact =
+      second_tap(R"(tell(ask, outcome='no_contact', reason='a\u202eb\u2066c\u200fd\u2028e \u05d0', seconds=1))", true);
+  EXPECT_EQ(contact.reason, "a b c d e \u05d0");
+}
+
+TEST_F(ProcessBackend, HeightsAreTakenDownToOneCentimetreBelowTheFloorAndUpToTheHeightOfTravel) {
+  const auto backend = open(
+      "for ask in asks(): tell(ask, outcome='contact', seconds=1, height=-0.0199 if ask['tap'] == 1 "
+      "else -0.0201 if ask['tap'] == 2 else 0.2)",
+      ", motion: {type: continuous, overrun: 1 cm, hover: 20 cm}");
+  EXPECT_EQ(tap(*backend, 1).height, -0.0199);
+  const Contact below = tap(*backend, 2);
+  EXPECT_EQ(below.outcome, Outcome::aborted);
+  EXPECT_EQ(below.height, 0.0);
+  EXPECT_THAT(below.reason, HasSubstr("height -0.0201 m is outside -0.02 to 0.2 m"));
+  EXPECT_EQ(tap(*backend, 3).height, 0.2);
+}
+
 TEST_F(ProcessBackend, LongAnswersInSmallPiecesToSlowReadersAreFine) {
   const auto backend = open(
       "for ask in asks():\n"
@@ -194,7 +213,7 @@ TEST_F(ProcessBackend, NothingIsLeftOfTheProgramNorOfWhatItStarted) {
       "other = subprocess.Popen(['sleep', '60'])\n"
       "print(other.pid, file=sys.stderr, flush=True)\n"
       "for ask in asks(): contact(ask)");
-  const auto pid = static_cast<long>(tap(*backend, 1).force);
+  const auto pid = pid_in(tap(*backend, 1).force);
   const long other = std::stol(diary());
   EXPECT_TRUE(running(pid));
   EXPECT_TRUE(running(other));

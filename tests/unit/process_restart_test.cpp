@@ -30,7 +30,7 @@ class ProgramThatIsGone : public ProcessBackend, public testing::WithParamInterf
     const Contact first = tap(*backend_, 1);
     expect_contact(first);
     Contact second = tap(*backend_, 2);
-    EXPECT_FALSE(running(static_cast<long>(first.force)));
+    EXPECT_FALSE(running(pid_in(first.force)));
     return second;
   }
 
@@ -115,7 +115,7 @@ TEST_F(ProgramLeftBehind, IsWaitedForAndThenTheNextOneIsStarted) {
   const Contact contact = tap(*backend, 1);
   end.join();
   expect_contact(contact);
-  EXPECT_EQ(text_of(folder_.path() / "record" / "process.lock"), std::to_string(std::lround(contact.force)) + "\n");
+  EXPECT_EQ(text_of(folder_.path() / "record" / "process.lock"), std::to_string(pid_in(contact.force)) + "\n");
 }
 
 TEST_F(ProgramLeftBehind, DoesNotDisturbOneWhoseTapsAreRepeatable) {

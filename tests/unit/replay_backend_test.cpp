@@ -58,6 +58,16 @@ TEST_F(ReplayBackend, ANumberOfATapThatIsNoneIsRefused) {
   }
 }
 
+TEST_F(ReplayBackend, WhatNoArmCanHaveMeasuredIsRefusedWithItsLine) {
+  const auto row = [](const std::string& values) {
+    return "x,y,outcome,height,force,robot_seconds\n0.1,0.1,contact,0.1,8,2\n0.1,0.1,contact," + values + "\n";
+  };
+  EXPECT_THAT(refusal(row("70,8,2")), HasSubstr("scan.csv:3: height 70 m is outside -10 to 10 m (no arm is that long), "
+                                                "give metres in the scene's frame (are these millimetres?)"));
+  EXPECT_THAT(refusal(row("0.1,-8,2")), HasSubstr("scan.csv:3: force -8 N is outside 0 to 1000 N"));
+  EXPECT_THAT(refusal(row("0.1,8,-2")), HasSubstr("scan.csv:3: seconds -2 is outside 0 to 86400"));
+}
+
 TEST_F(ReplayBackend, CellsInQuotesMayHoldCommasQuotesAndLineEnds) {
   const auto backend = open(
       "x,y,outcome,height,\"a \"\"note\"\", long\"\r\n"

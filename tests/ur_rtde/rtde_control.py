@@ -8,8 +8,10 @@ class RTDEControlInterface:
         self.arm = arm()
         self.arm.note("connected")
 
-    def usable(self):
+    def usable(self, waits=True):
         """As ur_rtde's commands: False once the script has ended or the robot has stopped."""
+        if waits:
+            self.arm.answer()
         if not self.arm.connected:
             raise RuntimeError("unable to get state data for specified key: runtime_state")
         return self.arm.script and self.arm.safety in (1, 2)
@@ -20,7 +22,7 @@ class RTDEControlInterface:
 
     def kickWatchdog(self):
         self.arm.kicked = self.arm.time
-        return self.usable()
+        return not self.arm.refuses_kick() and self.usable(waits=False)
 
     def moveL(self, pose, speed=0.25, acceleration=1.2, asynchronous=False):
         assert asynchronous, "a move that blocks starves the watchdog"
@@ -37,6 +39,9 @@ class RTDEControlInterface:
         assert self.arm.target is None and self.arm.force() == 0.0, "zeroed while it moves or touches"
         self.arm.zeroed = self.arm.offset
         return self.usable()
+
+    def getTCPOffset(self):
+        return [0.0, 0.0, 0.0 if self.arm.fault == "flange" else 0.15, 0.0, 0.0, 0.0] if self.usable() else []
 
     def isPoseWithinSafetyLimits(self, pose):
         return pose[0] < CORNER[0] + 0.95 * AREA

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Stands in for ur_rtde's module of this name: those methods that ur.py calls, with their published signatures."""
-from ur_arm import DOWN, arm
+from ur_arm import DOWN, POSE_NOISE, SPEED_NOISE, arm
 
 
 class RTDEReceiveInterface:
@@ -16,10 +16,13 @@ class RTDEReceiveInterface:
         return self.arm.time
 
     def getActualTCPPose(self):
-        return [*self.arm.position, *DOWN]
+        return [p + n for p, n in zip(self.arm.position, self.arm.noise(POSE_NOISE))] + DOWN
 
     def getActualTCPSpeed(self):
-        return [*self.arm.velocity, 0.0, 0.0, 0.0]
+        return [v + n for v, n in zip(self.arm.velocity, self.arm.noise(SPEED_NOISE))] + [0.0] * 3
+
+    def getTargetSpeedFraction(self):
+        return 1.0
 
     def getActualTCPForce(self):
         return self.arm.wrench()

@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: MIT
 """The arm behind the stand-ins for ur_rtde: it moves in time of its own, one step a look at its clock, so that a test
 takes as long as the machine likes. UR_LOG names the file in which it notes what is done to it, UR_FAULT what goes wrong:
-`KIND@N` in its Nth move down, counted over all programs; KIND one of protective, emergency, lost, frozen, script, spike,
-missing, pushed, sticky, slow. And `mode`, from the start."""
+`KIND@N` in its Nth move down, counted over all programs; KIND one of protective, emergency, lost, frozen, cable,
+reconnect, script, spike, missing, pushed, sticky, slow. `idle@N` is one kick that is refused after the Nth move down has
+ended. And from the start `mode`, `flange` (no TCP is set), `noisy` (samples of speed and pose), `high` (it stands half a
+metre above the area).
+
+What ur_rtde does is modelled after its sources of 2024: every command but a kick waits for the robot's answer, for up to
+300 s; lost, the connection of the commands is made again by the next of them, with the script, but without a watchdog."""
 import math
 import os
+import random
 import time
 
 STEP = 0.002  # s, 500 Hz
 STIFFNESS = 5000.0  # N/m
+EXECUTION_TIMEOUT = 300.0  # s that a command waits for its answer
+SPEED_NOISE = 0.0005  # m/s, of the fault `noisy`
+POSE_NOISE = 0.00001  # m
 CORNER = (0.4, -0.1, 0.05)  # of the area, m
 AREA = 0.23
 RADIUS = 0.06  # of the dome in its middle
@@ -29,14 +38,17 @@ class Arm:
         with open(os.environ["UR_LOG"]) as before:
             self.descents = sum(line == "down\n" for line in before)
         self.time = 100.0
-        self.position = [CORNER[0] + 0.01, CORNER[1] + 0.01, CORNER[2] + 0.05]
+        self.position = [CORNER[0] + 0.01, CORNER[1] + 0.01, CORNER[2] + (0.5 if self.fault == "high" else 0.05)]
+        self.random = random.Random(1)
         self.velocity = [0.0] * 3
         self.target, self.speed = None, 0.0
         self.offset = 3.0  # N, of the sensor
         self.zeroed = 0.0
         self.safety, self.mode = 1, 3 if self.fault == "mode" else 7
         self.script = self.connected = True
-        self.frozen = False
+        self.frozen = self.unplugged = False
+        self.steps = self.steps_at_kick = 0
+        self.hurried = False  # faster than a descent before the first one
         self.active = False  # the fault, in this descent
         self.watchdog, self.kicked = None, self.time
         self.spikes = 0
@@ -46,6 +58,7 @@ class Arm:
 
     def step(self):
         self.time += STEP
+        self.steps += 1
         if self.active and self.fault == "slow":
             time.sleep(STEP)
         if self.watchdog and self.script and self.time - self.kicked > 1.0 / self.watchdog:
@@ -61,6 +74,9 @@ class Arm:
             self.target = None
             return
         self.velocity = [w / left * step / STEP for w in way]
+        if self.descents == 0 and math.hypot(*self.velocity) > 0.03 and not self.hurried:
+            self.note("fast approach")
+            self.hurried = True
         self.position = [p + v * STEP for p, v in zip(self.position, self.velocity)]
         assert self.force() < 60.0, "pressed through what it was to feel"
 
@@ -78,6 +94,28 @@ class Arm:
             self.connected = False
         elif self.fault == "frozen":
             self.frozen = True
+        elif self.fault == "cable":
+            self.frozen = self.unplugged = True
+        elif self.fault == "reconnect":
+            self.note("reconnected")
+            self.watchdog, self.target, self.active = None, None, False
+
+    def answer(self):
+        """Waits for the robot's answer to a command, deaf to signals as ur_rtde is."""
+        if self.unplugged:
+            time.sleep(EXECUTION_TIMEOUT)
+
+    def refuses_kick(self):
+        """Of two kicks without a step of the arm between them the second is made between two taps."""
+        idle, self.steps_at_kick = self.steps == self.steps_at_kick, self.steps
+        if not (idle and self.fault == "idle" and self.descents == self.at):
+            return False
+        self.note("kick refused")
+        self.fault = ""
+        return True
+
+    def noise(self, deviation):
+        return [self.random.gauss(0.0, deviation if self.fault == "noisy" else 0.0) for _ in range(3)]
 
     def end_script(self, why):
         self.note(why)
@@ -99,7 +137,9 @@ class Arm:
         return [side, 0.0, self.offset + push - self.zeroed, 0.0, 0.0, 0.0]
 
     def move(self, target, speed):
-        down = target[2] < self.position[2] - 0.01
+        if not self.watchdog:
+            self.note("unguarded move")
+        down = target[2] < CORNER[2]  # to the floor
         if down and math.dist(target[:2], self.position[:2]) < 1e-3:
             self.descents += 1
             self.note("down")

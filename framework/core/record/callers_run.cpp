@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/callers_run.hpp"
 
+#include "answers/answer.hpp"
+#include "config/quantity.hpp"
 #include "record/course.hpp"
 
 #include <fmt/format.h>
@@ -37,6 +39,8 @@ class Held final : public CallersRun {
 
   void end(Contact contact) override {
     if (!tap_) throw Error("tell", "no tap is asked for", "ask first where to tap");
+    if (const auto fault = find_fault(contact, bounds())) throw Error("tell", fault->reason, fault->remedy);
+    contact.reason = plain_line(contact.reason);
     tap_->contact = std::move(contact);
     const std::string failure = Course::failure_in([&] { begun_.experiment->end(*tap_, course_.journal()); });
     tap_.reset();
@@ -58,6 +62,15 @@ class Held final : public CallersRun {
   const std::filesystem::path& directory() const override { return begun_.directory->path(); }
 
  private:
+  HeightBounds bounds() const {
+    const auto length = [&](const char* name) {
+      const Tree* const value = config_.tree.find_path(std::string("backend.") + name);
+      if (value == nullptr) throw Error("backend", std::string("has no option '") + name + "'", "rebuild the plugin");
+      return read_quantity(*value, name, Unit::metre);
+    };
+    return height_bounds(begun_.experiment->scene().desk(), length("overrun"), length("hover"));
+  }
+
   /// A run that failed is finished as well.
   void end_with(const std::string& failure) {
     tap_.reset();

@@ -34,7 +34,9 @@ class CallersRun {
   /// The tap to make, announced in the record: the same until end() has its result. `scores` (may be null; finite, one
   /// a candidate) choose it in the place of the strategy. None when the run is over; it is finished then.
   virtual const TapRecord* begin(const Eigen::VectorXd* scores) = 0;
-  /// What came of it. Throws Error of kind `run`, and finishes the run, when it cannot go on.
+  /// Takes the result of the tap. Throws Error of kind `usage` for a value that no arm can have measured (see
+  /// answers/answer.hpp; the heights are bounded by the backend's `hover` and `overrun`): nothing is recorded then, and
+  /// the tap is still the one to make. Throws Error of kind `run`, and finishes the run, when it cannot go on.
   virtual void end(Contact contact) = 0;
   /// Writes what ends a run, its budget reached or not, and reports it. Later calls report the same.
   virtual const RunReport& finish() = 0;

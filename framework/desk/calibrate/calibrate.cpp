@@ -21,6 +21,14 @@ constexpr double kMillimetre = 1e-3;
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
 /// Metres above the highest thing that a jerk may be felt in.
 constexpr double kAbove = 0.1;
+/// Of the contacts of a run whose scene stands as its config says, at most one in so many is nowhere near it: more
+/// false ones are no arm that taps.
+constexpr std::size_t kFar = 5;
+/// And at most one in so many is below it, where the arm would have gone through an object: false contacts are above.
+constexpr std::size_t kThrough = 20;
+/// Metres of offset beyond what is assumed: an arm whose heights err by more stands over another desk. An arm that is
+/// perfect is off by 14 mm then, where its motion is that of the paper.
+constexpr double kMostOffset = 0.03;
 /// A rate cannot be told by motions that show fewer than one in so many.
 constexpr double kShown = 0.1;
 
@@ -53,6 +61,7 @@ struct Pair {
   std::unique_ptr<const Scene> scene;
   Twin twin;
   Twin::Made made;  ///< by what is assumed
+  std::size_t contacts = 0;
 
   Pair(const Workshop& workshop, const Recording& from)
       : recording(from),
@@ -83,6 +92,7 @@ class Calibrated {
     double highest = 0.0;
     for (const Pair& pair : pairs_) highest = std::max(highest, pair.scene->highest() - pair.scene->desk());
     fit_ = fit_contacts(contacts_, highest + kAbove);
+    check_scenes();
   }
 
   std::string file() {
@@ -121,7 +131,37 @@ class Calibrated {
   }
 
  private:
-  void add(const Pair& pair) {
+  /// Throws Error for a run whose scene does not stand as its config says.
+  void check_scenes() const {
+    constexpr const char* kRemedy = "calibrate takes taps of a scene that stands as its config says";
+    std::size_t next = 0;
+    for (const Pair& pair : pairs_) {
+      std::size_t far = 0;
+      std::size_t through = 0;
+      for (std::size_t i = 0; i < pair.contacts; ++i, ++next) {
+        const KnownContact& one = contacts_[next];
+        const double beyond = beyond_surface(one, offset_at(one.elapsed));
+        far += std::abs(beyond) > Twin::kFarOff ? 1 : 0;
+        through += beyond < -Twin::kFarOff ? 1 : 0;
+      }
+      const auto refuse = [&](std::size_t count, const char* what, std::size_t one_in) {
+        throw Error(pair.recording.directory.string(),
+                    fmt::format("{} of {} contacts are {}, where one in {} may be", count, pair.contacts, what, one_in),
+                    kRemedy);
+      };
+      if (far * kFar > pair.contacts) refuse(far, "nowhere near its scene", kFar);
+      if (through > 1 && through * kThrough > pair.contacts) refuse(through, "within an object of its scene", kThrough);
+    }
+    if (std::abs(fit_.offset.value) <= kMostOffset) return;
+    throw Error(
+        pairs_.front().recording.directory.string(),
+        fmt::format("the heights are off by {:.1f} mm beyond what is assumed, and {:g} mm is the most that an arm "
+                    "errs by",
+                    fit_.offset.value / kMillimetre, kMostOffset / kMillimetre),
+        std::string("see to the desk's height in config and robot, ") + kRemedy);
+  }
+
+  void add(Pair& pair) {
     const Twin::Made& made = pair.made;
     const std::vector<TapRequest> requests = requests_of(pair.recording);
     double variance = 0.0;
@@ -138,6 +178,7 @@ class Calibrated {
       const Target& place = requests[i].target;
       const double there = pair.scene->height(place.x, place.y);
       sums_.on_desk += pair.scene->on_surface(there) ? 0.0 : 1.0;
+      ++pair.contacts;
       contacts_.push_back({pair.scene.get(), place, requests[i].elapsed, contact.height - made.error[i]});
     }
     simulated_variance_ +=

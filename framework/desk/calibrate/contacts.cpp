@@ -27,8 +27,9 @@ Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (int k = 0; k < places; ++k) {
       // The distance of two normal numbers has its quantiles in closed form.
-      const double radius = lateral * std::sqrt(-2.0 * std::log(1.0 - (k / kSpokes + 0.5) / kRings));
-      const double angle = 2.0 * kPi * ((k % kSpokes) + 0.5 * (k / kSpokes % 2)) / kSpokes;
+      const int ring = k / kSpokes;
+      const double radius = lateral * std::sqrt(-2.0 * std::log(1.0 - (ring + 0.5) / kRings));
+      const double angle = 2.0 * kPi * ((k % kSpokes) + 0.5 * (ring % 2)) / kSpokes;
       const Target at{contacts[i].place.x + radius * std::cos(angle), contacts[i].place.y + radius * std::sin(angle)};
       out(static_cast<Eigen::Index>(i), k) = contacts[i].scene->height(at.x, at.y);
     }
@@ -119,6 +120,24 @@ class Maximisation {
 };
 
 }  // namespace
+
+double beyond_surface(const KnownContact& contact, double offset) {
+  constexpr int kRings = 4;
+  constexpr int kSpokes = 16;
+  double lowest = contact.scene->height(contact.place.x, contact.place.y);
+  double highest = lowest;
+  for (int k = 0; k < kRings * kSpokes; ++k) {
+    const int ring = k / kSpokes + 1;
+    const double radius = kFarthestPlace * ring / kRings;
+    const double angle = 2.0 * kPi * (k % kSpokes) / kSpokes;
+    const double height =
+        contact.scene->height(contact.place.x + radius * std::cos(angle), contact.place.y + radius * std::sin(angle));
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  const double height = contact.height - offset;
+  return height - std::clamp(height, lowest, highest);
+}
 
 Estimated share_of(double count, double all) {
   const double z2 = kNormal975 * kNormal975;

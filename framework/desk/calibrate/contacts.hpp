@@ -39,6 +39,10 @@ struct ContactFit {
 /// False contacts lie anywhere over `range` metres. At least 3 contacts.
 ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range);
 
+/// Returns how far a contact is above (positive) or below (negative) all heights of its scene within 1 cm of its place,
+/// metres, once `offset` is taken off its height; 0 for one among them.
+double beyond_surface(const KnownContact& contact, double offset);
+
 /// Of `count` among `all`, both of which may be fractions of taps (Wilson 1927).
 Estimated share_of(double count, double all);
 

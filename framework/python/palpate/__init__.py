@@ -31,12 +31,14 @@ import tempfile as _tempfile
 import numpy as _np
 
 from . import _palpate
-from ._palpate import Error, Tap
+from ._palpate import Error, InputError, Tap
 
-__all__ = ["Belief", "Error", "Experiment", "Maps", "Run", "Sweep", "Tap", "describe", "load", "load_sweep", "run", "sweep"]
+__all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep", "Tap", "describe", "load", "load_sweep", "run", "sweep"]
 __version__ = _palpate.version
 
-Error.__doc__ = """Input that can be mended: `place`, `reason` and `remedy` (perhaps "") say where, what and how."""
+Error.__doc__ = """What went wrong in one line: `place`, `reason` and `remedy` (perhaps "") say where, what and how."""
+InputError.__doc__ = """An Error by input that can be mended, a ValueError as well: an argument, a config, a file. What failed
+in a run, as a robot that stopped, is an Error alone."""
 Tap.__doc__ = """A tap to make.
 
 `number`: from 1. `x`, `y`: the place, metres. `candidate`: its index among the candidates, row by row. `source`: who
@@ -234,7 +236,7 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
         command += ["-j", str(workers)]
     status, said = _conducted(command, progress)
     if status not in (0, 1):  # 1: jobs failed, or what the config expects does not hold
-        raise _error(directory, f"the sweep ended with status {status}: {said}", "see what it says")
+        raise _error(directory, f"the sweep ended with status {status}: {said}", "see what it says", Error)
     return Sweep(directory)
 
 
@@ -384,6 +386,10 @@ class Experiment:
         `height`: of the touched point, metres; `force` at contact, newtons; `seconds` that it took. Without a height an
         `outcome` says why: "no_contact", "unreachable", "timeout" or "aborted", with a `reason` for people. `ends_run`:
         nobody may tap before somebody has seen to the robot; the run fails, and resume(retry_failed=True) carries it on.
+
+        Raises InputError, a ValueError, for a value that no arm can have measured: a height that is not within 1 cm below
+        desk - `backend.overrun` to desk + `backend.hover` (in metres; 4 cm below to 13.5 cm above the desk by default), a
+        force outside 0 to 1000 N, seconds outside 0 to 86400, NaN. Nothing is recorded then, and the tap is still to be told.
         """
         if outcome is None:
             if height is None:
@@ -402,7 +408,7 @@ class Experiment:
         self._asked.close()
 
 
-def _error(place, reason, remedy):
-    error = Error(f"{place}: {reason}, {remedy}")
+def _error(place, reason, remedy, kind=InputError):
+    error = kind(f"{place}: {reason}, {remedy}")
     error.place, error.reason, error.remedy = place, reason, remedy
     return error

@@ -15,6 +15,8 @@ class Error(Exception):
     reason: str
     remedy: str
 
+class InputError(Error, ValueError): ...
+
 class Tap:
     @property
     def number(self) -> int: ...

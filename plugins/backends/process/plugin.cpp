@@ -69,7 +69,7 @@ std::string find_program(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
   for (std::string folder; !is_path && std::getline(folders, folder, ':');) {
-    const std::string file = (folder.empty() ? "." : folder) + "/" + program;
+    std::string file = (folder.empty() ? "." : folder) + "/" + program;
     if (executable(file)) return file;
   }
   throw Error("command", "there is no program " + process::shown(program),
@@ -196,6 +196,10 @@ class Process final : public Backend {
     return answer;
   }
 
+  HeightBounds bounds_of(const tapping::MotionOptions& motion) const {
+    return height_bounds(context_.scene.desk(), motion.overrun, motion.hover);
+  }
+
   bool may_restart() const { return options_.repeatable || options_.restart; }
 
   process::Answer ask(const TapRequest& request, const process::Patience& patience) {
@@ -211,7 +215,7 @@ class Process final : public Backend {
     }
     switch (heard) {
       case Child::Heard::line:
-        answer = process::read_answer(line, request.number, context_.scene.desk() + options_.motion.at(0).hover);
+        answer = process::read_answer(line, request.number, bounds_of(options_.motion.of_request(request)));
         answered_ = true;
         if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
         return answer;

@@ -4,9 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <iterator>
-#include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -16,11 +14,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestPiece = 80;
-constexpr std::size_t kLongestReason = 200;
-/// Metres below the height 0 of the scene. No arm is that long; a depth in millimetres is beyond it.
-constexpr double kDeepest = 10.0;
-constexpr double kLongest =
-    86400.0;  ///< seconds: a day. No tap takes that long; milliseconds of a tap may be beyond it
 
 /// Options as JSON in SI, from their field list: an option that the motion gains is sent along without a line here.
 class Written final : public Fields {
@@ -64,24 +57,6 @@ class Written final : public Fields {
   Json& out_;
 };
 
-/// In the order of Outcome; `unknown` is nothing that a program could say.
-constexpr const char* kOutcomes[] = {"contact", "no_contact", "unreachable", "timeout", "aborted"};
-
-/// The program's own words in the record: whole characters, none that a terminal obeys.
-std::string cleaned(const std::string& reason) {
-  std::string out;
-  for (std::size_t i = 0; i < reason.size(); ++i) {
-    const auto c = static_cast<unsigned char>(reason[i]);
-    const bool begins = (c & 0xc0) != 0x80;
-    if (begins && out.size() >= kLongestReason) return out + "...";
-    // U+0080 to U+009F are control characters, too: two bytes, of which the first is 0xc2.
-    const bool long_control = c == 0xc2 && i + 1 < reason.size() && static_cast<unsigned char>(reason[i + 1]) < 0xa0;
-    i += long_control ? 1 : 0;
-    out += c < 0x20 || c == 0x7f || long_control ? ' ' : reason[i];
-  }
-  return out;
-}
-
 /// Reads the fields of one answer. The first trouble is kept, and what is read after it means nothing.
 class Reader {
  public:
@@ -95,13 +70,10 @@ class Reader {
   /// Null counts as absent.
   bool has(const char* field) const { return answer_.contains(field) && !answer_[field].is_null(); }
 
-  /// `range` says in words what `least` and `most` are.
-  double number(const char* field, double least, double most, const char* range) {
+  double number(const char* field) {
     if (!has(field)) return refuse(lacks(field)), 0.0;
     if (!answer_[field].is_number()) return refuse(bad(field, "that is not a number")), 0.0;
-    const auto value = answer_[field].get<double>();
-    if (!(value >= least && value <= most)) return refuse(bad(field, range)), 0.0;
-    return value;
+    return answer_[field].get<double>();
   }
 
   std::string text(const char* field) {
@@ -118,17 +90,15 @@ class Reader {
 
   /// Words for the record, at least one.
   std::string reason() {
-    std::string words = cleaned(text("reason"));
+    std::string words = plain_line(text("reason"));
     if (words.find_first_not_of(' ') == std::string::npos) refuse("has no words in 'reason'");
     return words;
   }
 
   Outcome outcome() {
-    const std::string name = text("outcome");
-    const auto* const known = std::find(std::begin(kOutcomes), std::end(kOutcomes), name);
-    if (known != std::end(kOutcomes)) return static_cast<Outcome>(known - std::begin(kOutcomes));
-    refuse("has an unknown outcome");
-    return Outcome::aborted;
+    const std::optional<Outcome> known = answered_outcome(text("outcome"));
+    if (!known) refuse("has an unknown outcome");
+    return known.value_or(Outcome::aborted);
   }
 
   void refuse(const std::string& why) {
@@ -144,19 +114,17 @@ class Reader {
   const Json& answer_;
 };
 
-Contact read_contact(Reader& reader, double highest) {
-  constexpr double kAny = std::numeric_limits<double>::max();
+Contact read_contact(Reader& reader, const HeightBounds& bounds) {
   Contact out;
   out.outcome = reader.outcome();
-  out.seconds = reader.number("seconds", 0.0, kLongest, "that is negative or longer than a day");
+  out.seconds = reader.number("seconds");
   if (out.outcome == Outcome::contact) {
-    out.height = reader.number("height", -kDeepest, highest,
-                               "that is more than 10 m down or above the arm's way, desk and motion.hover: it is in "
-                               "metres");
-    if (reader.has("force")) out.force = reader.number("force", 0.0, kAny, "that is negative");
+    out.height = reader.number("height");
+    if (reader.has("force")) out.force = reader.number("force");
   }
   out.ends_run = reader.flag("ends_run");
   if (out.outcome != Outcome::contact || out.ends_run) out.reason = reader.reason();
+  if (const auto fault = find_fault(out, bounds)) reader.refuse("is refused, " + fault->reason + ", " + fault->remedy);
   return out;
 }
 
@@ -195,7 +163,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   return ask.dump() + "\n";
 }
 
-Answer read_answer(const std::string& line, int tap, double highest) {
+Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
@@ -206,7 +174,7 @@ Answer read_answer(const std::string& line, int tap, double highest) {
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
   if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false, ends_run);
   Reader reader(json);
-  Contact contact = read_contact(reader, highest);
+  Contact contact = read_contact(reader, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
   return {true, true, std::move(contact)};
 }

@@ -3,6 +3,7 @@
 // fields as a table.
 #pragma once
 
+#include "answers/answer.hpp"
 #include "tapping/motion.hpp"
 
 #include <palpate/plugin.hpp>
@@ -25,8 +26,8 @@ struct Answer {
   /// Ends the run if the program says so, even in an answer that is refused.
   Contact contact;
 };
-/// `highest`, metres: no height above it is believed, because there the arm would have hit the thing on its way.
-Answer read_answer(const std::string& line, int tap, double highest);
+/// Reads a line as the answer to this tap. A value that find_fault() finds is refused.
+Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds);
 
 /// A piece of foreign text, quoted to stand within one line: cut where it is long, '?' for all but printable ASCII.
 std::string shown(const std::string& text);

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: MIT
+"""Moves of a Universal Robots arm over ur_rtde in straight lines, every one of them watched; for ur.py."""
+import collections
+import json
+import math
+import os
+import select
+import signal
+import sys
+import time
+
+ACCELERATION = 0.5  # m/s^2, of every move
+DECELERATION = 2.0  # m/s^2, of every stop: from 20 cm/s in 0.1 s, well within the watchdog's time
+WATCHDOG = 5.0  # Hz: the controller stops the arm when it hears nothing for 0.2 s
+FRESH = 0.2  # s without a new state of the robot: the connection is lost
+READINGS = 3  # new ones in a row that make a contact: one alone may be a spike
+ARRIVED = 0.0005  # m from the target
+WINDOW = 0.1  # s over which the speed of the tip is averaged: single samples of it are noise
+AT_REST = 0.001  # m/s
+STOPPING = 1.0  # s in which a stop has to be done
+
+RETRY = "then 'palpate resume --retry-failed'"
+
+
+class Fault(Exception):
+    """No other tap can be made until somebody has seen to the arm."""
+
+
+class Failed(Exception):
+    """The tap failed, the arm can go on."""
+
+    def __init__(self, outcome, reason):
+        super().__init__(reason)
+        self.outcome = outcome
+
+
+class Over(Exception):
+    """The run is gone, or wants this program to end."""
+
+
+class Asks:
+    """The lines of stdin, read without waiting: an arm that moves must notice that its run has ended."""
+
+    def __init__(self):
+        self.ended = False
+        self.text = b""
+        signal.signal(signal.SIGTERM, self.end)
+
+    def end(self, *_):
+        self.ended = True
+
+    def look(self, seconds=0.0):
+        if select.select([0], [], [], seconds)[0]:
+            got = os.read(0, 65536)
+            self.text += got
+            self.ended = self.ended or not got
+
+    def next(self):
+        """The next ask, None if none has come."""
+        line, end, rest = self.text.partition(b"\n")
+        if not end:
+            return None
+        self.text = rest
+        return json.loads(line)
+
+
+class Arm:
+    """Moves in straight lines, every one of them watched."""
+
+    def __init__(self, control, receive, asks, force_limit):
+        self.control, self.receive, self.asks = control, receive, asks
+        self.force_limit = force_limit  # N, beyond which it stops wherever it is
+        self.zero_force = [0.0] * 3
+        self.stamp = None
+        self.poses = collections.deque()  # (stamp, pose) of the last WINDOW
+        self.lost = False  # the robot may hear nothing any more: no command is sent
+        self.trouble = None  # what happened between two taps
+        self.approached = False  # the first way to above the area is made
+
+    def look(self):
+        """Waits for the next state of the robot, and raises what keeps it from moving on."""
+        patience = time.monotonic() + FRESH
+        while True:
+            late = time.monotonic() > patience
+            stamp = self.receive.getTimestamp()
+            if stamp != self.stamp:
+                break
+            if late:
+                self.lost = True
+                raise Fault(f"no new state of the robot for {FRESH} s: look at cable and arm, it should stand, {RETRY}")
+            time.sleep(0.0005)
+        self.stamp = stamp
+        self.poses.append((stamp, self.pose()))
+        while self.poses[0][0] < stamp - WINDOW:
+            self.poses.popleft()
+        self.asks.look()
+        if self.asks.ended:
+            raise Over
+        self.kick()
+
+    def kick(self):
+        """Keeps the watchdog quiet, and raises what the robot says against moving."""
+        check(self.receive)
+        if not self.control.kickWatchdog():
+            raise Fault(f"ur_rtde's script no longer runs on the robot: look at the pendant's log, {RETRY}")
+
+    def idle(self):
+        """The same between two taps. What is wrong there is the answer to the next ask: somebody may have stopped the
+        arm on purpose."""
+        try:
+            if not self.trouble:
+                self.kick()
+        except (Fault, RuntimeError) as trouble:
+            self.trouble = trouble
+            print(f"between two taps: {trouble}", file=sys.stderr)
+
+    def pose(self):
+        return list(self.receive.getActualTCPPose())
+
+    def force(self):
+        """Newtons along x, y, z of the base since it was last zeroed."""
+        return [f - zero for f, zero in zip(self.receive.getActualTCPForce(), self.zero_force)]
+
+    def moves(self):
+        """Whether the tip moves, by the means of its poses in both halves of WINDOW; True until there are enough."""
+        middle = self.stamp - WINDOW / 2
+        halves = [[pose for stamp, pose in self.poses if (stamp > middle) == late] for late in (False, True)]
+        if not all(halves) or self.poses[0][0] > self.stamp - 0.9 * WINDOW:
+            return True
+        before, now = ([sum(axis) / len(half) for axis in zip(*half)] for half in halves)
+        return distance(before, now) / (WINDOW / 2) > AT_REST
+
+    def slider(self):
+        return f"the speed slider stands at {100 * self.receive.getTargetSpeedFraction():.0f} %"
+
+    def rest(self, seconds):
+        """Waits until the arm has been at rest for so long; the mean of the force meanwhile."""
+        since, sum_, count = None, [0.0] * 3, 0
+        patience = None
+        while True:
+            self.look()
+            patience = patience or self.stamp + seconds + 5.0
+            if self.stamp > patience:
+                raise Fault(f"the arm does not come to rest: look what moves it, {RETRY}")
+            if self.moves():
+                since = None
+            elif since is None:
+                since, sum_, count = self.stamp, [0.0] * 3, 0
+            else:
+                sum_ = [a + f for a, f in zip(sum_, self.force())]
+                count += 1
+                if self.stamp - since >= seconds:
+                    return [a / count for a in sum_]
+
+    def zero(self, seconds):
+        """Takes the force at rest for zero: first the sensor, then what is left of it."""
+        self.rest(seconds)
+        if not self.control.zeroFtSensor():
+            raise Fault(f"the robot does not zero its force sensor: is it an e-Series or newer? {RETRY}")
+        self.zero_force = [0.0] * 3
+        self.zero_force = self.rest(seconds)
+
+    def follow(self, target, speed, until=None, touched=None):
+        """Moves to `target`, beyond which the controller itself does not go; None when it is there.
+
+        With `touched`: pose and force of the first of READINGS readings in a row for which that holds, and then the
+        arm stands. After `until`, in the robot's seconds, it raises TimeoutError, standing too.
+        """
+        way = distance(self.pose(), target)
+        until = until or self.stamp + 5.0 + 3.0 * way / speed
+        limit = self.force_limit + length(self.force())
+        # For every move: ur_rtde reconnects by itself, and then there is no watchdog until it is set again.
+        if not self.control.setWatchdog(WATCHDOG):
+            check(self.receive)
+            raise Fault(f"the robot takes no watchdog: look at the pendant's log, {RETRY}")
+        if not self.control.moveL(target, speed, ACCELERATION, True):
+            check(self.receive)
+            raise Fault(f"the robot did not take a move: look at the pendant's log, {RETRY}")
+        contacts, pushed = [], 0
+        try:
+            while True:
+                self.look()
+                force, pose = self.force(), self.pose()
+                contacts = contacts + [(pose, force)] if touched and touched(pose, force) else []
+                pushed = pushed + 1 if length(force) >= limit else 0
+                if len(contacts) == READINGS:
+                    self.stop()
+                    return contacts[0]
+                if pushed == READINGS:
+                    raise Fault(f"something pushes the arm with {length(force):.0f} N on its way: free it, {RETRY}")
+                if self.stamp > until:
+                    self.stop()
+                    raise TimeoutError
+                if distance(pose, target) < ARRIVED and not self.moves():
+                    return None
+        except (Over, Fault):
+            self.halt()
+            raise
+
+    def halt(self):
+        """Begins to stop. Where no new state comes it sends nothing: ur_rtde would wait for an answer, for 300 s. The
+        watchdog, which is no longer kept quiet, stops the arm then."""
+        if self.lost:
+            return
+        try:
+            self.control.stopL(DECELERATION, True)
+        except RuntimeError as error:
+            self.lost = True
+            print(f"stopL: {error}", file=sys.stderr)
+
+    def stop(self):
+        """Stops, and waits until the arm stands: another command while it stops would end ur_rtde's script."""
+        self.halt()
+        until = self.stamp + STOPPING
+        while self.moves():
+            self.look()
+            if self.stamp > until:
+                raise Fault(f"the arm does not stand {STOPPING:g} s after its stop: look what moves it, {RETRY}")
+
+    def leave(self):
+        """Ends the script on the robot, after which nobody keeps the watchdog quiet."""
+        try:
+            if not self.lost:
+                self.control.stopScript()
+            self.control.disconnect()
+            self.receive.disconnect()
+        except RuntimeError as error:
+            print(f"leaving: {error}", file=sys.stderr)
+
+
+def check(receive):
+    """Raises what the robot itself says against moving."""
+    if receive.isEmergencyStopped():
+        raise Fault(f"emergency stop: release the button, switch the arm on, bring the tip above the area, {RETRY}")
+    if receive.isProtectiveStopped():
+        raise Fault(f"protective stop: free the arm if it presses, confirm on the pendant, {RETRY}")
+    if receive.getSafetyMode() not in (1, 2):  # normal, reduced
+        raise Fault(f"safety mode {receive.getSafetyMode()}, not normal: clear it on the pendant, {RETRY}")
+    if receive.getRobotMode() != 7:  # running
+        raise Fault(f"robot mode {receive.getRobotMode()}, not running: switch on and release the brakes, {RETRY}")
+
+
+def length(vector):
+    return math.sqrt(sum(value * value for value in vector))
+
+
+def distance(pose, other):
+    return length([a - b for a, b in zip(pose[:3], other[:3])])
