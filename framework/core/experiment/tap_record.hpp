@@ -7,11 +7,13 @@
 #include "experiment/object_errors.hpp"
 #include "experiment/phases.hpp"
 #include "experiment/tap_belief.hpp"
+#include "regular/regular_factor.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/types.hpp>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -120,6 +122,14 @@ struct RunResult : ModelState {
     if (tap.source == Source::fallback) ++interventions["fallback"];
     if (tap.contact.reason == kHeightRefused || tap.contact.reason == kAlongRefused) ++interventions["height_refused"];
     if (tap.contact.outcome != Outcome::contact) ++(tap.is_missed() ? missed_taps : failed_taps);
+  }
+
+  /// Adds what rounding made necessary in the factorisations of one model; jitter in the square of its unit.
+  void count(const FactorReport& factors) {
+    jitter_max = std::max(jitter_max, factors.jitter);
+    interventions["jitter"] += factors.raised;
+    interventions["pivoted"] += factors.pivoted;
+    interventions["set_aside"] += factors.set_aside;
   }
 
   std::string stop_reason;

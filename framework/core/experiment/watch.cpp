@@ -154,16 +154,16 @@ RunResult Watch::result(TapBelief& belief) {
     if (!one) return;
     const Process& process = *one.process;
     state = state_of(one);
-    out.jitter_max = std::max(out.jitter_max, state->jitter);
-    out.interventions["jitter"] += process.jitter_raised();
-    out.interventions["pivoted"] += process.pivoted();
-    out.interventions["set_aside"] += process.set_aside();
+    out.count(FactorReport{state->jitter, process.jitter_raised(), process.pivoted(), process.set_aside()});
     out.interventions["variance_clamped"] += process.variances_clamped();
   };
   take(belief.height_process(), out.height_process);
   take(belief.weight_process(), out.weight_process);
   if (belief.two_part()) take(belief.surface_process(), out.surface_process);
-  if (options_.height.lies) out.doubted = belief.doubted();
+  if (options_.height.lies) {
+    out.doubted = belief.doubted();
+    out.count(belief.factors_of_outliers());
+  }
   if (const Footprint* footprint = belief.footprint()) out.footprint = state_of(*footprint);
   out.interventions["fit_failed"] = belief.failed_fits();
   return out;

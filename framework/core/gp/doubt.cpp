@@ -38,6 +38,12 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
   testimony.level = settings.mean_ratio * settings.signal;
   testimony.lie = std::hypot(settings.signal, testimony.level);
   judgement_ = palpate::judge(testimony);
+  // Every court of every tap has the same need: it is counted where it begins.
+  const FactorReport& now = judgement_.report;
+  report_.raised += now.jitter > 0.0 && report_.jitter == 0.0 ? 1 : 0;
+  report_.pivoted += now.pivoted > 0 && report_.set_aside == 0 ? 1 : 0;
+  report_.jitter = now.jitter;
+  report_.set_aside = now.set_aside;
 }
 
 void DoubtedSurface::forget() {

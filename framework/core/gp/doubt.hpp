@@ -30,6 +30,10 @@ class DoubtedSurface {
   /// Whether any were: else the surface is that of the process.
   bool judged() const { return judged_; }
 
+  /// What rounding made necessary in all judgements so far: the jitter of the last, in the square of the targets' unit,
+  /// how often it came to be needed, and how many taps are set aside now.
+  const FactorReport& report() const { return report_; }
+
   // Of the process that was judged, in the unit of the targets and its square; noise excluded.
   /// Over the candidates; these size `out`.
   void read_mean(const Process& process, Eigen::VectorXd& out);
@@ -45,6 +49,7 @@ class DoubtedSurface {
 
   const Candidates& candidates_;
   Judgement judgement_;
+  FactorReport report_;
   bool judged_ = false;
   Eigen::MatrixXd covariances_, broad_;  ///< candidates x taps: k and l of lies.hpp
   Eigen::Index covered_ = 0;             ///< taps

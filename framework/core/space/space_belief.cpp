@@ -229,12 +229,23 @@ void SpaceBelief::look_for_reductions() {
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
-  const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places);
+  reduced_.set_aside = 0;  // as it is now
+  const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places, &reduced_);
   reduction_ = Eigen::VectorXd::Zero(met_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {
     if (squareness_(meets_[i]) > kSquarely)
       reduction_(meets_[i]) = reductions(static_cast<Eigen::Index>(some.stands_for[i]));
   }
+}
+
+FactorReport SpaceBelief::factors() const {
+  FactorReport out = skin_.report();
+  out.jitter *= skin_.deviation() * skin_.deviation();
+  // A contact that does not enter is counted once.
+  const int set_aside = std::max(out.set_aside, reduced_.set_aside);
+  out.add(reduced_);
+  out.set_aside = set_aside;
+  return out;
 }
 
 void SpaceBelief::look_for_unseen() {
