@@ -14,6 +14,10 @@ constexpr double kNoises[] = {1.0, 1.0 / 6.0};
 /// Of the signal, and how many times as far as the kernel's its covariance reaches.
 constexpr double kBroadSignal = 0.5;
 constexpr double kBroader = 2.5;
+/// Of the signal. Below the first a process claims to be exact, which few surfaces keep to: see judge(). The others are
+/// the noises by which it is contradicted, from those of a good arm to what a kernel that is much too smooth leaves over.
+constexpr double kExact = 0.01;
+constexpr double kRough[] = {0.3, 0.06, 0.01};
 
 }  // namespace
 
@@ -38,6 +42,13 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
   testimony.level = settings.mean_ratio * settings.signal;
   testimony.lie = std::hypot(settings.signal, testimony.level);
   judgement_ = palpate::judge(testimony);
+  if (settings.noise < kExact * settings.signal) {
+    testimony.noises.clear();
+    for (const double share : kRough) testimony.noises.push_back(share * settings.signal);
+    const Judgement rough = palpate::judge(testimony);
+    judged_ = !(rough.log_evidence > judgement_.log_evidence);
+    if (!judged_) judgement_.doubt = rough.doubt;
+  }
   // Every court of every tap has the same need: it is counted where it begins.
   const FactorReport& now = judgement_.report;
   report_.raised += now.jitter > 0.0 && report_.jitter == 0.0 ? 1 : 0;
