@@ -142,6 +142,7 @@ RunResult Watch::result(TapBelief& belief) {
     belief.build(kErrorsRead);
     const SurfaceMaps maps = maps_of(belief, kErrorsRead);
     out.errors = errors_of(maps, *real);
+    require_finite(out.errors, result_.taps);
     touches_.resize(static_cast<std::size_t>(real->objects));
     out.objects.emplace();
     for (const ObjectErrors& errors : object_errors(maps, *real, candidates_))
@@ -162,9 +163,18 @@ RunResult Watch::result(TapBelief& belief) {
   if (belief.two_part()) take(belief.surface_process(), out.surface_process);
   if (options_.height.lies) {
     out.doubted = belief.doubted();
-    out.count(belief.factors_of_outliers());
+    if (belief.surface_process()) {
+      out.count(belief.factors_of_outliers());
+      out.interventions["variance_clamped"] += belief.variances_clamped();
+    }
   }
-  if (const Footprint* footprint = belief.footprint()) out.footprint = state_of(*footprint);
+  if (const Footprint* footprint = belief.footprint()) {
+    out.footprint = state_of(*footprint);
+    // What a footprint factorises counts as what the processes do, by the names of its numbers.
+    for (const FootprintNumber& one : out.footprint->numbers) {
+      if (one.name == "jitter" || one.name == "set_aside") out.interventions[one.name] += static_cast<int>(one.value);
+    }
+  }
   out.interventions["fit_failed"] = belief.failed_fits();
   return out;
 }

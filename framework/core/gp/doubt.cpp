@@ -58,6 +58,7 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
 }
 
 void DoubtedSurface::forget() {
+  clamped_ = 0;
   judgement_ = {};
   judged_ = false;
   covered_ = 0;
@@ -109,6 +110,7 @@ void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out)
     out.segment(first, count) += 2.0 * products.cwiseProduct(z).rowwise().sum().head(count);
   }
   // Rounding may leave less than nothing where taps are close.
+  clamped_ = static_cast<int>((out.array() < 0.0).count());
   out = out.cwiseMax(0.0);
 }
 

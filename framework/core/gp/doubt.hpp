@@ -39,6 +39,8 @@ class DoubtedSurface {
   /// What rounding made necessary in all judgements so far: the jitter of the last, in the square of the targets' unit,
   /// how often it came to be needed, and how many taps are set aside now.
   const FactorReport& report() const { return report_; }
+  /// How many variances of the last map rounding has taken below 0; they read as 0.
+  int variances_clamped() const { return clamped_; }
 
   // Of the process that was judged, in the unit of the targets and its square; noise excluded.
   /// Over the candidates; these size `out`.
@@ -56,6 +58,7 @@ class DoubtedSurface {
   const Candidates& candidates_;
   Judgement judgement_;
   FactorReport report_;
+  int clamped_ = 0;
   bool judged_ = false;
   Eigen::MatrixXd covariances_, broad_;  ///< candidates x taps: k and l of lies.hpp
   Eigen::Index covered_ = 0;             ///< taps

@@ -190,6 +190,7 @@ RunResult FromAnySide::result() {
   out.interventions["ways_broken"] = skin.ways_broken();
   out.interrupted = out.stop_reason == kStoppedByUser;
   out.errors = errors();
+  require_finite(out.errors, result_.taps);
   return out;
 }
 
