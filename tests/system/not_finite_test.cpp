@@ -14,9 +14,9 @@ namespace {
 
 const char* const kAbove =
     "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: outline}\nfitting: {type: fixed}\n"
-    "footprint: {type: classifier}\nsurface: two_part\nheight: {noise: 6 mm, lies: 0.03}\n"
+    "surface: two_part\nheight: {noise: 6 mm, lies: 0.03}\n"
     "backend: {type: simulator}\ntaps: 20\ncandidates: {count: 15}\n"
-    "scene: {area: {width: 23 cm, depth: 23 cm}, on_surface_above: 1 cm, objects: [{type: block, at: [12 cm, 12 "
+    "scene: {area: {width: 23 cm, depth: 23 cm}, on_surface_above: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
     "cm]}]}\n";
 
 const char* const kAnySide =
@@ -36,12 +36,15 @@ struct Spoilt {
 
 void PrintTo(const Spoilt& one, std::ostream* out) { *out << one.kind << ": " << one.function; }
 
+const char* const kFootprint = "footprint: {type: classifier, kernel: {type: rbf, length_scale: 3 cm}}\n";
+
 class NotFinite : public Shell, public testing::WithParamInterface<std::tuple<Spoilt, const char*>> {};
 
 TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
   const auto& [one, by] = GetParam();
   environment_ = {test::with_plugin("not_finite")};
-  const std::string file = write("exp.yaml", one.config).string();
+  const bool sound_footprint = one.config == kAbove && one.kind != "footprint";
+  const std::string file = write("exp.yaml", std::string(one.config) + (sound_footprint ? kFootprint : "")).string();
   const std::string at = one.kind == "shape" ? "scene.objects.0" : one.kind;
   const Ended ended =
       palpate(Words{"run", file, "--quiet"} +
