@@ -192,8 +192,11 @@ class Backend final : public palpate::Backend, Spoilt {
     return std::make_unique<Motions>(options);
   }
   palpate::Contact tap(const palpate::TapRequest& request) override {
-    palpate::Contact out{palpate::Outcome::contact, number("tap: height", 0.05), number("tap: force", 8.0),
-                         number("tap: seconds", 1.0), {}};
+    palpate::Contact out{palpate::Outcome::contact,
+                         number("tap: height", 0.05),
+                         number("tap: force", 8.0),
+                         number("tap: seconds", 1.0),
+                         {}};
     out.peak = number("tap: peak", 8.0);
     if (request.approach) out.along = number("tap: along", 0.1);
     return out;

@@ -35,9 +35,10 @@ TEST(ExtremeBackend, EveryKindOfNoNumberIsRefusedAsAFailedTap) {
 
 TEST(ExtremeBackend, ARunOfNothingButNoNumbersFailsAfterTenOfThem) {
   Prepared prepared("paper/object_i.yaml", {}, scripted(std::vector<Contact>(17, contact_at(std::nan("")))));
-  EXPECT_EQ(error_of([&] { prepared.run(); }, Error::Kind::run),
-            "backend/simulator: 10 taps in a row failed, the last so: the backend reported a height that is not a finite "
-            "number, correct the backend");
+  EXPECT_EQ(
+      error_of([&] { prepared.run(); }, Error::Kind::run),
+      "backend/simulator: 10 taps in a row failed, the last so: the backend reported a height that is not a finite "
+      "number, correct the backend");
   EXPECT_EQ(prepared.taps.size(), 10U) << "all are recorded";
   EXPECT_EQ(prepared.experiment.counts().failed_taps, 10);
 }
@@ -62,8 +63,9 @@ TEST(ExtremeBackend, AHeightBeyondWhatAModelCanHoldEndsTheRunWithALineThatNamesM
           run.experiment.result();
         },
         Error::Kind::run);
-    EXPECT_THAT(said, ::testing::MatchesRegex("maps: the height is not a finite number everywhere after tap [0-9]+, choose a "
-                                              "larger height.noise .*"));
+    EXPECT_THAT(said,
+                ::testing::MatchesRegex("maps: the height is not a finite number everywhere after tap [0-9]+, choose a "
+                                        "larger height.noise .*"));
   }
   // The models hold it, and its square is more than a number can be.
   EXPECT_THAT(error_of([&] {

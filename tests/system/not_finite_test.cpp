@@ -54,7 +54,7 @@ TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
   EXPECT_EQ(lines(ended.err), 1) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr(one.kind + "/not_finite: "));
   EXPECT_THAT(ended.err, HasSubstr(one.said));
-  }
+}
 
 const Words kCeres{"fitting.type=ceres"};
 
@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
         testing::Values("nan", "infinity")),
     [](const auto& one) {
       const Spoilt& spoilt = std::get<0>(one.param);
-      std::string name = spoilt.kind + "_" + spoilt.function + "_" + std::get<1>(one.param) + "_" +
-                         std::to_string(one.index);
+      std::string name =
+          spoilt.kind + "_" + spoilt.function + "_" + std::get<1>(one.param) + "_" + std::to_string(one.index);
       for (char& letter : name) letter = std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
       return name;
     });

@@ -15,7 +15,8 @@ constexpr double kNoises[] = {1.0, 1.0 / 6.0};
 constexpr double kBroadSignal = 0.5;
 constexpr double kBroader = 2.5;
 /// Of the signal. Below the first a process claims to be exact, which few surfaces keep to: see judge(). The others are
-/// the noises by which it is contradicted, from those of a good arm to what a kernel that is much too smooth leaves over.
+/// the noises by which it is contradicted, from those of a good arm to what a kernel that is much too smooth leaves
+/// over.
 constexpr double kExact = 0.01;
 constexpr double kRough[] = {0.3, 0.06, 0.01};
 

@@ -27,7 +27,8 @@ class Court {
     const Eigen::Index n = testimony.heights.size();
     Eigen::MatrixXd covariance = signal * signal * testimony.covariance;
     if (testimony.broad.size() > 0) covariance += testimony.broad_signal * testimony.broad_signal * testimony.broad;
-    const double least = n > 0 ? kInverseNoise * static_cast<double>(n) * kEpsilon * covariance.diagonal().maxCoeff() : 0.0;
+    const double least =
+        n > 0 ? kInverseNoise * static_cast<double>(n) * kEpsilon * covariance.diagonal().maxCoeff() : 0.0;
     const double square = noise * noise;
     covariance.diagonal().array() += std::max(square, least);
     if (testimony.roughness.size() > 0) covariance.diagonal() += testimony.roughness;

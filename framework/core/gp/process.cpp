@@ -104,7 +104,8 @@ bool Process::append(int tap) {
   kernel_->covariance(factored_.topRows(row), place, scratch_.head(row));
   double own = 0.0;
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));
-  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() / trust_(tap) + report_.jitter)) return false;
+  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() / trust_(tap) + report_.jitter))
+    return false;
 
   const VectorView before = factor_.row(row);
   const auto reduce = [&](Eigen::Index column, double value) {
@@ -205,7 +206,8 @@ void Process::rebuild() {
     // The guards of both factorisations differ by rounding: what the second refuses ends the list.
     refactor(taps);
   };
-  regularise(report_, size_, prior_.maxCoeff(), [&] { return refactor(taps); }, pivot);
+  regularise(
+      report_, size_, prior_.maxCoeff(), [&] { return refactor(taps); }, pivot);
 }
 
 FitSummary Process::fit(const Fitting& fitting, Random& random) {

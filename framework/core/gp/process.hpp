@@ -176,7 +176,7 @@ class Process {
   Eigen::MatrixXd weights_;     ///< L^-T of the same, of the rows that the engine has taken; only where it needs L^-1
   double inverse_norms_ = 0.0;  ///< sum of |c_i|_1^2 over those rows
   Eigen::VectorXd scratch_;
-  FactorReport report_;  ///< jitter relative to signal^2; of what is set aside factor_ knows
+  FactorReport report_;             ///< jitter relative to signal^2; of what is set aside factor_ knows
   std::vector<double> fit_memory_;  ///< what one fit leaves for the next
   int generation_ = 0;
 };

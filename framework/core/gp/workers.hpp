@@ -24,8 +24,8 @@ class Workers {
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
   /// Calls job(piece, worker) for all pieces 0 .. count - 1 and returns when all are done; `worker` is below
-  /// threads(), and each worker has one piece at a time. What a job throws first, in any thread, is thrown here once all
-  /// workers have stopped; pieces that nobody had begun are then left out.
+  /// threads(), and each worker has one piece at a time. What a job throws first, in any thread, is thrown here once
+  /// all workers have stopped; pieces that nobody had begun are then left out.
   template <class Job>
   void for_each(int count, const Job& job) {
     if (helpers_.empty() || count < 2) {

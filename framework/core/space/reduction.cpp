@@ -16,8 +16,7 @@ using Eigen::VectorXd;
 
 }  // namespace
 
-VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places,
-                             FactorReport* report) {
+VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places, FactorReport* report) {
   if (places.empty()) return {};
   Skin::Places all;  // contacts first
   for (const Skin::Row& row : skin.rows()) {

@@ -195,8 +195,7 @@ void Skin::take_in(std::vector<Row> rows) {
   };
   const auto pivot = [&] {
     covariance.diagonal() += report_.jitter * covariance.diagonal() + noise;
-    const std::vector<int> taken =
-        factorise(factor, covariance, independent_rows(covariance), VectorXd::Zero(n), 0.0);
+    const std::vector<int> taken = factorise(factor, covariance, independent_rows(covariance), VectorXd::Zero(n), 0.0);
     std::vector<Row> kept;
     for (const int i : taken) kept.push_back(rows[static_cast<std::size_t>(i)]);
     rows = kept;

@@ -60,8 +60,8 @@ void RegularFactor::factorise(const Eigen::MatrixXd& matrix) {
     if (rows_.empty()) factor_.compute(Eigen::MatrixXd(0, 0));
     report_.set_aside = static_cast<int>(size_) - static_cast<int>(rows_.size());
   };
-  regularise(report_, size_, size_ == 0 ? 0.0 : matrix.diagonal().maxCoeff(), [&] { return try_rows(with_jitter()); },
-             pivot);
+  regularise(
+      report_, size_, size_ == 0 ? 0.0 : matrix.diagonal().maxCoeff(), [&] { return try_rows(with_jitter()); }, pivot);
 }
 
 Eigen::MatrixXd RegularFactor::inverse() const {

@@ -35,13 +35,13 @@ constexpr double kFirstJitter = 10.0;
 constexpr double kLastJitter = 100.0;
 #endif
 
-/// The least noise, in the same units, with which a quadratic form may be taken from the entries of an explicit inverse.
-/// These reach 1 / noise, and the form is the small difference of their products: it is off by up to n eps / noise of
-/// the largest diagonal entry, here by a hundred-thousandth.
+/// The least noise, in the same units, with which a quadratic form may be taken from the entries of an explicit
+/// inverse. These reach 1 / noise, and the form is the small difference of their products: it is off by up to n eps /
+/// noise of the largest diagonal entry, here by a hundred-thousandth.
 constexpr double kInverseNoise = 1e5;
 
-/// Returns whether `square`, the square of pivot `row` (from 0) of a matrix with this diagonal entry, is above rounding.
-/// False for what is not a number.
+/// Returns whether `square`, the square of pivot `row` (from 0) of a matrix with this diagonal entry, is above
+/// rounding. False for what is not a number.
 inline bool is_regular(double square, Eigen::Index row, double diagonal) {
   return square > kPivotGuard * static_cast<double>(row + 1) * kEpsilon * diagonal;
 }

@@ -59,8 +59,8 @@ class Laplace {
 
   /// Approximate log p(labels), natural logarithm.
   double log_evidence() const { return log_evidence_; }
-  /// What rounding made necessary in the factorisation at the mode; no unit. Only a kernel that is not positive definite
-  /// needs any, as no eigenvalue of what is factorised is below 1.
+  /// What rounding made necessary in the factorisation at the mode; no unit. Only a kernel that is not positive
+  /// definite needs any, as no eigenvalue of what is factorised is below 1.
   const FactorReport& report() const { return factor_.report(); }
 
  private:
