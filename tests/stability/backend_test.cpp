@@ -33,10 +33,46 @@ TEST(ExtremeBackend, EveryKindOfNoNumberIsRefusedAsAFailedTap) {
   EXPECT_EQ(outside->experiment.result().interventions.at("height_refused"), 4);
 }
 
-TEST(ExtremeBackend, ARunOfNothingButNoNumbersEndsWithThePrior) {
-  const auto outside = run(std::vector<double>(17, std::nan("")), {});
-  EXPECT_EQ(outside->experiment.result().failed_taps, 17);
-  EXPECT_EQ(outside->experiment.result().on_surface_taps, 0);
+TEST(ExtremeBackend, ARunOfNothingButNoNumbersFailsAfterTenOfThem) {
+  Prepared prepared("paper/object_i.yaml", {}, scripted(std::vector<Contact>(17, contact_at(std::nan("")))));
+  EXPECT_EQ(
+      error_of([&] { prepared.run(); }, Error::Kind::run),
+      "backend/simulator: 10 taps in a row failed, the last so: the backend reported a height that is not a finite "
+      "number, correct the backend");
+  EXPECT_EQ(prepared.taps.size(), 10U) << "all are recorded";
+  EXPECT_EQ(prepared.experiment.counts().failed_taps, 10);
+}
+
+TEST(ExtremeBackend, ATimeOrAForceThatIsNoNumberIsRefusedAsAFailedTap) {
+  std::vector<Contact> answers(3, contact_at(0.05));
+  answers[0].seconds = std::nan("");
+  answers[1].force = kInfinity;
+  answers[2].peak = std::nan("");
+  Finished outside("paper/object_i.yaml", {"taps=8"}, scripted(answers));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(outside.taps[i].contact.reason, kNumberRefused) << i;
+  EXPECT_EQ(outside.experiment.result().interventions.at("height_refused"), 3);
+  EXPECT_TRUE(std::isfinite(outside.experiment.result().robot_seconds));
+}
+
+TEST(ExtremeBackend, AHeightBeyondWhatAModelCanHoldEndsTheRunWithALineThatNamesMapTapAndRemedy) {
+  for (const char* const surface : {"single", "two_part"}) {
+    const std::vector<Contact> answers(17, contact_at(1e308));
+    const std::string said = error_of(
+        [&] {
+          Finished run("paper/object_i.yaml", {std::string("surface=") + surface}, scripted(answers));
+          run.experiment.result();
+        },
+        Error::Kind::run);
+    EXPECT_THAT(said,
+                ::testing::MatchesRegex("maps: the height is not a finite number everywhere after tap [0-9]+, choose a "
+                                        "larger height.noise .*"));
+  }
+  // The models hold it, and its square is more than a number can be.
+  EXPECT_THAT(error_of([&] {
+                Finished run("paper/object_i.yaml", {}, scripted(std::vector<Contact>(17, contact_at(1e200))));
+                run.experiment.result();
+              }),
+              ::testing::MatchesRegex("maps: their errors are not finite numbers after tap 17, .*"));
 }
 
 TEST(ExtremeBackend, HeightsOfAnySizeGiveFiniteModels) {

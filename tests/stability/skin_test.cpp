@@ -191,7 +191,7 @@ TEST_P(SkinExactly, HasMeanAndVarianceWithContactsFreePointsAndNormals) {
       slopes += row.along.isZero(0.0) ? 0 : 1;
       free += row.free ? 1 : 0;
     }
-    EXPECT_EQ(skin.jitter_raised(), 0);
+    EXPECT_EQ(skin.report().raised, 0);
     double mean_error = 0.0;
     double variance_error = 0.0;
     for (int i = 0; i < 30; ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gp/factor.hpp"
+#include "regular/regular_factor.hpp"
 
 #include "support/eigenvalues.hpp"
 #include "support/testing.hpp"

@@ -150,6 +150,43 @@ TEST_P(Lies, AreThoseOfTheSumOverAllSetsWhereNoneIsLeftOut) {
   }
 }
 
+// Before, the covariance was factorised unchecked, and its inverse had no correct digit.
+TEST(TinyNoise, IsRaisedToWhatTheFormsTakeAndTheSumIsThatOfTheRaisedNoise) {
+  for (const double noise : {0.0, 1e-12, 1e-9, 1e-7}) {
+    for (const bool repeated : {false, true}) {
+      Trial trial(8, 1.0, true, 21, 0.0);
+      trial.testimony.signals = {1.0};
+      trial.testimony.noises = {noise};
+      for (std::size_t i = 1; repeated && i < 8; i += 2) trial.places[i] = trial.places[i - 1];
+      trial.testimony.covariance = trial.between(trial.places, kLengthScale);
+      trial.testimony.broad = trial.between(trial.places, kBroader);
+      for (Eigen::Index i = 0; i < 8; ++i)
+        trial.testimony.heights(i) = 0.6 + 0.1 * std::sin(trial.places[static_cast<std::size_t>(i)].x / 0.03);
+      const Judgement judgement = judge(trial.testimony, {1 << 8, 0.0, 0.0});
+      ASSERT_GT(judgement.report.jitter, 0.0);
+      EXPECT_EQ(judgement.report.raised, 1);
+      EXPECT_LT(judgement.report.jitter, 1e-9) << "nobody sees that";
+      EXPECT_TRUE(std::isfinite(judgement.log_evidence));
+      trial.testimony.noises = {std::sqrt(noise * noise + judgement.report.jitter)};
+      const Judged expected = sum_over_all_sets(trial);
+      const Judged got = read(trial, judgement);
+      EXPECT_LT((got.doubt - expected.doubt).lpNorm<Eigen::Infinity>(), 1e-3) << noise << repeated;
+      EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-4) << noise << repeated;
+      EXPECT_LT((got.variance - expected.variance).lpNorm<Eigen::Infinity>(), 1e-4) << noise << repeated;
+    }
+  }
+}
+
+TEST(LikeliestLies, OfACovarianceThatIsNoneSetTapsAsideWhichKeepTheirSuspicion) {
+  Trial trial(6, 1.0, true, 5);
+  trial.testimony.covariance(2, 4) = trial.testimony.covariance(4, 2) = 7.0;
+  const Judgement judgement = judge(trial.testimony);
+  EXPECT_GT(judgement.report.set_aside, 0);
+  EXPECT_GT(judgement.report.pivoted, 0);
+  const Judged got = read(trial, judgement);
+  EXPECT_TRUE(got.doubt.allFinite() && got.mean.allFinite() && got.variance.allFinite());
+}
+
 INSTANTIATE_TEST_SUITE_P(OfSoMany, Lies, testing::Values(1, 2, 5, 8));
 /// 4096 sets, four times over.
 INSTANTIATE_TEST_SUITE_P(OfTwelve, Lies, testing::ValuesIn(brief() ? std::vector<int>() : std::vector<int>{12}));

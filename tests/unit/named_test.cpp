@@ -11,6 +11,8 @@
 #include <palpate/kernel.hpp>
 #include <palpate/shape.hpp>
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace palpate::test {
@@ -140,6 +142,46 @@ TEST(NamedPlugin, KeepsPlaceReasonAndRemedyOfAnError) {
   request.number = 2;
   EXPECT_EQ(error_of([&] { backend->tap(request); }), "backend/mine: threw something that is no exception");
   EXPECT_TRUE(backend->repeatable());
+}
+
+/// A kernel all of whose functions give NaN.
+struct NoNumbers final : Kernel {
+  void covariance(const PointsView&, const PointsView&, MatrixOut out) const override { out.setConstant(kNan); }
+  void variance(const PointsView&, VectorOut out) const override { out.setConstant(kNan); }
+  void axis_covariance(int, const VectorView&, const VectorView&, MatrixOut out) const override {
+    out.setConstant(kNan);
+  }
+  std::vector<KernelParameter> parameters() const override { return {{"length_scale", kNan}}; }
+  void derivatives(const PointsView&, const PointsView&, MatrixOut value, MatrixOut slopes) const override {
+    value.setConstant(1.0);
+    slopes.setConstant(kNan);
+  }
+  void slope_covariance(const VectorView&, VectorOut across, VectorOut along) const override {
+    across.setConstant(1.0);
+    along.setConstant(kNan);
+  }
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+};
+
+TEST(NamedKernel, ThatGivesWhatIsNotFiniteIsNamedWithItsFunction) {
+  const Points points = Points::Zero(2, 2);
+  Eigen::VectorXd vector = Eigen::VectorXd::Zero(2);
+  Eigen::VectorXd other = vector;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2, 2);
+  const auto kernel = broken<NoNumbers, Kernel>();
+  const auto said = [](const std::string& function) {
+    return "kernel/mine: " + function + "() gave a number that is not finite, correct the plugin";
+  };
+  EXPECT_EQ(error_of([&] { kernel->covariance(points, points, matrix); }), said("covariance"));
+  EXPECT_EQ(error_of([&] { kernel->variance(points, vector); }), said("variance"));
+  EXPECT_EQ(error_of([&] { kernel->axis_covariance(0, vector, vector, matrix); }), said("axis_covariance"));
+  EXPECT_EQ(error_of([&] { kernel->parameters(); }), said("parameters"));
+  EXPECT_EQ(error_of([&] { kernel->derivatives(points, points, matrix, matrix); }), said("derivatives"));
+  EXPECT_EQ(error_of([&] { kernel->slope_covariance(vector, vector, other); }), said("slope_covariance"));
+  // No kernel makes numbers of such hyperparameters: a fit that tries them turns back.
+  kernel->set_parameters(Eigen::VectorXd::Constant(1, 1e200));
+  kernel->covariance(points, points, matrix);
+  EXPECT_TRUE(std::isnan(matrix(0, 0)));
 }
 
 }  // namespace

@@ -194,8 +194,8 @@ TEST(SkinAndFreeWays, WithoutNoiseTheyAskForNoJitter) {
   Skin skin(kernel_of(), {0.006, 0.0});
   skin.fit(solids, touches);
   EXPECT_GT(skin.rows().size(), 30U);
-  EXPECT_EQ(skin.jitter(), 0.0);
-  EXPECT_EQ(skin.set_aside(), 0);
+  EXPECT_EQ(skin.report().jitter, 0.0);
+  EXPECT_EQ(skin.report().set_aside, 0);
   EXPECT_EQ(skin.ways_broken(), 0);
   EXPECT_NEAR(skin.mean(on_plate(0.0)), 0.001, 1e-4);  // no way is known better
 }
@@ -294,7 +294,7 @@ TEST(SkinOfHardData, TheSameContactAHundredTimesIsOneOfLessNoise) {
   const double signal = 0.002 * 0.002;
   const double noise = 0.0005 * 0.0005 / 100;
   EXPECT_NEAR(skin.mean(on_ball({1, 0, 0})), 0.002 * signal / (signal + noise), 2e-5);
-  EXPECT_EQ(skin.jitter_raised(), 0);
+  EXPECT_EQ(skin.report().raised, 0);
   expect_sound(skin);
 }
 
@@ -304,9 +304,9 @@ TEST(SkinOfHardData, WithoutNoiseDuplicatesRaiseTheJitterWhichIsCounted) {
   touches.push_back(onto_ball({0, 1, 0}, -0.001));
   Skin skin(kernel_of(), {0.006, 0.0});
   skin.fit(solids, touches);
-  EXPECT_GT(skin.jitter_raised(), 0);
-  EXPECT_GT(skin.jitter(), 0.0);
-  EXPECT_LE(skin.jitter(), 1e-11);
+  EXPECT_GT(skin.report().raised, 0);
+  EXPECT_GT(skin.report().jitter, 0.0);
+  EXPECT_LE(skin.report().jitter, 1e-11);
   EXPECT_NEAR(skin.mean({{0.052, 0, 0.05}, {1, 0, 0}}), 0.002, 1e-6);
   expect_sound(skin);
 }
@@ -361,9 +361,9 @@ TEST(SkinOfHardData, FiveHundredContactsAndAHundredNormalsWithAndWithoutNoise) {
       EXPECT_LE(all.variance.maxCoeff(), skin.signal() * skin.signal());
       // Without noise the matrix of rbf is at the edge of what rounding lets pass: on some builds it does.
       if (noise > 0.0 || std::string(type) != "rbf") {
-        EXPECT_EQ(skin.jitter_raised(), 0);
+        EXPECT_EQ(skin.report().raised, 0);
       }
-      EXPECT_EQ(skin.set_aside(), 0);
+      EXPECT_EQ(skin.report().set_aside, 0);
       EXPECT_EQ(skin.rows().size(), 700U);
     }
   }
@@ -394,9 +394,9 @@ TEST(SkinOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAndCounte
   EXPECT_FALSE(skin.free_points().empty());
   std::size_t contacts = 0;
   for (const Skin::Row& row : skin.rows()) contacts += row.free ? 0 : 1;
-  EXPECT_GE(static_cast<std::size_t>(skin.set_aside()), 60 - contacts);
-  EXPECT_GT(skin.pivoted(), 0);
-  EXPECT_GT(skin.set_aside(), 0);
+  EXPECT_GE(static_cast<std::size_t>(skin.report().set_aside), 60 - contacts);
+  EXPECT_GT(skin.report().pivoted, 0);
+  EXPECT_GT(skin.report().set_aside, 0);
   EXPECT_GT(skin.rows().size(), 0U);
   const Skin::Posterior all = skin.posterior(all_over_the_ball(300));
   EXPECT_TRUE(all.mean.allFinite());
@@ -437,7 +437,7 @@ TEST(SkinOfHardData, TheSameNormalAHundredTimesAndItsOpposite) {
   for (const double noise : {0.02, 0.0}) {
     Skin skin(kernel_of(), {0.006, noise / 40, noise});
     skin.fit(solids, touches);
-    EXPECT_EQ(skin.jitter_raised() > 0, noise == 0.0);
+    EXPECT_EQ(skin.report().raised > 0, noise == 0.0);
     const Skin::Posterior all = skin.posterior({on_plate(-0.01), on_plate(0.0), on_plate(0.01)});
     EXPECT_TRUE(all.mean.allFinite());
     EXPECT_GE(all.variance.minCoeff(), 0.0);

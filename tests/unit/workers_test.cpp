@@ -3,6 +3,8 @@
 
 #include "support/testing.hpp"
 
+#include <palpate/error.hpp>
+
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -41,6 +43,23 @@ TEST(Workers, HelpersDoTakePieces) {
     });
   }
   EXPECT_TRUE(helped);
+}
+
+TEST(Workers, HandOnWhatAJobThrowsInAnyThreadAndGoOnAfterwards) {
+  for (const int threads : {1, 2, 4}) {
+    Workers workers(threads);
+    for (int job = 0; job < 100; ++job) {
+      EXPECT_EQ(error_of([&] {
+                  workers.for_each(20, [&](int piece, int) {
+                    if (piece >= job % 20) throw Error("kernel/mine", "it broke", {}, Error::Kind::run);
+                  });
+                }),
+                "kernel/mine: it broke");
+    }
+    std::atomic<int> done{0};
+    workers.for_each(20, [&](int, int) { ++done; });
+    EXPECT_EQ(done, 20);
+  }
 }
 
 TEST(Workers, MayNeverBeGivenAnything) { const Workers workers(4); }

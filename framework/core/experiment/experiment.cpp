@@ -70,10 +70,13 @@ Contact Experiment::touch(const TapRecord& tap) {
   const PhaseClock::Scope robot(clock_, Phase::robot);
   Contact contact = backend_->tap(request_of(tap));
   const auto refused = [&](const char* why) -> Contact {
-    return {Outcome::aborted, 0.0, 0.0, contact.seconds, why, contact.ends_run};
+    return {Outcome::aborted, 0.0, 0.0, std::isfinite(contact.seconds) ? contact.seconds : 0.0, why, contact.ends_run};
   };
   if (contact.outcome == Outcome::contact && !std::isfinite(contact.height)) return refused(kHeightRefused);
   if (tap.approach && !ends_on_its_way(*tap.approach, contact)) return refused(kAlongRefused);
+  const bool force_known = contact.outcome != Outcome::contact || std::isfinite(contact.force);
+  if (!force_known || !std::isfinite(contact.seconds) || !std::isfinite(contact.peak.value_or(0.0)))
+    return refused(kNumberRefused);
   return contact;
 }
 
@@ -87,6 +90,12 @@ void Experiment::check_backend(const PastTap& tap) {
     throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
   };
   if (last.ends_run) fail(last.reason.empty() ? "cannot go on, and gives no reason" : last.reason);
+  // One number that is none may be a glitch. So many in a row are none, and no model is made of a run of them.
+  constexpr int kMostRefused = 10;
+  refused_in_a_row_ = is_refused(last) ? refused_in_a_row_ + 1 : 0;
+  if (refused_in_a_row_ == kMostRefused) {
+    fail(fmt::format("{} taps in a row failed, the last so: {}", kMostRefused, last.reason), "correct the backend");
+  }
   const bool is_well = last.outcome == Outcome::contact || tap.is_missed();
   if (is_well) failed_in_a_row_ = 0;
   if (is_well || last.outcome == Outcome::unreachable || stop_wished()) return;

@@ -113,7 +113,8 @@ class Experiment {
   bool is_broken_off(const Contact& contact) const;
   void check_backend(const PastTap& tap);
 
-  int failed_in_a_row_ = 0;  ///< of this process: somebody has looked at the arm before a run is carried on
+  int failed_in_a_row_ = 0;   ///< of this process: somebody has looked at the arm before a run is carried on
+  int refused_in_a_row_ = 0;  ///< taps whose numbers were none
 };
 
 }  // namespace palpate

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/metrics.hpp"
 
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 
@@ -55,6 +59,16 @@ Truth truth_at(const Candidates& candidates, const Scene& scene) {
     truth.object(i) = truth.on(i) ? scene.object(at.x, at.y) : Scene::kNoObject;
   }
   return truth;
+}
+
+void require_finite(const Errors& errors, int taps) {
+  for (const std::optional<double>& one :
+       {errors.rmse, errors.rmse_on_surface, errors.rmse_height, errors.footprint_iou, errors.nearest, errors.f_score,
+        errors.coverage, errors.volume_iou}) {
+    if (std::isfinite(one.value_or(0.0))) continue;
+    throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
+                "look for heights that no arm reports, or choose a larger height.noise", Error::Kind::run);
+  }
 }
 
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface) {

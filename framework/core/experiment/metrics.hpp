@@ -35,6 +35,9 @@ struct Errors {
   std::optional<double> volume_iou = std::nullopt;  ///< of what is solid; none if nothing is
 };
 
+/// Throws Error (the run fails) where an error that is there is not a finite number; `taps` have been made.
+void require_finite(const Errors& errors, int taps);
+
 /// Root mean square of (map - truth.height), over all cells or over those on an object. None if there are none.
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface);
 

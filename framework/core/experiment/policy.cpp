@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/policy.hpp"
 
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
 #include <boost/random/sobol.hpp>
 
 #include <algorithm>
@@ -171,6 +175,13 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
 bool all_finite(const Eigen::VectorXd& values) {
   // 0 times what is finite is 0; times what is not it is NaN.
   return (0.0 * values).sum() == 0.0;
+}
+
+void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
+  if (all_finite(map)) return;
+  throw Error("maps", fmt::format("{} is not a finite number everywhere after tap {}", name, taps),
+              "choose a larger height.noise or a shorter kernel.length_scale, or look for heights that no arm reports",
+              Error::Kind::run);
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 #include "experiment/tap_belief.hpp"
 
 #include "config/tree.hpp"
+#include "experiment/policy.hpp"
 
 #include <palpate/error.hpp>
 
@@ -320,6 +321,8 @@ void TapBelief::map_heights() {
   process.update_maps();
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
+  require_finite(uncertainty_, "the uncertainty u", taps());
+  require_finite(variance_, "the variance of the height process", taps());
   if (!two_part_) map_surface(process);
   if (joined_ && process.shown() > label_output()) map_labels();
   heights_.stale = false;
@@ -328,6 +331,7 @@ void TapBelief::map_heights() {
 void TapBelief::map_labels() {
   labels().process->update_maps();
   labels().process->read_mean(label_output(), weight_mean_);
+  require_finite(weight_mean_, "the weight w", taps());
   const auto clipped = weight_mean_.cwiseMax(0.0).cwiseMin(1.0);
   if (clip_) weight_ = clipped;
   if (!footprint_) probability_ = clipped;
@@ -344,12 +348,15 @@ void TapBelief::map_object() {
     object_.process->read_variance(0, object_variance_);
   }
   object_variance_.array() += shared_variance();
+  require_finite(height_mean_, "the height", taps());
+  require_finite(object_variance_, "the variance of the height", taps());
   object_.stale = false;
 }
 
 void TapBelief::map_surface(const Process& process) {
   process.read_mean(0, height_mean_);
   height_mean_.array() += desk_;
+  require_finite(height_mean_, "the height", taps());
 }
 
 void TapBelief::map_footprint() {
@@ -359,6 +366,7 @@ void TapBelief::map_footprint() {
   for (; touches_taken_ < touches_.size(); ++touches_taken_) footprint_->add(touches_[touches_taken_]);
   probability_.resize(candidates_.size());
   footprint_->probability(candidates_.points, probability_);
+  require_finite(probability_, "the probability p", taps());
   if (outlines_asked_) footprint_->sample(candidates_.points, outlines_);
 }
 

@@ -131,6 +131,9 @@ class TapBelief final : public Belief {
   /// The probability that each contact so far lies, by the config's `height.lies`; empty where all are believed, or no
   /// height was asked for.
   const Eigen::VectorXd& doubt() const { return doubt_; }
+  /// What rounding made necessary in the sum over which contacts are believed; jitter in square metres.
+  const FactorReport& factors_of_outliers() const { return doubted_.report(); }
+  int variances_clamped() const { return is_judged() ? doubted_.variances_clamped() : 0; }
   /// Those of at least kWorthALook, by the numbers of their taps.
   struct Doubted {
     int tap = 0;

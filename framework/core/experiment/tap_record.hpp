@@ -7,11 +7,13 @@
 #include "experiment/object_errors.hpp"
 #include "experiment/phases.hpp"
 #include "experiment/tap_belief.hpp"
+#include "regular/regular_factor.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/types.hpp>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -101,6 +103,11 @@ constexpr const char* kStoppedByUser = "interrupted";
 /// The reasons of a tap that failed because its height is none, or because it ended where the tool never was.
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 constexpr const char* kAlongRefused = "the backend reported an end that is not on the way of the tool";
+constexpr const char* kNumberRefused = "the backend reported a force or a time that is not a finite number";
+/// Whether a tap failed for one of these.
+inline bool is_refused(const Contact& contact) {
+  return contact.reason == kHeightRefused || contact.reason == kAlongRefused || contact.reason == kNumberRefused;
+}
 
 /// The contacts with an object: those at a cell of it, whatever was made of them.
 struct ObjectTouches {
@@ -118,8 +125,16 @@ struct RunResult : ModelState {
     ++taps;
     robot_seconds += tap.contact.seconds;
     if (tap.source == Source::fallback) ++interventions["fallback"];
-    if (tap.contact.reason == kHeightRefused || tap.contact.reason == kAlongRefused) ++interventions["height_refused"];
+    if (is_refused(tap.contact)) ++interventions["height_refused"];
     if (tap.contact.outcome != Outcome::contact) ++(tap.is_missed() ? missed_taps : failed_taps);
+  }
+
+  /// Adds what rounding made necessary in the factorisations of one model; jitter in the square of its unit.
+  void count(const FactorReport& factors) {
+    jitter_max = std::max(jitter_max, factors.jitter);
+    interventions["jitter"] += factors.raised;
+    interventions["pivoted"] += factors.pivoted;
+    interventions["set_aside"] += factors.set_aside;
   }
 
   std::string stop_reason;

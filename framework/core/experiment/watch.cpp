@@ -142,6 +142,7 @@ RunResult Watch::result(TapBelief& belief) {
     belief.build(kErrorsRead);
     const SurfaceMaps maps = maps_of(belief, kErrorsRead);
     out.errors = errors_of(maps, *real);
+    require_finite(out.errors, result_.taps);
     touches_.resize(static_cast<std::size_t>(real->objects));
     out.objects.emplace();
     for (const ObjectErrors& errors : object_errors(maps, *real, candidates_))
@@ -154,17 +155,26 @@ RunResult Watch::result(TapBelief& belief) {
     if (!one) return;
     const Process& process = *one.process;
     state = state_of(one);
-    out.jitter_max = std::max(out.jitter_max, state->jitter);
-    out.interventions["jitter"] += process.jitter_raised();
-    out.interventions["pivoted"] += process.pivoted();
-    out.interventions["set_aside"] += process.set_aside();
+    out.count(FactorReport{state->jitter, process.jitter_raised(), process.pivoted(), process.set_aside()});
     out.interventions["variance_clamped"] += process.variances_clamped();
   };
   take(belief.height_process(), out.height_process);
   take(belief.weight_process(), out.weight_process);
   if (belief.two_part()) take(belief.surface_process(), out.surface_process);
-  if (options_.height.lies) out.doubted = belief.doubted();
-  if (const Footprint* footprint = belief.footprint()) out.footprint = state_of(*footprint);
+  if (options_.height.lies) {
+    out.doubted = belief.doubted();
+    if (belief.surface_process()) {
+      out.count(belief.factors_of_outliers());
+      out.interventions["variance_clamped"] += belief.variances_clamped();
+    }
+  }
+  if (const Footprint* footprint = belief.footprint()) {
+    out.footprint = state_of(*footprint);
+    // What a footprint factorises counts as what the processes do, by the names of its numbers.
+    for (const FootprintNumber& one : out.footprint->numbers) {
+      if (one.name == "jitter" || one.name == "set_aside") out.interventions[one.name] += static_cast<int>(one.value);
+    }
+  }
   out.interventions["fit_failed"] = belief.failed_fits();
   return out;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gp/axis_basis.hpp"
 
-#include "gp/tolerances.hpp"
+#include "regular/regular_factor.hpp"
 
 #include <Eigen/QR>
 

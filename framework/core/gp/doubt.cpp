@@ -14,6 +14,11 @@ constexpr double kNoises[] = {1.0, 1.0 / 6.0};
 /// Of the signal, and how many times as far as the kernel's its covariance reaches.
 constexpr double kBroadSignal = 0.5;
 constexpr double kBroader = 2.5;
+/// Of the signal. Below the first a process claims to be exact, which few surfaces keep to: see judge(). The others are
+/// the noises by which it is contradicted, from those of a good arm to what a kernel that is much too smooth leaves
+/// over.
+constexpr double kExact = 0.01;
+constexpr double kRough[] = {0.3, 0.06, 0.01};
 
 }  // namespace
 
@@ -38,9 +43,23 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
   testimony.level = settings.mean_ratio * settings.signal;
   testimony.lie = std::hypot(settings.signal, testimony.level);
   judgement_ = palpate::judge(testimony);
+  if (settings.noise < kExact * settings.signal) {
+    testimony.noises.clear();
+    for (const double share : kRough) testimony.noises.push_back(share * settings.signal);
+    const Judgement rough = palpate::judge(testimony);
+    judged_ = !(rough.log_evidence > judgement_.log_evidence);
+    if (!judged_) judgement_.doubt = rough.doubt;
+  }
+  // Every court of every tap has the same need: it is counted where it begins.
+  const FactorReport& now = judgement_.report;
+  report_.raised += now.jitter > 0.0 && report_.jitter == 0.0 ? 1 : 0;
+  report_.pivoted += now.pivoted > 0 && report_.set_aside == 0 ? 1 : 0;
+  report_.jitter = now.jitter;
+  report_.set_aside = now.set_aside;
 }
 
 void DoubtedSurface::forget() {
+  clamped_ = 0;
   judgement_ = {};
   judged_ = false;
   covered_ = 0;
@@ -92,6 +111,7 @@ void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out)
     out.segment(first, count) += 2.0 * products.cwiseProduct(z).rowwise().sum().head(count);
   }
   // Rounding may leave less than nothing where taps are close.
+  clamped_ = static_cast<int>((out.array() < 0.0).count());
   out = out.cwiseMax(0.0);
 }
 

@@ -16,6 +16,12 @@ class DoubtedSurface {
   /// Judges all taps of `process`, of which `suspicion` (a value each) is thought before their heights are compared,
   /// and whose noise has this variance beside the usual one (a value each, or empty). Without noise nobody is judged:
   /// the surface is that of the process.
+  ///
+  /// A process whose noise is below a hundredth of its signal may be contradicted by true heights: its kernel is too
+  /// smooth for the object. What deviates by much more than such a noise then looks like an outlier, and most taps are
+  /// taken for outliers. So the evidence is compared with that of a rough arm's noise. Where the heights are more
+  /// probable with that, the outliers are those that even a rough arm does not explain, and the surface is that of the
+  /// process, which follows the heights as closely as its own noise says.
   void judge(const Process& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
 
   /// To be called before another process is judged.
@@ -29,6 +35,12 @@ class DoubtedSurface {
 
   /// Whether any were: else the surface is that of the process.
   bool judged() const { return judged_; }
+
+  /// What rounding made necessary in all judgements so far: the jitter of the last, in the square of the targets' unit,
+  /// how often it came to be needed, and how many taps are set aside now.
+  const FactorReport& report() const { return report_; }
+  /// How many variances of the last map rounding has taken below 0; they read as 0.
+  int variances_clamped() const { return clamped_; }
 
   // Of the process that was judged, in the unit of the targets and its square; noise excluded.
   /// Over the candidates; these size `out`.
@@ -45,6 +57,8 @@ class DoubtedSurface {
 
   const Candidates& candidates_;
   Judgement judgement_;
+  FactorReport report_;
+  int clamped_ = 0;
   bool judged_ = false;
   Eigen::MatrixXd covariances_, broad_;  ///< candidates x taps: k and l of lies.hpp
   Eigen::Index covered_ = 0;             ///< taps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gp/factor.hpp"
 
-#include "gp/tolerances.hpp"
+#include "regular/regular_factor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ bool Factor::append(const VectorView& covariance, double diagonal) {
   std::fill(row + n, rows_.data() + simd::packed_row(n + 1), 0.0);
   loops_->solve_lower(rows_.data(), n, row);
   const double square = diagonal - l.squaredNorm();
-  if (!(square > kPivotGuard * (n + 1) * kEpsilon * diagonal)) return false;
+  if (!is_regular(square, n, diagonal)) return false;
   row[n] = std::sqrt(square);
   log_determinant_ += std::log(square);
   ++size_;
@@ -81,31 +81,6 @@ void Factor::follow(Extreme& extreme, bool largest) const {
 void Factor::clear() {
   size_ = 0;
   log_determinant_ = 0.0;
-}
-
-std::vector<int> independent_rows(const Eigen::MatrixXd& covariance) {
-  const int n = static_cast<int>(covariance.rows());
-  Eigen::VectorXd left = covariance.diagonal();  // variance that the chosen rows do not explain
-  const Eigen::VectorXd own = left;
-  std::vector<int> order;
-  Eigen::MatrixXd columns(n, n);
-  while (static_cast<int>(order.size()) < n) {
-    int best = -1;
-    for (int i = 0; i < n; ++i) {
-      const bool independent = left(i) > kPivotGuard * n * kEpsilon * own(i) && left(i) > 0.0;
-      if (independent && (best < 0 || left(i) > left(best))) best = i;
-    }
-    if (best < 0) break;
-    const auto k = static_cast<Eigen::Index>(order.size());
-    auto column = columns.col(k);
-    column = covariance.col(best);
-    if (k > 0) column.noalias() -= columns.leftCols(k) * columns.row(best).head(k).transpose();
-    column /= std::sqrt(left(best));
-    left -= column.cwiseAbs2();
-    left(best) = 0.0;  // it is not chosen again
-    order.push_back(best);
-  }
-  return order;
 }
 
 }  // namespace palpate

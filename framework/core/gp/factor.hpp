@@ -8,8 +8,6 @@
 
 #include <Eigen/Core>
 
-#include <vector>
-
 namespace palpate {
 
 /// L with L L^T = K, rows appended at O(n^2) each; earlier rows never change. n (n + 9) / 2 numbers of memory.
@@ -22,7 +20,7 @@ class Factor {
 
   /// Appends the point whose covariance with the n points before is `covariance` and with itself `diagonal` (noise and
   /// jitter included). Returns false, and leaves the factor as it was, when the pivot is not above what rounding
-  /// alone can produce (kPivotGuard): the matrix is then not positive definite in double precision.
+  /// alone can produce (is_regular()): the matrix is then not positive definite in double precision.
   bool append(const VectorView& covariance, double diagonal);
 
   void clear();
@@ -62,10 +60,5 @@ class Factor {
   Extreme largest_;
   Extreme smallest_;
 };
-
-/// The rows of `covariance` (symmetric, n x n) that are independent in double precision, in the order of
-/// a Cholesky factorisation with diagonal pivoting: each the one that is least explained by those before. Rows whose
-/// pivot is not above kPivotGuard, or not a number, are left out.
-std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 
 }  // namespace palpate

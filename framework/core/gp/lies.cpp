@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gp/lies.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -29,13 +27,22 @@ class Court {
     const Eigen::Index n = testimony.heights.size();
     Eigen::MatrixXd covariance = signal * signal * testimony.covariance;
     if (testimony.broad.size() > 0) covariance += testimony.broad_signal * testimony.broad_signal * testimony.broad;
-    covariance.diagonal().array() += noise * noise;
+    const double least =
+        n > 0 ? kInverseNoise * static_cast<double>(n) * kEpsilon * covariance.diagonal().maxCoeff() : 0.0;
+    const double square = noise * noise;
+    covariance.diagonal().array() += std::max(square, least);
     if (testimony.roughness.size() > 0) covariance.diagonal() += testimony.roughness;
-    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-    inverse_ = factor.solve(Eigen::MatrixXd::Identity(n, n));
+    RegularFactor factor;
+    factor.factorise(covariance);
+    report_ = factor.report();
+    if (square < least) {
+      report_.jitter += least - square;
+      ++report_.raised;
+    }
+    inverse_ = factor.inverse();
     heights_ = inverse_ * testimony.heights;
     ones_ = inverse_.rowwise().sum();
-    log_evidence_ = -0.5 * testimony.heights.dot(heights_) - factor.matrixLLT().diagonal().array().log().sum();
+    log_evidence_ = -0.5 * testimony.heights.dot(heights_) - factor.half_log_determinant();
     const Eigen::ArrayXd pi = testimony.suspicion.array().max(kLeastSuspicion).min(1.0 - kLeastSuspicion);
     const Eigen::ArrayXd lie = testimony.heights.array() / testimony.lie;
     log_odds_ = (pi / (1.0 - pi)).log() - 0.5 * lie.square() - std::log(testimony.lie);
@@ -49,6 +56,14 @@ class Court {
   double log_evidence() const { return log_evidence_; }
   const Eigen::ArrayXd& log_odds() const { return log_odds_; }
   double level() const { return level_; }
+  const FactorReport& report() const { return report_; }
+  std::vector<int> set_aside() const {
+    std::vector<int> out;
+    for (int i = 0; i < taps(); ++i) {
+      if (inverse_(i, i) == 0.0) out.push_back(i);
+    }
+    return out;
+  }
 
   /// `ones` and `heights`: 1^T A' 1 and 1^T A' y.
   Constant constant(double ones, double heights) const {
@@ -64,7 +79,8 @@ class Court {
  private:
   double signal_;
   double level_;
-  Eigen::MatrixXd inverse_;    ///< A
+  FactorReport report_;
+  Eigen::MatrixXd inverse_;    ///< A; 0 in rows that were set aside
   Eigen::VectorXd heights_;    ///< A y
   Eigen::VectorXd ones_;       ///< A 1
   double log_evidence_ = 0.0;  ///< of all heights, the constant and a factor common to all courts aside
@@ -256,9 +272,17 @@ class Squares {
   Eigen::Index count_ = 0;
 };
 
+/// What the courts of one judgement have to tell: they factorise the same rows.
+void add(FactorReport& all, const FactorReport& one) {
+  const int set_aside = std::max(all.set_aside, one.set_aside);
+  all.add(one);
+  all.set_aside = set_aside;
+}
+
 }  // namespace
 
 Judgement judge(const Testimony& testimony, const Effort& effort) {
+  Judgement out;
   std::vector<Court> courts;
   courts.reserve(testimony.signals.size() * testimony.noises.size());
   std::vector<Sets> sets;
@@ -268,10 +292,10 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
     for (const double noise : testimony.noises) {
       sets.emplace_back(courts.emplace_back(testimony, signal, noise), effort);
       most = std::max(most, sets.back().most());
+      add(out.report, courts.back().report());
     }
   }
   const Eigen::Index n = testimony.heights.size();
-  Judgement out;
   out.doubt = Eigen::VectorXd::Zero(n);
   out.a = Eigen::VectorXd::Zero(1 + 2 * n);
   out.b = Eigen::MatrixXd::Zero(1 + 2 * n, 1 + 2 * n);
@@ -343,10 +367,13 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
     }
   }
   out.doubt /= sum;
+  // Nothing was found about those that were set aside.
+  for (const int row : courts.front().set_aside()) out.doubt(row) = testimony.suspicion(row);
   out.a /= sum;
   out.b /= sum;
   out.s2 /= sum;
   out.b.noalias() -= out.a * out.a.transpose();
+  out.log_evidence = most + std::log(sum / static_cast<double>(courts.size()));
   return out;
 }
 

@@ -22,6 +22,8 @@
 // the maps cost what a single set would.
 #pragma once
 
+#include "regular/regular_factor.hpp"
+
 #include <Eigen/Core>
 
 #include <vector>
@@ -56,9 +58,14 @@ struct Judgement {
   double s2 = 0.0;        ///< mean of the square of the signals, that of the broad one included
   int sets = 0;           ///< how many were summed
   double next = 0.0;      ///< how likely, beside the likeliest, is the first set whose neighbours were not looked at
+  /// log p(y), natural logarithm, of the mean over signals and noises, but for a number that hangs on n alone.
+  double log_evidence = 0.0;
+  FactorReport report;  ///< the largest jitter, the most rows set aside and all counts of the factorisations
 };
 
-/// Sums over the sets. Never throws; where no noise keeps the covariance regular, the numbers mean nothing.
+/// Sums over the sets. A noise that is below what the forms take (kInverseNoise) is raised to that, which the report
+/// counts as jitter. Rows that no jitter makes independent of the others are set aside: they keep their suspicion and
+/// tell nothing. All numbers are finite where heights and covariances are, and far from overflow. Never throws.
 Judgement judge(const Testimony& testimony, const Effort& effort = {});
 
 }  // namespace palpate

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gp/process.hpp"
 
-#include "gp/tolerances.hpp"
-
 #include <palpate/error.hpp>
 
 #include <algorithm>
@@ -106,7 +104,8 @@ bool Process::append(int tap) {
   kernel_->covariance(factored_.topRows(row), place, scratch_.head(row));
   double own = 0.0;
   kernel_->variance(place, Eigen::Map<Eigen::VectorXd>(&own, 1));
-  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() / trust_(tap) + jitter_)) return false;
+  if (!factor_.append(scratch_.head(row), own + noise_ratio() * noise_ratio() / trust_(tap) + report_.jitter))
+    return false;
 
   const VectorView before = factor_.row(row);
   const auto reduce = [&](Eigen::Index column, double value) {
@@ -173,7 +172,7 @@ double Process::error_bound() const {
   const double deviation = std::sqrt(prior);
   // L^-1 makes nothing longer than 1 / noise times, as no eigenvalue of L L^T is less than what is on its diagonal
   // alone.
-  const double noise = std::sqrt(noise_ratio() * noise_ratio() + jitter_);
+  const double noise = std::sqrt(noise_ratio() * noise_ratio() + report_.jitter);
   const double row = std::min(errors.maxCoeff() * std::sqrt(inverse_norms_), errors.norm() / noise) / deviation;
   double variance = 2.0 * row + row * row;
   double mean = 0.0;
@@ -198,22 +197,17 @@ bool Process::refactor(const std::vector<int>& taps) {
 void Process::rebuild() {
   std::vector<int> taps(static_cast<std::size_t>(size_));
   std::iota(taps.begin(), taps.end(), 0);
-  const double unit = size_ * kEpsilon * prior_.maxCoeff();
-  while (!refactor(taps)) {
-    if (jitter_ >= kLastJitter * unit) {
-      // What is left of a matrix that no jitter makes positive definite: the taps that are independent of each other.
-      Eigen::MatrixXd covariance(size_, size_);
-      kernel_->covariance(points_.topRows(size_), points_.topRows(size_), covariance);
-      covariance.diagonal().array() += noise_ratio() * noise_ratio() / trust_.head(size_).array() + jitter_;
-      ++pivoted_;
-      taps = independent_rows(covariance);
-      // The guards of both factorisations differ by rounding: what the second refuses ends the list.
-      refactor(taps);
-      return;
-    }
-    jitter_ = std::min(std::max(kFirstJitter * unit, 10.0 * jitter_), kLastJitter * unit);
-    ++jitter_raised_;
-  }
+  const auto pivot = [&] {
+    // What is left of a matrix that no jitter makes positive definite: the taps that are independent of each other.
+    Eigen::MatrixXd covariance(size_, size_);
+    kernel_->covariance(points_.topRows(size_), points_.topRows(size_), covariance);
+    covariance.diagonal().array() += noise_ratio() * noise_ratio() / trust_.head(size_).array() + report_.jitter;
+    taps = independent_rows(covariance);
+    // The guards of both factorisations differ by rounding: what the second refuses ends the list.
+    refactor(taps);
+  };
+  regularise(
+      report_, size_, prior_.maxCoeff(), [&] { return refactor(taps); }, pivot);
 }
 
 FitSummary Process::fit(const Fitting& fitting, Random& random) {
@@ -245,7 +239,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
   outputs_ = fitted;
   for (ProcessSettings& one : outputs_) one.noise = ratio * one.signal;
   take_prior();
-  jitter_ = 0.0;
+  report_.jitter = 0.0;
   choose();
   rebuild();
   return summary;

@@ -5,6 +5,7 @@
 #include "gp/candidates.hpp"
 #include "gp/engine.hpp"
 #include "gp/factor.hpp"
+#include "regular/regular_factor.hpp"
 
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
@@ -90,10 +91,10 @@ class Process {
   double misfit(int output = 0) const;
 
   /// The variance added to the diagonal by need, square of the unit of the targets.
-  double jitter(int output = 0) const { return jitter_ * settings(output).signal * settings(output).signal; }
+  double jitter(int output = 0) const { return report_.jitter * settings(output).signal * settings(output).signal; }
   /// How often jitter was raised, and how often pivoting was the last resort.
-  int jitter_raised() const { return jitter_raised_; }
-  int pivoted() const { return pivoted_; }
+  int jitter_raised() const { return report_.raised; }
+  int pivoted() const { return report_.pivoted; }
   /// How many taps do not enter the posterior.
   int set_aside() const { return size_ - factor_.size(); }
   /// Of the maps: how many candidates' variances rounding has taken out of [0, prior] by now; they read as its ends.
@@ -175,9 +176,7 @@ class Process {
   Eigen::MatrixXd weights_;     ///< L^-T of the same, of the rows that the engine has taken; only where it needs L^-1
   double inverse_norms_ = 0.0;  ///< sum of |c_i|_1^2 over those rows
   Eigen::VectorXd scratch_;
-  double jitter_ = 0.0;  ///< relative to signal^2
-  int jitter_raised_ = 0;
-  int pivoted_ = 0;
+  FactorReport report_;             ///< jitter relative to signal^2; of what is set aside factor_ knows
   std::vector<double> fit_memory_;  ///< what one fit leaves for the next
   int generation_ = 0;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gp/workers.hpp"
 
+#include <utility>
+
 namespace palpate {
 namespace {
 
@@ -40,10 +42,17 @@ void Workers::run(int count, Call call, const void* job) {
   // who is counted is waited for.
   open_ = false;
   while (inside_ > 0) std::this_thread::yield();
+  if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
 void Workers::take_pieces(int worker) {
-  for (int piece = next_++; piece < count_; piece = next_++) call_(job_, piece, worker);
+  try {
+    for (int piece = next_++; piece < count_; piece = next_++) call_(job_, piece, worker);
+  } catch (...) {
+    next_ = count_;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!thrown_) thrown_ = std::current_exception();
+  }
 }
 
 void Workers::help(int worker) {

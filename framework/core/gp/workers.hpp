@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -23,7 +24,8 @@ class Workers {
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
   /// Calls job(piece, worker) for all pieces 0 .. count - 1 and returns when all are done; `worker` is below
-  /// threads(), and each worker has one piece at a time. `job` must not throw.
+  /// threads(), and each worker has one piece at a time. What a job throws first, in any thread, is thrown here once
+  /// all workers have stopped; pieces that nobody had begun are then left out.
   template <class Job>
   void for_each(int count, const Job& job) {
     if (helpers_.empty() || count < 2) {
@@ -49,6 +51,7 @@ class Workers {
   std::atomic<unsigned> jobs_{0};  ///< so far
   std::atomic<int> asleep_{0};
   std::atomic<bool> stop_{false};
+  std::exception_ptr thrown_;  ///< what the job threw first; guarded by mutex_
   std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<std::thread> helpers_;

@@ -323,7 +323,8 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
   });
   if (made == nullptr) return nullptr;
   // As above: what comes of a library goes before it.
-  return {made, [holder](const Motions* gone) { delete gone; }};
+  return named(choice.kind + "/" + choice.type,
+               std::shared_ptr<const Motions>(made, [holder](const Motions* gone) { delete gone; }));
 }
 
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {

@@ -7,9 +7,13 @@
 #include <palpate/fitting.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/kernel.hpp>
+#include <palpate/motions.hpp>
 #include <palpate/shape.hpp>
 
+#include <cmath>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <utility>
 
 namespace palpate {
@@ -58,6 +62,14 @@ class Declared final : public Belief {
   const std::string& name_;
 };
 
+/// As Eigen's allFinite(), in a fraction of the time: 0 times what is finite is 0, times what is not it is NaN.
+template <class Values>
+bool are_finite(const Values& values) {
+  return (0.0 * values.array()).sum() == 0.0;
+}
+bool are_finite(double value) { return std::isfinite(value); }
+bool are_finite(const std::optional<double>& value) { return !value || std::isfinite(*value); }
+
 /// An object of a plugin, behind the interface that it implements: every call goes through here.
 template <class Interface>
 class Named : public Interface {
@@ -82,6 +94,14 @@ class Named : public Interface {
     }
   }
 
+  /// Refuses what a function of the plugin gave unless it is finite: no model is made of anything else.
+  template <class Values>
+  void require_finite(const char* function, const Values& values) const {
+    if (are_finite(values)) return;
+    throw Error(name_, std::string(function) + " gave a number that is not finite", "correct the plugin",
+                Error::Kind::run);
+  }
+
   /// `belief` as far as the plugin may read it.
   Declared declared(const Belief& belief) const { return Declared(belief, call(&Interface::reads), name_); }
 
@@ -95,23 +115,51 @@ class NamedKernel final : public Named<Kernel> {
   using Named::Named;
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
     call(&Kernel::covariance, a, b, out);
+    require("covariance()", out);
   }
-  void variance(const PointsView& a, VectorOut out) const override { call(&Kernel::variance, a, out); }
+  void variance(const PointsView& a, VectorOut out) const override {
+    call(&Kernel::variance, a, out);
+    require("variance()", out);
+  }
   bool separable() const override { return call(&Kernel::separable); }
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
     call(&Kernel::axis_covariance, axis, a, b, out);
+    require("axis_covariance()", out);
   }
-  std::vector<KernelParameter> parameters() const override { return call(&Kernel::parameters); }
+  std::vector<KernelParameter> parameters() const override {
+    std::vector<KernelParameter> out = call(&Kernel::parameters);
+    for (const KernelParameter& one : out) require("parameters()", one.value);
+    return out;
+  }
   bool differentiable() const override { return call(&Kernel::differentiable); }
-  void set_parameters(const VectorView& values) override { call(&Kernel::set_parameters, values); }
+  void set_parameters(const VectorView& values) override {
+    call(&Kernel::set_parameters, values);
+    reasonable_ = (values.array() > kLeast && values.array() < kMost).all();
+  }
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     call(&Kernel::derivatives, a, b, value, slopes);
+    require("derivatives()", value);
+    require("derivatives()", slopes);
   }
   bool has_slopes() const override { return call(&Kernel::has_slopes); }
   // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
   void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
     call(&Kernel::slope_covariance, distances, across, along);
+    require("slope_covariance()", across);
+    require("slope_covariance()", along);
   }
+
+ private:
+  /// A fit that looks too far takes hyperparameters of which no kernel makes numbers, and turns back by itself.
+  static constexpr double kLeast = 1e-12;
+  static constexpr double kMost = 1e12;
+
+  template <class Values>
+  void require(const char* function, const Values& values) const {
+    if (reasonable_) require_finite(function, values);
+  }
+
+  bool reasonable_ = true;
 };
 
 class NamedAcquisition final : public Named<Acquisition> {
@@ -125,7 +173,11 @@ class NamedAcquisition final : public Named<Acquisition> {
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
     call(&Acquisition::score_approaches, belief, out);
   }
-  double prior_scale() const override { return call(&Acquisition::prior_scale); }
+  double prior_scale() const override {
+    const double out = call(&Acquisition::prior_scale);
+    require_finite("prior_scale()", out);
+    return out;
+  }
 };
 
 class NamedFitting final : public Named<Fitting> {
@@ -133,7 +185,17 @@ class NamedFitting final : public Named<Fitting> {
   using Named::Named;
   bool due(int taps) const override { return call(&Fitting::due, taps); }
   std::string objection(const Kernel& kernel) const override { return call(&Fitting::objection, kernel); }
-  FitSummary fit(FitProblem& problem, Random& random) const override { return call(&Fitting::fit, problem, random); }
+  FitSummary fit(FitProblem& problem, Random& random) const override {
+    FitSummary out = call(&Fitting::fit, problem, random);
+    require_finite("fit()", out.objective);
+    require_finite("fit()", problem.noise_ratio);
+    for (const FitOutput& one : problem.outputs) {
+      require_finite("fit()", one.signal);
+      require_finite("fit()", one.mean);
+    }
+    for (const KernelParameter& one : problem.kernel.parameters()) require_finite("fit()", one.value);
+    return out;
+  }
 };
 
 class NamedFootprint final : public Named<Footprint> {
@@ -141,12 +203,32 @@ class NamedFootprint final : public Named<Footprint> {
   using Named::Named;
   bool is_weight() const override { return call(&Footprint::is_weight); }
   void add(const Touch& touch) override { call(&Footprint::add, touch); }
-  void probability(const PointsView& places, VectorOut out) override { call(&Footprint::probability, places, out); }
-  void sample(const PointsView& places, OutlineSample& out) const override { call(&Footprint::sample, places, out); }
-  void doubt(VectorOut out) const override { call(&Footprint::doubt, out); }
-  void place_now(Points& places) const override { call(&Footprint::place_now, places); }
-  std::optional<double> left() const override { return call(&Footprint::left); }
-  std::vector<FootprintNumber> numbers() const override { return call(&Footprint::numbers); }
+  void probability(const PointsView& places, VectorOut out) override {
+    call(&Footprint::probability, places, out);
+    require_finite("probability()", out);
+  }
+  void sample(const PointsView& places, OutlineSample& out) const override {
+    call(&Footprint::sample, places, out);
+    require_finite("sample()", out.to_find);
+  }
+  void doubt(VectorOut out) const override {
+    call(&Footprint::doubt, out);
+    require_finite("doubt()", out);
+  }
+  void place_now(Points& places) const override {
+    call(&Footprint::place_now, places);
+    require_finite("place_now()", places);
+  }
+  std::optional<double> left() const override {
+    const std::optional<double> out = call(&Footprint::left);
+    require_finite("left()", out);
+    return out;
+  }
+  std::vector<FootprintNumber> numbers() const override {
+    std::vector<FootprintNumber> out = call(&Footprint::numbers);
+    for (const FootprintNumber& one : out) require_finite("numbers()", one.value);
+    return out;
+  }
   std::string remark() const override { return call(&Footprint::remark); }
 };
 
@@ -167,10 +249,54 @@ class NamedBackend final : public Named<Backend> {
 class NamedShape final : public Named<Shape> {
  public:
   using Named::Named;
-  double first_hit(const Line& line) const override { return call(&Shape::first_hit, line); }
-  std::vector<Stretch> stretches(const Line& line) const override { return call(&Shape::stretches, line); }
-  double support(const Eigen::Vector3d& direction) const override { return call(&Shape::support, direction); }
-  double top(double s, double t) const override { return call(&Shape::top, s, t); }
+  // A line that misses has its hit at infinity, and its top at minus infinity.
+  double first_hit(const Line& line) const override {
+    const double out = call(&Shape::first_hit, line);
+    if (out != kNever) require_finite("first_hit()", out);
+    return out;
+  }
+  std::vector<Stretch> stretches(const Line& line) const override {
+    std::vector<Stretch> out = call(&Shape::stretches, line);
+    for (const Stretch& one : out) {
+      require_finite("stretches()", one.begin);
+      require_finite("stretches()", one.end);
+    }
+    return out;
+  }
+  double support(const Eigen::Vector3d& direction) const override {
+    const double out = call(&Shape::support, direction);
+    require_finite("support()", out);
+    return out;
+  }
+  double top(double s, double t) const override {
+    const double out = call(&Shape::top, s, t);
+    if (out != -kNever) require_finite("top()", out);
+    return out;
+  }
+
+ private:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+};
+
+class NamedMotions final : public Motions {
+ public:
+  NamedMotions(std::string name, std::shared_ptr<const Motions> inner)
+      : name_(std::move(name)), inner_(std::move(inner)) {}
+  int count() const override { return inner_->count(); }
+  double seconds(const TapRequest& request, double surface) const override {
+    return finite("seconds()", inner_->seconds(request, surface));
+  }
+  double deviation(int motion) const override { return finite("deviation()", inner_->deviation(motion)); }
+
+ private:
+  double finite(const char* function, double value) const {
+    if (std::isfinite(value)) return value;
+    throw Error(name_, std::string("its motions' ") + function + " gave a number that is not finite",
+                "correct the plugin", Error::Kind::run);
+  }
+
+  std::string name_;
+  std::shared_ptr<const Motions> inner_;
 };
 
 /// A pointer to the interface, as it was: what becomes of it is cast back to that.
@@ -180,6 +306,10 @@ std::shared_ptr<void> wrapped(const std::string& name, const std::shared_ptr<voi
 }
 
 }  // namespace
+
+std::shared_ptr<const Motions> named(const std::string& name, std::shared_ptr<const Motions> motions) {
+  return motions ? std::make_shared<NamedMotions>(name, std::move(motions)) : nullptr;
+}
 
 std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object) {
   const std::string name = kind + "/" + type;

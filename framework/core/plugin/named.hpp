@@ -7,8 +7,15 @@
 
 namespace palpate {
 
+class Motions;
+
 /// `object`, which implements the interface of `kind`, behind another of that interface: whatever it throws becomes an
 /// Error whose place is <kind>/<type>. Only copies of its words leave the plugin, where the code of its exceptions is.
+/// A function that gives a number which is not finite, where its interface asks for a finite one, ends the run
+/// likewise. Two are checked where their numbers are used: scores, and contacts, which become failed taps.
 std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object);
+
+/// The same of the motions of a backend, `name` <kind>/<type>; null of none.
+std::shared_ptr<const Motions> named(const std::string& name, std::shared_ptr<const Motions> motions);
 
 }  // namespace palpate

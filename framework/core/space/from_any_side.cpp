@@ -185,14 +185,12 @@ RunResult FromAnySide::result() {
   update();
   RunResult out = result_;
   const Skin& skin = belief_.skin();
-  out.jitter_max = skin.jitter() * skin.deviation() * skin.deviation();
-  out.interventions["jitter"] = skin.jitter_raised();
-  out.interventions["pivoted"] = skin.pivoted();
-  out.interventions["set_aside"] = skin.set_aside();
+  out.count(belief_.factors());
   out.interventions["variance_clamped"] = belief_.variances_clamped();
   out.interventions["ways_broken"] = skin.ways_broken();
   out.interrupted = out.stop_reason == kStoppedByUser;
   out.errors = errors();
+  require_finite(out.errors, result_.taps);
   return out;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "space/reduction.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +16,7 @@ using Eigen::VectorXd;
 
 }  // namespace
 
-VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places) {
+VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin::Places& places, FactorReport* report) {
   if (places.empty()) return {};
   Skin::Places all;  // contacts first
   for (const Skin::Row& row : skin.rows()) {
@@ -34,16 +32,15 @@ VectorXd expected_reductions(const Solids& solids, const Skin& skin, const Skin:
   const double noise = skin.noise() * skin.noise();
   MatrixXd left = covariance.bottomRightCorner(count, count);
   if (n > 0) {
-    // A share of the diagonal more than the noise, which may be 0: what it takes off is less than is counted here.
-    constexpr double kSlack = 1e-9;
     MatrixXd known = covariance.topLeftCorner(n, n);
-    known.diagonal().array() = (1.0 + kSlack) * known.diagonal().array() + noise;
-    const Eigen::LLT<MatrixXd> factor(known);
-    if (factor.info() == Eigen::Success) {
-      const MatrixXd explained = factor.matrixL().solve(covariance.topRightCorner(n, count));
-      left.selfadjointView<Eigen::Lower>().rankUpdate(explained.transpose(), -1.0);
-      left.triangularView<Eigen::StrictlyUpper>() = left.transpose();
-    }
+    known.diagonal().array() += noise;
+    RegularFactor factor;
+    factor.factorise(known);
+    if (report != nullptr) report->add(factor.report());
+    MatrixXd explained = covariance.topRightCorner(n, count);
+    factor.solve_lower(explained);
+    left.selfadjointView<Eigen::Lower>().rankUpdate(explained.transpose(), -1.0);
+    left.triangularView<Eigen::StrictlyUpper>() = left.transpose();
   }
   const Eigen::ArrayXd variance = left.diagonal().array().max(0.0);
   const double deviation = variance.sqrt().mean();

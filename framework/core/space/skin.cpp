@@ -2,7 +2,6 @@
 #include "space/skin.hpp"
 
 #include "gp/factor.hpp"
-#include "gp/tolerances.hpp"
 #include "space/nonnegative.hpp"
 
 #include <palpate/error.hpp>
@@ -190,24 +189,21 @@ void Skin::take_in(std::vector<Row> rows) {
   std::iota(all.begin(), all.end(), 0);
   Factor factor(loops_);
   factor.reserve(static_cast<int>(n));
-  const double unit = static_cast<double>(n) * kEpsilon;
-  std::vector<int> taken = factorise(factor, covariance, all, noise, jitter_);
-  while (factor.size() < n && jitter_ < kLastJitter * unit) {
-    jitter_ = std::min(std::max(kFirstJitter * unit, 10.0 * jitter_), kLastJitter * unit);
-    ++jitter_raised_;
-    taken = factorise(factor, covariance, all, noise, jitter_);
-  }
-  if (factor.size() < n) {
-    ++pivoted_;
-    covariance.diagonal() += jitter_ * covariance.diagonal() + noise;
-    taken = factorise(factor, covariance, independent_rows(covariance), VectorXd::Zero(n), 0.0);
+  const auto with_jitter = [&] {
+    factorise(factor, covariance, all, noise, report_.jitter);
+    return factor.size() == n;
+  };
+  const auto pivot = [&] {
+    covariance.diagonal() += report_.jitter * covariance.diagonal() + noise;
+    const std::vector<int> taken = factorise(factor, covariance, independent_rows(covariance), VectorXd::Zero(n), 0.0);
     std::vector<Row> kept;
     for (const int i : taken) kept.push_back(rows[static_cast<std::size_t>(i)]);
     rows = kept;
     targets = VectorXd(targets(taken));
     table = table_of(rows);
-  }
-  set_aside_ = static_cast<int>(n) - factor.size();
+  };
+  regularise(report_, n, 1.0, with_jitter, pivot);
+  report_.set_aside = static_cast<int>(n) - factor.size();
   Lower lower = Lower::Zero(factor.size(), factor.size());
   for (int i = 0; i < factor.size(); ++i) {
     lower.row(i).head(i) = factor.row(i);
@@ -282,7 +278,7 @@ void Skin::keep_free(std::vector<Passage> passages) {
   const Eigen::Index n = contacts.weights.size();
   MatrixXd known(n, 0);  // V
   Nonnegative pull(loops_);
-  const int aside = set_aside_;
+  const int aside = report_.set_aside;
   std::vector<Passage*> all, close;
   for (Passage& one : passages) all.push_back(&one);
   const auto look_at_all = [&] {
@@ -326,7 +322,7 @@ void Skin::keep_free(std::vector<Passage> passages) {
     left.diagonal(m - left.rows()).array() += noise_of_ways() * noise_of_ways();
     pull.append(left, inside);
     pull.solve();
-    set_aside_ = aside + pull.set_aside();
+    report_.set_aside = aside + pull.set_aside();
 
     VectorXd shift = known(Eigen::all, pull.held()) * pull.values();
     lower.transpose().solveInPlace(shift);
@@ -375,7 +371,7 @@ void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touch
   signal_ = std::clamp(rms, std::min(kLeast, settings_.most), settings_.most);
   free_.clear();
   ways_broken_ = 0;
-  jitter_ = 0.0;
+  report_.jitter = 0.0;
   take_in(std::move(rows));
   keep_free(passages(solids, touches));
 }

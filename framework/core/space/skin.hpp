@@ -23,6 +23,7 @@
 #pragma once
 
 #include "gp/simd/table.hpp"
+#include "regular/regular_factor.hpp"
 #include "space/solids.hpp"
 
 #include <palpate/kernel.hpp>
@@ -99,10 +100,7 @@ class Skin {
   /// What is added to the diagonal by need, as a share of each entry, and how often that was raised, all fits together;
   /// how often the matrix was singular even so, and how many rows do not enter now for that. Free ways have no part in
   /// it but of the last: a point with which the matrix would be singular is set aside.
-  double jitter() const { return jitter_; }
-  int jitter_raised() const { return jitter_raised_; }
-  int pivoted() const { return pivoted_; }
-  int set_aside() const { return set_aside_; }
+  const FactorReport& report() const { return report_; }
   /// Free ways that the surface is left in, by more than noise and elsewhere than at points that hold: the last fit
   /// ended before it had seen to them.
   int ways_broken() const { return ways_broken_; }
@@ -156,10 +154,7 @@ class Skin {
   double signal_ = 0.0;
   Known known_;
   std::vector<Row> free_;
-  double jitter_ = 0.0;
-  int jitter_raised_ = 0;
-  int pivoted_ = 0;
-  int set_aside_ = 0;
+  FactorReport report_;
   int ways_broken_ = 0;
 };
 

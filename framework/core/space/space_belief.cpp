@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "space/space_belief.hpp"
 
+#include "experiment/policy.hpp"
 #include "space/reduction.hpp"
 
 #include <palpate/error.hpp>
@@ -141,6 +142,10 @@ void SpaceBelief::update(Quantities reads) {
   if (reads.has(Quantity::deviation)) look_at_deviations();
   if (reads.has(Quantity::reduction)) look_for_reductions();
   if (reads.has(Quantity::unseen)) look_for_unseen();
+  require_finite(met_, "the way to the surface", taps_);
+  require_finite(deviation_, "the deviation of the surface", taps_);
+  require_finite(reduction_, "the reduction of the deviation", taps_);
+  require_finite(unseen_, "the unseen", taps_);
 }
 
 /// Of the lines that come from where a tool may, all alike.
@@ -229,12 +234,23 @@ void SpaceBelief::look_for_reductions() {
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
-  const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places);
+  reduced_.set_aside = 0;  // as it is now
+  const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places, &reduced_);
   reduction_ = Eigen::VectorXd::Zero(met_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {
     if (squareness_(meets_[i]) > kSquarely)
       reduction_(meets_[i]) = reductions(static_cast<Eigen::Index>(some.stands_for[i]));
   }
+}
+
+FactorReport SpaceBelief::factors() const {
+  FactorReport out = skin_.report();
+  out.jitter *= skin_.deviation() * skin_.deviation();
+  // A contact that does not enter is counted once.
+  const int set_aside = std::max(out.set_aside, reduced_.set_aside);
+  out.add(reduced_);
+  out.set_aside = set_aside;
+  return out;
 }
 
 void SpaceBelief::look_for_unseen() {
@@ -280,6 +296,7 @@ Eigen::VectorXd SpaceBelief::uncertainty(const Cloud& surface) const {
   Skin::Places places;
   for (const Vector3d& at : surface) places.push_back({at, Skin::normal(solids_.best(), at)});
   Eigen::VectorXd squares = skin_.posterior(places).variance;
+  require_finite(squares, "the variance of the surface", taps_);
   const auto compositions = static_cast<double>(solids_.compositions().size());
   for (std::size_t i = 0; i < surface.size(); ++i)
     squares(static_cast<Eigen::Index>(i)) += solids_.offsets(surface[i]).squaredNorm() / compositions;
@@ -296,6 +313,7 @@ Cloud SpaceBelief::surface(const Bundle& bundle, double side) const {
   Skin::Places places;
   for (const Vector3d& at : thinned(points, side)) places.push_back({at, Skin::normal(best, at)});
   const Eigen::VectorXd means = skin_.means(places);
+  require_finite(means, "the surface", taps_);
   Cloud out;
   for (std::size_t i = 0; i < places.size(); ++i) {
     Vector3d moved = places[i].at + means(static_cast<Eigen::Index>(i)) * places[i].normal;

@@ -61,6 +61,8 @@ class SpaceBelief final : public SurfaceBelief {
   const Skin& skin() const { return skin_; }
   /// How many variances of the last update() rounding had taken below 0.
   int variances_clamped() const { return clamped_; }
+  /// What rounding made necessary in the skin, as of the last update(), and in all reductions so far; square metres.
+  FactorReport factors() const;
   /// As they are read now, those that were seen first.
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
   /// Contacts with an object, and the number of the first tap that made one.
@@ -117,6 +119,7 @@ class SpaceBelief final : public SurfaceBelief {
   std::vector<Eigen::Index> meets_;  ///< the approaches that meet it there
   Eigen::VectorXd squareness_, deviation_, reduction_, unseen_;
   int clamped_ = 0;
+  FactorReport reduced_;
 };
 
 }  // namespace palpate

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "objective.hpp"
 
+#include "regular/regular_factor.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +11,6 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kLogTwoPi = 1.83787706640934548356;
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Steepness of the walls: e-folds beyond a limit, squared, each cost this much per point.
 constexpr double kWall = 1.0;
 /// Deviations of targets below this share of their size are rounding.
@@ -99,6 +100,7 @@ Objective::Objective(const Model& model, Measure measure, const std::vector<Expe
       upper_(model.size()),
       places_(8 * matrix_.strips(), 2),
       slopes_(static_cast<std::size_t>(8 * matrix_.strips() * matrix_.strips() * parameters_)),
+      own_(model.size()),
       standard_(model.size(), model.outputs()),
       solved_(Eigen::MatrixXd::Zero(8 * matrix_.strips(), model.outputs())) {
   for (Eigen::Index i = 0; i < places_.rows(); ++i) places_.row(i) = model.points.row(std::min(i, model.size() - 1));
@@ -176,13 +178,17 @@ void Objective::fill(bool slopes) {
 bool Objective::decompose(double noise) {
   noise_ = noise;
   const Eigen::Index n = model_.size();
-  // The smooth lower limit of the noise: what keeps the matrix positive definite in double precision, as jitter does in
-  // a process. Too small to enter the gradient.
-  const double floor = 10.0 * static_cast<double>(n) * kEpsilon * matrix_(0, 0);
-  for (Eigen::Index i = 0; i < n; ++i) matrix_(i, i) += noise + floor;
+  // The smooth lower limit of the noise: the first jitter of RegularFactor, but always, for an objective without steps.
+  // Too small to enter the gradient. What is not regular with it is rejected, and the search turns back.
+  const double floor = kFirstJitter * static_cast<double>(n) * kEpsilon * matrix_(0, 0);
+  for (Eigen::Index i = 0; i < n; ++i) own_(i) = matrix_(i, i) += noise + floor;
   if (!factorise(lanes_, matrix_, reciprocals_)) return false;
   log_determinant_ = 0.0;
-  for (Eigen::Index i = 0; i < n; ++i) log_determinant_ += 2.0 * std::log(matrix_(i, i));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double pivot = matrix_(i, i);
+    if (!is_regular(pivot * pivot, i, own_(i))) return false;
+    log_determinant_ += 2.0 * std::log(pivot);
+  }
   return true;
 }
 

@@ -109,6 +109,7 @@ class Objective {
   Points places_;                    ///< rows of whole strips: the last point again and again
   std::vector<Line> slopes_;  ///< dK / d log parameter, of each strip what is not right of its tile of the diagonal:
                               ///< all columns by the first parameter, then those by the next
+  Eigen::VectorXd own_;       ///< n: the diagonal of K
   Eigen::MatrixXd standard_;  ///< n x m: (targets - mean) / signal
   Eigen::MatrixXd solved_;    ///< rows of whole strips x m: L^-1 standard, the unknown constant integrated out;
                               ///< with a gradient K^-1 of it

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "laplace.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <cmath>
 
 namespace palpate::footprints {
@@ -71,6 +69,7 @@ void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd dual = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd latent = Eigen::VectorXd::Constant(n, settings_.mean);
   Eigen::VectorXd weight(n);
+  Eigen::MatrixXd inner_matrix;
   gradient_.resize(n);
   double best = objective(latent, dual);
   for (int steps = 0;; ++steps) {
@@ -80,15 +79,14 @@ void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
       weight(i) = at.weight;
     }
     root_weight_ = weight.cwiseSqrt();
-    factor_ = root_weight_.asDiagonal() * covariance * root_weight_.asDiagonal();
-    factor_.diagonal().array() += 1.0;
-    factor_ = Eigen::LLT<Eigen::MatrixXd>(factor_).matrixL();
+    inner_matrix = root_weight_.asDiagonal() * covariance * root_weight_.asDiagonal();
+    inner_matrix.diagonal().array() += 1.0;
+    factor_.factorise(inner_matrix);
     if (steps == kMostSteps) break;
     // Newton: K^-1 (f_new - mean) = b - W^1/2 B^-1 W^1/2 K b, with b = W (f - mean) + gradient.
     const Eigen::VectorXd b = weight.cwiseProduct((latent.array() - settings_.mean).matrix()) + gradient_;
     Eigen::VectorXd inner = root_weight_.cwiseProduct(covariance * b);
-    factor_.triangularView<Eigen::Lower>().solveInPlace(inner);
-    factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(inner);
+    factor_.solve(inner);
     const Eigen::VectorXd direction = b - root_weight_.cwiseProduct(inner) - dual;
     const Eigen::VectorXd change = covariance * direction;
     double step = 1.0;
@@ -102,7 +100,7 @@ void Laplace::find_mode(const Eigen::MatrixXd& covariance) {
     latent += step * change;
     dual += step * direction;
   }
-  log_evidence_ = best - factor_.diagonal().array().log().sum();
+  log_evidence_ = best - factor_.half_log_determinant();
 }
 
 void Laplace::probability(const PointsView& places, VectorOut out) const {
@@ -113,7 +111,7 @@ void Laplace::probability(const PointsView& places, VectorOut out) const {
   kernel_.covariance(points_, places, cross);
   const Eigen::VectorXd mean = variance * (cross.transpose() * gradient_);
   cross = (variance * root_weight_).asDiagonal() * cross;
-  factor_.triangularView<Eigen::Lower>().solveInPlace(cross);
+  factor_.solve_lower(cross);
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const double spread = std::max(variance * prior(i) - cross.col(i).squaredNorm(), 0.0);
     out(i) = normal_cdf((settings_.mean + mean(i)) / std::sqrt(1.0 + spread));

@@ -3,6 +3,8 @@
 // sections 3.4 and 3.9): a latent function f ~ GP(mean, signal^2 k), and p(on | x) = Phi(f(x)).
 #pragma once
 
+#include "regular/regular_factor.hpp"
+
 #include <palpate/footprint.hpp>
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
@@ -57,6 +59,9 @@ class Laplace {
 
   /// Approximate log p(labels), natural logarithm.
   double log_evidence() const { return log_evidence_; }
+  /// What rounding made necessary in the factorisation at the mode; no unit. Only a kernel that is not positive
+  /// definite needs any, as no eigenvalue of what is factorised is below 1.
+  const FactorReport& report() const { return factor_.report(); }
 
  private:
   void find_mode(const Eigen::MatrixXd& covariance);
@@ -68,7 +73,7 @@ class Laplace {
   Eigen::VectorXd sign_;         ///< +1 on an object, -1 off
   Eigen::VectorXd gradient_;     ///< of the log likelihood at the mode
   Eigen::VectorXd root_weight_;  ///< W^1/2 at the mode
-  Eigen::MatrixXd factor_;       ///< lower, of I + W^1/2 K W^1/2
+  RegularFactor factor_;         ///< of I + W^1/2 K W^1/2
   double log_evidence_ = 0.0;
 };
 
@@ -92,9 +97,11 @@ class Classifier final : public Footprint {
   }
 
   std::vector<FootprintNumber> numbers() const override {
-    const double evidence =
-        posterior_ ? posterior_->log_evidence() : Laplace(*kernel_, settings_, points_, on_).log_evidence();
-    return {{"log_evidence", evidence}};
+    std::optional<Laplace> now;
+    const Laplace& posterior = posterior_ ? *posterior_ : now.emplace(*kernel_, settings_, points_, on_);
+    return {{"log_evidence", posterior.log_evidence()},
+            {"jitter", static_cast<double>(posterior.report().raised)},
+            {"set_aside", static_cast<double>(posterior.report().set_aside)}};
   }
 
  private:

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// A plugin that gives NaN or infinity, by each of its functions in turn: the run ends with one line that names both.
+// The plugins are those of tests/bad_plugins/not_finite.cpp.
+#include "system/shell.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <ostream>
+
+namespace palpate {
+namespace {
+
+const char* const kAbove =
+    "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: outline}\nfitting: {type: fixed}\n"
+    "surface: two_part\nheight: {noise: 6 mm, lies: 0.03}\n"
+    "backend: {type: simulator}\ntaps: 20\ncandidates: {count: 15}\n"
+    "scene: {area: {width: 23 cm, depth: 23 cm}, on_surface_above: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
+    "cm]}]}\n";
+
+const char* const kAnySide =
+    "kernel: {type: matern32, length_scale: 4 cm}\nacquisition: {type: discovery}\nfitting: {type: fixed}\n"
+    "surface: implicit\nheight: {signal: 6 mm, noise: 0.5 mm}\ninitial: {design: random, count: 1}\n"
+    "space: {compositions: 4, moves: 50, approaches: 100}\nbackend: {type: simulator}\ntaps: 12\n"
+    "scene: {touch: any, area: {width: 26 cm, depth: 26 cm}, objects: [{type: block, at: [13 cm, 13 cm]}]}\n";
+
+/// A function of a plugin, what is said of it, and the rest of a config in which it is called.
+struct Spoilt {
+  std::string kind;
+  std::string function;
+  std::string said;
+  Words more{};
+  const char* config = kAbove;
+};
+
+void PrintTo(const Spoilt& one, std::ostream* out) { *out << one.kind << ": " << one.function; }
+
+const char* const kFootprint = "footprint: {type: classifier, kernel: {type: rbf, length_scale: 3 cm}}\n";
+
+class NotFinite : public Shell, public testing::WithParamInterface<std::tuple<Spoilt, const char*>> {};
+
+TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
+  const auto& [one, by] = GetParam();
+  environment_ = {test::with_plugin("not_finite")};
+  const bool sound_footprint = one.config == kAbove && one.kind != "footprint";
+  const std::string file = write("exp.yaml", std::string(one.config) + (sound_footprint ? kFootprint : "")).string();
+  const std::string at = one.kind == "shape" ? "scene.objects.0" : one.kind;
+  const Ended ended =
+      palpate(Words{"run", file, "--quiet"} +
+              Words{at + ".type=not_finite", at + ".spoils='" + one.function + "'", at + ".by=" + by} + one.more);
+  EXPECT_NE(ended.status, 0);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_EQ(lines(ended.err), 1) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr(one.kind + "/not_finite: "));
+  EXPECT_THAT(ended.err, HasSubstr(one.said));
+}
+
+const Words kCeres{"fitting.type=ceres"};
+
+INSTANTIATE_TEST_SUITE_P(
+    By, NotFinite,
+    testing::Combine(
+        testing::Values(
+            Spoilt{"kernel", "covariance", "covariance() gave"}, Spoilt{"kernel", "variance", "variance() gave"},
+            Spoilt{"kernel", "axis_covariance", "axis_covariance() gave"},
+            Spoilt{"kernel", "parameters", "parameters() gave"},
+            Spoilt{"kernel", "derivatives", "derivatives() gave", kCeres},
+            Spoilt{"kernel", "covariance", "covariance() gave", {"posterior=dense", "threads=3"}},
+            Spoilt{"kernel", "covariance", "covariance() gave", {}, kAnySide},
+            Spoilt{"acquisition", "score", "score that is not"},
+            Spoilt{"acquisition", "prior_scale", "prior_scale() gave"},
+            Spoilt{"acquisition", "score_approaches", "score that is not", {}, kAnySide},
+            Spoilt{"fitting", "fit: noise", "fit() gave"}, Spoilt{"fitting", "fit: signal", "fit() gave"},
+            Spoilt{"fitting", "fit: mean", "fit() gave"}, Spoilt{"fitting", "fit: objective", "fit() gave"},
+            Spoilt{"fitting", "fit: kernel", "fit() gave"}, Spoilt{"footprint", "probability", "probability() gave"},
+            Spoilt{"footprint", "sample", "sample() gave", {"acquisition.type=foresight"}},
+            Spoilt{"footprint", "doubt", "doubt() gave"}, Spoilt{"footprint", "place_now", "place_now() gave"},
+            Spoilt{"footprint", "left", "left() gave", {"stop.expected_rmse='3 cm'"}},
+            Spoilt{"footprint", "numbers", "numbers() gave"}, Spoilt{"backend", "tap: height", "height that is not"},
+            Spoilt{"backend", "tap: force", "force or a time that is not"},
+            Spoilt{"backend", "tap: seconds", "force or a time that is not"},
+            Spoilt{"backend", "tap: peak", "force or a time that is not"},
+            Spoilt{"backend", "motions: seconds", "seconds() gave"},
+            Spoilt{"backend", "motions: deviation", "deviation() gave"}, Spoilt{"shape", "support", "support() gave"},
+            Spoilt{"shape", "top", "top() gave"},
+            Spoilt{"shape", "first_hit", "first_hit() gave", {"scene.objects.0.tilt='10 deg'"}},
+            Spoilt{"shape", "first_hit", "first_hit() gave", {}, kAnySide},
+            Spoilt{"shape", "stretches", "stretches() gave", {}, kAnySide},
+            Spoilt{"backend", "tap: along", "an end that is not on the way", {}, kAnySide}),
+        testing::Values("nan", "infinity")),
+    [](const auto& one) {
+      const Spoilt& spoilt = std::get<0>(one.param);
+      std::string name =
+          spoilt.kind + "_" + spoilt.function + "_" + std::get<1>(one.param) + "_" + std::to_string(one.index);
+      for (char& letter : name) letter = std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
+      return name;
+    });
+
+}  // namespace
+}  // namespace palpate
