@@ -86,6 +86,8 @@ compared() {
             cell = cell substr(rest, 1, end)
             rest = substr(rest, end + 1)
             if (substr(rest, 1, 1) != "\"") break
+            cell = cell "\""
+            rest = substr(rest, 2)
           }
           rest = substr(rest, 2)
         } else {

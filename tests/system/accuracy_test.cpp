@@ -121,8 +121,7 @@ TEST_F(Accuracy, ACommitThatMadeAValueWorseWithoutAReasonFails) {
   give_equal();
   ASSERT_EQ(accuracy({"--write"}).status, 0);
   const auto commit = [&] {
-    return test::run_program({"/bin/sh", "-c",
-                              "git add tests && git -c user.name=a -c user.email=a@b commit -qm one"},
+    return test::run_program({"/bin/sh", "-c", "git add tests && git -c user.name=a -c user.email=a@b commit -qm one"},
                              here(), {"HOME=" + here().string()});
   };
   if (test::run_program({"/bin/sh", "-c", "git init -q"}, here()).status != 0) GTEST_SKIP() << "no git";
@@ -160,7 +159,7 @@ TEST_F(Accuracy, OfTheDefaultIsLostWithAWorseSetting) {
     words.insert(words.end(), more.begin(), more.end());
     return test::run_program(words, here());
   };
-  const Ended worse = with({"standard", "--seeds", "12", "--set", "footprint.blur=1cm"});
+  const Ended worse = with({"standard", "--seeds", "6", "--set", "acquisition=uncertainty"});
   EXPECT_EQ(worse.status, 1) << worse.out;
   EXPECT_THAT(worse.err, HasSubstr("accuracy: standard_30_default rmse_m: "));
 }

@@ -62,8 +62,9 @@ TEST_F(OtherBuild, DiffersByOneDigitOfOneCellOrByATapLess) {
   pretend("other", "x,tap,gp.signal,gp.noise,reason\n0.5,1,2,1,\"far, \"\"too\"\" far\"\n0.25,2,4,3.0,\n");
   const Ended digit = compare("");
   EXPECT_EQ(digit.status, 1);
-  EXPECT_EQ(digit.out, "standard: taps.csv differs in 1 of 1 jobs, the first above\n"
-                       "  job 0: tap 2: gp.noise is 3 here, 3.0 of the other program\n");
+  EXPECT_EQ(digit.out,
+            "standard: taps.csv differs in 1 of 1 jobs, the first above\n"
+            "  job 0: tap 2: gp.noise is 3 here, 3.0 of the other program\n");
   pretend("other", kTaps.substr(0, kTaps.find("2,,")));
   EXPECT_THAT(compare("").out, HasSubstr("job 0: tap 2 only here"));
   pretend("here", kTaps.substr(0, kTaps.find("1,\"")));
@@ -73,8 +74,9 @@ TEST_F(OtherBuild, DiffersByOneDigitOfOneCellOrByATapLess) {
 
 TEST_F(OtherBuild, MayCallColumnsAndKeysByOtherNamesThatATableHas) {
   pretend("here", kTaps);
-  pretend("other", "tap,reason,x,height_process.noise,height_process.signal,old\n"
-                   "1,\"far, \"\"too\"\" far\",0.5,1,2,7\n2,,0.25,3,4,7\n");
+  pretend("other",
+          "tap,reason,x,height_process.noise,height_process.signal,old\n"
+          "1,\"far, \"\"too\"\" far\",0.5,1,2,7\n2,,0.25,3,4,7\n");
   const Ended lost = compare("");
   EXPECT_EQ(lost.status, 1);
   EXPECT_THAT(lost.out, HasSubstr("column height_process.noise of the other program has no partner here"));
@@ -98,8 +100,8 @@ TEST_F(OtherBuild, MayCallColumnsAndKeysByOtherNamesThatATableHas) {
 
 TEST_F(OtherBuild, RunsTheConfigsOfItsOwnTree) {
   if (test::brief()) GTEST_SKIP() << "./check --all makes it in release";
-  const fs::path program = write(
-      here() / "other/build/release/palpate", fmt::format("#!/bin/sh\nexec '{}' \"$@\"\n", test::program_file().string()));
+  const fs::path program = write(here() / "other/build/release/palpate",
+                                 fmt::format("#!/bin/sh\nexec '{}' \"$@\"\n", test::program_file().string()));
   fs::permissions(program, fs::perms::owner_all);
   fs::create_directories(here() / "other/configs/effects");
   for (const auto& entry : fs::directory_iterator(test::source_folder() / "configs")) {
