@@ -29,12 +29,13 @@ sweeps="objects standard clutter any_side"
 [ -x "${1:-}/palpate" ] || usage
 program=$(cd "$1" && pwd)/palpate
 shift
+[ ! -x "$program-whole" ] || [ "$("$program" --version)" = "$("$program-whole" --version)" ] ||
+  { echo "accuracy: $program-whole, which runs sweeps, is of another build than $program: build both" >&2; exit 2; }
 form=short
 mode=check
 reason=
 wanted=
 most=0
-: "${TMPDIR:=/tmp}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
@@ -112,9 +113,14 @@ run() {
   rm -rf "$work/runs"
 }
 
-mkdir -p "${seeds_file%/*}"
-[ -e "$table" ] || echo "form,row,metric,seeds,value,standard_error,reason" >"$table"
-[ -e "$seeds_file" ] || echo "row,seed,rmse_m,iou" >"$seeds_file"
+if [ "$mode" = write ]; then
+  mkdir -p "${seeds_file%/*}"
+  [ -e "$table" ] || echo "form,row,metric,seeds,value,standard_error,reason" >"$table"
+  [ -e "$seeds_file" ] || echo "row,seed,rmse_m,iou" >"$seeds_file"
+elif [ ! -e "$table" ] || [ ! -e "$seeds_file" ]; then
+  echo "accuracy: nothing is recorded in $seeds_file: record the $form form by --write" >&2
+  exit 1
+fi
 for sweep in $sweeps; do
   case " $wanted " in "  " | *" $sweep "*) run "$sweep" >>"$work/new" ;; esac
 done

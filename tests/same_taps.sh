@@ -37,6 +37,11 @@ while [ $# -gt 0 ]; do
   shift
 done
 if [ "$seeds" -lt 1 ] || [ ! -x "$here" ] || [ ! -r "$renames" ]; then usage; fi
+# Sweeps are run by palpate-whole, which an older build may have left.
+for program in "$here" "$other"; do
+  [ ! -x "$program-whole" ] || [ "$("$program" --version)" = "$("$program-whole" --version)" ] ||
+    { echo "same_taps: $program-whole is of another build than $program: build both" >&2; exit 2; }
+done
 # A program is BUILD/palpate in TREE/build.
 here_tree=$(cd "$(dirname "$here")/../.." && pwd)
 other_tree=$(cd "$(dirname "$other")/../.." && pwd)

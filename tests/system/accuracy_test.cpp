@@ -62,7 +62,9 @@ mkdir -p "$runs/$name/id" && cp "$(dirname "$0")/results.csv" "$runs/$name/id"
 
 TEST_F(Accuracy, IsRecordedOnceAsMeansOverSeedsWithTheirStandardErrors) {
   give_equal();
-  EXPECT_EQ(accuracy().status, 1) << "nothing is recorded";
+  const Ended unknown = accuracy();
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("accuracy/short.csv: record the short form by --write"));
   EXPECT_EQ(accuracy({"--write"}).status, 0);
   // The mean of 10 to 21 mm is 15.5, their variance (12^2 - 1) / 12 * 12 / 11 = 13, of the mean 13 / 12.
   EXPECT_EQ(table(), fmt::format("form,row,metric,seeds,value,standard_error,reason\n"
