@@ -37,6 +37,24 @@ TEST_F(Benchmark, ComparesThemOnTenEverydayThingsAndOnARandomOutlineForEachSeed)
   }
 }
 
+TEST_F(Benchmark, TapsWithEachAcquisitionForEachBeliefFromTheSameFirstTaps) {
+  const std::string factorial = config("benchmark/factorial.yaml");
+  const std::string listed = sweep("--list seed=1000 scene=cube", factorial).out;
+  EXPECT_EQ(lines(listed), 3 * 5);
+  EXPECT_EQ(lines(sweep("--list", factorial).out), 3 * 5 * 12 * 20);
+  // A strategy brings an acquisition and first taps of its own: those of the sweep count.
+  const fs::path directory = swept("seed=1000 scene=cube taps=4", factorial);
+  for (int job = 0; job < 3 * 5; ++job) {
+    const std::string resolved = text_of(job_of(directory, job) / "config.yaml");
+    const bool whole = job >= 10;
+    EXPECT_THAT(resolved, HasSubstr("initial:\n  design: search\n"));
+    EXPECT_THAT(resolved, HasSubstr(std::string("footprint:\n  type: ") + (whole ? "shape" : "regression")));
+    EXPECT_THAT(resolved, HasSubstr(std::string("surface: ") + (job >= 5 ? "two_part" : "single")));
+    const char* const types[] = {"random", "grid", "uncertainty", "weighted", "mixture"};
+    EXPECT_THAT(resolved, HasSubstr(std::string("\nacquisition:\n  type: ") + types[job % 5]));
+  }
+}
+
 TEST_F(Benchmark, RunsTheDefaultAsItIsShipped) {
   const Words print = "name=x --print-config";
   const std::string in_sweep = run(print + "strategy=default scene=object_i backend=chosen", kStrategies).out;
