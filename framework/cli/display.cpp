@@ -31,6 +31,17 @@ std::string numerics_line(const Row& row) {
   return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
 }
 
+/// Names the taps whose label at the end is another than their line of the table, and taps.csv, has; empty if there is
+/// none.
+std::string relabelled_line(const Row& summary) {
+  std::string line;
+  for (const Relabelled& one : relabelled_in(summary)) {
+    line += fmt::format("{}tap {} is on the {} ({} when it was made)", line.empty() ? "" : ", ", one.tap,
+                        one.on_object ? "object" : "desk", one.on_object ? "desk" : "object");
+  }
+  return line.empty() ? line : fmt::format("read again at the end: {}\n", line);
+}
+
 }  // namespace
 
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}
@@ -86,6 +97,7 @@ void print_summary(const RunReport& report) {
   text += fmt::format("taps: {} on the object, {} on the desk,{} {} failed; {}\n", row.cell("on_surface_taps"),
                       row.cell("off_surface_taps"), missed, row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
+  text += relabelled_line(row);
   if (const Errors errors = errors_in(row); errors.rmse) {
     text += fmt::format("error: {} cm over the scene, {} cm on the object; footprint IoU {}\n",
                         scaled(errors.rmse, 100, "{:.2f}"), scaled(errors.rmse_on_surface, 100, "{:.2f}"),

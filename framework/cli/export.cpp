@@ -46,7 +46,7 @@ int export_run(Program& program, const std::string& directory, const std::string
     fmt::print("{}\n", (folder / name).string());
   };
   write("surface.ply", surface);
-  write("taps.ply", taps_ply(recording, run));
+  write("taps.ply", taps_ply(recording, playback.experiment().counts(), run));
   return kDone;
 }
 

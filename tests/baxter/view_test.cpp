@@ -104,9 +104,9 @@ TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsF
             area + "on object 0 in base at 0, gone:\noff object 0 in base at 0, gone:\nnext 0 in base at 0, gone:\n");
   const auto show = [](View& view) {
     view.target({0.1, 0.0});
-    view.tapped({0.1, 0.0}, 0.08, true);
+    view.contacts({{{0.1, 0.0}, 0.07, false}});
     view.target({0.2, 0.0});
-    view.tapped({0.2, 0.0}, 0.01, false);
+    view.contacts({{{0.1, 0.0}, 0.07, true}, {{0.2, 0.0}, 0.0, false}});  // the first is read again
     view.target({0.0, 0.1});
   };
   EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", show),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // README and the pages of framework/docs tell the truth: their commands run, and what they quote is what comes out.
 #include "support/sanitizers.hpp"
+#include "system/document.hpp"
 #include "system/shell.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,21 +17,6 @@
 namespace palpate {
 namespace {
 
-/// The lines of all code blocks marked `sh`, which may be indented.
-std::vector<std::string> shown_commands(const std::string& text) {
-  std::vector<std::string> out;
-  bool inside = false;
-  for (std::string line : lines_of(text)) {
-    line.erase(0, std::min(line.find_first_not_of(' '), line.size()));
-    if (line.rfind("```", 0) == 0) {
-      inside = line == "```sh";
-    } else if (inside && !line.empty()) {
-      out.push_back(line);
-    }
-  }
-  return out;
-}
-
 /// A folder that looks like a checkout: `palpate` is the program of this build, output stays in here.
 void imitate_checkout(const fs::path& folder) {
   fs::create_symlink(test::program_file(), folder / "palpate");
@@ -39,53 +24,12 @@ void imitate_checkout(const fs::path& folder) {
     fs::create_symlink(test::source_folder() / name, folder / name);
 }
 
-/// Compares the page's table with what `palpate sweep` printed: group, runs, dead starts, found, failed, three spreads.
-void expect_table(const std::string& page, const std::string& printed) {
-  std::string plain = page;
-  plain.erase(std::remove(plain.begin(), plain.end(), '*'), plain.end());
-  int compared = 0;
-  for (const std::string& line : lines_of(printed)) {
-    std::istringstream words(line);
-    std::string name, runs, dead, found, failed, live, live_spread, all, all_spread, error, error_spread;
-    words >> name >> runs >> dead >> found >> failed >> live >> live_spread >> all >> all_spread >> error >>
-        error_spread;
-    if (runs != "1000") continue;
-    ++compared;
-    const auto percent = [](std::string text) { return text.insert(text.size() - 1, " "); };
-    EXPECT_THAT(plain, HasSubstr(fmt::format("| {} | {} {} | {} {} | {} | {} | {} {} cm |", name, live, live_spread,
-                                             all, all_spread, percent(dead), percent(found), error, error_spread)));
-  }
-  EXPECT_EQ(compared, 4);
-}
-
-/// The rows of the table that `printed` is stand in the page, letter by letter.
-void expect_rows(const std::string& page, const std::string& printed) {
-  for (const std::string& row : lines_of(printed)) EXPECT_THAT(page, HasSubstr(row + "\n"));
-  EXPECT_GT(lines(printed), 2 + 5);
-}
-
-/// The numbered lines of the front in the page are those that `palpate pareto` printed, in its order.
-void expect_front(const std::string& page, const std::string& printed) {
-  std::string front;
-  for (const std::string& line : lines_of(printed)) {
-    if (front.empty() || std::isdigit(static_cast<unsigned char>(line[4])) != 0) front += line + "\n";
-  }
-  EXPECT_THAT(page, HasSubstr("```\n" + front + "```\n"));
-}
-
-/// The tables that `palpate compare` printed stand in the page, and so do the words on how to read them.
-void expect_comparison(const std::string& page, const std::string& printed) {
-  const auto legend = printed.find("\ninterval:");
-  ASSERT_NE(legend, std::string::npos);
-  EXPECT_THAT(page, HasSubstr("```\n" + printed.substr(0, legend)));
-  EXPECT_THAT(page, HasSubstr(printed.substr(legend) + "```\n"));
-}
-
 /// Whether a command is left out under the sanitizers, where it would take minutes: those whose work is the same in
-/// every build, and those on the runs that were left out so.
+/// every build, and those on the runs that were left out so; and what takes a browser, where none is installed.
 bool left_out(const std::string& command, const fs::path& folder) {
+  if (command.rfind("/usr/bin/python3 tests/report/", 0) == 0 && !fs::exists("/usr/bin/chromedriver")) return true;
 #ifdef __SANITIZE_ADDRESS__
-  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep "}) {
+  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ", "/usr/bin/python3 tests/report/"}) {
     if (command.rfind(begin, 0) == 0) return true;
   }
   const auto at = command.find(" runs/");
@@ -98,52 +42,59 @@ bool left_out(const std::string& command, const fs::path& folder) {
 #endif
 }
 
-/// A page, and how many of its tables come from commands that run here.
+/// A page, and how many of its blocks, texts and pictures are compared with what its commands print and draw.
 struct Page {
   const char* name;
-  int tables;
+  int compared;
 };
 
-class Document : public testing::TestWithParam<Page> {};
+class Pages : public testing::TestWithParam<Page> {};
 
-TEST_P(Document, ShowsCommandsThatRunAndTablesThatTheyPrint) {
-  if (test::kSanitized && GetParam().name == std::string("framework/docs/any_side.md"))
+bool wished(const char* variable) { return std::getenv(variable) != nullptr; }
+
+TEST_P(Pages, ShowCommandsThatRunAndWhatTheyPrintAndDraw) {
+  using Kind = test::Document::Part::Kind;
+  const std::string name = GetParam().name;
+  if (test::kSanitized && (name == "framework/docs/any_side.md" || name == "runs/reference/README.md"))
     GTEST_SKIP() << "the tests of touch from any side have the same commands do less";
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
-  const std::string page = text_of(test::source_folder() / GetParam().name);
-  const std::vector<std::string> commands = shown_commands(page);
-  EXPECT_GE(commands.size(), 2U);
-  int tables = 0;
-  for (const std::string& command : commands) {
-    if (left_out(command, folder.path())) continue;
-    const test::Ended ended = test::run_program({"sh", "-c", command}, folder.path());
-    EXPECT_EQ(ended.status, 0) << command << "\n" << ended.err;
-    ++tables;
-    if (command == "./palpate sweep configs/paper/comparison.yaml" &&
-        page.find("| strategy | taps") != std::string::npos) {
-      expect_table(page, ended.out);
-    } else if (command == "sh tests/benchmark/fitting.sh" || command == "tests/benchmark/motions.py") {
-      expect_rows(page, ended.out);
-    } else if (command == "./palpate pareto runs/trade_motion/* --cost robot_seconds --error rmse_m") {
-      expect_front(page, ended.out);
-    } else if (command.rfind("./palpate compare runs/comparison/", 0) == 0) {
-      expect_comparison(page, ended.out);
+  test::Document page(test::source_folder() / name);
+  int commands = 0;
+  int compared = 0;
+  bool ran = false;
+  test::Ended ended;
+  for (std::size_t i = 0; i < page.parts().size(); ++i) {
+    const test::Document::Part& part = page.parts()[i];
+    if (part.kind == Kind::command) {
+      ++commands;
+      ran = !left_out(part.text, folder.path()) && (!part.is_long || wished("PALPATE_LONG"));
+      if (!ran) continue;
+      ended = test::run_program({"sh", "-c", part.text}, folder.path());
+      EXPECT_EQ(ended.status, 0) << part.text << "\n" << ended.err;
     } else {
-      --tables;
+      ++compared;
+      if (ran) EXPECT_EQ(page.difference(i, ended.out, folder.path(), wished("PALPATE_KEEP")), "");
     }
   }
-  EXPECT_EQ(tables, left_out("sh tests/benchmark/fitting.sh", folder.path()) ? 0 : GetParam().tables);
+  EXPECT_GE(commands, 2);
+  EXPECT_EQ(compared, GetParam().compared) << "a page that shows more, or less, has its number below";
+  if (wished("PALPATE_KEEP")) page.write();
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Document,
-                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 1},
-                                           Page{"framework/docs/results.md", 1}, Page{"framework/docs/sweeps.md", 0},
-                                           Page{"framework/docs/comparing.md", 3}, Page{"framework/docs/scenes.md", 1},
+INSTANTIATE_TEST_SUITE_P(Every, Pages,
+                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 3},
+                                           Page{"framework/docs/results.md", 4}, Page{"framework/docs/sweeps.md", 0},
+                                           Page{"framework/docs/comparing.md", 5}, Page{"framework/docs/scenes.md", 2},
                                            Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
                                            Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 0},
-                                           Page{"framework/docs/any_side.md", 0}),
-                         [](const auto& one) { return fs::path(one.param.name).stem().string(); });
+                                           Page{"framework/docs/any_side.md", 0},
+                                           Page{"runs/reference/README.md", 9}),
+                         [](const auto& one) {
+                           return one.param.name == std::string("runs/reference/README.md")
+                                      ? "pictures"
+                                      : fs::path(one.param.name).stem().string();
+                         });
 
 TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   const std::string readme = text_of(test::source_folder() / "README.md");
@@ -199,6 +150,10 @@ TEST(Readme, TheCaptureIsWhatTheFirstCommandPrintsAndItsErrorFalls) {
   ASSERT_EQ(first_command(readme), "./palpate run configs/default.yaml");
   const test::Ended ended = test::run_program({"sh", "-c", first_command(readme)}, folder.path());
   EXPECT_THAT(readme, HasSubstr("```\n" + ended.out + "```\n"));
+  // The picture of a report is of this run: runs/reference/README.md has what stands in it.
+  const auto id = ended.out.rfind('/') + 1;
+  EXPECT_THAT(text_of(test::source_folder() / "runs/reference/README.md"),
+              HasSubstr("\n\"id " + ended.out.substr(id, 12) + ", seed 1, "));
   // "4 cm while nothing is known, 3 mm after 30 taps"
   std::vector<double> errors;  // behind tap, source, x, y, height, contact and deviation, centimetres
   for (const std::string& line : lines_of(ended.out)) {

@@ -148,6 +148,7 @@ void TapBelief::observe(const Target& place, const Contact& contact, const Manne
   if (reading.on) hits_.push_back(touches_.back());
   current_ = false;
   if (!systematic_) return;
+  first_labels_.push_back(reading.on);
   excess_.push_back(contact.height - desk_);
   times_.push_back(began);
   systematic_->add(place, began, excess_.back(), manner.motion);
@@ -159,6 +160,14 @@ std::optional<int> TapBelief::first_hit_tap() const {
     if (touches_[i].on) return numbers_[i];
   }
   return std::nullopt;
+}
+
+std::vector<Relabelled> TapBelief::relabelled() const {
+  std::vector<Relabelled> out;
+  for (std::size_t i = 0; i < first_labels_.size(); ++i) {
+    if (touches_[i].on != first_labels_[i]) out.push_back({numbers_[i], touches_[i].on});
+  }
+  return out;
 }
 
 TapBelief::Reading TapBelief::read(const Contact& contact, int motion) const {

@@ -61,6 +61,8 @@ class TapBelief final : public Belief {
   const std::vector<int>& motions() const { return motions_; }
   const std::vector<Touch>& hits() const { return hits_; }
   std::optional<int> first_hit_tap() const;
+  /// Returns the contacts so far whose label is not the one of read() before they were observed, by ascending tap.
+  std::vector<Relabelled> relabelled() const;
 
   /// What was seen before the first tap, which all models know before any contact; and whether an object was.
   const std::vector<Sight>& sights() const { return sights_; }
@@ -251,6 +253,7 @@ class TapBelief final : public Belief {
   Points places_, places_now_;          ///< of all that the footprint has taken: as made, and see Footprint
   std::vector<double> excess_, times_;  ///< of these: heights as they came, when,
   std::vector<int> motions_;            ///< by which motion (also where nothing is learnt),
+  std::vector<bool> first_labels_;      ///< as they were read when they were made; only where that may change
   std::vector<double> share_;           ///< and how far its height is to be trusted for that, in [0, 1]
   bool uneven_ = false;                 ///< some less than others
   std::vector<Touch> hits_;             ///< those on an object

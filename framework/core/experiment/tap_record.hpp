@@ -93,7 +93,7 @@ struct TapRecord : PastTap, ModelState {
 
   // After the tap.
   std::optional<double> corrected;      ///< height less what is thought to be added to all; absent where none is learnt
-  std::optional<bool> on_surface;       ///< absent unless the outcome is a contact
+  std::optional<bool> on_surface;       ///< as it is read when it is made; absent unless the outcome is a contact
   std::optional<bool> true_on_surface;  ///< absent where no truth is known
 };
 
@@ -145,6 +145,7 @@ struct RunResult : ModelState {
   int missed_taps = 0;  ///< from any side: those that met nothing
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
+  std::vector<Relabelled> relabelled;  ///< contacts that the counts above take otherwise than their TapRecord does
   Calibration calibration;
   std::optional<std::vector<ObjectResult>> objects;  ///< of the scene, in its order; absent where no truth is known
   double robot_seconds = 0.0;

@@ -50,6 +50,7 @@ void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, con
   result_.on_surface_taps = static_cast<int>(belief.hits().size());
   result_.off_surface_taps = static_cast<int>(belief.touches().size() - belief.hits().size());
   result_.first_hit_tap = belief.first_hit_tap();
+  result_.relabelled = belief.relabelled();
 }
 
 void Watch::note_object(int candidate) {

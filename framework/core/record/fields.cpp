@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 #include <string_view>
 
 namespace palpate {
@@ -129,6 +130,16 @@ std::string words(const std::vector<TapBelief::Doubted>& doubted) {
   return out;
 }
 
+constexpr const char* kObject = "object";
+
+/// "5 object, 9 desk"
+std::string words(const std::vector<Relabelled>& relabelled) {
+  std::string out;
+  for (const Relabelled& one : relabelled)
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", one.tap, one.on_object ? kObject : "desk");
+  return out;
+}
+
 /// Where the loop lays the state of its models down, in a tap and in a result alike.
 template <class Record>
 void list_models(FieldList<Record>& list, bool reasons) {
@@ -217,7 +228,8 @@ FieldList<TapRecord> make_tap_list() {
   list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
-  list.add("on_surface", "whether a contact was one with an object, as it was read when it was made", &Tap::on_surface);
+  list.add("on_surface", "whether a contact was one with an object, as it was read when it was made; `relabelled` of the summary names "
+           "the taps that are read otherwise at the end", &Tap::on_surface);
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
   list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
                  "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
@@ -287,6 +299,11 @@ constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fit
                                                           "writing the record of the tap before"};
 
 bool is_from_any_side(const Summary& summary) { return summary.config.options.scene.touch == SceneOptions::Touch::any; }
+
+/// Whether contacts are read again after later taps.
+bool is_read_again(const Summary& summary) {
+  return summary.config.options.height.systematic.has_value() || is_from_any_side(summary);
+}
 
 /// How often a run took such a step.
 auto interventions(const std::string& kind) {
@@ -384,9 +401,8 @@ FieldList<Summary> make_summary_list() {
       [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
   list.add("taps", "all of them; the next three, from any side four, add up to it", &Summary::taps).less().headline();
   list.add("on_surface_taps",
-           "contacts with an object, as they are read at the end: with `height.systematic` all are read again after "
-           "every "
-           "tap",
+           "contacts with an object, as they are read at the end: with `height.systematic`, and from any side, all "
+           "are read again after every tap",
            &Summary::on_surface_taps)
       .more()
       .headline();
@@ -398,6 +414,11 @@ FieldList<Summary> make_summary_list() {
       .less()
       .absent("the object was not found");
   list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; }).more();
+  list.add_where(is_read_again, "relabelled",
+                 "the contacts that these counts take otherwise than `on_surface` of their taps does, each by the number "
+                 "of its tap and the label at the end: `5 object, 9 desk`; null if there is none; only with "
+                 "`height.systematic` and from any side",
+                 [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
   list.add("nlpd",
            "mean negative log predictive density of the true height (natural logarithm) over the cells on an object "
@@ -527,6 +548,14 @@ const std::vector<RecordField>& error_fields() {
 void add_errors(Row& row, const Errors& errors) {
   for (const ErrorField& one : error_list())
     if (!one.any_side || errors.*one.value) row.add(one.field.name, errors.*one.value);
+}
+
+std::vector<Relabelled> relabelled_in(const Row& summary) {
+  std::vector<Relabelled> out;
+  std::istringstream words(summary.text("relabelled"));
+  std::string label;
+  for (int tap = 0; words >> tap >> label;) out.push_back({tap, label.rfind(kObject, 0) == 0});
+  return out;
 }
 
 Errors errors_in(const Row& row) {

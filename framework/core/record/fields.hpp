@@ -64,6 +64,10 @@ bool depends_on_machine(const std::string& name);
 /// How far a surface is from the truth, best known first: the fields that a tap and a summary share.
 const std::vector<RecordField>& error_fields();
 
+/// Returns the contacts whose label at the end is another than the record of their tap has, by the field `relabelled`
+/// of a summary.
+std::vector<Relabelled> relabelled_in(const Row& summary);
+
 /// The one that says in one number how good a surface is.
 inline const std::string& main_error() { return error_fields().front().name; }
 

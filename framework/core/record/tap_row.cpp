@@ -76,6 +76,15 @@ Row intent_row(const TapRecord& tap) {
   return row;
 }
 
+std::optional<bool> label_now(const Row& row, const RunResult& counts) {
+  const std::optional<bool> then = row.flag("on_surface");
+  if (!then) return std::nullopt;
+  const auto number = static_cast<int>(row.number("tap").value_or(0.0));
+  const bool changed = std::any_of(counts.relabelled.begin(), counts.relabelled.end(),
+                                   [&](const Relabelled& one) { return one.tap == number; });
+  return changed != *then;
+}
+
 bool is_intent(const Row& row) { return row.find("intent") != nullptr; }
 
 Row unknown_result_of(const Row& intent) {

@@ -18,6 +18,10 @@ Row tap_row(const TapRecord& tap);
 /// The same before it is made: marked as an intent, without what only the tap can tell.
 Row intent_row(const TapRecord& tap);
 
+/// Returns whether the contact of a row is one with an object as `counts` has it, which may read it otherwise than the
+/// row does; none where the tap made no contact.
+std::optional<bool> label_now(const Row& row, const RunResult& counts);
+
 /// Whether a row of taps.jsonl announces a tap instead of telling its result.
 bool is_intent(const Row& row);
 

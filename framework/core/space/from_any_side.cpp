@@ -107,6 +107,7 @@ void FromAnySide::observe(const PastTap& tap) {
   result_.on_surface_taps = hits.count;
   result_.off_surface_taps = result_.taps - result_.failed_taps - result_.missed_taps - hits.count;
   result_.first_hit_tap = hits.first;
+  result_.relabelled = belief_.relabelled();
 }
 
 void FromAnySide::resume(const std::vector<PastTap>& past) {

@@ -102,7 +102,7 @@ SpaceBelief::Told SpaceBelief::told(const Approach& approach, const Contact& con
   touch.line = line_of(approach);
   touch.length = contact.along.value_or(approach.length);
   touch.contact = contact.outcome == Outcome::contact;
-  return {touch, contact.force, taps_};
+  return {touch, contact.force, taps_, touch.contact && !overtravel_.read(touch, contact.force).desk};
 }
 
 SpaceBelief::Hits SpaceBelief::hits() const {
@@ -116,9 +116,18 @@ SpaceBelief::Hits SpaceBelief::hits() const {
   return out;
 }
 
+std::vector<Relabelled> SpaceBelief::relabelled() const {
+  std::vector<Relabelled> out;
+  for (std::size_t i = 0; i < told_.size(); ++i) {
+    const SurfaceTouch& touch = touches_[seen_ + i];
+    const bool on_object = touch.contact && !touch.desk;
+    if (on_object != told_[i].on_object) out.push_back({told_[i].tap, on_object});
+  }
+  return out;
+}
+
 bool SpaceBelief::on_object(const Approach& approach, const Contact& contact) const {
-  const Told one = told(approach, contact);
-  return one.touch.contact && !overtravel_.read(one.touch, one.force).desk;
+  return told(approach, contact).on_object;
 }
 
 void SpaceBelief::update(Quantities reads) {

@@ -71,6 +71,8 @@ class SpaceBelief final : public SurfaceBelief {
     std::optional<int> first;
   };
   Hits hits() const;
+  /// Returns the contacts so far whose label is not what on_object() said before they were observed, by ascending tap.
+  std::vector<Relabelled> relabelled() const;
   const Overtravel& overtravel() const { return overtravel_; }
   /// How far a tool comes along an approach if a composition is the truth.
   double meeting(const Approach& approach, const Composition& composition) const;
@@ -86,6 +88,7 @@ class SpaceBelief final : public SurfaceBelief {
     SurfaceTouch touch;
     double force;
     int tap;  ///< its number, from 1
+    bool on_object;  ///< as it is read when it is made
   };
   Told told(const Approach& approach, const Contact& contact) const;
   void draw_approaches();

@@ -2,6 +2,7 @@
 #include "report/history.hpp"
 
 #include "experiment/metrics.hpp"
+#include "record/tap_row.hpp"
 
 #include <fmt/format.h>
 
@@ -13,12 +14,12 @@
 namespace palpate {
 namespace {
 
-TapMark mark_of(const Recording& recording, std::size_t index, double desk) {
+TapMark mark_of(const Recording& recording, std::size_t index, double desk, const RunResult& counts) {
   const PastTap& tap = recording.taps[index];
   TapMark mark{static_cast<int>(index) + 1, TapMark::Kind::failed, tap.target.x, tap.target.y, desk};
   if (tap.contact.outcome != Outcome::contact) return mark;
   const Row& row = recording.rows[index];
-  mark.kind = row.flag("on_surface").value_or(false) ? TapMark::Kind::on : TapMark::Kind::off;
+  mark.kind = label_now(row, counts).value_or(false) ? TapMark::Kind::on : TapMark::Kind::off;
   mark.height = row.number("corrected_height").value_or(tap.contact.height);
   return mark;
 }
@@ -36,7 +37,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   Snapshot out;
   out.taps = playback.taps();
   for (int i = 0; i < out.taps; ++i)
-    out.marks.push_back(mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk()));
+    out.marks.push_back(mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
   out.next = experiment.choose_next();
   out.scores = experiment.scores();
   experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);

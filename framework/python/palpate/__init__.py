@@ -129,7 +129,11 @@ class Run:
 
     @property
     def taps(self) -> _np.ndarray:
-        """A structured array of a row a tap; describe() says what its fields mean. Numbers that a tap lacks are NaN."""
+        """A structured array of a row a tap; describe() says what its fields mean. Numbers that a tap lacks are NaN.
+
+        `on_surface` is what a contact was taken for when it was made: `summary["relabelled"]` names those that are read
+        otherwise at the end.
+        """
         return _table(self._record.taps())
 
     def after(self, taps: int) -> Maps:

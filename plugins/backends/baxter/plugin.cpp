@@ -79,9 +79,6 @@ class Baxter final : public Backend {
     begun_ = true;
     Contact contact = tapper_.tap(request);
     diary_.write();
-    if (view_ && contact.outcome == Outcome::contact) {
-      view_->tapped(request.target, contact.height, scene_.on_surface(contact.height));
-    }
     return contact;
   }
 
@@ -90,6 +87,7 @@ class Baxter final : public Backend {
   Quantities reads() const override { return view_ ? Quantity::height : Quantities(); }
   void show(const Belief& belief) override {
     if (!view_) return;
+    view_->contacts(belief.touches());
     view_->surface(belief.candidates(), belief.height_mean(), belief.height_variance().cwiseMax(0.0).cwiseSqrt());
   }
 

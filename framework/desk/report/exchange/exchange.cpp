@@ -2,6 +2,7 @@
 #include "report/exchange/exchange.hpp"
 
 #include "experiment/metrics.hpp"
+#include "record/tap_row.hpp"
 
 #include <fmt/format.h>
 
@@ -93,14 +94,14 @@ std::string surface_ply(FromAnySide& experiment, const std::string& run) {
                   fmt::format("palpate, {}, metres, quality: standard deviation along the normal", header_text(run)));
 }
 
-std::string taps_ply(const Recording& recording, const std::string& run) {
+std::string taps_ply(const Recording& recording, const RunResult& counts, const std::string& run) {
   std::string points;
   int contacts = 0;
   const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const PastTap& tap = recording.taps[i];
     if (tap.contact.outcome != Outcome::contact) continue;
-    const bool hit = recording.rows[i].flag("on_surface").value_or(false);
+    const bool hit = label_now(recording.rows[i], counts).value_or(false);
     Eigen::Vector3d at(tap.target.x, tap.target.y, tap.contact.height);
     std::string from;
     if (any_side) {

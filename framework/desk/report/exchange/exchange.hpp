@@ -47,8 +47,8 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
 std::string surface_ply(FromAnySide& experiment, const std::string& run);
 
 /// The contacts as points: x, y, z, from any side nx, ny and nz, from where the tool came, `tap` (its number),
-/// `on_surface` (1 or 0).
-std::string taps_ply(const Recording& recording, const std::string& run);
+/// `on_surface` (1 or 0), as `counts`, those after all taps, read it.
+std::string taps_ply(const Recording& recording, const RunResult& counts, const std::string& run);
 
 /// Text as a PLY header can hold it: one line of printable ASCII, at most 200 letters, without the word that ends it.
 std::string header_text(const std::string& text);

@@ -77,6 +77,13 @@ Json json_of_build(const Tree& manifest) {
 
 }  // namespace
 
+/// The numbers of the taps whose contacts read otherwise at a moment than their rows say.
+static std::vector<int> relabelled(const Moment& moment) {
+  std::vector<int> out;
+  for (const Relabelled& one : moment.result.relabelled) out.push_back(one.tap);
+  return out;
+}
+
 static void to_json(Json& out, const TapBelief::Doubted& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const Moment& moment) {
@@ -89,6 +96,7 @@ static void to_json(Json& out, const Moment& moment) {
               {"off_surface_taps", result.off_surface_taps},
               {"missed_taps", result.missed_taps},
               {"failed_taps", result.failed_taps},
+              {"relabelled", relabelled(moment)},
               {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
               {"least_weight", moment.least_weight},

@@ -25,7 +25,10 @@ Json json_of_standing(const Moment& moment) {
   add_errors(row, moment.result.errors);
   row.add("taps", moment.taps);
   row.add("robot_seconds", moment.result.robot_seconds);
-  return row;
+  Json out = row;
+  out["relabelled"] = Json::array();
+  for (const Relabelled& one : moment.result.relabelled) out["relabelled"].push_back(one.tap);
+  return out;
 }
 
 /// The series of that name; null if there is none.

@@ -239,6 +239,7 @@ class FromAboveExplained final : public Explanation {
           outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, contact.seconds));
     } else {
       explain_contact(contact, on_surface());
+      explain_label();
     }
     explain_failure();
   }

@@ -195,6 +195,7 @@ class ApproachExplained final : public Explanation {
       if (row_.flag("true_on_surface").value_or(on) != on)
         text += fmt::format(" In truth {} is there.", on ? "no object" : "an object");
       page_.say(text);
+      explain_label();
     }
     explain_failure();
   }

@@ -27,6 +27,15 @@ std::string Explanation::acquisition_words() const {
   return found.empty() || found.front().summary.empty() ? type : fmt::format("{} ({})", type, found.front().summary);
 }
 
+void Explanation::explain_label() {
+  for (const Relabelled& one : relabelled_in(recording_.summary.value_or(Row{}))) {
+    if (one.tap != number_) continue;
+    page_.say(fmt::format(
+        "By all {} taps it is read as a contact {}: what motion and arm add to all heights is known better by then.",
+        recording_.rows.size(), one.on_object ? "with an object" : "with the desk"));
+  }
+}
+
 void Explanation::explain_failure() {
   if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
   const std::string reason = recording_.summary->text("stop_reason");

@@ -26,6 +26,8 @@ class Explanation {
 
   std::string heading(const std::string& where) const;
   std::string acquisition_words() const;
+  /// If the contact has another label by all taps than it had when it was made.
+  void explain_label();
   /// If the run failed at this tap.
   void explain_failure();
   /// How the tap changed the errors that rows from before and after it have. `what`: what those that are lengths are

@@ -35,8 +35,8 @@ class View {
   /// Where the arm goes now.
   virtual void target(const Target& place) = 0;
 
-  /// A tap that touched something; others are not shown.
-  virtual void tapped(const Target& place, double height, bool on_surface) = 0;
+  /// Shows these contacts, as they are read now, in the place of those before; the target has been reached.
+  virtual void contacts(const std::vector<Touch>& touches) = 0;
 
   /// The surface: one height and its standard deviation for each place.
   virtual void surface(const Points& places, const VectorView& height, const VectorView& deviation) = 0;

@@ -45,8 +45,11 @@ class RosView final : public View {
     show_taps();
   }
 
-  void tapped(const Target& place, double height, bool on_surface) override {
-    (on_surface ? on_ : off_).push_back(in_base(place.x, place.y, height));
+  void contacts(const std::vector<Touch>& touches) override {
+    on_.clear();
+    off_.clear();
+    for (const Touch& one : touches)
+      (one.on ? on_ : off_).push_back(in_base(one.place.x, one.place.y, desk_ + one.height));
     next_.reset();
     show_taps();
   }

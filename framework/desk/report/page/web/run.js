@@ -74,7 +74,7 @@ function story(data, moment, drawn) {
   const tap = data.taps[moment.taps - 1];
   if (tap) {
     const reason = tap.reason ? `: ${tap.reason}` : "";
-    const touched = `touched ${tap.on_surface ? "the object" : "the desk"} at ${shown(tap.height * kCentimetres, 4)} cm`;
+    const touched = `touched ${labelAt(moment, tap) ? "the object" : "the desk"} at ${shown(tap.height * kCentimetres, 4)} cm`;
     const what = tap.on_surface === null ? `brought no contact (${tap.outcome}${reason})` : touched;
     const motion = tap.motion === undefined ? "" : `, by motion ${tap.motion}`;
     out.push(`Tap ${tap.tap} ${whereTo(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}${motion}, ${what}.`);
@@ -82,6 +82,10 @@ function story(data, moment, drawn) {
     out.push("Before the first tap.");
   }
   out.push(`So far ${moment.on_surface_taps} on the object, ${moment.off_surface_taps} on the desk.`);
+  for (const number of moment.relabelled) {
+    const on = labelAt(moment, data.taps[number - 1]);
+    out.push(`Tap ${number} is read as ${on ? "on the object" : "on the desk"} by now, and was not when it was made.`);
+  }
   if (moment.next) {
     const score = moment.next.score === null ? "" : `, score ${shown(moment.next.score)}`;
     const ties = moment.next.ties > 1 ? `, one of ${moment.next.ties} that are tied` : "";

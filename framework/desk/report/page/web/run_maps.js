@@ -29,8 +29,11 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
-/// The taps up to `taps`: those on the object, those on the desk, and those that failed.
-const tapsUntil = (rows, taps) => [true, false, null].map((touched) => rows.slice(0, taps).filter((tap) => tap.on_surface === touched));
+/// Whether the contact of a tap is one with an object as it is read at a moment; null of a tap without a contact.
+const labelAt = (moment, tap) => (tap.on_surface === null ? null : tap.on_surface !== moment.relabelled.includes(tap.tap));
+
+/// The first `taps` taps of a run: those on the object, those on the desk, and those that failed, as they are read then.
+const tapsUntil = (run, taps) => [true, false, null].map((touched) => run.taps.slice(0, taps).filter((tap) => labelAt(run.moments[taps], tap) === touched));
 
 const centimetres = (...metres) => `(${metres.map((value) => shown(value * kCentimetres, 3)).join(", ")}) cm`;
 const place = (tap) => centimetres(tap.x, tap.y);
@@ -65,7 +68,7 @@ const deskMarks = (taps) => [
 /// Taps as marks in the plane: discs on the object, crosses on the desk, squares where a tap failed, a ring around what is
 /// doubted; a star is next.
 function marks(data, moment) {
-  const [on, off, failed] = tapsUntil(data.taps, moment.taps);
+  const [on, off, failed] = tapsUntil(data, moment.taps);
   const doubted = doubtedOf(data, moment);
   const ring = markTrace(doubted, "doubted", { symbol: "circle-open", size: 18, line: edge("#e8112d", 2.4) });
   return [
@@ -203,7 +206,7 @@ class SurfaceView {
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{customdata:.2f} cm<extra></extra>",
     };
-    const [on, off] = tapsUntil(this.data.taps, moment.taps);
+    const [on, off] = tapsUntil(this.data, moment.taps);
     // Above everything, from where the arm comes down: in sight however the surface is turned.
     const above = this.range[1] / kCentimetres;
     const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres, above }));

@@ -203,7 +203,7 @@ class SpaceView {
 
   traces(frame, moment) {
     const surface = this.surfaces[frame];
-    const [on, off, others] = tapsUntil(this.data.taps, moment.taps);
+    const [on, off, others] = tapsUntil(this.data, moment.taps);
     const missed = others.filter((tap) => tap.outcome === "no_contact");  // of the others nothing is known of their way
     const most = Math.max(extent(surface.deviation)[1], 0);
     const title = "standard deviation [mm]";

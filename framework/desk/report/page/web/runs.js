@@ -98,7 +98,7 @@ class Surfaces {
     this.output.textContent = `after tap ${taps} of ${this.most}`;
     const frames = this.data.runs.map((run, index) => this.maps[index].height[frameAt(run, taps)]);
     const drawn = this.data.runs.map((run, index) => {
-      const [on, off, failed] = tapsUntil(run.taps, Math.min(taps, run.taps.length));
+      const [on, off, failed] = tapsUntil(run, Math.min(taps, run.taps.length));
       const traces = [
         heatMap(run, frames[index], this.range, kWhere, "cm"),
         markTrace(on, "on the object", { symbol: "circle", size: 8, color: "#ffffff", line: edge("#000000", 1.4) }),
