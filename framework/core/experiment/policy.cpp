@@ -173,8 +173,8 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
 }
 
 bool all_finite(const Eigen::VectorXd& values) {
-  // 0 times what is finite is 0; times what is not it is NaN.
-  return (0.0 * values).sum() == 0.0;
+  // A sum is finite only if all are, or it overflows: 0 times what is finite is 0, times what is not it is NaN.
+  return std::isfinite(values.sum()) || (0.0 * values).sum() == 0.0;
 }
 
 void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {

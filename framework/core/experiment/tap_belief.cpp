@@ -330,8 +330,7 @@ void TapBelief::map_heights() {
   process.update_maps();
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
-  require_finite(uncertainty_, "the uncertainty u", taps());
-  require_finite(variance_, "the variance of the height process", taps());
+  require_finite(variance_, "the variance of the height process", taps());  // and with it u
   if (!two_part_) map_surface(process);
   if (joined_ && process.shown() > label_output()) map_labels();
   heights_.stale = false;

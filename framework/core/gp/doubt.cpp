@@ -17,8 +17,10 @@ constexpr double kBroader = 2.5;
 /// Of the signal. Below the first a process claims to be exact, which few surfaces keep to: see judge(). The others are
 /// the noises by which it is contradicted, from those of a good arm to what a kernel that is much too smooth leaves
 /// over.
-constexpr double kExact = 0.01;
+constexpr double kExact = 0.03;
 constexpr double kRough[] = {0.3, 0.06, 0.01};
+/// Strong evidence, a ratio of ten (Jeffreys 1961), as a natural logarithm.
+constexpr double kStrong = 2.3;
 
 }  // namespace
 
@@ -47,7 +49,7 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
     testimony.noises.clear();
     for (const double share : kRough) testimony.noises.push_back(share * settings.signal);
     const Judgement rough = palpate::judge(testimony);
-    judged_ = !(rough.log_evidence > judgement_.log_evidence);
+    judged_ = !(rough.log_evidence > judgement_.log_evidence + kStrong);
     if (!judged_) judgement_.doubt = rough.doubt;
   }
   // Every court of every tap has the same need: it is counted where it begins.

@@ -17,10 +17,10 @@ class DoubtedSurface {
   /// and whose noise has this variance beside the usual one (a value each, or empty). Without noise nobody is judged:
   /// the surface is that of the process.
   ///
-  /// A process whose noise is below a hundredth of its signal may be contradicted by true heights: its kernel is too
+  /// A process whose noise is below 3 % of its signal may be contradicted by true heights: its kernel is too
   /// smooth for the object. What deviates by much more than such a noise then looks like an outlier, and most taps are
-  /// taken for outliers. So the evidence is compared with that of a rough arm's noise. Where the heights are more
-  /// probable with that, the outliers are those that even a rough arm does not explain, and the surface is that of the
+  /// taken for outliers. So the evidence is compared with that of a rough arm's noise. Where the evidence is
+  /// strong for that, the outliers are those that even a rough arm does not explain, and the surface is that of the
   /// process, which follows the heights as closely as its own noise says.
   void judge(const Process& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
 

@@ -62,10 +62,11 @@ class Declared final : public Belief {
   const std::string& name_;
 };
 
-/// As Eigen's allFinite(), in a fraction of the time: 0 times what is finite is 0, times what is not it is NaN.
+/// As Eigen's allFinite(), in a fraction of the time: a sum is finite only if all are, or it overflows; 0 times what is
+/// finite is 0, times what is not it is NaN.
 template <class Values>
 bool are_finite(const Values& values) {
-  return (0.0 * values.array()).sum() == 0.0;
+  return std::isfinite(values.sum()) || (0.0 * values.array()).sum() == 0.0;
 }
 bool are_finite(double value) { return std::isfinite(value); }
 bool are_finite(const std::optional<double>& value) { return !value || std::isfinite(*value); }
