@@ -173,4 +173,6 @@ bool all_finite(const Eigen::VectorXd& values) {
   return (0.0 * values).sum() == 0.0;
 }
 
+double largest_value(const Eigen::VectorXd& values) { return values.maxCoeff<Eigen::PropagateNaN>(); }
+
 }  // namespace palpate

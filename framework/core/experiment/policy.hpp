@@ -45,4 +45,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
 /// As Eigen's allFinite(), in a fraction of the time.
 bool all_finite(const Eigen::VectorXd& values);
 
+/// The largest of at least one value; NaN where any of them is, which Eigen's maxCoeff() may pass over.
+double largest_value(const Eigen::VectorXd& values);
+
 }  // namespace palpate

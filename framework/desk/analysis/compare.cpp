@@ -67,11 +67,11 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
   Values names = columns;
   for (const std::string& key : others(sweep.keys, columns)) names.push_back(key);
   const auto keeps = [&](const Job& job, const Row* row) {
-    const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<std::string> {
-      if (contains(sweep.keys, name)) return value_of(sweep, job, name);
+    const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<Condition::Value> {
+      if (contains(sweep.keys, name)) return Condition::Value{value_of(sweep, job, name)};
       if (!contains(columns, name)) return std::nullopt;
       const Scalar* value = row != nullptr ? row->find(name) : nullptr;
-      return value != nullptr ? written_in(name, *value) : std::string();
+      return Condition::Value{value != nullptr ? written_in(name, *value) : std::string(), true};
     };
     return query.where == nullptr || query.where->holds(value_in_job, names);
   };

@@ -3,6 +3,7 @@
 
 #include "analysis/groups.hpp"
 #include "config/quantity.hpp"
+#include "config/relation.hpp"
 #include "config/yaml.hpp"
 
 #include <palpate/error.hpp>
@@ -109,7 +110,8 @@ double read_bound(const Pareto& pareto, const std::string& within) {
 const Setting* cheapest_within(const Pareto& pareto, double bound) {
   // They stand in the order of cost, and of error where costs are equal.
   const auto found = std::find_if(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& one) {
-    return one.complete() && one.error.interval && cautious_loss(pareto, one) <= loss(pareto, bound);
+    return one.complete() && one.error.interval &&
+           satisfies(cautious_loss(pareto, one), Relation::at_most, loss(pareto, bound));
   });
   return found != pareto.settings.end() ? &*found : nullptr;
 }
