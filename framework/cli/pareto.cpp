@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
 #include "analysis/pareto_report.hpp"
+#include "analysis/readable.hpp"
 #include "cli/commands.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
@@ -19,13 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string title_of(const std::string& name, const Pareto& pareto) {
-  std::vector<int> jobs;
-  for (const Setting& one : pareto.settings) jobs.push_back(one.counts.all());
-  const auto [fewest, largest] = std::minmax_element(jobs.begin(), jobs.end());
-  const auto [least, most] = std::pair(*fewest, *largest);
-  const std::string seeds = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
-  return fmt::format("{}: {} settings, {} seed{} each; bars: 95 % intervals of the means", name, pareto.settings.size(),
-                     seeds, most == 1 ? "" : "s");
+  return fmt::format("{}: {} settings, {} each; bars: 95 % intervals of the means", name, pareto.settings.size(),
+                     seeds_words(pareto));
 }
 
 /// The picture and the table beside results.csv.
@@ -57,8 +53,8 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
       pareto.more_is_better() ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
   fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
              fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
-  fmt::print("# {}; {}; {} seeds, of which this is the first.\n{}", error_words(pareto, chosen),
-             cost_words(pareto, chosen), chosen.counts.all(), to_yaml(config));
+  fmt::print("# {}; {}; {}, of which this is the first.\n{}", error_words(pareto, chosen), cost_words(pareto, chosen),
+             units_words(chosen.error.clusters, pareto.by_seed), to_yaml(config));
 }
 
 }  // namespace

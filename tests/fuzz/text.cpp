@@ -53,7 +53,11 @@ void words(const std::string& bytes) {
   });
   attempt([&] {
     const Condition condition(Tree::scalar(bytes, true));
-    condition.holds([](const std::string& name) { return std::optional<std::string>(name); }, {"taps", "seed"});
+    condition.holds(
+        [](const std::string& name) {
+          return std::optional(Condition::Value{name, name.size() % 2 == 0});
+        },
+        {"taps", "seed"});
   });
   attempt([&] {
     const std::optional<AnyQuantity> quantity = any_quantity(bytes);

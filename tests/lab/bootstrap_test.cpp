@@ -36,20 +36,20 @@ std::vector<double> skewed_values() {
 //   n = len(x); z = stats.t.ppf(.975, n - 1) * np.sqrt(n / (n - 1)); c = 1 - 2 * stats.norm.sf(z)
 //   stats.bootstrap((x,), np.mean, confidence_level=c, method='BCa', n_resamples=400000, random_state=1)
 TEST(BootstrapMean, OfFewSkewedValuesIsTheWidenedBcaIntervalOfScipy) {
-  const MeanEstimate mean = bootstrap_mean({0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7, 5.1, 7.9, 16.0});
+  const MeanEstimate mean = bootstrap_mean(each_alone({0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7, 5.1, 7.9, 16.0}));
   EXPECT_NEAR(mean.mean, 41.0 / 12.0, 1e-12);
   EXPECT_EQ(mean.count, 12U);
   expect_near(mean.interval, {1.5, 8.316666666666668});
 }
 
 TEST(BootstrapMean, OfManySkewedValuesIsTheWidenedBcaIntervalOfScipy) {
-  expect_near(bootstrap_mean(skewed_values()).interval, {0.1890972855115677, 0.264400389511537});
+  expect_near(bootstrap_mean(each_alone(skewed_values())).interval, {0.1890972855115677, 0.264400389511537});
 }
 
 TEST(BootstrapMean, OfNormalValuesIsStudentsInterval) {
   std::vector<double> values;
   for (int i = 1; i < 400; ++i) values.push_back(5.0 + 2.0 * normal_quantile(i / 400.0));
-  expect_near(bootstrap_mean(values).interval, *estimate_mean(values).interval);
+  expect_near(bootstrap_mean(each_alone(values)).interval, *estimate_mean(each_alone(values)).interval);
 }
 
 /// Whether as many samples of `count` values have 1 in their interval as `share` says, within three standard
@@ -62,7 +62,7 @@ void expect_covered(double share, std::size_t count, const Draw& draw) {
     Random random(static_cast<std::uint64_t>(sample), "coverage");
     std::vector<double> values(count);
     for (double& value : values) value = draw(random);
-    const auto interval = bootstrap_mean(values).interval;
+    const auto interval = bootstrap_mean(each_alone(values)).interval;
     hits += interval && interval->low <= 1.0 && 1.0 <= interval->high ? 1 : 0;
   }
   EXPECT_NEAR(hits, share * samples, 3.0 * std::sqrt(share * (1.0 - share) * samples));
@@ -77,7 +77,7 @@ TEST(BootstrapMean, CoversTheMeanOfTwentySkewedValuesNearlyAsOften) {
 }
 
 TEST(BootstrapMean, LeansWithTheValues) {
-  const MeanEstimate mean = bootstrap_mean({0, 0, 0, 0, 0, 0, 1, 1, 2, 9});
+  const MeanEstimate mean = bootstrap_mean(each_alone({0, 0, 0, 0, 0, 0, 1, 1, 2, 9}));
   ASSERT_TRUE(mean.interval);
   EXPECT_GT(mean.interval->high - mean.mean, 1.3 * (mean.mean - mean.interval->low));
   EXPECT_GE(mean.interval->low, 0.0) << "what was drawn from the values stays within them";
@@ -85,44 +85,98 @@ TEST(BootstrapMean, LeansWithTheValues) {
 
 TEST(BootstrapMean, DoesNotDependOnTheOrderOfTheValues) {
   std::vector<double> values = skewed_values();
-  const MeanInterval before = *bootstrap_mean(values).interval;
+  const MeanInterval before = *bootstrap_mean(each_alone(values)).interval;
   std::reverse(values.begin(), values.end());
   std::rotate(values.begin(), values.begin() + 37, values.end());
   // The mean is a sum, whose rounding knows the order.
-  EXPECT_NEAR(bootstrap_mean(values).interval->low, before.low, 1e-14);
-  EXPECT_NEAR(bootstrap_mean(values).interval->high, before.high, 1e-14);
+  EXPECT_NEAR(bootstrap_mean(each_alone(values)).interval->low, before.low, 1e-14);
+  EXPECT_NEAR(bootstrap_mean(each_alone(values)).interval->high, before.high, 1e-14);
 }
 
 TEST(BootstrapMean, OfTheNegativesIsTheNegativeInterval) {
   std::vector<double> values = skewed_values();
-  const MeanInterval before = *bootstrap_mean(values).interval;
+  const MeanInterval before = *bootstrap_mean(each_alone(values)).interval;
   for (double& value : values) value = -value;
-  const MeanInterval after = *bootstrap_mean(values).interval;
+  const MeanInterval after = *bootstrap_mean(each_alone(values)).interval;
   EXPECT_EQ(after.low, -before.high);
   EXPECT_EQ(after.high, -before.low);
 }
 
 TEST(BootstrapMean, MovesAndStretchesWithTheValues) {
   std::vector<double> values = skewed_values();
-  const MeanInterval before = *bootstrap_mean(values).interval;
+  const MeanInterval before = *bootstrap_mean(each_alone(values)).interval;
   for (double& value : values) value = 100.0 + 1000.0 * value;
-  const MeanInterval after = *bootstrap_mean(values).interval;
+  const MeanInterval after = *bootstrap_mean(each_alone(values)).interval;
   EXPECT_NEAR(after.low, 100.0 + 1000.0 * before.low, 1e-9);
   EXPECT_NEAR(after.high, 100.0 + 1000.0 * before.high, 1e-9);
 }
 
 TEST(BootstrapMean, OfFewOrEqualValuesHasNoInterval) {
-  EXPECT_FALSE(bootstrap_mean({}).interval);
-  EXPECT_FALSE(bootstrap_mean({1.0, 2.0, 3.0, 4.0}).interval);
-  EXPECT_TRUE(bootstrap_mean({1.0, 2.0, 3.0, 4.0, 5.0}).interval);
-  EXPECT_FALSE(bootstrap_mean({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}).interval);
-  EXPECT_EQ(bootstrap_mean({0.1, 0.1, 0.1, 0.1, 0.1, 0.1}).mean, 0.1);
+  EXPECT_FALSE(bootstrap_mean(each_alone({})).interval);
+  EXPECT_FALSE(bootstrap_mean(each_alone({1.0, 2.0, 3.0, 4.0})).interval);
+  EXPECT_TRUE(bootstrap_mean(each_alone({1.0, 2.0, 3.0, 4.0, 5.0})).interval);
+  EXPECT_FALSE(bootstrap_mean(each_alone({0.1, 0.1, 0.1, 0.1, 0.1, 0.1})).interval);
+  EXPECT_EQ(bootstrap_mean(each_alone({0.1, 0.1, 0.1, 0.1, 0.1, 0.1})).mean, 0.1);
+}
+
+/// Twelve clusters of one to three values.
+const Clusters kClusters{{0.3, 0.5},      {1.9}, {0.7, 0.2, 0.9}, {4.0, 3.1}, {0.1}, {2.2, 2.9},
+                         {0.6, 0.4, 1.1}, {1.3}, {5.0, 4.4, 6.1}, {0.8, 0.9}, {1.7}, {0.2, 0.3}};
+
+// From the values as lists of lists, in Python:
+//   n = 12; m = mean of all; d = [sum(c) - m * len(c) for c in clusters]; z = 2.200985 * sqrt(12 / 11)
+//   300000 times: draw 12 clusters with replacement, take the mean of all their values; BCa with acceleration
+//   sum(d^3) / (6 sum(d^2)^1.5)
+TEST(BootstrapMean, OfClustersOfSeveralSizesIsTheWidenedBcaIntervalOfAnOracle) {
+  const MeanEstimate mean = bootstrap_mean(kClusters);
+  EXPECT_EQ(mean.count, 23U);
+  EXPECT_EQ(mean.clusters, 12U);
+  EXPECT_NEAR(mean.mean, 1.7217391304347829, 1e-12);
+  expect_near(mean.interval, {0.8272727272727274, 3.53623423284434});
+}
+
+TEST(BootstrapMean, OfClustersIsTheSameInAnyOrderAndItsNegativesTheNegative) {
+  const MeanInterval before = *bootstrap_mean(kClusters).interval;
+  Clusters turned(kClusters.rbegin(), kClusters.rend());
+  EXPECT_NEAR(bootstrap_mean(turned).interval->low, before.low, 1e-12);
+  EXPECT_NEAR(bootstrap_mean(turned).interval->high, before.high, 1e-12);
+  for (auto& cluster : turned) {
+    for (double& value : cluster) value = -value;
+  }
+  EXPECT_NEAR(bootstrap_mean(turned).interval->low, -before.high, 1e-12);
+  EXPECT_NEAR(bootstrap_mean(turned).interval->high, -before.low, 1e-12);
+}
+
+TEST(BootstrapMean, OfClustersThatRepeatTheirValuesIsThatOfTheValues) {
+  const std::vector<double> values{0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7, 5.1, 7.9, 16.0};
+  const MeanInterval once = *bootstrap_mean(each_alone(values)).interval;
+  Clusters thrice;
+  for (const double value : values) thrice.push_back({value, value, value});
+  const MeanEstimate mean = bootstrap_mean(thrice);
+  EXPECT_EQ(mean.count, 36U);
+  EXPECT_NEAR(mean.interval->low, once.low, 1e-12);
+  EXPECT_NEAR(mean.interval->high, once.high, 1e-12);
+}
+
+TEST(BootstrapMean, OfClustersWithEqualMeansHasNoInterval) {
+  EXPECT_FALSE(bootstrap_mean({{0.1, 0.3}, {0.1, 0.3}, {0.1, 0.3}, {0.1, 0.3}, {0.1, 0.3}, {0.1, 0.3}}).interval);
+  EXPECT_FALSE(bootstrap_mean({{0.1}, {0.1, 0.1}, {0.1, 0.1, 0.1}, {0.1}, {0.1}, {0.1}}).interval);
+}
+
+TEST(MeanOfSample, IsStudentsOfFewClustersAndTheBootstrapsOfMore) {
+  std::vector<double> values{0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7};
+  EXPECT_EQ(mean_of_sample(each_alone(values)).interval->high, estimate_mean(each_alone(values)).interval->high);
+  values.push_back(5.1);
+  EXPECT_EQ(mean_of_sample(each_alone(values)).interval->high, bootstrap_mean(each_alone(values)).interval->high);
+  EXPECT_FALSE(mean_of_sample(each_alone({0.1, 0.3, 0.4, 0.9})).interval);
+  EXPECT_FALSE(mean_of_sample(each_alone({0.1, 0.1, 0.1, 0.1, 0.1, 0.1})).interval);
+  EXPECT_FALSE(mean_of_sample({}).interval);
 }
 
 TEST(BootstrapMean, OfOneValueThatDiffersStaysWithinTheValues) {
   std::vector<double> values(1000, 0.0);
   values.back() = 1.0;
-  const MeanInterval interval = *bootstrap_mean(values).interval;
+  const MeanInterval interval = *bootstrap_mean(each_alone(values)).interval;
   EXPECT_GE(interval.low, 0.0);
   EXPECT_GT(interval.high, 0.002);
   EXPECT_LT(interval.high, 0.01);
@@ -144,7 +198,7 @@ TEST(BootstrapRatio, OfPairsIsTheWidenedBcaIntervalOfAnOracle) {
 TEST(BootstrapRatio, ToOnesIsTheIntervalOfTheMean) {
   const std::vector<double> values = skewed_values();
   const auto ratio = bootstrap_ratio(values, std::vector<double>(values.size(), 1.0));
-  const MeanEstimate mean = bootstrap_mean(values);
+  const MeanEstimate mean = bootstrap_mean(each_alone(values));
   ASSERT_TRUE(ratio);
   EXPECT_NEAR(ratio->ratio, mean.mean, 1e-12);
   expect_near(ratio->interval, *mean.interval);

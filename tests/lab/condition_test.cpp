@@ -26,9 +26,10 @@ const std::map<std::string, std::string> kValues{
 bool holds(const std::string& text) {
   std::vector<std::string> known;
   for (const auto& one : kValues) known.push_back(one.first);
-  const auto value_of = [](const std::string& name) -> std::optional<std::string> {
+  const auto value_of = [](const std::string& name) -> std::optional<Condition::Value> {
+    if (name == "rmse_m" || name == "nlpd") return Condition::Value{name == "rmse_m" ? "" : "4.5", true};
     const auto found = kValues.find(name);
-    return found != kValues.end() ? std::optional(found->second) : std::nullopt;
+    return found != kValues.end() ? std::optional(Condition::Value{found->second}) : std::nullopt;
   };
   return Condition(text_at(text)).holds(value_of, known);
 }
@@ -99,6 +100,37 @@ TEST(Condition, DoesNotHoldOfANameWithoutValue) {
     EXPECT_FALSE(holds(std::string("taps ") + sign + " acquisition.beta"));
   }
   EXPECT_TRUE(holds("not acquisition.beta == 2"));
+}
+
+TEST(Condition, DoesNotHoldOfAResultThatIsMissingNorDoesItsNegation) {
+  for (const char* sign : {"==", "!=", "<", "<=", ">", ">="}) {
+    const std::string comparison = std::string("rmse_m ") + sign + " 2 mm";
+    none_holds({comparison, "not " + comparison, "not not " + comparison, "not (" + comparison + " and taps == 17)",
+                "nlpd == 4.5 and not (" + comparison + " or taps == 3)"});
+    // What it says does not matter there.
+    all_hold({comparison + " or taps == 17", "not (" + comparison + " and taps == 3)",
+              "not (taps == 3 and " + comparison + ")"});
+  }
+  none_holds({"not nlpd == rmse_m", "not rmse_m == nlpd"});
+  all_hold({"nlpd == 4.5", "not nlpd == 4"});
+}
+
+TEST(Condition, JoinsWhatIsUndecidedByKleenesTruthTables) {
+  // -1 for undecided, against the textbook's definition by all completions: a formula is decided where both agree.
+  const auto comparison = [](int truth) {
+    return std::string(truth < 0 ? "rmse_m > 0 m" : truth == 1 ? "seed == 3" : "seed == 4");
+  };
+  for (int a = -1; a <= 1; ++a) {
+    for (int b = -1; b <= 1; ++b) {
+      const int all = a == 0 || b == 0 ? 0 : a < 0 || b < 0 ? -1 : 1;
+      const int any = a == 1 || b == 1 ? 1 : a < 0 || b < 0 ? -1 : 0;
+      const std::string x = comparison(a), y = comparison(b);
+      EXPECT_EQ(holds(x + " and " + y), all == 1) << a << b;
+      EXPECT_EQ(holds("not (" + x + " and " + y + ")"), all == 0) << a << b;
+      EXPECT_EQ(holds(x + " or " + y), any == 1) << a << b;
+      EXPECT_EQ(holds("not (" + x + " or " + y + ")"), any == 0) << a << b;
+    }
+  }
 }
 
 TEST(Condition, LooksNoFurtherThanItNeedsTo) {

@@ -24,9 +24,9 @@ SweepDescription described(const std::string& sweep, const std::vector<std::stri
 /// "a=1 b=x; a=1 b=y; ", of the combinations that are wanted.
 std::string shown(const SweepDescription& description, const std::map<std::string, std::string>& base = {}) {
   std::string out;
-  const auto value_of = [&](const std::string& name) -> std::optional<std::string> {
+  const auto value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
     const auto found = base.find(name);
-    return found != base.end() ? std::optional(found->second) : std::nullopt;
+    return found != base.end() ? std::optional(Condition::Value{found->second}) : std::nullopt;
   };
   for (const Combination& combination : description.combinations()) {
     if (!description.wanted(combination, value_of)) continue;

@@ -161,6 +161,31 @@ TEST(Pareto, NeverNamesASettingWithAJobThatFailedIsMissingOrHasNoValue) {
     EXPECT_THAT(table, HasSubstr(note));
 }
 
+TEST(Pareto, LeavesOutAValueThatIsNotFiniteAndSaysSo) {
+  for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const Pareto pareto =
+        MadeUp({{"a", "1", 1, value}, {"a", "2", 1, 0.001}, {"b", "1", 9, 0.01}, {"b", "2", 9, 0.02}}).pareto();
+    EXPECT_EQ(setting(pareto, "acquisition=a").front, 0);
+    EXPECT_EQ(setting(pareto, "acquisition=b").front, 1);
+    EXPECT_EQ(cheapest_within(pareto, 1.0), &setting(pareto, "acquisition=b"));
+    EXPECT_THAT(pareto_table(pareto), HasSubstr("1 of 2 without a value"));
+  }
+  const Scalar text{std::string("nan")};
+  EXPECT_FALSE(number_of(&text).value) << "a text may say it, too";
+}
+
+TEST(Pareto, SaysHowManySeedsItsMeansAreOver) {
+  const Pareto two = MadeUp({{"a", "1", 5, 0.010}, {"a", "2", 5, 0.012}, {"b", "1", 5, 0.02}}).pareto();
+  EXPECT_THAT(pareto_table(two), HasSubstr("mean over 1 to 2 seeds, with its 95 % interval (Student's t)"));
+  EXPECT_THAT(pareto_table(two), HasSubstr("only 1 seed: too few for an interval; run 10 or more\n"));
+  const Pareto none = MadeUp({{"a", "1", 5, 0.010}, {"b", "1", 5, 0.02}}).pareto();
+  EXPECT_THAT(pareto_table(none), HasSubstr("the seed is not swept: mean over jobs"));
+  std::vector<MadeUpJob> many;
+  for (int seed = 0; seed < 12; ++seed) many.push_back({"a", std::to_string(seed), 5, 0.01 + 0.001 * seed});
+  EXPECT_THAT(pareto_table(MadeUp(many).pareto()), Not(HasSubstr("\nonly")));
+  EXPECT_EQ(pareto_rows(MadeUp(many).pareto()).front().number("seeds"), 12.0);
+}
+
 TEST(Within, AsksForTheUpperEndOfTheInterval) {
   // Of 10 and 12 mm: mean 11 mm, half width 12.706 * 1 mm.
   const Pareto pareto = MadeUp({{"a", "1", 5, 0.010}, {"a", "2", 5, 0.012}}).pareto();

@@ -31,7 +31,7 @@ TEST(StudentFactor, OfTwoDegreesHasAClosedForm) {
 
 TEST(MeanEstimate, OfFourNumbersIsWhatOneComputesByHand) {
   // The squares of the differences from 3 add up to 4 + 1 + 0 + 9 = 14; the standard error is sqrt(14 / 3 / 4).
-  const MeanEstimate estimate = estimate_mean({1.0, 2.0, 3.0, 6.0});
+  const MeanEstimate estimate = estimate_mean(each_alone({1.0, 2.0, 3.0, 6.0}));
   EXPECT_EQ(estimate.count, 4U);
   EXPECT_DOUBLE_EQ(estimate.mean, 3.0);
   ASSERT_TRUE(estimate.interval);
@@ -40,19 +40,19 @@ TEST(MeanEstimate, OfFourNumbersIsWhatOneComputesByHand) {
 }
 
 TEST(MeanEstimate, OfOneValueHasNoInterval) {
-  const MeanEstimate estimate = estimate_mean({7.0});
+  const MeanEstimate estimate = estimate_mean(each_alone({7.0}));
   EXPECT_EQ(estimate.mean, 7.0);
   EXPECT_FALSE(estimate.interval);
 }
 
 TEST(MeanEstimate, OfNothingHasNeitherCountNorInterval) {
-  EXPECT_EQ(estimate_mean({}).count, 0U);
-  EXPECT_FALSE(estimate_mean({}).interval);
+  EXPECT_EQ(estimate_mean(each_alone({})).count, 0U);
+  EXPECT_FALSE(estimate_mean(each_alone({})).interval);
 }
 
 TEST(MeanEstimate, OfEqualValuesHasAnIntervalWithoutWidth) {
   // Three times 0.1 / 3 is not 0.1: the interval would leave its own value out.
-  const MeanEstimate estimate = estimate_mean({0.1, 0.1, 0.1});
+  const MeanEstimate estimate = estimate_mean(each_alone({0.1, 0.1, 0.1}));
   ASSERT_TRUE(estimate.interval);
   EXPECT_EQ(estimate.mean, 0.1);
   EXPECT_EQ(estimate.interval->low, 0.1);
@@ -60,11 +60,11 @@ TEST(MeanEstimate, OfEqualValuesHasAnIntervalWithoutWidth) {
 }
 
 TEST(MeanEstimate, OfLargeNumbersDoesNotOverflow) {
-  EXPECT_NEAR(estimate_mean({1.5e308, 1.6e308, 1.7e308}).mean / 1.6e308, 1.0, 1e-12);
+  EXPECT_NEAR(estimate_mean(each_alone({1.5e308, 1.6e308, 1.7e308})).mean / 1.6e308, 1.0, 1e-12);
 }
 
 TEST(MeanEstimate, OfCloseNumbersFarFromZeroKeepsItsSpread) {
-  const MeanEstimate estimate = estimate_mean({1e9 - 1.0, 1e9, 1e9 + 1.0});
+  const MeanEstimate estimate = estimate_mean(each_alone({1e9 - 1.0, 1e9, 1e9 + 1.0}));
   EXPECT_NEAR(estimate.interval->high - estimate.mean, 4.302652730 / std::sqrt(3.0), 1e-6);
 }
 
@@ -90,6 +90,24 @@ TEST(Quantile, IsFiniteWhereNoInfiniteValueHasAPartInIt) {
   EXPECT_EQ(quantile({-kInfinity, 1.0, 2.0}, 0.5), 1.0);
   EXPECT_EQ(quantile({-kInfinity, 1.0}, 0.5), -kInfinity);
   EXPECT_EQ(quantile({kInfinity, kInfinity}, 0.5), kInfinity);
+}
+
+// By hand: clusters {1, 3}, {2}, {5, 6, 7}; mean 24 / 6 = 4; sums less the mean's share -4, -2, 6;
+// variance 3 / 2 (16 + 4 + 36) / 6^2 = 7 / 3; t of two degrees of freedom 4.30265.
+TEST(EstimateMean, OfClustersHasTheStandardErrorOfARatioEstimator) {
+  const MeanEstimate estimate = estimate_mean({{1.0, 3.0}, {2.0}, {5.0, 6.0, 7.0}});
+  EXPECT_EQ(estimate.count, 6U);
+  EXPECT_EQ(estimate.clusters, 3U);
+  EXPECT_NEAR(estimate.mean, 4.0, 1e-12);
+  EXPECT_NEAR(estimate.interval->high - 4.0, 4.302652729749464 * std::sqrt(7.0 / 3.0), 1e-9);
+}
+
+TEST(EstimateMean, OfClustersOfOneSizeIsThatOfTheirMeans) {
+  const MeanEstimate clusters = estimate_mean({{1.0, 3.0}, {2.0, 8.0}, {5.0, 6.0}});
+  const MeanEstimate means = estimate_mean(each_alone({2.0, 5.0, 5.5}));
+  EXPECT_NEAR(clusters.mean, means.mean, 1e-12);
+  EXPECT_NEAR(clusters.interval->low, means.interval->low, 1e-12);
+  EXPECT_FALSE(estimate_mean({{1.0, 2.0, 3.0}}).interval) << "one cluster says nothing of others";
 }
 
 }  // namespace

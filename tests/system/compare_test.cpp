@@ -26,20 +26,26 @@ TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   const Ended ended = compare(directory, "--by acquisition --metric on_surface_taps");
   EXPECT_THAT(ended.out, StartsWith("on_surface_taps by acquisition; more is better\nacquisition  jobs "));
   EXPECT_THAT(ended.out, HasSubstr("\nweighted - uncertainty     12 "));
-  EXPECT_THAT(ended.out, HasSubstr("\npair: two jobs that are equal in taps, seed.\nPairs that share "));
+  EXPECT_THAT(ended.out, HasSubstr("\nThe seed is the unit: all jobs of a seed are drawn together, "
+                                   "and count as one.\npair: two jobs that are equal in taps, seed.\n"));
+  EXPECT_THAT(ended.out, HasSubstr("\nonly 6 seeds: "));
   const fs::path file = directory / "compare_acquisition_on_surface_taps.csv";
   EXPECT_EQ(ended.err, "table: " + file.string() + "\n");
 
-  // The same from results.csv, job by job.
+  // The same from results.csv, job by job and seed by seed.
   std::map<std::string, std::map<std::string, double>> taps;
   for (const Cells& job : csv_rows(text_of(directory / "results.csv")))
     taps[job.at("acquisition")][job.at("taps") + "/" + job.at("seed")] = std::stod(job.at("on_surface_taps"));
+  std::map<std::string, double> of_seed;
   double sum = 0.0;
   int more = 0;
   int less = 0;
   for (const auto& [pairing, value] : taps.at("weighted")) {
     const double difference = value - taps.at("uncertainty").at(pairing);
     sum += difference;
+    of_seed[pairing.substr(pairing.find('/'))] += difference;
+  }
+  for (const auto& [seed, difference] : of_seed) {
     more += difference > 0 ? 1 : 0;
     less += difference < 0 ? 1 : 0;
   }
@@ -50,6 +56,7 @@ TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   EXPECT_EQ(pair.at("group"), "weighted");
   EXPECT_EQ(pair.at("minus"), "uncertainty");
   EXPECT_EQ(pair.at("n"), "12");
+  EXPECT_EQ(pair.at("seeds"), "6");
   EXPECT_NEAR(std::stod(pair.at("mean")), sum / 12.0, 1e-12);
   EXPECT_EQ(pair.at("higher"), std::to_string(more));
   EXPECT_EQ(pair.at("lower"), std::to_string(less));

@@ -37,7 +37,8 @@ TEST_F(Pareto, PrintsATableAndLeavesAPictureAndTheTableAsCsv) {
   const fs::path directory = settings();
   const Ended ended = pareto(directory);
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(lines(ended.out), 1 + 4 + 1);
+  EXPECT_EQ(lines(ended.out), 1 + 4 + 2);
+  EXPECT_THAT(ended.out, HasSubstr("\nonly 4 seeds: an interval of so few (Student's t) misses the true mean"));
   EXPECT_THAT(ended.out, AllOf(StartsWith("front  setting "), HasSubstr("    1  acquisition="),
                                HasSubstr("robot_seconds [s]"), HasSubstr("rmse_m [mm]")));
   EXPECT_THAT(ended.err, StartsWith("picture: "));
@@ -61,6 +62,7 @@ TEST_F(Pareto, PrintsATableAndLeavesAPictureAndTheTableAsCsv) {
       ++jobs;
     }
     EXPECT_EQ(setting.at("jobs"), std::to_string(jobs));
+    EXPECT_EQ(setting.at("seeds"), std::to_string(jobs));
     EXPECT_NEAR(std::stod(setting.at("rmse_m.mean")), sum / jobs, 1e-15);
     EXPECT_LT(std::stod(setting.at("rmse_m.low_95")), std::stod(setting.at("rmse_m.mean")));
   }

@@ -10,7 +10,6 @@
 namespace palpate::test {
 namespace {
 
-using Comparison = Expectation::Comparison;
 using Statistic = Expectation::Statistic;
 
 std::vector<Expectation> read(const std::string& expect) {
@@ -26,7 +25,7 @@ TEST(Expectation, ComparesAFieldWithAQuantity) {
   const Expectation one = read("{rmse_m: <= 2 cm}").at(0);
   EXPECT_EQ(one.field, "rmse_m");
   EXPECT_EQ(one.statistic, Statistic::each);
-  EXPECT_EQ(one.comparison, Comparison::at_most);
+  EXPECT_EQ(one.comparison, Relation::at_most);
   EXPECT_EQ(one.bound, 0.02);
   EXPECT_EQ(one.unit, "cm");
   EXPECT_EQ(one.wanted, "<= 2 cm");
@@ -34,9 +33,9 @@ TEST(Expectation, ComparesAFieldWithAQuantity) {
 }
 
 TEST(Expectation, KnowsFiveComparisonsWithAndWithoutBlanks) {
-  const std::pair<const char*, Comparison> signs[] = {{"'>= 9'", Comparison::at_least}, {"'>=9'", Comparison::at_least},
-                                                      {"'>9'", Comparison::above},      {"<=9", Comparison::at_most},
-                                                      {"< 9", Comparison::below},       {"== 9", Comparison::equal}};
+  const std::pair<const char*, Relation> signs[] = {{"'>= 9'", Relation::at_least}, {"'>=9'", Relation::at_least},
+                                                    {"'>9'", Relation::above},      {"<=9", Relation::at_most},
+                                                    {"< 9", Relation::below},       {"== 9", Relation::equal}};
   for (const auto& [text, comparison] : signs) {
     const Expectation one = read(std::string("{taps: ") + text + "}").at(0);
     EXPECT_EQ(one.comparison, comparison) << text;

@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include <limits>
 #include <random>
 
 namespace palpate::test {
@@ -104,6 +105,9 @@ TEST(GoodEnough, WantsLittleToBeLeftWhereThatIsKnownAndThenLessOfAMargin) {
   EXPECT_FALSE(good_enough({0.0101 / kCaution, 0.0}, 0.01));
   EXPECT_FALSE(good_enough({0.01 / kCaution}, 0.01)) << "nobody knows what is left";
   EXPECT_FALSE(good_enough({std::nullopt, 0.0}, 1.0));
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(good_enough({-infinity, 0.0}, 1.0)) << "what is not finite satisfies no condition";
+  EXPECT_FALSE(good_enough({1e-3, -infinity}, 1.0));
 }
 
 TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {

@@ -64,6 +64,35 @@ TEST(Judge, SaysWhyThereIsNoValue) {
   EXPECT_EQ(judged("{first_hit_tap: <= 3}", {run(0, 1, {})}), (Texts{"no no value: the object was not found"}));
 }
 
+TEST(Judge, AValueThatIsNotFiniteFulfilsNothing) {
+  for (const double value : {std::nan(""), -std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    for (const char* bound : {"<= 2 cm", "< 2 cm", ">= 2 cm", "> 2 cm", "== 2 cm", "<= 1e300 m", ">= -1e300 m"}) {
+      const std::string quoted = "'" + std::string(bound) + "'";
+      EXPECT_EQ(judged("{rmse_m: " + quoted + "}", {run(0, 1, value)}), (Texts{"no no value: rmse_m is not finite"}))
+          << value << bound;
+      for (const char* statistic : {"mean", "max", "min", "median"}) {
+        const std::string expect = "{" + std::string(statistic) + "(rmse_m): " + quoted + "}";
+        EXPECT_EQ(judged(expect, {run(0, 1, value)}), (Texts{"no no value: rmse_m is not finite"})) << expect;
+      }
+    }
+  }
+}
+
+TEST(Judge, ARunWhoseValueIsNotFiniteCountsAsTheWorst) {
+  const std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, std::nan("")), run(2, 9, 0.03)};
+  const std::string why = ": 1 of 3 runs have none and count as the worst (job 1: rmse_m is not finite)";
+  EXPECT_EQ(judged("{mean(rmse_m): <= 1 m, max(rmse_m): <= 1 m, median(rmse_m): <= 2 cm}", runs),
+            (Texts{"no no value" + why, "no no value" + why, "no 3 cm" + why}));
+  EXPECT_EQ(judged("{median(rmse_m): <= 3 cm, min(rmse_m): == 1 cm}", runs), (Texts{"yes 3 cm", "no no value" + why}));
+  EXPECT_EQ(judged("{rmse_m: <= 1 m}", runs), (Texts{"no no value: rmse_m is not finite in job 1"}));
+}
+
+TEST(Judge, SaysOverHowManySeedsAStatisticIs) {
+  std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, 0.02), run(2, 9, 0.03), run(3, 9, 0.03)};
+  for (std::size_t i = 0; i < 4; ++i) runs[i].seed = i % 2 == 0 ? "7" : "8";
+  EXPECT_EQ(judged("{mean(on_surface_taps): '>= 7'}", runs), (Texts{"no 6 over 2 seeds"}));
+}
+
 TEST(Judge, AFieldAloneHasToHoldInEveryRun) {
   const std::vector<RunOutcome> runs{run(0, 11, 0.01), run(1, 3, 0.01), run(2, 5, 0.01), failed(3)};
   EXPECT_EQ(judged("{on_surface_taps: '>= 3'}", {runs[0], runs[1]}), (Texts{"yes "}));

@@ -3,6 +3,7 @@
 // both processes, choose the next tap by the exploration function.
 #include "experiment/experiment.hpp"
 
+#include "config/relation.hpp"
 #include "experiment/tap_belief.hpp"
 
 #include <palpate/error.hpp>
@@ -62,7 +63,7 @@ std::optional<std::string> Experiment::stop_reason(std::int64_t budget, Source s
   if (stop_wished()) return kStoppedByUser;
   if (counts().taps >= budget) return "tap budget";
   const StopOptions& stop = options_.stop;
-  if (stop.robot_time && counts().robot_seconds >= *stop.robot_time) return "robot_time";
+  if (stop.robot_time && satisfies(counts().robot_seconds, Relation::at_least, *stop.robot_time)) return "robot_time";
   return stop_rule(source);
 }
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/forecast.hpp"
 
+#include "config/relation.hpp"
+
 #include <cmath>
 
 namespace palpate {
 
 bool good_enough(const Forecast& forecast, double bound) {
   const double caution = forecast.left ? kCaution : kMoreCaution;
-  return forecast.rmse && caution * *forecast.rmse <= bound && forecast.left.value_or(0.0) <= kMostLeft;
+  return forecast.rmse && satisfies(caution * *forecast.rmse, Relation::at_most, bound) &&
+         (!forecast.left || satisfies(forecast.left, Relation::at_most, kMostLeft));
 }
 
 double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd& mean,

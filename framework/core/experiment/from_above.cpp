@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/from_above.hpp"
 
+#include "config/relation.hpp"
+#include "experiment/policy.hpp"
+
 #include <cmath>
 #include <utility>
 
@@ -62,10 +65,9 @@ std::optional<std::string> FromAbove::stop_rule(Source source) {
   if (chooser_.starting(belief_)) return std::nullopt;
   belief_.ask(reads_for(source));
   const StopOptions& stop = options_.stop;
-  if (stop.max_standard_deviation &&
-      std::sqrt(belief_.all_taps_variance().maxCoeff()) <= *stop.max_standard_deviation) {
+  const auto deviation = [&] { return std::sqrt(largest_value(belief_.all_taps_variance())); };
+  if (stop.max_standard_deviation && satisfies(deviation(), Relation::at_most, *stop.max_standard_deviation))
     return "max_standard_deviation";
-  }
   if (stop.expected_rmse && good_enough(*watch_.forecast(belief_), *stop.expected_rmse)) return "expected_rmse";
   return std::nullopt;
 }

@@ -184,4 +184,6 @@ void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
               Error::Kind::run);
 }
 
+double largest_value(const Eigen::VectorXd& values) { return values.maxCoeff<Eigen::PropagateNaN>(); }
+
 }  // namespace palpate

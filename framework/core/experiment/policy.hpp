@@ -48,4 +48,7 @@ bool all_finite(const Eigen::VectorXd& values);
 /// Throws Error (the run fails) unless all values of a map, which `name` names, are finite; `taps` have been made.
 void require_finite(const Eigen::VectorXd& map, const char* name, int taps);
 
+/// The largest of at least one value; NaN where any of them is, which Eigen's maxCoeff() may pass over.
+double largest_value(const Eigen::VectorXd& values);
+
 }  // namespace palpate

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/watch.hpp"
 
+#include "experiment/policy.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -78,7 +80,7 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
   if (known.has(Quantity::uncertainty)) {
     tap.uncertainty = belief.uncertainty()(tap.candidate);
     const Eigen::VectorXd& variance = belief.all_taps_variance();
-    tap.max_standard_deviation = std::sqrt(variance.maxCoeff());
+    tap.max_standard_deviation = std::sqrt(largest_value(variance));
     tap.mean_standard_deviation = variance.cwiseSqrt().mean();
     tap.height_process = state_of(belief.height_process());
   }

@@ -18,7 +18,6 @@ namespace palpate {
 namespace {
 
 using Statistic = Expectation::Statistic;
-using Comparison = Expectation::Comparison;
 
 struct StatisticName {
   const char* name;
@@ -33,8 +32,9 @@ constexpr std::array kStatistics{
     StatisticName{"p90", Statistic::quantile, 0.9},  StatisticName{"p95", Statistic::quantile, 0.95},
 };
 
-/// In the order of Comparison, in which none begins one after it.
-constexpr std::array<std::string_view, 5> kComparisons{">=", ">", "<=", "<", "=="};
+/// None begins one after it.
+constexpr std::array kComparisons{Relation::at_least, Relation::above, Relation::at_most, Relation::below,
+                                  Relation::equal};
 
 /// One key with its value, once nested maps are undone.
 struct Clause {
@@ -136,16 +136,17 @@ Expectation read_comparison(const RecordField& field, Expectation out, const Tre
   if (value.text.empty()) refuse("has no value (one that begins with > needs quotes)");
   const std::string& written = value.text;
   const auto sign = std::find_if(kComparisons.begin(), kComparisons.end(),
-                                 [&](std::string_view one) { return boost::starts_with(written, one); });
+                                 [&](Relation one) { return boost::starts_with(written, sign_of(one)); });
   Tree rest = value;
   if (sign != kComparisons.end()) {
-    rest.text = boost::trim_left_copy(written.substr(sign->size()));
-    out.comparison = static_cast<Comparison>(sign - kComparisons.begin());
+    rest.text = boost::trim_left_copy(written.substr(sign_of(*sign).size()));
+    out.comparison = *sign;
   }
-  out.wanted = fmt::format("{} {}", kComparisons[static_cast<std::size_t>(out.comparison)], rest.text);
+  out.wanted = fmt::format("{} {}", sign_of(out.comparison), rest.text);
   const bool is_flag = field.type == RecordField::Type::flag && out.statistic == Statistic::each;
   if (is_flag || field.type == RecordField::Type::text) {
-    if (out.comparison != Comparison::equal) refuse(fmt::format("'{}' does not compare with {}", written, *sign));
+    if (out.comparison != Relation::equal)
+      refuse(fmt::format("'{}' does not compare with {}", written, sign_of(*sign)));
     if (is_flag && rest.text != "true" && rest.text != "false")
       refuse(fmt::format("'{}' is not a truth value", rest.text));
     out.bound = rest.text == "true" ? 1.0 : 0.0;

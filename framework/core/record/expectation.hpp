@@ -4,6 +4,7 @@
 // record/gate.hpp judges runs by it.
 #pragma once
 
+#include "config/relation.hpp"
 #include "config/resolve.hpp"
 #include "config/tree.hpp"
 
@@ -19,18 +20,17 @@ inline constexpr const char* kFailedRuns = "failed_runs";
 /// One line of `expect:`: a field of the summary, or a statistic of it over the runs, compared with a value.
 struct Expectation {
   enum class Statistic { each, mean, quantile };  ///< `each`: every single run has to fulfil it
-  enum class Comparison { at_least, above, at_most, below, equal };
 
   std::string key;  ///< as written: "found", "median(on_surface_taps)"
   std::string field;
   Statistic statistic = Statistic::each;
-  double share = 0.5;  ///< of a quantile: 0 for min, 0.5 for median, 1 for max
-  Comparison comparison = Comparison::equal;
-  double bound = 0.0;  ///< SI; of a flag 1 or 0
-  std::string text;    ///< of a field that is text: what it has to be
-  std::string unit;    ///< in which the bound was written, "" for none
-  std::string wanted;  ///< ">= 12", as messages quote it
-  std::string place;   ///< "file:line:column" or "command line"
+  double share = 0.5;                     ///< of a quantile: 0 for min, 0.5 for median, 1 for max
+  Relation comparison = Relation::equal;  ///< never `unequal`
+  double bound = 0.0;                     ///< SI; of a flag 1 or 0
+  std::string text;                       ///< of a field that is text: what it has to be
+  std::string unit;                       ///< in which the bound was written, "" for none
+  std::string wanted;                     ///< ">= 12", as messages quote it
+  std::string place;                      ///< "file:line:column" or "command line"
 };
 
 /// Reads the map behind `expect:` (null for none): KEY: COMPARISON, or a list of comparisons which must all hold. A key

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -19,18 +20,12 @@ namespace palpate {
 namespace {
 
 using Statistic = Expectation::Statistic;
-using Comparison = Expectation::Comparison;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool wants_more(Comparison comparison) { return comparison == Comparison::at_least || comparison == Comparison::above; }
+bool wants_more(Relation relation) { return relation == Relation::at_least || relation == Relation::above; }
 
-bool holds(Comparison comparison, double value, double bound) {
-  if (value == bound) return comparison != Comparison::above && comparison != Comparison::below;
-  return comparison != Comparison::equal && (value > bound) == wants_more(comparison);
-}
-
-/// Number or flag at `field` of the summary; none when it is null or absent.
+/// Number or flag at `field` of the summary; none when it is null, absent or not finite.
 std::optional<double> number_at(const RunOutcome& run, const std::string& field) {
   return run.summary && run.failure.empty() ? run.summary->number(field) : std::nullopt;
 }
@@ -51,6 +46,8 @@ std::string shown(const Expectation& one, double value) {
 /// Why a run has no value.
 std::string absence(const Expectation& one, const RunOutcome& run) {
   if (!run.failure.empty()) return "the run failed";
+  const Scalar* value = run.summary ? run.summary->find(one.field) : nullptr;
+  if (value != nullptr && std::holds_alternative<double>(*value)) return fmt::format("{} is not finite", one.field);
   const RecordField* field = find_summary_field(one.field);
   const std::string reason = field != nullptr ? field->when_null : std::string();
   return reason.empty() ? fmt::format("the summary has no {}", one.field) : reason;
@@ -66,7 +63,7 @@ Verdict judge_run(const Expectation& one, const RunOutcome& run) {
   }
   const std::optional<double> value = number_at(run, one.field);
   if (!value) return {one, false, "no value: " + absence(one, run)};
-  return {one, holds(one.comparison, *value, one.bound), shown(one, *value)};
+  return {one, satisfies(value, one.comparison, one.bound), shown(one, *value)};
 }
 
 /// Every run on its own: names the first that misses, and how many do.
@@ -91,6 +88,13 @@ double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
   return mean_of(sorted);
 }
 
+/// " over 20 seeds" where several are known.
+std::string seeds_words(const std::vector<RunOutcome>& runs) {
+  std::set<std::string> seeds;
+  for (const RunOutcome& run : runs) seeds.insert(run.seed);
+  return seeds.size() > 1 ? fmt::format(" over {} seeds", seeds.size()) : std::string();
+}
+
 /// A statistic over all runs, those without a value at the worst end. An equality has to hold at either.
 Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& runs) {
   std::vector<double> values;
@@ -104,15 +108,15 @@ Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& r
   }
   if (without.size() == 1 && runs.size() == 1) return {one, false, "no value: " + absence(one, *without.front())};
   std::vector<double> worst{wants_more(one.comparison) ? -kInfinity : kInfinity};
-  if (one.comparison == Comparison::equal) worst.push_back(-kInfinity);
+  if (one.comparison == Relation::equal) worst.push_back(-kInfinity);
   Verdict out{one, true, {}};
   for (const double end : worst) {
     std::vector<double> sorted = values;
     sorted.insert(sorted.end(), without.size(), end);
     std::sort(sorted.begin(), sorted.end());
     const double value = statistic_of(one, sorted);
-    out.holds = out.holds && holds(one.comparison, value, one.bound);
-    out.got = std::isfinite(value) ? shown(one, value) : "no value";
+    out.holds = out.holds && satisfies(value, one.comparison, one.bound);
+    out.got = std::isfinite(value) ? shown(one, value) + seeds_words(runs) : "no value";
   }
   if (!without.empty() && !out.holds) {
     const RunOutcome& first = *without.front();
@@ -125,7 +129,7 @@ Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& r
 Verdict judge_count(const Expectation& one, const std::vector<RunOutcome>& runs) {
   const auto failed =
       std::count_if(runs.begin(), runs.end(), [](const RunOutcome& run) { return !run.failure.empty(); });
-  return {one, holds(one.comparison, static_cast<double>(failed), one.bound),
+  return {one, satisfies(static_cast<double>(failed), one.comparison, one.bound),
           fmt::format("{}{}", failed, runs.size() == 1 ? std::string() : fmt::format(" of {}", runs.size()))};
 }
 

@@ -18,6 +18,7 @@ struct RunOutcome {
   std::string label;    ///< "job 3"; "" where there is but one run
   std::string failure;  ///< why it failed or never ran; "" when it is done
   std::optional<Row> summary;
+  std::string seed = "";  ///< of a sweep over several seeds, whose jobs with the same seed count as one; else ""
 };
 
 /// One expectation, and whether it is fulfilled.
@@ -28,7 +29,8 @@ struct Verdict {
 };
 
 /// Judges `runs` (at least one). A field alone has to hold in every run. In a statistic a run that failed or has no
-/// value takes the worst value that there is. `failed_runs` counts the runs that failed.
+/// value, or one that is not finite, takes the worst value that there is, and of a sweep over several seeds the verdict
+/// says over how many the statistic is. `failed_runs` counts the runs that failed.
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
 
 /// "file:line:column: expected median(on_surface_taps) >= 12, got 11"

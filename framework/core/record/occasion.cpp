@@ -3,6 +3,7 @@
 
 #include "config/compose.hpp"
 #include "config/quantity.hpp"
+#include "config/relation.hpp"
 #include "record/fields.hpp"
 
 #include <palpate/error.hpp>
@@ -42,8 +43,7 @@ Occasion Occasion::once(const std::string& text) {
 
 bool Occasion::has_come(int taps, const Row& summary) const {
   if (taps_) return taps >= *taps_;
-  const std::optional<double> value = summary.number(field_);
-  return value && (less_ ? *value <= goal_ : *value >= goal_);
+  return satisfies(summary.number(field_), less_ ? Relation::at_most : Relation::at_least, goal_);
 }
 
 }  // namespace palpate

@@ -21,7 +21,8 @@ class Occasion {
   /// None of a occasion that depends on what came of the taps.
   std::optional<int> taps() const { return taps_; }
 
-  /// Whether it has come, `summary` being that after `taps` taps. An error that nobody knows is not good enough.
+  /// Whether it has come, `summary` being that after `taps` taps. An error that is not known, or not finite, is not
+  /// good enough.
   bool has_come(int taps, const Row& summary) const;
 
   /// "after 17 taps", "once rmse_m was 8 mm or less".

@@ -145,7 +145,7 @@ std::optional<double> Row::number(std::string_view name) const {
   if (const auto* whole = std::get_if<std::int64_t>(value)) return static_cast<double>(*whole);
   if (const auto* truth = std::get_if<bool>(value)) return *truth ? 1.0 : 0.0;
   const auto* real = std::get_if<double>(value);
-  return real != nullptr ? std::optional(*real) : std::nullopt;
+  return real != nullptr && std::isfinite(*real) ? std::optional(*real) : std::nullopt;
 }
 
 std::optional<bool> Row::flag(std::string_view name) const {

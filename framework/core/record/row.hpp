@@ -28,7 +28,8 @@ struct Row {
   const Scalar* find(std::string_view name) const;
   /// The same, looked for at `near` first, which becomes its place: where the row before has it, one like it does, too.
   const Scalar* find(std::string_view name, std::size_t& near) const;
-  /// The number at `name`, of a truth value 1 or 0; none where there is none, or null, or a text.
+  /// The number at `name`, of a truth value 1 or 0; none where there is none, or null, or a text, or what is not
+  /// finite: that is null in every file.
   std::optional<double> number(std::string_view name) const;
   /// The truth value at `name`; none where there is something else.
   std::optional<bool> flag(std::string_view name) const;

@@ -11,27 +11,41 @@
 namespace palpate {
 namespace {
 
-/// Distances from the mean in units of the largest, in an order that depends on neither the order of the values nor
+/// A cluster: how far it pulls the mean, and how many values it has over the average number.
+using Pull = std::pair<double, double>;
+
+/// The pulls of all clusters in units of the largest, in an order that depends on neither the order of the clusters nor
 /// their sign; `mirrored` if they are those of the negatives.
 struct Centred {
-  std::vector<double> distances;
+  std::vector<Pull> pulls;
   double unit = 0.0;
   bool mirrored = false;
+  bool same_size = true;  ///< all clusters
 };
 
-Centred centre(const std::vector<double>& values, double mean) {
+Centred centre(const Clusters& clusters, double mean) {
   Centred out;
-  for (const double value : values) {
-    out.distances.push_back(value - mean);
-    out.unit = std::max(out.unit, std::abs(value - mean));
+  std::size_t count = 0;
+  for (const std::vector<double>& one : clusters) {
+    count += one.size();
+    out.same_size = out.same_size && one.size() == clusters.front().size();
+  }
+  const double average = static_cast<double>(count) / static_cast<double>(clusters.size());
+  const std::vector<double> influences = cluster_influences(clusters, mean);
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    out.pulls.emplace_back(influences[i], static_cast<double>(clusters[i].size()) / average);
+    out.unit = std::max(out.unit, std::abs(influences[i]));
   }
   if (out.unit == 0.0 || !std::isfinite(out.unit)) return out;
-  for (double& distance : out.distances) distance /= out.unit;
-  std::sort(out.distances.begin(), out.distances.end());
-  std::vector<double> mirror(out.distances.rbegin(), out.distances.rend());
-  for (double& distance : mirror) distance = -distance;
-  out.mirrored = mirror < out.distances;
-  if (out.mirrored) out.distances = mirror;
+  std::vector<Pull> mirror;
+  for (auto& [pull, weight] : out.pulls) {
+    pull /= out.unit;
+    mirror.emplace_back(-pull, weight);
+  }
+  std::sort(out.pulls.begin(), out.pulls.end());
+  std::sort(mirror.begin(), mirror.end());
+  out.mirrored = mirror < out.pulls;
+  if (out.mirrored) out.pulls = mirror;
   return out;
 }
 
@@ -98,19 +112,40 @@ MeanInterval interval_of(std::vector<double>& values, double centre, double roun
 
 }  // namespace
 
-MeanEstimate bootstrap_mean(const std::vector<double>& values) {
-  MeanEstimate out = estimate_mean(values);
+MeanEstimate mean_of_sample(const Clusters& clusters) {
+  if (clusters.size() >= kLeastForBootstrap) return bootstrap_mean(clusters);
+  MeanEstimate out = estimate_mean(clusters);
+  if (clusters.size() < kLeastForInterval || out.interval->low == out.interval->high) out.interval.reset();
+  return out;
+}
+
+MeanEstimate bootstrap_mean(const Clusters& clusters) {
+  MeanEstimate out = estimate_mean(clusters);
   out.interval.reset();
-  if (values.size() < kLeastForInterval) return out;
-  const Centred centred = centre(values, out.mean);
+  if (clusters.size() < kLeastForInterval) return out;
+  const Centred centred = centre(clusters, out.mean);
   if (centred.unit == 0.0 || !std::isfinite(centred.unit)) return out;
-  const auto count = static_cast<double>(values.size());
+  const std::vector<Pull>& pulls = centred.pulls;
+  std::vector<double> influences;
+  for (const Pull& one : pulls) influences.push_back(one.first);
   Random random(0, "bootstrap");
-  std::vector<double> sums(resamples_of(values.size()));
-  for (double& sum : sums) draw(random, values.size(), [&](std::size_t i) { sum += centred.distances[i]; });
-  const MeanInterval ends = interval_of(sums, 0.0, 1e-12 * count, centred.distances);
-  const double low = ends.low * centred.unit / count;
-  const double high = ends.high * centred.unit / count;
+  std::vector<double> means(resamples_of(pulls.size()));
+  for (double& mean : means) {
+    double sum = 0.0;
+    double weight = centred.same_size ? static_cast<double>(pulls.size()) : 0.0;
+    if (centred.same_size) {
+      draw(random, pulls.size(), [&](std::size_t i) { sum += influences[i]; });
+    } else {
+      draw(random, pulls.size(), [&](std::size_t i) {
+        sum += pulls[i].first;
+        weight += pulls[i].second;
+      });
+    }
+    mean = sum / weight;
+  }
+  const MeanInterval ends = interval_of(means, 0.0, 1e-12, influences);
+  const double low = ends.low * centred.unit;
+  const double high = ends.high * centred.unit;
   out.interval =
       centred.mirrored ? MeanInterval{out.mean - high, out.mean - low} : MeanInterval{out.mean + low, out.mean + high};
   return out;

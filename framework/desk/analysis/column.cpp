@@ -59,12 +59,14 @@ CellNumber number_of(const Scalar* cell) {
   double number = 0.0;
   const char* const end = text->data() + text->size();
   const auto read = std::from_chars(text->data(), end, number);
-  return read.ec == std::errc() && read.ptr == end ? CellNumber{number} : CellNumber{{}, true};
+  if (read.ec != std::errc() || read.ptr != end) return {{}, true};
+  return {std::isfinite(number) ? std::optional(number) : std::nullopt};
 }
 
 std::string written_in(const std::string& column, const Scalar& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  if (const auto* number = std::get_if<double>(&cell)) return write_quantity(*number, unit_of_column(column));
+  const auto* number = std::get_if<double>(&cell);
+  if (number != nullptr && std::isfinite(*number)) return write_quantity(*number, unit_of_column(column));
   return csv_cell(cell);
 }
 

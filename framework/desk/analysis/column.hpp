@@ -31,12 +31,13 @@ Column find_column(const std::string& name, const std::vector<std::string>& colu
 
 /// The number in a cell; flags are 0 and 1, and swept values, which are text, count if they are plain numbers.
 struct CellNumber {
-  std::optional<double> value;  ///< none where there is nothing
+  std::optional<double> value;  ///< none where there is nothing, or what is not finite
   bool is_text = false;         ///< other text stands there
 };
 CellNumber number_of(const Scalar* cell);
 
-/// What a condition sees in a column: as it would be written in a config, with its unit, as it knows no other lengths.
+/// What a condition sees in a column: as it would be written in a config, with its unit, as it knows no other lengths;
+/// "" of what is missing or not finite.
 std::string written_in(const std::string& column, const Scalar& cell);
 
 /// What became of a job of which a column is asked. Where a pair of jobs is, it has the fate that stands first.
@@ -45,7 +46,7 @@ enum class Fate {
   without_partner,
   unfinished,
   failed,
-  without_value,  ///< done, but the column is null
+  without_value,  ///< done, but the column is null or not finite
   counted
 };
 

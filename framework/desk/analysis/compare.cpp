@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace palpate {
@@ -19,8 +20,14 @@ namespace {
 
 using Values = std::vector<std::string>;
 
+/// What a job came to, and the unit of statistics that it belongs to.
+struct Outcome {
+  JobValue value;
+  std::string unit;
+};
+
 /// The jobs of a group by the values that make pairs. Sorted: the order of the jobs decides nothing.
-using Outcomes = std::map<Values, JobValue>;
+using Outcomes = std::map<Values, Outcome>;
 
 struct Collected {
   Values values;
@@ -61,31 +68,53 @@ void check_keys(const Sweep& sweep, const CompareQuery& query) {
   }
 }
 
+/// The columns that say what a run came to: the same in copies of it.
+std::set<std::string> outcome_columns(const Sweep& sweep, const Values& columns) {
+  std::set<std::string> out;
+  for (const std::string& name : others(columns, sweep.keys)) {
+    if (name != "job" && name != "id" && !depends_on_machine(name)) out.insert(name);
+  }
+  return out;
+}
+
+/// All that a job came to, as a text; "" of one that has not ended.
+std::string outcome_text(const Row* row, const std::set<std::string>& columns) {
+  std::string out;
+  if (row == nullptr) return out;
+  for (const auto& [name, value] : row->fields) {
+    if (columns.count(name) > 0) out += csv_cell(value) + ",";
+  }
+  return out;
+}
+
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, Comparison& out) {
   Values names = columns;
   for (const std::string& key : others(sweep.keys, columns)) names.push_back(key);
   const auto keeps = [&](const Job& job, const Row* row) {
-    const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<std::string> {
-      if (contains(sweep.keys, name)) return value_of(sweep, job, name);
+    const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<Condition::Value> {
+      if (contains(sweep.keys, name)) return Condition::Value{value_of(sweep, job, name)};
       if (!contains(columns, name)) return std::nullopt;
       const Scalar* value = row != nullptr ? row->find(name) : nullptr;
-      return value != nullptr ? written_in(name, *value) : std::string();
+      return Condition::Value{value != nullptr ? written_in(name, *value) : std::string(), true};
     };
     return query.where == nullptr || query.where->holds(value_in_job, names);
   };
   const Values paired = others(sweep.keys, query.by);
+  const std::set<std::string> outcome_of = out.by_seed ? std::set<std::string>() : outcome_columns(sweep, columns);
   std::vector<Collected> groups;
   for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
     groups.push_back({group.values, {}, 0});
     for (const auto& [job, row] : group.jobs) {
-      JobValue outcome = value_of_job(row, query.metric, "--metric");
+      // Where seeds are not the units jobs are, and copies of a run are one.
+      Outcome outcome{value_of_job(row, query.metric, "--metric"),
+                      out.by_seed ? value_of(sweep, *job, "seed") : outcome_text(row, outcome_of)};
       if (!keeps(*job, row)) {
-        out.left_out.add(outcome.fate);
-        outcome = {Fate::left_out};
+        out.left_out.add(outcome.value.fate);
+        outcome.value = {Fate::left_out};
       }
-      if (outcome.fate == Fate::counted && row->flag(kReached) == false) ++groups.back().never;
+      if (outcome.value.fate == Fate::counted && row->flag(kReached) == false) ++groups.back().never;
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
       // A list may hold the same job more than once: each is the counterpart of its like.
@@ -105,11 +134,14 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   out.name = fmt::format("{}", fmt::join(out.values, ", "));
   out.never = collected.never;
   std::vector<double> values;
+  UnitClusters units;
   for (const auto& [pairing, outcome] : collected.outcomes) {
-    out.counts.add(outcome.fate);
-    if (outcome.fate == Fate::counted) values.push_back(outcome.value);
+    out.counts.add(outcome.value.fate);
+    if (outcome.value.fate != Fate::counted) continue;
+    values.push_back(outcome.value.value);
+    units.add(outcome.unit, outcome.value.value);
   }
-  out.mean = only_mean ? estimate_mean(values) : bootstrap_mean(values);
+  out.mean = only_mean ? estimate_mean(units.clusters()) : mean_of_sample(units.clusters());
   if (only_mean) out.mean.interval.reset();
   if (values.empty()) return out;
   std::sort(values.begin(), values.end());
@@ -119,35 +151,43 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   return out;
 }
 
+std::vector<double> sums_of(const Clusters& clusters) {
+  std::vector<double> out;
+  for (const std::vector<double>& one : clusters) out.push_back(std::accumulate(one.begin(), one.end(), 0.0));
+  return out;
+}
+
 ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t first, std::size_t second, bool ratio) {
   ComparedPair out;
   out.first = first;
   out.second = second;
   const Outcomes& a = groups[first].outcomes;
   const Outcomes& b = groups[second].outcomes;
-  std::vector<double> values_a;
-  std::vector<double> values_b;
-  std::vector<double> differences;
-  const auto add = [&](const JobValue& one, const JobValue& other) {
-    const Fate fate = std::min(one.fate, other.fate);
+  UnitClusters of_a;
+  UnitClusters of_b;
+  UnitClusters differences;
+  const auto add = [&](const Outcome& one, const Outcome& other) {
+    const Fate fate = std::min(one.value.fate, other.value.fate);
     if (fate == Fate::counted) {
-      values_a.push_back(one.value);
-      values_b.push_back(other.value);
-      differences.push_back(one.value - other.value);
-    } else if (fate != Fate::left_out || std::max(one.fate, other.fate) > Fate::without_partner) {
+      // The same seed, or copies of one pair.
+      const std::string unit = one.unit + "-" + other.unit;
+      of_a.add(unit, one.value.value);
+      of_b.add(unit, other.value.value);
+      differences.add(unit, one.value.value - other.value.value);
+    } else if (fate != Fate::left_out || std::max(one.value.fate, other.value.fate) > Fate::without_partner) {
       out.lost.add(fate);
     }
   };
   for (const auto& [pairing, outcome] : a) {
     const auto partner = b.find(pairing);
-    add(outcome, partner != b.end() ? partner->second : JobValue{Fate::without_partner});
+    add(outcome, partner != b.end() ? partner->second : Outcome{{Fate::without_partner}, ""});
   }
   for (const auto& [pairing, outcome] : b) {
-    if (a.count(pairing) == 0) add({Fate::without_partner}, outcome);
+    if (a.count(pairing) == 0) add({{Fate::without_partner}, ""}, outcome);
   }
-  out.difference = bootstrap_mean(differences);
-  if (ratio) out.ratio = bootstrap_ratio(values_a, values_b);
-  out.test = signed_rank_test(values_a, values_b);
+  out.difference = mean_of_sample(differences.clusters());
+  if (ratio) out.ratio = bootstrap_ratio(sums_of(of_a.clusters()), sums_of(of_b.clusters()));
+  out.test = signed_rank_test(cluster_means(of_a.clusters()), cluster_means(of_b.clusters()));
   return out;
 }
 
@@ -234,6 +274,8 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());
   out.pairing = varying_keys(sweep, others(sweep.keys, query.by));
+  out.by_seed = seeds_are_units(sweep);
+  const Values paired = others(sweep.keys, query.by);
   const std::vector<Collected> groups = collect(sweep, results, columns, query, out);
   for (const Collected& group : groups) out.groups.push_back(summarise(group, query.only_groups));
   check_values(out, sweep);
@@ -258,7 +300,6 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
     if (pair.lost.of(Fate::without_partner) > 0)
       find_apart(groups[pair.first].outcomes, groups[pair.second].outcomes, apart);
   }
-  const Values paired = others(sweep.keys, query.by);
   for (const std::size_t place : apart) out.apart.push_back(paired[place]);
   return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Groups of a sweep's jobs side by side: each with its mean and spread, every two of them compared on the jobs that
-// are equal in all but what makes the groups. analysis/compare_report.hpp shows it.
+// are equal in all but what makes the groups. Seeds are the units of statistics: all jobs of a seed are drawn together,
+// and the means per seed are ranked. analysis/compare_report.hpp shows it.
 #pragma once
 
 #include "analysis/bootstrap.hpp"
@@ -33,7 +34,7 @@ struct ComparedGroup {
   std::vector<std::string> values;  ///< the same one by one
   FateCounts counts;
   int never = 0;      ///< jobs that count as they ended, because they never got where they were to be looked at
-  MeanEstimate mean;  ///< over the jobs that have a value; interval by the bootstrap
+  MeanEstimate mean;  ///< over the jobs that have a value; clusters: seeds, or jobs where these are the units
   double median = 0.0;
   double low_10 = 0.0;  ///< the values that 10 % and 90 % of the jobs stay below
   double high_90 = 0.0;
@@ -45,15 +46,16 @@ struct ComparedPair {
   std::size_t second = 0;
   /// Pairs that are not complete. Of what the condition leaves out those count of which it keeps one job.
   FateCounts lost;
-  MeanEstimate difference;
+  MeanEstimate difference;             ///< count: pairs of jobs; clusters: seeds
   std::optional<RatioEstimate> ratio;  ///< mean of the first over that of the second; if asked for, and it makes sense
-  SignedRank test;
-  std::optional<double> p_holm;  ///< adjusted for all pairs of this comparison; none if there is but one
+  SignedRank test;                     ///< of the means per seed, or of the pairs where jobs are the units
+  std::optional<double> p_holm;        ///< adjusted for all pairs of this comparison; none if there is but one
 };
 
 struct Comparison {
   Column metric;
   std::vector<std::string> by;
+  bool by_seed = false;              ///< seeds are the units: see seeds_are_units()
   std::vector<std::string> pairing;  ///< the other swept keys, if they vary: they are equal within a pair
   /// Of those keys the ones of which some compared groups have no value in common, so that they have no pairs.
   std::vector<std::string> apart;

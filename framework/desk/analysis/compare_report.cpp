@@ -52,21 +52,28 @@ std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
 
 std::string group_table(const Comparison& comparison, const Scale& scale) {
   const bool numbers = numbered(comparison);
-  const bool some_left_out = comparison.left_out.all() > 0;
-  Lines lines{{numbers ? "#" : "", keys_text(comparison.by), "jobs", some_left_out ? "left out" : "", "failed",
-               "unfinished", "no value", "n", "mean [95 % interval]", "median", "10 % to 90 %"}};
+  // A column of zeros would say nothing.
+  const auto shown = [&](Fate fate) {
+    return std::any_of(comparison.groups.begin(), comparison.groups.end(),
+                       [&](const ComparedGroup& one) { return one.counts.of(fate) > 0; });
+  };
+  const auto head = [&](Fate fate, const char* name) { return shown(fate) ? name : ""; };
+  Lines lines{{numbers ? "#" : "", keys_text(comparison.by), "jobs", head(Fate::left_out, "left out"),
+               head(Fate::failed, "failed"), head(Fate::unfinished, "unfinished"),
+               head(Fate::without_value, "no value"), "n", comparison.by_seed ? "seeds" : "", "mean [95 % interval]",
+               "median", "10 % to 90 %"}};
   for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
     const ComparedGroup& one = comparison.groups[i];
     const bool any = one.mean.count > 0;
-    const auto count = [&](Fate fate) { return std::to_string(one.counts.of(fate)); };
+    const auto count = [&](Fate fate) { return shown(fate) ? std::to_string(one.counts.of(fate)) : ""; };
     lines.push_back(
-        {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()),
-         some_left_out ? count(Fate::left_out) : "", count(Fate::failed), count(Fate::unfinished),
-         count(Fate::without_value), std::to_string(one.mean.count), scale.estimate(one.mean),
+        {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()), count(Fate::left_out),
+         count(Fate::failed), count(Fate::unfinished), count(Fate::without_value), std::to_string(one.mean.count),
+         comparison.by_seed ? std::to_string(one.mean.clusters) : "", scale.estimate(one.mean),
          any ? short_number(scale, one.median) : "-",
          any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
   }
-  return aligned(lines, "rlrrrrrrrrr");
+  return aligned(lines, "rlrrrrrrrrrr");
 }
 
 std::string p_text(const std::optional<double>& p) {
@@ -85,7 +92,7 @@ Words words_of(const Column& metric) {
   return metric.better == Better::neither ? Words{"higher", "lower"} : Words{"better", "worse"};
 }
 
-/// The pairs in which the first has the better, or else the higher, value, and those in which it has the other.
+/// The units in which the first has the better, or else the higher, mean, and those in which it has the other.
 std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const SignedRank& test) {
   if (comparison.metric.better == Better::less) return {test.lower, test.higher};
   return {test.higher, test.lower};
@@ -100,22 +107,24 @@ std::string ratio_text(const ComparedPair& pair) {
 std::string pair_table(const Comparison& comparison, const Scale& scale) {
   const bool many = comparison.pairs.size() > 1;
   const Words words = words_of(comparison.metric);
-  Lines lines{{"difference", "pairs", "lost", "mean [95 % interval]", comparison.ratios ? "ratio [95 % interval]" : "",
-               fmt::format("{}/equal/{}", words.up, words.down), "p", many ? "p (Holm)" : "", "effect"}};
+  Lines lines{{"difference", "pairs", "lost", comparison.by_seed ? "seeds" : "", "mean [95 % interval]",
+               comparison.ratios ? "ratio [95 % interval]" : "", fmt::format("{}/equal/{}", words.up, words.down), "p",
+               many ? "p (Holm)" : "", "effect"}};
   for (const ComparedPair& pair : comparison.pairs) {
     const auto [up, down] = sides(comparison, pair.test);
     const std::string mean = with_interval(pair.difference.mean, pair.difference.interval,
                                            [&](double value) { return scale.difference(value); });
-    lines.push_back({pair_name(comparison, pair), std::to_string(pair.difference.count),
-                     std::to_string(pair.lost.all()), pair.difference.count > 0 ? mean : "-",
-                     comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
-                     p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
-                     pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
+    lines.push_back(
+        {pair_name(comparison, pair), std::to_string(pair.difference.count), std::to_string(pair.lost.all()),
+         comparison.by_seed ? std::to_string(pair.difference.clusters) : "", pair.difference.count > 0 ? mean : "-",
+         comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
+         p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
+         pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
   }
-  return aligned(lines, "lrrrrrrrr");
+  return aligned(lines, "lrrrrrrrrr");
 }
 
-/// Where the mean and the majority of the pairs point in different directions, neither is the answer.
+/// Where the mean and the majority of the units point in different directions, neither is the answer.
 std::string contrary_note(const Comparison& comparison, const ComparedPair& pair) {
   const auto& ends = pair.difference.interval;
   if (!ends || (ends->low <= 0.0 && ends->high >= 0.0)) return {};
@@ -123,15 +132,27 @@ std::string contrary_note(const Comparison& comparison, const ComparedPair& pair
   const auto [up, down] = sides(comparison, pair.test);
   if (up == down || (gain > 0.0) == (up > down)) return {};
   const Words words = words_of(comparison.metric);
-  return fmt::format("{}: {} on average, and yet {} in most pairs: {} of {}\n", pair_name(comparison, pair),
-                     gain > 0.0 ? words.up : words.down, gain > 0.0 ? words.down : words.up, std::max(up, down),
-                     pair.difference.count);
+  return fmt::format("{}: {} on average, and yet {} in most {}: {} of {}\n", pair_name(comparison, pair),
+                     gain > 0.0 ? words.up : words.down, gain > 0.0 ? words.down : words.up,
+                     comparison.by_seed ? "seeds" : "pairs", std::max(up, down), pair.difference.clusters);
 }
 
 std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
   const std::string reasons =
       pair.lost.words({Fate::left_out, Fate::without_partner, Fate::unfinished, Fate::failed, Fate::without_value});
   return reasons.empty() ? "" : fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), reasons);
+}
+
+/// How few units there are, in words, where that matters.
+std::string few_note(const Comparison& comparison) {
+  std::size_t fewest = kLeastForBootstrap;
+  for (const ComparedGroup& one : comparison.groups) {
+    if (one.mean.count > 0) fewest = std::min(fewest, one.mean.clusters);
+  }
+  for (const ComparedPair& one : comparison.pairs) {
+    if (one.difference.count > 0) fewest = std::min(fewest, one.difference.clusters);
+  }
+  return few_words(fewest, comparison.by_seed, kLeastForInterval);
 }
 
 std::string remarks(const Comparison& comparison) {
@@ -142,6 +163,7 @@ std::string remarks(const Comparison& comparison) {
     const std::string ends = left_out.words({Fate::failed, Fate::unfinished});
     out += (ends.empty() ? "" : ", of which " + ends) + "\n";
   }
+  out += few_note(comparison);
   if (groups < 2) out += "one group: there is nothing to compare it with\n";
   if (comparison.pairs.size() < groups * (groups - 1) / 2) {
     out += fmt::format("{} groups: each is compared with {} alone\n", groups,
@@ -183,28 +205,32 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
     holm = holm || one.pairs.size() > 1;
     paired = paired || !one.pairs.empty();
   }
+  const Comparison& first = comparisons.front();
+  const char* const units = first.by_seed ? "seeds" : "jobs";
   std::string out = fmt::format(
-      "interval: 95 % of the mean (bootstrap, BCa): of 100 sweeps like this one with other seeds, 95 have the true "
-      "mean in\n"
-      "theirs; [-]: fewer than {} values, or all equal.\n",
-      kLeastForInterval);
+      "interval: 95 % of the mean: of 100 sweeps like this one with other {}, about 95 have the true mean in theirs\n"
+      "(bootstrap, BCa; below {} {} Student's t); [-]: fewer than {} {}, or all equal.\n",
+      units, kLeastForBootstrap, units, kLeastForInterval, units);
+  out +=
+      first.by_seed
+          ? "The seed is the unit: all jobs of a seed are drawn together, and count as one.\n"
+          : "The seed is not swept: each job is a unit, taken as independent of the others; copies of a run are one.\n";
   if (!paired) return out;
-  const std::vector<std::string>& pairing = comparisons.front().pairing;
+  const std::vector<std::string>& pairing = first.pairing;
   out += pairing.empty() ? "pair: one job of each group.\n"
                          : fmt::format("pair: two jobs that are equal in {}.\n", keys_text(pairing));
-  if (comparisons.front().ratios) {
-    out +=
-        "ratio: the mean of the first over that of the second, over the same pairs, which are drawn whole for its "
-        "interval\n"
-        "(bootstrap, BCa); '-' of what may be negative.\n";
+  if (first.ratios) {
+    out += fmt::format(
+        "ratio: the mean of the first over that of the second, over the same pairs; its interval draws whole {}\n"
+        "(bootstrap, BCa); '-' of what may be negative.\n",
+        first.by_seed ? "seeds" : "pairs");
   }
-  if (pairing.size() > 1) out += "Pairs that share one of these are taken as independent all the same.\n";
   out += fmt::format(
-      "p: how often, were it chance which of a pair is the larger, the signed ranks of the differences would lie as "
-      "far\n"
-      "to one side (Wilcoxon, two-sided, equal pairs dropped; counted out up to {} differences, else normal).{}\n"
+      "p: how often, were it chance which is the larger, the signed ranks of the differences would lie as far to one\n"
+      "side (Wilcoxon{}, two-sided, equal {} dropped; counted out up to {} differences, else normal).\n{}"
       "effect: by ranks (matched-pairs rank-biserial), +1: the first is always higher, -1: always lower, 0: neither.\n",
-      kExactSignedRanks, holm ? " Holm:\nadjusted for all p of the table." : "");
+      first.by_seed ? " on the means per seed" : "", first.by_seed ? "seeds" : "pairs", kExactSignedRanks,
+      holm ? "Holm: adjusted for all p of the table.\n" : "");
   return out;
 }
 
@@ -221,8 +247,9 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
     rows.push_back(std::move(row));
     return rows.back();
   };
-  const auto add_estimate = [](Row& row, const MeanEstimate& mean) {
+  const auto add_estimate = [&](Row& row, const MeanEstimate& mean) {
     row.add("n", static_cast<std::int64_t>(mean.count));
+    row.add("seeds", comparison.by_seed ? std::optional(static_cast<std::int64_t>(mean.clusters)) : std::nullopt);
     add_mean(row, "", mean);
   };
   for (const ComparedGroup& one : comparison.groups) {

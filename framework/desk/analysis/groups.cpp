@@ -56,6 +56,17 @@ std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std:
   return out;
 }
 
+bool seeds_are_units(const Sweep& sweep) {
+  const auto at = std::find(sweep.keys.begin(), sweep.keys.end(), "seed");
+  return at != sweep.keys.end() && !varying_keys(sweep, {"seed"}).empty();
+}
+
+void UnitClusters::add(const std::string& unit, double value) {
+  const auto [at, is_new] = places_.emplace(unit, clusters_.size());
+  if (is_new) clusters_.emplace_back();
+  clusters_[at->second].push_back(value);
+}
+
 std::string key_words(const Sweep& sweep, const Job& job, const std::vector<std::string>& keys, bool with_keys) {
   std::string out;
   for (const std::string& key : keys) {

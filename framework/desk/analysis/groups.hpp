@@ -4,9 +4,12 @@
 // tests hold it to the numbers of these.
 #pragma once
 
+#include "analysis/statistics.hpp"
 #include "record/row.hpp"
 #include "sweep/sweep.hpp"
 
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +41,22 @@ std::vector<std::string> setting_keys(const Sweep& sweep);
 
 /// Those of `keys` that have more than one value in the sweep.
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
+
+/// Whether seeds are the units of statistics: the seed is swept and has more than one value. Jobs with the same seed
+/// share all that is drawn, so they are no independent observations of anything. Where there is but one seed, jobs are
+/// the units.
+bool seeds_are_units(const Sweep& sweep);
+
+/// Sorts values into the clusters that their units name, in the order in which units come first.
+class UnitClusters {
+ public:
+  void add(const std::string& unit, double value);
+  const Clusters& clusters() const { return clusters_; }
+
+ private:
+  std::map<std::string, std::size_t> places_;
+  Clusters clusters_;
+};
 
 /// The value of a key in a job; "" where it is not swept.
 std::string value_of(const Sweep& sweep, const Job& job, const std::string& key);

@@ -3,6 +3,7 @@
 
 #include "analysis/groups.hpp"
 #include "config/quantity.hpp"
+#include "config/relation.hpp"
 #include "config/yaml.hpp"
 
 #include <palpate/error.hpp>
@@ -24,23 +25,24 @@ Column make_key(const std::string& name, const std::vector<std::string>& columns
 }
 
 /// The jobs of one setting, counted, and their means.
-Setting make_setting(const JobGroup& group, const Column& cost, const Column& error) {
+Setting make_setting(const Sweep& sweep, const JobGroup& group, const Pareto& pareto) {
   Setting out;
   out.values = group.values;
   out.first_job = static_cast<std::size_t>(group.jobs.front().job->index);
-  std::vector<double> costs;
-  std::vector<double> errors;
+  UnitClusters costs;
+  UnitClusters errors;
   for (const JobResult& one : group.jobs) {
-    const JobValue paid = value_of_job(one.row, cost.name, "--cost");
-    const JobValue missed = value_of_job(one.row, error.name, "--error");
+    const JobValue paid = value_of_job(one.row, pareto.cost.name, "--cost");
+    const JobValue missed = value_of_job(one.row, pareto.error.name, "--error");
     const Fate fate = std::min(paid.fate, missed.fate);
     out.counts.add(fate);
     if (fate != Fate::counted) continue;
-    costs.push_back(paid.value);
-    errors.push_back(missed.value);
+    const std::string unit = pareto.by_seed ? value_of(sweep, *one.job, "seed") : fmt::format("job {}", one.job->index);
+    costs.add(unit, paid.value);
+    errors.add(unit, missed.value);
   }
-  out.cost = estimate_mean(costs);
-  out.error = estimate_mean(errors);
+  out.cost = estimate_mean(costs.clusters());
+  out.error = estimate_mean(errors.clusters());
   return out;
 }
 
@@ -82,9 +84,10 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
                 "give it to --error");
   }
   pareto.keys = setting_keys(sweep);
+  pareto.by_seed = seeds_are_units(sweep);
   const std::vector<std::string> differing = varying_keys(sweep, pareto.keys);
   for (const JobGroup& group : group_jobs(sweep, results, pareto.keys)) {
-    Setting setting = make_setting(group, pareto.cost, pareto.error);
+    Setting setting = make_setting(sweep, group, pareto);
     setting.name = key_words(sweep, *group.jobs.front().job, differing, true);
     if (setting.name.empty()) setting.name = "the only setting";
     pareto.jobs += setting.counts.all();
@@ -109,7 +112,8 @@ double read_bound(const Pareto& pareto, const std::string& within) {
 const Setting* cheapest_within(const Pareto& pareto, double bound) {
   // They stand in the order of cost, and of error where costs are equal.
   const auto found = std::find_if(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& one) {
-    return one.complete() && one.error.interval && cautious_loss(pareto, one) <= loss(pareto, bound);
+    return one.complete() && one.error.interval &&
+           satisfies(cautious_loss(pareto, one), Relation::at_most, loss(pareto, bound));
   });
   return found != pareto.settings.end() ? &*found : nullptr;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/pareto_report.hpp"
 
+#include "analysis/bootstrap.hpp"
 #include "analysis/gnuplot.hpp"
 #include "analysis/readable.hpp"
 
@@ -22,6 +23,18 @@ Scale scale_of(const Pareto& pareto, const Column& key, Field field) {
   return readable_scale(key.unit, means);
 }
 
+/// The fewest and the most units that a setting with a value has.
+std::pair<std::size_t, std::size_t> seeds_of(const Pareto& pareto) {
+  std::size_t fewest = kLeastForBootstrap;
+  std::size_t most = 0;
+  for (const Setting& one : pareto.settings) {
+    if (one.error.clusters == 0) continue;
+    fewest = most == 0 ? one.error.clusters : std::min(fewest, one.error.clusters);
+    most = std::max(most, one.error.clusters);
+  }
+  return {fewest, most};
+}
+
 std::string cost_text(const Setting& setting, const Scale& scale) {
   const MeanEstimate& cost = setting.cost;
   if (cost.count == 0) return "-";
@@ -30,6 +43,12 @@ std::string cost_text(const Setting& setting, const Scale& scale) {
 }
 
 }  // namespace
+
+std::string seeds_words(const Pareto& pareto) {
+  const auto [fewest, most] = seeds_of(pareto);
+  const std::string words = units_words(most, pareto.by_seed);
+  return fewest == most ? words : fmt::format("{} to {}", fewest, words);
+}
 
 std::string pareto_table(const Pareto& pareto) {
   const Scale cost = scale_of(pareto, pareto.cost, &Setting::cost);
@@ -44,9 +63,11 @@ std::string pareto_table(const Pareto& pareto) {
   }
   std::string out = aligned(lines, "rlrrrl");
   out += fmt::format(
-      "mean over the seeds, with its 95 % interval; {} of {} is better; numbered: no other setting is at "
-      "least as good in both\n",
+      "{}, with its 95 % interval (Student's t); {} of {} is better; numbered: no other setting is at least as good in "
+      "both\n",
+      pareto.by_seed ? fmt::format("mean over {}", seeds_words(pareto)) : "the seed is not swept: mean over jobs",
       pareto.more_is_better() ? "more" : "less", pareto.error.name);
+  out += few_words(seeds_of(pareto).first, pareto.by_seed, 2);
   const bool all_complete =
       std::all_of(pareto.settings.begin(), pareto.settings.end(), [](const Setting& one) { return one.complete(); });
   if (!all_complete) out += "settings with jobs that failed, are missing or have no value are not compared\n";
@@ -60,6 +81,7 @@ std::vector<Row> pareto_rows(const Pareto& pareto) {
     row.add("front", one.front > 0 ? std::optional(one.front) : std::nullopt);
     for (std::size_t i = 0; i < pareto.keys.size(); ++i) row.add(pareto.keys[i], one.values[i]);
     add_counts(row, one.counts);
+    row.add("seeds", pareto.by_seed ? std::optional(static_cast<std::int64_t>(one.error.clusters)) : std::nullopt);
     add_mean(row, pareto.cost.name + ".", one.cost);
     add_mean(row, pareto.error.name + ".", one.error);
     rows.push_back(std::move(row));

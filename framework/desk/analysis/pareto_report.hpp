@@ -10,6 +10,9 @@
 
 namespace palpate {
 
+/// "20 seeds", "18 to 20 seeds", or jobs where the seed is not swept: the units that the means of a setting are over.
+std::string seeds_words(const Pareto& pareto);
+
 /// One line a setting under a header, in readable units, with the number of those on the front.
 std::string pareto_table(const Pareto& pareto);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/readable.hpp"
 
+#include "analysis/bootstrap.hpp"
 #include "config/quantity.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +28,22 @@ std::string Scale::title(const std::string& name) const { return name + (unit.em
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number) {
   return number(value) + (ends ? fmt::format(" [{}, {}]", number(ends->low), number(ends->high)) : " [-]");
+}
+
+std::string units_words(std::size_t units, bool seeds) {
+  return fmt::format("{} {}{}", units, seeds ? "seed" : "job", units == 1 ? "" : "s");
+}
+
+std::string few_words(std::size_t units, bool seeds, std::size_t least) {
+  if (units >= kLeastForBootstrap) return {};
+  if (units < least) {
+    return fmt::format("only {}: too few for an interval; run {} or more\n", units_words(units, seeds),
+                       kLeastForBootstrap);
+  }
+  return fmt::format(
+      "only {}: an interval of so few (Student's t) misses the true mean more often than 5 times in 100; run {} or "
+      "more\n",
+      units_words(units, seeds), kLeastForBootstrap);
 }
 
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits) {

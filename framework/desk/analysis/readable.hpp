@@ -36,6 +36,13 @@ struct Scale {
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number);
 
+/// "5 seeds", "1 job": units of statistics.
+std::string units_words(std::size_t units, bool seeds);
+
+/// A line that says how few seeds, or jobs, a mean is over and what that means for its interval; "" where they are not
+/// few. `least`: from so many on there is an interval.
+std::string few_words(std::size_t units, bool seeds, std::size_t least);
+
 /// For values of these sizes: millimetres and milliseconds if all are below one, and `digits` digits of the smallest
 /// that is not 0, but at most four decimals.
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3);

@@ -152,11 +152,13 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
   known.erase(std::unique(known.begin(), known.end()), known.end());
   std::vector<Row> out;
   for (const ListedRecord& one : records) {
-    const Condition::Values value_of = [&](const std::string& name) -> std::optional<std::string> {
+    const Condition::Values value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
       const Scalar* value = one.row.find(name);
       if (value == nullptr) value = one.beside.find(name);
-      if (value != nullptr) return written_in(name, *value);
-      return std::binary_search(known.begin(), known.end(), name) ? std::optional<std::string>("") : std::nullopt;
+      const bool is_result = find_summary_field(name) != nullptr;
+      if (value != nullptr) return Condition::Value{written_in(name, *value), is_result};
+      if (!std::binary_search(known.begin(), known.end(), name)) return std::nullopt;
+      return Condition::Value{"", is_result};
     };
     if (where.holds(value_of, known)) out.push_back(one.row);
   }

@@ -4,7 +4,9 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace palpate {
 
@@ -14,15 +16,56 @@ double student_factor(std::size_t degrees) {
   return boost::math::quantile(boost::math::complement(distribution, kTail));
 }
 
-MeanEstimate estimate_mean(const std::vector<double>& values) {
-  MeanEstimate out;
-  out.count = values.size();
-  out.mean = mean_of(values);
-  if (values.size() < 2) return out;
-  const auto n = static_cast<double>(values.size());
+Clusters each_alone(const std::vector<double>& values) {
+  Clusters out;
+  for (const double value : values) out.push_back({value});
+  return out;
+}
+
+std::vector<double> cluster_means(const Clusters& clusters) {
+  std::vector<double> out;
+  for (const std::vector<double>& one : clusters) out.push_back(mean_of(one));
+  return out;
+}
+
+namespace {
+
+std::size_t count_of(const Clusters& clusters) {
+  return std::accumulate(clusters.begin(), clusters.end(), std::size_t{0},
+                         [](std::size_t sum, const std::vector<double>& one) { return sum + one.size(); });
+}
+
+/// Of all values.
+double mean_of_clusters(const Clusters& clusters) {
+  const std::vector<double> means = cluster_means(clusters);
+  // Of clusters of one size, and of equal ones, rounding leads nowhere else.
+  const auto same_size = [&](const std::vector<double>& one) { return one.size() == clusters.front().size(); };
+  const auto equal = [&](double one) { return one == means.front(); };
+  if (std::all_of(clusters.begin(), clusters.end(), same_size) || std::all_of(means.begin(), means.end(), equal))
+    return mean_of(means);
+  const auto count = static_cast<double>(count_of(clusters));
+  double out = 0.0;
+  for (std::size_t i = 0; i < means.size(); ++i) out += means[i] * (static_cast<double>(clusters[i].size()) / count);
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> cluster_influences(const Clusters& clusters, double mean) {
+  const double average = static_cast<double>(count_of(clusters)) / static_cast<double>(clusters.size());
+  std::vector<double> out;
+  for (const std::vector<double>& one : clusters)
+    out.push_back((mean_of(one) - mean) * (static_cast<double>(one.size()) / average));
+  return out;
+}
+
+MeanEstimate estimate_mean(const Clusters& clusters) {
+  MeanEstimate out{count_of(clusters), clusters.size(), mean_of_clusters(clusters), std::nullopt};
+  if (clusters.size() < 2) return out;
+  const auto n = static_cast<double>(clusters.size());
   double squares = 0.0;
-  for (const double value : values) squares += (value - out.mean) * (value - out.mean);
-  const double half = student_factor(values.size() - 1) * std::sqrt(squares / (n - 1.0) / n);
+  for (const double one : cluster_influences(clusters, out.mean)) squares += one * one;
+  const double half = student_factor(clusters.size() - 1) * std::sqrt(squares / (n - 1.0) / n);
   out.interval = MeanInterval{out.mean - half, out.mean + half};
   return out;
 }

@@ -16,16 +16,33 @@ struct MeanInterval {
   double high = 0.0;
 };
 
-/// The mean of a sample, and the two-sided 95 % interval of what it estimates (Student's t, count - 1 degrees of
-/// freedom). One value has no interval: nothing is known of the spread. Equal values have one without width.
+/// The values of a sample, by cluster: values of one cluster may depend on each other, those of different clusters do
+/// not (jobs with the same seed are a cluster). No cluster is empty.
+using Clusters = std::vector<std::vector<double>>;
+
+/// Each value as a cluster of its own.
+Clusters each_alone(const std::vector<double>& values);
+
+/// The means of the clusters, in their order. Equal values are their own mean, to the bit.
+std::vector<double> cluster_means(const Clusters& clusters);
+
+/// The mean of a sample, and the two-sided 95 % interval of what it estimates.
 struct MeanEstimate {
-  std::size_t count = 0;
-  double mean = 0.0;  ///< 0 of no values
+  std::size_t count = 0;     ///< of values
+  std::size_t clusters = 0;  ///< of clusters, which alone decide how wide the interval is
+  double mean = 0.0;         ///< of all values; 0 of none
   std::optional<MeanInterval> interval;
 };
 
-/// Of finite values.
-MeanEstimate estimate_mean(const std::vector<double>& values);
+/// How far a cluster pulls the mean of all values from `mean`: (mean of the cluster - `mean`) times its number of
+/// values over the average number. Their sum is 0, and one that repeats each of its values weighs the same where all
+/// do.
+std::vector<double> cluster_influences(const Clusters& clusters, double mean);
+
+/// The mean of finite values, each cluster with the weight of its values, and Student's interval with clusters - 1
+/// degrees of freedom; the standard error is that of a ratio estimator (Cochran 1977, Sampling techniques, section
+/// 9A.1). One cluster has no interval: nothing is known of the spread. Equal values have one without width.
+MeanEstimate estimate_mean(const Clusters& clusters);
 
 /// The factor of the standard error in that interval: 12.706 for one degree of freedom, 1.960 for infinitely many.
 /// `degrees` >= 1.

@@ -2,6 +2,7 @@
 #include "sweep/condition.hpp"
 
 #include "config/quantity.hpp"
+#include "config/relation.hpp"
 
 #include <palpate/error.hpp>
 
@@ -17,6 +18,7 @@ namespace palpate {
 namespace {
 
 using Formula = Condition::Formula;
+using Logical = Condition::Logical;
 
 constexpr const char* kHowTo = "write it like taps >= 12 and not surface == two_part";
 constexpr int kMaxDepth = 100;
@@ -38,6 +40,11 @@ std::string meant_by(const std::string& sign) {
                                                               {"!", "not"}}};
   const auto found = std::find_if(kMeant.begin(), kMeant.end(), [&](const auto& one) { return one[0] == sign; });
   return found != kMeant.end() ? fmt::format("write '{}'", (*found)[1]) : "known: ==, !=, <, <=, >, >=";
+}
+
+Logical negation(Logical truth) {
+  if (truth == Logical::undecided) return truth;
+  return truth == Logical::yes ? Logical::no : Logical::yes;
 }
 
 /// Reads the text of a condition by descent: or, and, not, comparison.
@@ -101,25 +108,29 @@ class Reader {
   /// The next token as it is read: of a quoted text what stands in the quotes.
   std::string shown() const { return tokens_[next_].substr(at_quoted() ? 1 : 0); }
 
-  /// Parts with `word` between them: one that comes out as `decides` decides for all.
-  Formula joined(bool decides, const char* word, Formula (Reader::*part)(int), int depth) {
+  /// Parts with `word` between them: one that comes out as `decides` decides for all, else one that is undecided does.
+  Formula joined(Logical decides, const char* word, Formula (Reader::*part)(int), int depth) {
     std::vector<Formula> parts{(this->*part)(depth)};
     while (take(word)) parts.push_back((this->*part)(depth));
     if (parts.size() == 1) return parts.front();
-    return [decides, parts = std::move(parts)](const auto& holds) {
-      const bool any =
-          std::any_of(parts.begin(), parts.end(), [&](const Formula& one) { return one(holds) == decides; });
-      return any == decides;
+    return [decides, parts = std::move(parts)](const auto& decide) {
+      Logical out = negation(decides);
+      for (const Formula& one : parts) {
+        const Logical truth = one(decide);
+        if (truth == decides) return decides;
+        if (truth == Logical::undecided) out = truth;
+      }
+      return out;
     };
   }
 
-  Formula any(int depth) { return joined(true, "or", &Reader::all, depth); }
-  Formula all(int depth) { return joined(false, "and", &Reader::one, depth); }
+  Formula any(int depth) { return joined(Logical::yes, "or", &Reader::all, depth); }
+  Formula all(int depth) { return joined(Logical::no, "and", &Reader::one, depth); }
 
   Formula one(int depth) {
     if (depth > kMaxDepth) throw refuse("nested too deeply", "at most 100 levels");
     if (take("not")) {
-      return [inner = one(depth + 1)](const auto& holds) { return !inner(holds); };
+      return [inner = one(depth + 1)](const auto& decide) { return negation(inner(decide)); };
     }
     if (!take("(")) return comparison();
     Formula out = any(depth + 1);
@@ -137,9 +148,7 @@ class Reader {
     ++next_;
     if (!at_sign()) throw refuse(fmt::format("behind '{}' a comparison is missing", out.name));
     out.sign = tokens_[next_++];
-    constexpr std::array<const char*, 6> kSigns{"==", "!=", "<", "<=", ">", ">="};
-    if (std::find(kSigns.begin(), kSigns.end(), out.sign) == kSigns.end())
-      throw refuse(fmt::format("'{}' is no comparison", out.sign), meant_by(out.sign));
+    if (!relation_of(out.sign)) throw refuse(fmt::format("'{}' is no comparison", out.sign), meant_by(out.sign));
     if (!at_value()) throw refuse(fmt::format("behind '{} {}' a value is missing", out.name, out.sign));
     out.quoted = at_quoted();
     out.value = shown();
@@ -152,7 +161,7 @@ class Reader {
                    joins ? meant_by(shown()) : "join two comparisons by 'and'");
     }
     comparisons_.push_back(std::move(out));
-    return [number = comparisons_.size() - 1](const auto& holds) { return holds(number); };
+    return [number = comparisons_.size() - 1](const auto& decide) { return decide(number); };
   }
 
   const std::string& text_;
@@ -162,14 +171,7 @@ class Reader {
   std::size_t next_ = 0;
 };
 
-template <class Number>
-bool compare(const Number& left, const std::string& sign, const Number& right) {
-  if (sign == "==") return left == right;
-  if (sign == "!=") return left != right;
-  if (sign == "<") return left < right;
-  if (sign == "<=") return left <= right;
-  return sign == ">" ? left > right : left >= right;
-}
+Logical decided(bool holds) { return holds ? Logical::yes : Logical::no; }
 
 }  // namespace
 
@@ -191,26 +193,30 @@ bool Condition::holds(const Values& value_of, const std::vector<std::string>& kn
     throw Error(place_, fmt::format("in the condition '{}' the name '{}' is not known", one.shown(), one.name),
                 suggestion(one.name, known));
   }
-  return formula_([&](std::size_t number) { return holds(comparisons_[number], value_of); });
+  return formula_([&](std::size_t number) { return decide(comparisons_[number], value_of); }) == Logical::yes;
 }
 
-bool Condition::holds(const Comparison& comparison, const Values& value_of) const {
+Condition::Logical Condition::decide(const Comparison& comparison, const Values& value_of) const {
   const auto& [name, sign, value, quoted] = comparison;
-  const std::string left = *value_of(name);
-  const std::string right = quoted ? value : value_of(value).value_or(value);
+  const Value left = *value_of(name);
+  const Value right = quoted ? Value{value} : value_of(value).value_or(Value{value});
   // A value as it is written is never empty unless it is quoted: who has none is a name.
-  if (left.empty() || (right.empty() && !quoted)) return false;
-  const std::optional<AnyQuantity> a = quoted ? std::nullopt : any_quantity(left);
-  const std::optional<AnyQuantity> b = quoted ? std::nullopt : any_quantity(right);
+  const bool lacks_right = right.text.empty() && !quoted;
+  if ((left.text.empty() && left.is_result) || (lacks_right && right.is_result)) return Logical::undecided;
+  if (left.text.empty() || lacks_right) return Logical::no;
+  const std::optional<AnyQuantity> a = quoted ? std::nullopt : any_quantity(left.text);
+  const std::optional<AnyQuantity> b = quoted ? std::nullopt : any_quantity(right.text);
   if (a && b) {
-    if (a->unit == b->unit) return compare(a->value, sign, b->value);
+    if (a->unit == b->unit) return decided(satisfies(a->value, relation_of(sign).value(), b->value));
     throw Error(place_,
                 fmt::format("the condition '{}' compares a {} ('{}') with a {} ('{}')", comparison.shown(),
-                            dimension_name(a->unit), left, dimension_name(b->unit), right),
+                            dimension_name(a->unit), left.text, dimension_name(b->unit), right.text),
                 "give both the same dimension");
   }
-  if (sign == "==" || sign == "!=") return compare(left, sign, right);
-  throw Error(place_, fmt::format("the condition '{}' orders texts: '{}' and '{}'", comparison.shown(), left, right),
+  if (sign == sign_of(Relation::equal)) return decided(left.text == right.text);
+  if (sign == sign_of(Relation::unequal)) return decided(left.text != right.text);
+  throw Error(place_,
+              fmt::format("the condition '{}' orders texts: '{}' and '{}'", comparison.shown(), left.text, right.text),
               "texts compare by == and != alone");
 }
 

@@ -28,27 +28,38 @@ class Condition {
     std::string shown() const { return name + " " + sign + " " + value; }
   };
   using Comparisons = std::vector<Comparison>;
-  /// How they are joined: whether it holds, given which of them, by their numbers, do.
-  using Formula = std::function<bool(const std::function<bool(std::size_t comparison)>& holds)>;
 
-  /// The text of a name's value ("2 cm", "rbf"; "" where it has none), or none where there is no such name.
-  using Values = std::function<std::optional<std::string>(const std::string& name)>;
+  /// Whether a comparison, or what comparisons are joined to, holds. In this order `and` is the least, `or` the largest
+  /// (Kleene's logic of three values), and the negation of `undecided` is `undecided`.
+  enum class Logical { no, undecided, yes };
+  /// How they are joined: whether it holds, given for each of them, by its number, whether it does.
+  using Formula = std::function<Logical(const std::function<Logical(std::size_t comparison)>& decide)>;
+
+  /// What a name stands for.
+  struct Value {
+    std::string text;        ///< "2 cm", "rbf"; "" where there is none
+    bool is_result = false;  ///< it came out of a run; otherwise it was set
+  };
+  /// The value of a name, or none where there is no such name.
+  using Values = std::function<std::optional<Value>(const std::string& name)>;
 
   /// Throws Error, with the place of `text`, for what is no condition.
   explicit Condition(const Tree& text);
   /// Of the option --where of a command.
   static Condition of_command_line(const std::string& text);
 
-  /// A comparison with a name that has no value does not hold, whatever it compares. `and` and `or` look no further
-  /// than they need to, so `spacing != none and spacing > 2 mm` is fine. Throws Error, with the place of the condition,
-  /// for any name on the left that is not known (`known` is what to suggest from), for an order of texts, and for units
-  /// that do not go together.
+  /// A comparison with an option that has no value does not hold, whatever it compares: a job without a kernel.alpha is
+  /// kept by `not kernel.alpha > 1`. With a result that is missing or not finite a comparison is undecided, so that it
+  /// selects nothing, negated or not: `rmse_m <= 3 mm` and `not rmse_m <= 3 mm` both leave such a job out. `and` and
+  /// `or` look no further than they need to, so `spacing != none and spacing > 2 mm` is fine. Throws Error, with the
+  /// place of the condition, for any name on the left that is not known (`known` is what to suggest from), for an order
+  /// of texts, and for units that do not go together.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
   const std::string& place() const { return place_; }
 
  private:
-  bool holds(const Comparison& comparison, const Values& value_of) const;
+  Logical decide(const Comparison& comparison, const Values& value_of) const;
 
   std::string place_;
   Comparisons comparisons_;

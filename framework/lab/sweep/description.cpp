@@ -234,21 +234,21 @@ bool SweepDescription::depends(const std::string& name, const std::string& choic
 bool SweepDescription::wanted(const Combination& combination, const Condition::Values& base) const {
   if (where_.empty()) return true;
   const std::string* place = nullptr;
-  const Condition::Values value_of = [&](const std::string& name) -> std::optional<std::string> {
+  const Condition::Values value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
     const auto said = std::find_if(combination.begin(), combination.end(),
                                    [&](const SweptValue& one) { return one.axis->key == name; });
-    if (said != combination.end()) return condition_text(said->value());
+    if (said != combination.end()) return Condition::Value{condition_text(said->value())};
     const bool swept = std::find(keys_.begin(), keys_.end(), name) != keys_.end();
     for (const std::string& choice : keys_) {
       if (!depends(name, choice)) continue;
-      if (swept) return "";  // another item of the list has it
+      if (swept) return Condition::Value{};  // another item of the list has it
       // Nearly any word could be an option of a strategy; one that nobody knows is a value.
       if (choice == kStrategy && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
                   fmt::format("sweep it too, or compare '{}'", choice));
     }
-    std::optional<std::string> text = base(name);
-    return text || !swept ? text : "";
+    std::optional<Condition::Value> value = base(name);
+    return value || !swept ? value : Condition::Value{};
   };
   return std::all_of(where_.begin(), where_.end(), [&](const Condition& where) {
     place = &where.place();

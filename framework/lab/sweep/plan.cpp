@@ -292,11 +292,11 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   // wrong with it beside that, its jobs say.
   std::optional<ResolvedConfig> alone;
   trouble_in([&] { alone = resolve_experiment(base, host); });
-  const Condition::Values base_value = [&](const std::string& name) -> std::optional<std::string> {
+  const Condition::Values base_value = [&](const std::string& name) -> std::optional<Condition::Value> {
     if (first_key(name) == "sweep") return std::nullopt;
     const Tree* found = base.find_path(name);
     if (found == nullptr && alone) found = alone->tree.find_path(name);
-    return found != nullptr ? std::optional(condition_text(*found)) : std::nullopt;
+    return found != nullptr ? std::optional(Condition::Value{condition_text(*found)}) : std::nullopt;
   };
   std::optional<ResolvedConfig> first;
   Planner planner(composer, host, file, description.keys(), shared);

@@ -175,8 +175,10 @@ std::vector<Row> sweep_results(const Sweep& sweep, std::vector<std::optional<Row
 
 std::vector<RunOutcome> outcomes_of(const Sweep& sweep) {
   std::vector<RunOutcome> runs;
+  const auto seed = std::find(sweep.keys.begin(), sweep.keys.end(), "seed") - sweep.keys.begin();
   for (const Job& job : sweep.jobs) {
     RunOutcome run;
+    if (seed < static_cast<std::ptrdiff_t>(sweep.keys.size())) run.seed = job.values[static_cast<std::size_t>(seed)];
     run.label = fmt::format("job {}", job.index);
     run.name = run.label;
     for (std::size_t i = 0; i < sweep.keys.size(); ++i)

@@ -86,6 +86,18 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
   ];
 }
 
+/// What the means are over, and what few seeds mean for their intervals.
+function meansWords(sweep, settings) {
+  const kFew = 10;
+  const rest = "numbered: no other setting is at least as good in both.";
+  const counts = settings.map((one) => one.error.clusters);
+  if (!sweep.seeds || counts.length === 0) return `The seed is not swept: means over the jobs of each setting; ${rest}`;
+  const [fewest, most] = extent(counts);
+  const over = fewest === most ? sweep.seedWords(most) : `${fewest} to ${sweep.seedWords(most)}`;
+  const few = fewest < kFew ? ` Of fewer than ${kFew} seeds such an interval misses the true mean more often than 5 times in 100.` : "";
+  return `Means over ${over} with 95 % intervals (Student's t); ${rest}${few}`;
+}
+
 function sayOfFront(sweep, choice, settings, placed) {
   const edged = placed.filter(({ error }) => error === null).length;
   const open = settings.filter((one) => !one.complete).length;
@@ -94,7 +106,7 @@ function sayOfFront(sweep, choice, settings, placed) {
   const end = sweep.moreIsBetter(choice.error) ? "lower" : "upper";
   say(
     "front",
-    "Means over the seeds with 95 % intervals; numbered: no other setting is at least as good in both.",
+    meansWords(sweep, settings),
     open > 0 ? ` Not compared, for jobs that failed, have not ended or lack a value: ${many(open, "setting")}.` : "",
     empty > 0 ? ` Without any value: ${many(empty, "setting")}.` : "",
     edged > 0 ? ` ${edged} failed runs came to no error and stand at the ${end} edge.` : "",

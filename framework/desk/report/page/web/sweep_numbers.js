@@ -31,6 +31,7 @@ class SweepData {
     [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
     this.columns = new Map(data.columns.map((column) => [column.name, column]));
     this.all = this.keys.filter((key) => key.values.length > 1);  // what tells jobs apart
+    this.seeds = this.all.find((key) => key.name === "seed");
     [this.settings, this.varying] = [this.keys, this.all].map((keys) => keys.filter((key) => key.name !== "seed"));
   }
 
@@ -62,6 +63,16 @@ class SweepData {
 
   numbers(column, jobs) {
     return jobs.map((job) => this.number(column, job)).filter((value) => value !== null);
+  }
+
+  /// What a job counts as in statistics: its seed, or, where there is but one, the job.
+  seedOf(job) {
+    return this.seeds ? this.seeds.of_job[job.place] : job.place;
+  }
+
+  /// "20 seeds", or "" where the seed is not swept.
+  seedWords(clusters) {
+    return this.seeds ? many(clusters, "seed") : "";
   }
 
   /// The value of a key as written; plugins without such an option have none.
@@ -97,17 +108,31 @@ class SweepData {
   }
 }
 
-/// Mean, standard deviation (null of one value) and half the width of the mean's 95 % interval, as the program
-/// computes them, times `unit`.
-function estimate(values, factors, unit = 1) {
-  const count = values.length;
-  if (count === 0) return { count, mean: null, deviation: null, half: null };
+const meanOf = (values) => {
   const [least, most] = extent(values);
-  const mean = least === most ? least : values.reduce((sum, one) => sum + one / count, 0);
-  if (count < 2) return { count, mean: mean * unit, deviation: null, half: null };
-  const variance = values.reduce((sum, one) => sum + (one - mean) * (one - mean), 0) / (count - 1);
-  const factor = factors[Math.min(count - 2, factors.length - 1)];
-  return { count, mean: mean * unit, deviation: Math.sqrt(variance) * unit, half: factor * Math.sqrt(variance / count) * unit };
+  return least === most ? least : values.reduce((sum, one) => sum + one / values.length, 0);
+};
+
+/// Mean, standard deviation (null of one value) and half the width of the mean's 95 % interval, as the program
+/// computes them, times `unit`. `seeds` has the seed of each value: those of one seed are one cluster, and `clusters`
+/// counts them (SweepData.seedOf).
+function estimate(values, seeds, factors, unit = 1) {
+  const count = values.length;
+  if (count === 0) return { count, clusters: 0, mean: null, deviation: null, half: null };
+  const found = new Map();
+  values.forEach((value, i) => (found.has(seeds[i]) ? found.get(seeds[i]).push(value) : found.set(seeds[i], [value])));
+  const lists = [...found.values()];
+  const clusters = lists.length;
+  const even = lists.every((one) => one.length === lists[0].length);
+  const mean = even ? meanOf(lists.map(meanOf)) : meanOf(values);
+  if (count < 2) return { count, clusters, mean: mean * unit, deviation: null, half: null };
+  const square = (value) => value * value;
+  const deviation = Math.sqrt(values.reduce((sum, one) => sum + square(one - mean), 0) / (count - 1)) * unit;
+  if (clusters < 2) return { count, clusters, mean: mean * unit, deviation, half: null };
+  const pulls = lists.map((one) => (meanOf(one) - mean) * (one.length / (count / clusters)));
+  const variance = pulls.reduce((sum, one) => sum + square(one), 0) / (clusters - 1);
+  const factor = factors[Math.min(clusters - 2, factors.length - 1)];
+  return { count, clusters, mean: mean * unit, deviation, half: factor * Math.sqrt(variance / clusters) * unit };
 }
 
 /// The settings, all keys but the seed, with their means of cost and error over the jobs that are done and have both:
@@ -117,7 +142,8 @@ function settingsOf(sweep, cost, error) {
   const sign = sweep.moreIsBetter(error) ? -1 : 1;
   const settings = sweep.groups(sweep.settings).map(({ jobs }) => {
     const valued = jobs.filter((job) => job.state === "done" && sweep.raw(cost, job) !== null && sweep.raw(error, job) !== null);
-    const over = (column) => [valued.map((job) => sweep.raw(column, job)), sweep.factors];
+    const seeds = valued.map((job) => sweep.seedOf(job));
+    const over = (column) => [valued.map((job) => sweep.raw(column, job)), seeds, sweep.factors];
     return {
       words: sweep.words(jobs[0]),
       jobs,

@@ -59,14 +59,16 @@ function say(id, ...text) {
 /// Means of jobs that agree in one or two keys, with their spread.
 function drawCells(sweep, { across, up, metric }) {
   const keys = [across, up].filter((name, i, all) => name && all.indexOf(name) === i).map((name) => sweep.key(name));
-  const hover = (jobs, { count, mean, deviation }) => {
+  const hover = (jobs, { count, clusters, mean, deviation }) => {
     const spread = deviation === null ? "" : ` ± ${shown(deviation)}`;
+    const seeds = (clusters) => (sweep.seeds ? `, ${sweep.seedWords(clusters)}` : "");
     const lines = keys.map((key) => plain(brief(`${key.name}: ${sweep.text(key, jobs[0])}`, 80)));
-    const value = count > 0 ? `mean ${shown(mean)}${spread} of ${count} values` : "no value";
+    const value = count > 0 ? `mean ${shown(mean)}${spread} of ${count} values${seeds(clusters)}` : "no value";
     return [...lines, `${titleOf(metric)}: ${value}`, sweep.ended(jobs)].join("<br>");
   };
   const cells = sweep.groups(keys).map(({ places, jobs }) => {
-    const found = estimate(sweep.numbers(metric, jobs.filter((job) => job.state === "done")), sweep.factors);
+    const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
+    const found = estimate(sweep.numbers(metric, valued), valued.map((job) => sweep.seedOf(job)), sweep.factors);
     return { ...found, column: places[0], row: places[1], hover: hover(jobs, found) };
   });
   // All other keys are taken together.
