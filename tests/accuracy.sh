@@ -15,8 +15,8 @@
 # the mean of these differences: their standard deviation over the square root of the number of seeds. The column
 # standard_error is that of the value itself; it also has what seeds share, such as a placement that is hard for every
 # code. With another random stream for the footprint, which is neither better nor worse, the standard error of the
-# difference is 1.5 to 2.4 % of the default's RMSE and 0.5 to 0.8 % of its IoU (clutter: 1.7 and 2.7 %), and no value fails;
-# so a loss of 7 % shows in the short form, of 3 % in the long form. A neutral change fails one value with a probability of
+# difference is 1.5 to 2.4 % of the RMSE and 0.5 to 2.7 % of the IoU of the default, from any side 6 and 4 %; no value fails;
+# a loss of 7 % (any side: 19 %) shows in the short form, of 3 % (8 %) in the long form. A neutral change fails one value with a probability of
 # 0.6 % with 12 seeds, the fewest, and of 0.3 % with 30 (Student's t). A difference below 0.5 % of the value never fails:
 # where most runs are equal, the standard error of so few differences says little.
 set -eu
