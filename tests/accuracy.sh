@@ -9,16 +9,17 @@
 #   --set KEY=VALUE   an override of every sweep: is this setting worse?      --seeds N   the first N seeds alone
 # BUILD is the directory of a build that has the program and all plugins.
 #
-# The standard error. Values of the same code are equal, bit by bit. A change that moves one tap gives a run other taps from
-# there on: it ends better or worse by chance, although object, placement and noise are the same. So the new value is
-# compared with the old value seed by seed (of a seed: the mean over all its objects), and the standard error is that of
-# the mean of these differences: their standard deviation over the square root of the number of seeds. The column
-# standard_error is that of the value itself; it also has what seeds share, such as a placement that is hard for every
-# code. With another random stream for the footprint, which is neither better nor worse, the standard error of the
-# difference is 1.5 to 2.4 % of the default's RMSE and 0.5 to 0.8 % of its IoU (clutter: 1.7 and 2.7 %), and no value fails;
-# so a loss of 7 % shows in the short form, of 3 % in the long form. A neutral change fails one value with a probability of
-# 0.6 % with 12 seeds, the fewest, and of 0.3 % with 30 (Student's t). A difference below 0.5 % of the value never fails:
-# where most runs are equal, the standard error of so few differences says little.
+# The standard error. Values of the same code are equal, bit by bit. A change that moves one tap gives a run other
+# taps from there on: it ends better or worse by chance, although object, placement and noise are the same. So the new
+# value is compared with the old value seed by seed (of a seed: the mean over all its objects), and the standard error
+# is that of the mean of these differences: their standard deviation over the square root of the number of seeds. The
+# column standard_error is that of the value itself; it also has what seeds share, such as a placement that is hard
+# for every code. With another random stream for the footprint, which is neither better nor worse, the standard error
+# of the difference is 1.5 to 2.4 % of the RMSE and 0.5 to 2.7 % of the IoU of the default, from any side 6 and 4 %,
+# and no value fails. A loss of 7 % (any side: 19 %) shows in the short form, of 3 % (8 %) in the long form. A neutral
+# change fails one value with a probability of 0.6 % with 12 seeds, the fewest, and of 0.3 % with 30 (Student's t). A
+# difference below 0.5 % of the value never fails: where most runs are equal, the standard error of so few differences
+# says little.
 set -eu
 root=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
 table=$root/tests/benchmark/accuracy.csv
