@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // How often do the 95 % intervals of `palpate compare` contain what they estimate? Draws sweeps over 5 to 60 seeds from
 // recorded populations (tests/benchmark/coverage) and compares two groups of each, with 1, some and all other settings
-// per seed; with one, each run is there in three copies. "t" and "BCa" are Student's interval and the bootstrap's of the
-// same differences. Values that no interval covers stand below.
+// per seed; with one, each run is there in three copies. "t" and "BCa" are Student's interval and the bootstrap's of
+// the same differences. Values that no interval covers stand below.
 //     interval_coverage SAMPLES RESULTS_CSV=METRIC ...
 #include "support/populations.hpp"
 

@@ -90,7 +90,7 @@ double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
 
 /// " over 20 seeds" where several are known.
 std::string seeds_words(const std::vector<RunOutcome>& runs) {
-  std::set<std::string> seeds;
+  std::set<std::optional<std::string>> seeds;
   for (const RunOutcome& run : runs) seeds.insert(run.seed);
   return seeds.size() > 1 ? fmt::format(" over {} seeds", seeds.size()) : std::string();
 }

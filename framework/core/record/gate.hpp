@@ -18,7 +18,7 @@ struct RunOutcome {
   std::string label;    ///< "job 3"; "" where there is but one run
   std::string failure;  ///< why it failed or never ran; "" when it is done
   std::optional<Row> summary;
-  std::string seed = "";  ///< of a sweep over several seeds, whose jobs with the same seed count as one; else ""
+  std::optional<std::string> seed = std::nullopt;  ///< of a sweep over seeds: jobs with the same one count as one
 };
 
 /// One expectation, and whether it is fulfilled.
