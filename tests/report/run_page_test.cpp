@@ -72,6 +72,30 @@ TEST_F(ReportedRun, SaysByWhichMotionATapWasMadeWhereThereAreSeveral) {
   EXPECT_THAT(story("paper"), testing::Not(HasSubstr("by motion")));
 }
 
+TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
+  // Tap 1, 1.5 cm high, is taken for the desk until others have told where that is.
+  const test::Ended ran =
+      test::palpate({"run", (test::source_folder() / "configs/default.yaml").string(), "--quiet", "scene=mug", "taps=9"},
+                    folder_.path());
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const fs::path directory = test::only_run(folder_.path() / "runs");
+  report(directory);
+  const std::string count =
+      "const of = (name) => document.getElementById('map_u').data.find((t) => t.name === name)?.x.length ?? 0; "
+      "return [of('on the object'), of('on the desk')]";
+  const Browsed seen = test::browse(
+      directory / "report.html",
+      {drawn(9), count, "return document.getElementById('story').textContent",
+       "const s = document.getElementById('slider'); s.value = 1; s.dispatchEvent(new Event('input'));", drawn(1), count},
+      false);
+  ASSERT_EQ(seen.trouble, "");
+  const json summary = json::parse(text_of(directory / "summary.json"));
+  ASSERT_EQ(summary.at("relabelled"), "1 object");
+  EXPECT_EQ(seen.values.at(0), json({summary.at("on_surface_taps"), summary.at("off_surface_taps")}));
+  EXPECT_THAT(seen.values.at(1).get<std::string>(), HasSubstr("Tap 1 is read as on the object by now"));
+  EXPECT_EQ(seen.values.at(3), json({0, 1}));
+}
+
 TEST_F(ReportedRun, ShowsMarksAboveTheSurfaceAndTheNextTap) {
   const fs::path directory = made(folder_, {"seed=4"});
   report(directory);

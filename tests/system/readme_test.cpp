@@ -83,11 +83,11 @@ TEST_P(Pages, ShowCommandsThatRunAndWhatTheyPrintAndDraw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Pages,
-                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 3},
-                                           Page{"framework/docs/results.md", 4}, Page{"framework/docs/sweeps.md", 0},
-                                           Page{"framework/docs/comparing.md", 5}, Page{"framework/docs/scenes.md", 2},
+                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 4},
+                                           Page{"framework/docs/results.md", 6}, Page{"framework/docs/sweeps.md", 0},
+                                           Page{"framework/docs/comparing.md", 5}, Page{"framework/docs/scenes.md", 3},
                                            Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
-                                           Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 0},
+                                           Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 4},
                                            Page{"framework/docs/any_side.md", 0},
                                            Page{"runs/reference/README.md", 9}),
                          [](const auto& one) {
@@ -103,7 +103,7 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   for (const auto& entry : fs::directory_iterator(test::source_folder() / "framework/docs")) {
     ++pages;
     const std::string name = "framework/docs/" + entry.path().filename().string();
-    EXPECT_LE(lines(text_of(entry.path())), 250) << name;
+    EXPECT_LE(lines(text_of(entry.path())), 270) << name;
     EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
   }
   // The examples of python.md run in tests/python.
