@@ -97,7 +97,7 @@ std::string words_of(const std::string& text, std::size_t first, std::size_t cou
 fs::path found(const fs::path& pattern) {
   glob_t files{};
   const bool any = ::glob(pattern.c_str(), 0, nullptr, &files) == 0;
-  const fs::path out = any ? files.gl_pathv[0] : "";
+  fs::path out = any ? files.gl_pathv[0] : "";
   ::globfree(&files);
   return out;
 }
@@ -227,7 +227,8 @@ std::string Document::text_differs(const Part& part, const std::string& printed)
     for (std::size_t first = 0; !words_of(line, first).empty(); ++first)
       if (same_line(part.text, words_of(line, first, count), part.tolerance.share)) return out;
   }
-  return out + fmt::format("{}:{}: shows    {}\n  but is printed: {}\n", file_.string(), part.line + 1, part.text, printed);
+  return out +
+         fmt::format("{}:{}: shows    {}\n  but is printed: {}\n", file_.string(), part.line + 1, part.text, printed);
 }
 
 std::string Document::lines_differ(const Part& part, const std::string& printed, bool keep) {
@@ -249,7 +250,8 @@ std::string Document::lines_differ(const Part& part, const std::string& printed,
       at = find([&](const Split& line) { return without_ids(line.words) == without_ids(shown.words); });
       const bool is_like = at < all.size();
       if (is_like && keep) {
-        lines_[i] = lines_[i].substr(0, lines_[i].find_first_not_of(' ')) + all[at].substr(all[at].find_first_not_of(' '));
+        lines_[i] =
+            lines_[i].substr(0, lines_[i].find_first_not_of(' ')) + all[at].substr(all[at].find_first_not_of(' '));
       } else {
         out += fmt::format("{}:{}: shows    {}\n  but is printed: {}\n", file_.string(), i + 1, lines_[i],
                            is_like ? all[at] : "nothing like it");
@@ -279,8 +281,8 @@ std::string Document::picture_differs(std::size_t part, const fs::path& folder, 
   const std::string seal = hash_of(sealed);
   if (keep) lines_[one.line] = fmt::format("<!-- drawn {}, seal {} -->", one.text, seal);
   if (keep || seal == one.seal) return "";
-  return fmt::format("{}:{}: {} and the lines above were not made together: PALPATE_KEEP=1 makes both\n", file_.string(),
-                     one.line + 1, picture.string());
+  return fmt::format("{}:{}: {} and the lines above were not made together: PALPATE_KEEP=1 makes both\n",
+                     file_.string(), one.line + 1, picture.string());
 }
 
 std::string Document::prose() const {

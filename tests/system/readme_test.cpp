@@ -29,7 +29,8 @@ void imitate_checkout(const fs::path& folder) {
 bool left_out(const std::string& command, const fs::path& folder) {
   if (command.rfind("/usr/bin/python3 tests/report/", 0) == 0 && !fs::exists("/usr/bin/chromedriver")) return true;
 #ifdef __SANITIZE_ADDRESS__
-  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ", "/usr/bin/python3 tests/report/"}) {
+  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ",
+                            "/usr/bin/python3 tests/report/"}) {
     if (command.rfind(begin, 0) == 0) return true;
   }
   const auto at = command.find(" runs/");
@@ -88,8 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Pages,
                                            Page{"framework/docs/comparing.md", 5}, Page{"framework/docs/scenes.md", 3},
                                            Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
                                            Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 4},
-                                           Page{"framework/docs/any_side.md", 0},
-                                           Page{"runs/reference/README.md", 9}),
+                                           Page{"framework/docs/any_side.md", 0}, Page{"runs/reference/README.md", 9}),
                          [](const auto& one) {
                            return one.param.name == std::string("runs/reference/README.md")
                                       ? "pictures"
