@@ -53,6 +53,11 @@ Split split(const std::string& line) {
   return out;
 }
 
+std::string without_ids(const std::string& words) {
+  static const std::regex id(R"(\b[0-9a-f]{12}\b)");
+  return std::regex_replace(words, id, "ID");
+}
+
 /// One in the last digit of a number as it is written.
 double last_digit(const std::string& number) {
   const auto exponent = number.find('e');
@@ -92,7 +97,7 @@ std::string words_of(const std::string& text, std::size_t first, std::size_t cou
 fs::path found(const fs::path& pattern) {
   glob_t files{};
   const bool any = ::glob(pattern.c_str(), 0, nullptr, &files) == 0;
-  const fs::path out = any ? files.gl_pathv[0] : "";
+  fs::path out = any ? files.gl_pathv[0] : "";
   ::globfree(&files);
   return out;
 }
@@ -222,7 +227,8 @@ std::string Document::text_differs(const Part& part, const std::string& printed)
     for (std::size_t first = 0; !words_of(line, first).empty(); ++first)
       if (same_line(part.text, words_of(line, first, count), part.tolerance.share)) return out;
   }
-  return out + fmt::format("{}:{}: shows    {}\n  but is printed: {}\n", file_.string(), part.line + 1, part.text, printed);
+  return out +
+         fmt::format("{}:{}: shows    {}\n  but is printed: {}\n", file_.string(), part.line + 1, part.text, printed);
 }
 
 std::string Document::lines_differ(const Part& part, const std::string& printed, bool keep) {
@@ -241,10 +247,11 @@ std::string Document::lines_differ(const Part& part, const std::string& printed,
     };
     std::size_t at = find([&](const Split& line) { return same(shown, line, part.tolerance.share); });
     if (at == all.size()) {
-      at = find([&](const Split& line) { return line.words == shown.words; });
+      at = find([&](const Split& line) { return without_ids(line.words) == without_ids(shown.words); });
       const bool is_like = at < all.size();
       if (is_like && keep) {
-        lines_[i] = lines_[i].substr(0, lines_[i].find_first_not_of(' ')) + all[at].substr(all[at].find_first_not_of(' '));
+        lines_[i] =
+            lines_[i].substr(0, lines_[i].find_first_not_of(' ')) + all[at].substr(all[at].find_first_not_of(' '));
       } else {
         out += fmt::format("{}:{}: shows    {}\n  but is printed: {}\n", file_.string(), i + 1, lines_[i],
                            is_like ? all[at] : "nothing like it");
@@ -274,8 +281,8 @@ std::string Document::picture_differs(std::size_t part, const fs::path& folder, 
   const std::string seal = hash_of(sealed);
   if (keep) lines_[one.line] = fmt::format("<!-- drawn {}, seal {} -->", one.text, seal);
   if (keep || seal == one.seal) return "";
-  return fmt::format("{}:{}: {} and the lines above were not made together: PALPATE_KEEP=1 makes both\n", file_.string(),
-                     one.line + 1, picture.string());
+  return fmt::format("{}:{}: {} and the lines above were not made together: PALPATE_KEEP=1 makes both\n",
+                     file_.string(), one.line + 1, picture.string());
 }
 
 std::string Document::prose() const {

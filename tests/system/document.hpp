@@ -6,9 +6,11 @@
 //   <!-- printed -->                   before a block or a table: the last command prints these lines, in this order;
 //                                      it may print others between them
 //   <!-- printed, within 5 % -->       numbers may differ by that share, and by one in their last digit
-//   <!-- printed, not ns, seconds -->  of a table: the columns whose names begin so are not compared: a clock makes them
+//   <!-- printed, not ns, seconds -->  of a table: the columns whose names begin so are not compared: a clock makes
+//   them
 //   <!-- printed: 1.4 +- 0.5 mm -->    a text of the prose: the last command prints it, and the page has it
-//   <!-- drawn FILE, seal HEX -->      before a picture: it is a copy of the FILE that the last command left. The seal is
+//   <!-- drawn FILE, seal HEX -->      before a picture: it is a copy of the FILE that the last command left. The seal
+//   is
 //                                      a hash of the picture and of the last lines above that are compared: neither
 //                                      changes without the other.
 //
@@ -36,9 +38,9 @@ class Document {
     std::size_t line = 0;   ///< in the page, from 0: of the command, of the marker
     std::size_t begin = 0;  ///< of `printed`: the lines that are compared
     std::size_t end = 0;
-    std::string text;        ///< the command, what is said, the file that is drawn
-    bool is_long = false;    ///< of a command: it takes many minutes
-    std::string seal;        ///< of `drawn`
+    std::string text;      ///< the command, what is said, the file that is drawn
+    bool is_long = false;  ///< of a command: it takes many minutes
+    std::string seal;      ///< of `drawn`
     Tolerance tolerance;
   };
 

@@ -29,7 +29,8 @@ void imitate_checkout(const fs::path& folder) {
 bool left_out(const std::string& command, const fs::path& folder) {
   if (command.rfind("/usr/bin/python3 tests/report/", 0) == 0 && !fs::exists("/usr/bin/chromedriver")) return true;
 #ifdef __SANITIZE_ADDRESS__
-  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ", "/usr/bin/python3 tests/report/"}) {
+  for (const char* begin : {"sh tests/benchmark/", "tests/benchmark/", "build/release/", "./palpate sweep ",
+                            "/usr/bin/python3 tests/report/"}) {
     if (command.rfind(begin, 0) == 0) return true;
   }
   const auto at = command.find(" runs/");
@@ -83,13 +84,12 @@ TEST_P(Pages, ShowCommandsThatRunAndWhatTheyPrintAndDraw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Pages,
-                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 3},
-                                           Page{"framework/docs/results.md", 4}, Page{"framework/docs/sweeps.md", 0},
-                                           Page{"framework/docs/comparing.md", 5}, Page{"framework/docs/scenes.md", 2},
+                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 4},
+                                           Page{"framework/docs/results.md", 6}, Page{"framework/docs/sweeps.md", 0},
+                                           Page{"framework/docs/comparing.md", 5}, Page{"framework/docs/scenes.md", 3},
                                            Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
-                                           Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 0},
-                                           Page{"framework/docs/any_side.md", 0},
-                                           Page{"runs/reference/README.md", 9}),
+                                           Page{"framework/docs/exactness.md", 0}, Page{"framework/docs/desks.md", 4},
+                                           Page{"framework/docs/any_side.md", 0}, Page{"runs/reference/README.md", 9}),
                          [](const auto& one) {
                            return one.param.name == std::string("runs/reference/README.md")
                                       ? "pictures"
@@ -103,7 +103,7 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   for (const auto& entry : fs::directory_iterator(test::source_folder() / "framework/docs")) {
     ++pages;
     const std::string name = "framework/docs/" + entry.path().filename().string();
-    EXPECT_LE(lines(text_of(entry.path())), 250) << name;
+    EXPECT_LE(lines(text_of(entry.path())), 270) << name;
     EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
   }
   // The examples of python.md run in tests/python.
