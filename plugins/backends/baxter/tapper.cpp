@@ -141,15 +141,15 @@ void Tapper::go_to(const Joints& hover) {
   expect_fit();  // the robot's own inverse kinematics takes its time
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
-  climb(up, sign_);
+  climb(up, sign_, {});
   follow(across, motion_.travel_speed, across.length());
   settle(hover);
 }
 
 /// Goes up from wherever a run or a fault has left the arm. `sign`: of the force when something presses the tool
-/// upwards, 0 if it is not known.
-void Tapper::climb(const Path& up, double sign) {
-  if (up.length() > 0.0) rise(up, sign, kMostGentle);
+/// upwards, 0 if it is not known; `zero` as in rise().
+void Tapper::climb(const Path& up, double sign, const std::optional<double>& zero) {
+  if (up.length() > 0.0) rise(up, kMostGentle, sign, zero);
 }
 
 /// Waits until the arm has come up after its set-point: one that went sideways before would cut the corner, and what
@@ -242,8 +242,7 @@ std::string Tapper::recover(const Fault& fault) {
         outlast_reflex();
         // Where the zero has moved, what seems to pull at rest does not count.
         const double zero = zero_.z() + sign * std::min(0.0, presses());
-        watch_.expect_rise(Watch::Rise{zero, sign, most_rubbing()});
-        climb(way_up(), sign);
+        climb(way_up(), sign, zero);
         settle(*watch_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {

@@ -68,16 +68,16 @@ class Tapper {
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up, double sign, const Contact& contact);
-  void rise(const Path& up, double sign, double gently);
+  void rise(const Path& up, double gently, double sign, const std::optional<double>& zero);
   void learn_rubbing(const Path& column);
-  double most_rubbing() const;
+  double most_pull(const Path& way, double along) const;
   void learn_moving(double difference);
   Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
   static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
   void outlast_reflex();
   Path way_up() const;
-  void climb(const Path& up, double sign);
+  void climb(const Path& up, double sign, const std::optional<double>& zero);
   void await_height(const Joints& top);
   Path column(const Target& place) const;
   Target bare() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
@@ -110,12 +110,11 @@ class Tapper {
   bool calibrated_ = false;
   double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
-  double moving_ = 0.0;  ///< N along z that it reads beside while the arm comes down in the air
-  std::optional<double>
-      rubbing_;                 ///< N along z that the force at rest reads less after coming up than after coming down
-  double shown_sign_ = 0.0;     ///< by the latest contact that was believed; 0 if nothing showed it
-  int told_ = 0;                ///< of how many taps moving_ was noted
-  std::optional<double> peak_;  ///< N, the most that was felt of this tap against the tool; none before its descent
+  double moving_ = 0.0;            ///< N along z that it reads beside while the arm comes down in the air
+  std::optional<double> rubbing_;  ///< Nm with which every joint rubs, once it is known
+  double shown_sign_ = 0.0;        ///< by the latest contact that was believed; 0 if nothing showed it
+  int told_ = 0;                   ///< of how many taps moving_ was noted
+  std::optional<double> peak_;     ///< N, the most that was felt of this tap against the tool; none before its descent
 };
 
 }  // namespace palpate::baxter
