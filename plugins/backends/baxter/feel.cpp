@@ -141,12 +141,12 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     const bool coming_down = signed_tap.tap().coming_down();
     const double felt = reading.z() - (coming_down ? moving_ : 0.0);
     set_point = signed_tap.next(height(), felt, fresh);
-    // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point > before && sign_ != 0.0) {
       const double along = std::clamp(plan.hover + kFromAbove - height(), 0.0, column.length() - kTurned);
       watch_.expect_rise(Watch::Rise{zero_.z(), sign_, most_pull(column, along)});
     }
     if (set_point < before) watch_.expect_rise(std::nullopt);
+    // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
     } else if (set_point != before) {

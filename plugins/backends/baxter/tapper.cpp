@@ -26,6 +26,7 @@ constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
 constexpr double kHeld = 0.5;         ///< s for which the measured joints are sent at a stop
 constexpr double kReflexEnds = 4.0;   ///< s: the firmware's own stop lasts two
 constexpr int kReflexes = 20;         ///< how often it may fire on the way up of an arm that presses
+constexpr double kPulls = 3.5;        ///< N by which an arm that presses reads less than nothing: its joints rub
 constexpr double kAboveTravel = 0.3;  ///< m that the arm may be above the height of travel
 constexpr double kBelowFloor = 0.01;  ///< m that the tip may be below the end of a descent
 
@@ -246,7 +247,8 @@ std::string Tapper::recover(const Fault& fault) {
         settle(*watch_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {
-        if (!again.reflex || again.then == Then::hold || !(presses() > 0.0) || attempt == kReflexes) throw;
+        const bool pulled = again.then == Then::hold || presses() < -kPulls;
+        if (!again.reflex || pulled || attempt == kReflexes) throw;
       }
     }
   } catch (const NoPath& none) {
