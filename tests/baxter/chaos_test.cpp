@@ -37,7 +37,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // Where nothing may be sent the arm goes on for the robot's own 0.2 s to the last set-point, a lag of 0.35 s ahead of
 // it, and at a contact presses on by that: at 2 cm/s up to 7 mm or 10 N beyond the threshold. Where the force is not
-// what it is (bias below the threshold, or frozen for the half second until that is sure), it ends no descent. There
+// what it is (a bias below the threshold), it ends no descent. There
 // the firmware's reflex is the only bound. Of commands that are heard again the arm catches up with those in between,
 // the joints one by one; from 0.015 rad off, which passes for a settled error, that may be 15 mm to the side.
 // Held where it was measured, an arm of the usual speed ratio of 0.3 comes back from its lag joint by joint, too: 5 mm.
@@ -49,7 +49,7 @@ const Kind kKinds[] = {
     {"error", FaultKind::error, 0, 0, 0.0, false, kBent, false},
     {"disabled", FaultKind::disabled, 0, 0, 0.0, false, kBent, false},
     {"squish", FaultKind::squish, 0, 0, kNever, false, kBent, false},
-    {"freeze_endpoint", FaultKind::freeze_endpoint, 0, 0, kNever, true, kBent, false},
+    {"freeze_endpoint", FaultKind::freeze_endpoint, 0, 0, kNever, false, kBent, false},
     {"kill_endpoint", FaultKind::kill_endpoint, 0, 0, kNever, false, kBent, false},
     {"kill_joints", FaultKind::kill_joints, 0, 0, Watch::kFresh, true, kBent, false},
     {"kill_state", FaultKind::kill_state, 0, 0, Watch::kStateFresh, true, kBent, false},

@@ -23,13 +23,13 @@ constexpr double kMostMoving = 0.8;        ///< of the threshold: more may be a 
 constexpr double kLeastMoved = 2.5;        ///< N that the zero may move, whatever the threshold: noise makes 0.4
 
 /// m above what it touched to where an arm goes up gently: there it is clear, and its joints rub the other way.
-constexpr double kClear = 0.003;
-/// Of what the joints rub at one place of the area: so much they do elsewhere, and while they move.
-constexpr double kRubsElsewhere = 2.6;
+constexpr double kClear = 0.005;
+constexpr double kTurned = 0.01;   ///< m of a way over which turned() looks
+constexpr double kRubs = 1.4;      ///< times as much as at rest, while the joints turn around and move
 constexpr double kGentle = 0.01;   ///< m/s: an arm of 6.4 kN/m that is held feels 2 N more in three readings
 constexpr double kSpeedUp = 0.15;  ///< m/s^2, afterwards
-/// N that an arm which goes up freely reads less by its speed (3), by a zero that changes by 50 N/m (2.5), by noise.
-constexpr double kFreely = 8.0;
+/// N that an arm reads less when it goes up faster: 3 by its speed, and 2.5 behind a zero that changes by 50 N/m.
+constexpr double kFaster = 3.0;
 constexpr double kLatest = 0.2;    ///< of a force that is followed, the part of the latest reading
 constexpr int kPulled = 6;         ///< new readings of a force that pulls: what moving takes away from it is noisy
 constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
@@ -127,6 +127,12 @@ class SignedTap {
   std::vector<One> taps_;
 };
 
+/// How far the joints turn for each metre of a way, `along` it: rad/m, all of them together.
+double turned(const Path& way, double along) {
+  const double end = std::min(way.length(), along + kTurned);
+  return (way.at(end) - way.at(along)).lpNorm<1>() / std::max(end - along, 1e-3);
+}
+
 }  // namespace
 
 /// Comes down to `hover` from just above and waits until the arm rests. Its joints rub: at 0.4 Nm the force of an arm
@@ -206,9 +212,12 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     set_point = signed_tap.next(height(), felt, fresh);
     if (signed_tap.tap().noticed() > periods.noticed) periods.notice(signed_tap.tap().noticed());
     signed_tap.slow_to(std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.threshold, stiffness)));
-    // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
-    if (set_point > before && sign_ != 0.0) watch_.expect_rise(Watch::Rise{signed_tap.zero(), sign_, most_rubbing()});
+    if (set_point > before && sign_ != 0.0) {
+      const double along = std::clamp(plan.hover + kFromAbove - height(), 0.0, column.length() - kTurned);
+      watch_.expect_rise(Watch::Rise{signed_tap.zero(), sign_, most_pull(column, along)});
+    }
     if (set_point < before) watch_.expect_rise(std::nullopt);
+    // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
     if (set_point == height() && set_point != before) {
       command = seen_.joints->position;
     } else if (set_point != before) {
@@ -268,44 +277,44 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   return contact;
 }
 
-/// Once a run, in the air above the first column: how much more the force at rest reads after coming down than after
-/// coming up.
+/// Once a run, in the air above the first column: what the joints rub, by the force at rest after coming down and after
+/// coming up. By virtual work a torque r in each of them takes r times turned() along the way.
 void Tapper::learn_rubbing(const Path& column) {
   rest_from_above(column);
   const double down = force_at_rest(column.at(kFromAbove)).z();
   const Path up = column.back(kFromAbove);
   follow(up, motion_.speed, up.length());
   settle(up.end());
-  rubbing_ = std::abs(down - force_at_rest(up.end()).z());
+  rubbing_ = std::abs(down - force_at_rest(up.end()).z()) / 2 / turned(up, 0.0);
 }
 
-/// N of a pull that an arm may feel, against its zero at rest, that goes up and is not held. Where its joints rub less
-/// than where that was felt, it may be held with force_stop by then.
-double Tapper::most_rubbing() const {
+/// N of a pull, against its zero at rest, that an arm may feel which goes up `along` this way and is not held.
+double Tapper::most_pull(const Path& way, double along) const {
   if (!rubbing_) return options_.force_stop;
-  return std::min(motion_.threshold + kRubsElsewhere * *rubbing_, options_.force_stop + *rubbing_ / kRubsElsewhere);
+  return motion_.threshold + kRubs * 2 * *rubbing_ * turned(way, along);
 }
 
 /// Goes up from where it may press, of which only a pull is a fault. `zero`: of the force along z down there, N.
 void Tapper::retreat(const Path& up, double sign, double zero, const Contact& contact) {
   watch_.forget_tare();
-  if (sign != 0.0) watch_.expect_rise(Watch::Rise{zero, sign, most_rubbing()});
   const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kMostGentle;
-  rise(up, sign, std::clamp(touched - height(), 0.0, kMostGentle) + kClear);
+  rise(up, std::clamp(touched - height(), 0.0, kMostGentle) + kClear, sign, zero);
 }
 
 /// Goes up gently until the tip has come up by `gently` (m), and faster from there on. On the first part what it
-/// presses with goes, and what its joints rub against turns around: the force of an arm that goes up freely is its zero
-/// then.
-void Tapper::rise(const Path& up, double sign, double gently) {
+/// presses with goes, and what its joints rub against turns around; then its zero follows the pose. `zero`: N of the
+/// force along z of an arm that is free; without it what it feels after the first part is taken for that.
+void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
+  const double limit = most_pull(up, 0.0);
+  if (sign != 0.0 && zero) watch_.expect_rise(Watch::Rise{*zero, sign, limit});
   const double clear = height() + gently;
   double speed = std::min(motion_.speed, kGentle);
   Eigen::Vector3d force = seen_.endpoint->force;
   const auto set_free = [&] {
     watch_.set_tare(force, Watch::Zero::follows);
-    if (sign != 0.0) {
-      watch_.expect_rise(Watch::Rise{force.z(), sign, kFreely, Watch::Zero::follows});
-    }
+    if (sign == 0.0) return;
+    const double most = zero ? limit + kFaster : motion_.threshold + kFaster;
+    watch_.expect_rise(Watch::Rise{zero.value_or(force.z()), sign, most, Watch::Zero::follows});
   };
   bool free = false;
   for (double along = 0.0; along < up.length();) {

@@ -26,6 +26,7 @@ constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
 constexpr double kHeld = 0.5;         ///< s for which the measured joints are sent at a stop
 constexpr double kReflexEnds = 4.0;   ///< s: the firmware's own stop lasts two
 constexpr int kReflexes = 20;         ///< how often it may fire on the way up of an arm that presses
+constexpr double kPulls = 3.5;        ///< N by which an arm that presses reads less than nothing: its joints rub
 constexpr double kAboveTravel = 0.3;  ///< m that the arm may be above the height of travel
 constexpr double kBelowFloor = 0.01;  ///< m that the tip may be below the end of a descent
 
@@ -142,7 +143,7 @@ void Tapper::go_to(const Joints& hover) {
   expect_fit();  // the robot's own inverse kinematics takes its time
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
-  climb(up, sign_);
+  climb(up, sign_, {});
   std::vector<Reaction::Step> motion;
   motion_log_ = &motion;
   follow(across, motion_.travel_speed, across.length());
@@ -152,9 +153,9 @@ void Tapper::go_to(const Joints& hover) {
 }
 
 /// Goes up from wherever a run or a fault has left the arm. `sign`: of the force when something presses the tool
-/// upwards, 0 if it is not known.
-void Tapper::climb(const Path& up, double sign) {
-  if (up.length() > 0.0) rise(up, sign, kMostGentle);
+/// upwards, 0 if it is not known; `zero` as in rise().
+void Tapper::climb(const Path& up, double sign, const std::optional<double>& zero) {
+  if (up.length() > 0.0) rise(up, kMostGentle, sign, zero);
 }
 
 /// Waits until the arm has come up after its set-point: one that went sideways before would cut the corner, and what
@@ -248,12 +249,12 @@ std::string Tapper::recover(const Fault& fault) {
         outlast_reflex();
         // Where the zero has moved, what seems to pull at rest does not count.
         const double zero = zero_.z() + sign * std::min(0.0, presses());
-        watch_.expect_rise(Watch::Rise{zero, sign, most_rubbing()});
-        climb(way_up(), sign);
+        climb(way_up(), sign, zero);
         settle(*watch_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {
-        if (!again.reflex || again.then == Then::hold || !(presses() > 0.0) || attempt == kReflexes) throw;
+        const bool pulled = again.then == Then::hold || presses() < -kPulls;
+        if (!again.reflex || pulled || attempt == kReflexes) throw;
       }
     }
   } catch (const NoPath& none) {

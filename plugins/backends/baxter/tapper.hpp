@@ -51,8 +51,8 @@ class Tapper {
  private:
   static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
   static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
-  static constexpr double kMostGentle =
-      0.02;  ///< m by which nothing that is touched gives way: up to there it goes up gently
+  /// m by which nothing that is touched gives way: so far an arm that may press goes up gently.
+  static constexpr double kMostGentle = 0.02;
   static constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
   /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
@@ -69,9 +69,9 @@ class Tapper {
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up, double sign, double zero, const Contact& contact);
-  void rise(const Path& up, double sign, double gently);
+  void rise(const Path& up, double gently, double sign, const std::optional<double>& zero);
   void learn_rubbing(const Path& column);
-  double most_rubbing() const;
+  double most_pull(const Path& way, double along) const;
   double stiffness_at(const Target& place) const;
   tapping::MotionOptions bounded(tapping::MotionOptions motion, double stiffness) const;
   void learn_moving(double difference);
@@ -80,7 +80,7 @@ class Tapper {
   static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
   void outlast_reflex();
   Path way_up() const;
-  void climb(const Path& up, double sign);
+  void climb(const Path& up, double sign, const std::optional<double>& zero);
   void await_height(const Joints& top);
   Path column(const Target& place) const;
   Target bare() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
@@ -113,10 +113,9 @@ class Tapper {
   bool calibrated_ = false;
   double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
-  double moving_ = 0.0;  ///< N along z that it reads beside while the arm comes down in the air
-  std::optional<double>
-      rubbing_;              ///< N along z that the force at rest reads less after coming up than after coming down
-  double shown_sign_ = 0.0;  ///< by the latest contact that was believed; 0 if nothing showed it
+  double moving_ = 0.0;            ///< N along z that it reads beside while the arm comes down in the air
+  std::optional<double> rubbing_;  ///< Nm with which every joint rubs, once it is known
+  double shown_sign_ = 0.0;        ///< by the latest contact that was believed; 0 if nothing showed it
   Reaction reaction_;
   std::vector<Reaction::Step>* motion_log_ = nullptr;  ///< gets every period while it is there
   int told_ = 0;                                       ///< of how many taps moving_ was noted

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// The rules of Watch about the force: that it is another again and again, that it is not too strong, that nothing holds
+// the tool.
+#include "baxter/watch.hpp"
+
+#include "baxter/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::baxter {
+namespace {
+
+using Then = Fault::Then;
+
+/// N by which the force is less than its zero, in the direction of a press.
+double pull_of(const Watch::Rise& rise, const EndpointReading& endpoint) {
+  return rise.sign * (rise.zero - endpoint.force.z());
+}
+
+/// `reflex`: the arm's own has stopped it, too.
+Fault held(double newtons, const Eigen::Vector3d& tip, bool reflex) {
+  return {
+      fmt::format("something holds the tool: it pulls with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene: see "
+                  "what the tool hangs on to, and free it by hand before the arm goes up again",
+                  newtons, 100 * tip.x(), 100 * tip.y(), 100 * tip.z()),
+      Then::hold, true, reflex};
+}
+
+}  // namespace
+
+std::optional<Fault> Watch::frozen(const EndpointReading& endpoint) const {
+  const long equal = endpoint.count - renewed_;
+  if (static_cast<double>(equal) < kFrozen * renewal_) return std::nullopt;
+  return Fault{
+      fmt::format("endpoint_state has had the same force to the last digit for {} messages, and before another "
+                  "every {:.1f}: its sender is frozen, restart the robot",
+                  equal, renewal_),
+      Then::hold};
+}
+
+/// What the arm's own reflex is about: an arm that it stops on its way up may be held by what it touched.
+std::optional<Fault> Watch::reflex(const Snapshot& seen, const Eigen::Vector3d& tip) const {
+  if (motion_.rise) {
+    const double pulls = pull_of(*motion_.rise, *seen.endpoint);
+    if (pulls > 0.25 * motion_.rise->limit) return held(pulls, tip, true);
+  }
+  return Fault{
+      "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
+      "motion.threshold, or see what the arm met",
+      Then::retreat, true, true};
+}
+
+std::optional<Fault> Watch::pull(const Snapshot& seen, const Eigen::Vector3d& tip, double since) {
+  if (!motion_.rise) return std::nullopt;
+  Rise& rise = *motion_.rise;
+  const double pulls = pull_of(rise, *seen.endpoint);
+  if (rise.follows == Zero::follows) rise.zero -= rise.sign * pulls * std::min(1.0, since / kZeroFollows);
+  motion_.pulled = pulls > rise.limit ? motion_.pulled + 1 : 0;
+  if (motion_.pulled < kForceSamples) return std::nullopt;
+  return held(pulls, tip, false);
+}
+
+std::optional<Fault> Watch::force(const Snapshot& seen, const Eigen::Vector3d& tip) {
+  if (!fresh_) return std::nullopt;
+  const double since = motion_.felt_at ? seen.now - *motion_.felt_at : 0.0;
+  motion_.felt_at = seen.now;
+  if (auto fault = pull(seen, tip, since)) return fault;
+  if (!motion_.tare) return std::nullopt;
+  const Eigen::Vector3d felt = seen.endpoint->force - *motion_.tare;
+  const double change =
+      zero_ == Zero::follows ? felt.norm() : std::max(std::abs(felt.z()), felt.head<2>().norm() / kSideways);
+  if (zero_ == Zero::follows) *motion_.tare += felt * std::min(1.0, since / kZeroFollows);
+  motion_.too_strong = change > force_stop_ ? motion_.too_strong + 1 : 0;
+  if (motion_.too_strong < kForceSamples) return std::nullopt;
+  return Fault{fmt::format("the force changed by {:.1f} N, more than force_stop allows: take a lower motion.speed or "
+                           "motion.threshold, or see what the arm met",
+                           change),
+               Then::retreat};
+}
+
+}  // namespace palpate::baxter
