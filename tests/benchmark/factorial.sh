@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs configs/benchmark/factorial.yaml and prints the table of framework/docs/results.md: rmse_m after 30 taps by
+# Runs configs/benchmark/factorial.yaml and prints the table of framework/docs/comparing.md: rmse_m after 30 taps by
 # acquisition and belief, the mean over the seeds (of a seed: over the objects), with the half width of its 95 % interval
 # (Student's t over the seeds), and below it what of the gain over grid and random taps with the belief of
 # `weighted_two_part` comes of the taps and what of the belief: each is changed first once, and second once.

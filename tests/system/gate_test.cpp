@@ -126,17 +126,18 @@ TEST_F(Expect, OnASweepTakesStatisticsOverItsRuns) {
        "sweep: {grid: {seed: \"range(0,6)\"}}\n");
   const Ended ended = sweep("--quiet --junit out.xml", "gate.yaml");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_EQ(ended.err, "gate.yaml:12:3: expected median(taps) > 8, got 8\n");
+  EXPECT_EQ(ended.err, "gate.yaml:12:3: expected median(taps) > 8, got 8 over 6 seeds\n");
   EXPECT_THAT(ended.out, EndsWith("expected: 2 of 3\n"));
   const std::vector<std::string> cases = junit_cases(out());
   ASSERT_EQ(cases.size(), 6U + 3U);
   EXPECT_EQ(cases[2], "gate|job 2: seed=2|True|");
   EXPECT_EQ(cases[7], "gate.expect|mean(found) >= 0.5|True|");
-  EXPECT_EQ(cases[8], "gate.expect|median(taps) > 8|True|gate.yaml:12:3: expected median(taps) > 8, got 8");
+  EXPECT_EQ(cases[8],
+            "gate.expect|median(taps) > 8|True|gate.yaml:12:3: expected median(taps) > 8, got 8 over 6 seeds");
 
   const Ended resumed = resume(directory());
   EXPECT_EQ(resumed.status, 1) << "carried on, it is judged again";
-  EXPECT_THAT(resumed.err, EndsWith(": expected median(taps) > 8, got 8\n"));
+  EXPECT_THAT(resumed.err, EndsWith(": expected median(taps) > 8, got 8 over 6 seeds\n"));
   EXPECT_EQ(swept({"--runs", "other", "expect.median(taps)=== 8"}, "gate.yaml").filename(), directory().filename())
       << "nor does it enter the id of a sweep";
 }
