@@ -55,18 +55,16 @@ TEST(ExtremeBackend, ATimeOrAForceThatIsNoNumberIsRefusedAsAFailedTap) {
 }
 
 TEST(ExtremeBackend, AHeightBeyondWhatAModelCanHoldEndsTheRunWithALineThatNamesMapTapAndRemedy) {
-  for (const char* const surface : {"single", "two_part"}) {
-    const std::vector<Contact> answers(17, contact_at(1e308));
-    const std::string said = error_of(
-        [&] {
-          Finished run("paper/object_i.yaml", {std::string("surface=") + surface}, scripted(answers));
-          run.experiment.ask(Quantity::height);
-        },
-        Error::Kind::run);
-    EXPECT_THAT(said,
-                ::testing::MatchesRegex("maps: the height is not a finite number everywhere after tap [0-9]+, choose a "
-                                        "larger height.noise .*"));
-  }
+  const std::vector<Contact> answers(17, contact_at(1e308));
+  const std::string said = error_of(
+      [&] {
+        Finished run("paper/object_i.yaml", {"surface=two_part"}, scripted(answers));
+        run.experiment.ask(Quantity::height);
+      },
+      Error::Kind::run);
+  EXPECT_THAT(said,
+              ::testing::MatchesRegex("maps: the height is not a finite number everywhere after tap [0-9]+, choose a "
+                                      "larger height.noise .*"));
   Errors errors;
   errors.rmse = kInfinity;
   EXPECT_THAT(error_of([&] { require_finite(errors, 17); }, Error::Kind::run),
