@@ -27,7 +27,9 @@ class IntervalCoverage : public ::testing::TestWithParam<std::pair<std::size_t, 
     const test::Coverages found = test::coverages_of(arm, seeds, others, copies, samples);
     expect_coverage(found.means, least, "means");
     expect_coverage(found.differences, least, "differences");
-    EXPECT_LT(found.means.hits + found.differences.hits, found.means.all + found.differences.all) << "far too wide";
+    // Of 60 intervals of 95 % all hit in one trial of 22; of 120, in one of 470.
+    const int all = found.means.all + found.differences.all;
+    if (all >= 120) EXPECT_LT(found.means.hits + found.differences.hits, all) << "far too wide";
   }
 };
 
