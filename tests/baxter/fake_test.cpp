@@ -128,7 +128,8 @@ TEST(FakeRobot, TellsOfItsOptionsAndFaults) {
   const Ended ended = run_program({fake_baxter_file().string(), "--help"}, ".");
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"--speed-ratio", "--command-timeout", "--gripper", "--tool-mass", "  complaint ", "  stop ",
-                           "  slow_endpoint ", "  bursts ", "  stall ", "  spikes ", "  moving_force ", "  avoid "}) {
+                           "  slow_endpoint ", "  bursts ", "  stall ", "  spikes ", "  moving_force ", "  avoid ",
+                           "  second_sender ", "  slow_force ", "  caught "}) {
     EXPECT_THAT(ended.out, HasSubstr(word));
   }
 }
