@@ -29,7 +29,9 @@ class IntervalCoverage : public ::testing::TestWithParam<std::pair<std::size_t, 
     expect_coverage(found.differences, least, "differences");
     // Of 60 intervals of 95 % all hit in one trial of 22; of 120, in one of 470.
     const int all = found.means.all + found.differences.all;
-    if (all >= 120) EXPECT_LT(found.means.hits + found.differences.hits, all) << "far too wide";
+    if (all >= 120) {
+      EXPECT_LT(found.means.hits + found.differences.hits, all) << "far too wide";
+    }
   }
 };
 
