@@ -4,6 +4,8 @@
 #include "analysis/column.hpp"
 #include "analysis/readable.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -71,7 +73,8 @@ std::string key_words(const Sweep& sweep, const Job& job, const std::vector<std:
   std::string out;
   for (const std::string& key : keys) {
     const std::string value = value_of(sweep, job, key);
-    if (!value.empty()) out += (out.empty() ? "" : ", ") + (with_keys ? key + "=" : std::string()) + value;
+    if (value.empty()) continue;
+    out += fmt::format("{}{}{}", out.empty() ? "" : ", ", with_keys ? key + "=" : std::string(), value);
   }
   return one_line(out);
 }
