@@ -73,7 +73,8 @@ class LabelsReadAgain : public Shell {
     for (const Cells& tap : csv_rows(text_of(directory / "taps.csv"))) {
       const int number = std::stoi(tap.at("tap"));
       if (tap.at("outcome") == "contact") recorded[number] = tap.at("on_surface") == "true" ? "object" : "desk";
-      if (table.at(number) == "object" || table.at(number) == "desk") EXPECT_EQ(recorded[number], table.at(number));
+      if (table.at(number) != "object" && table.at(number) != "desk") continue;
+      EXPECT_EQ(recorded[number], table.at(number));
     }
     for (const Relabelled& one : relabelled) recorded[one.tap] = one.on_object ? "object" : "desk";
     EXPECT_EQ(count(recorded, "object"), summary.number("on_surface_taps").value());

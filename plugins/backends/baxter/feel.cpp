@@ -297,17 +297,19 @@ double Tapper::most_pull(const Path& way, double along) const {
 /// Goes up from where it may press, of which only a pull is a fault. `zero`: of the force along z down there, N.
 void Tapper::retreat(const Path& up, double sign, double zero, const Contact& contact) {
   watch_.forget_tare();
-  const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kMostGentle;
+  const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kGently - kClear;
   rise(up, std::clamp(touched - height(), 0.0, kMostGentle) + kClear, sign, zero);
 }
 
-/// Goes up gently until the tip has come up by `gently` (m), and faster from there on. On the first part what it
-/// presses with goes, and what its joints rub against turns around; then its zero follows the pose. `zero`: N of the
-/// force along z of an arm that is free; without it what it feels after the first part is taken for that.
+/// Goes up gently until the tip has come up by `gently` (m), and farther while it presses; faster from there on. On the
+/// first part what it presses with goes, and what its joints rub against turns around; then its zero follows the pose.
+/// `zero`: N of the force along z of an arm that is free; without it what it feels after the first part is taken for
+/// that.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = most_pull(up, 0.0);
   if (sign != 0.0 && zero) watch_.expect_rise(Watch::Rise{*zero, sign, limit});
   const double clear = height() + gently;
+  const double surely = height() + kMostGentle;
   double speed = std::min(motion_.speed, kGentle);
   Eigen::Vector3d force = seen_.endpoint->force;
   const auto set_free = [&] {
@@ -321,7 +323,8 @@ void Tapper::rise(const Path& up, double gently, double sign, const std::optiona
     along = up.advance(along, speed, kPeriod);
     step(up.at(along));
     if (watch_.fresh()) force += kLatest * (seen_.endpoint->force - force);
-    if (height() < clear) continue;
+    const bool presses = zero && sign * (force.z() - *zero) > motion_.threshold;
+    if (height() < (presses ? surely : clear)) continue;
     if (!std::exchange(free, true)) set_free();
     speed = std::min(motion_.retreat_speed, speed + kSpeedUp * kPeriod);
   }

@@ -155,7 +155,7 @@ void Tapper::go_to(const Joints& hover) {
 /// Goes up from wherever a run or a fault has left the arm. `sign`: of the force when something presses the tool
 /// upwards, 0 if it is not known; `zero` as in rise().
 void Tapper::climb(const Path& up, double sign, const std::optional<double>& zero) {
-  if (up.length() > 0.0) rise(up, kMostGentle, sign, zero);
+  if (up.length() > 0.0) rise(up, kGently, sign, zero);
 }
 
 /// Waits until the arm has come up after its set-point: one that went sideways before would cut the corner, and what
