@@ -132,11 +132,11 @@ std::string words(const std::vector<TapBelief::Doubted>& doubted) {
 
 constexpr const char* kObject = "object";
 
-/// "5 object, 9 desk"
+/// "5 object; 9 desk"
 std::string words(const std::vector<Relabelled>& relabelled) {
   std::string out;
   for (const Relabelled& one : relabelled)
-    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", one.tap, one.on_object ? kObject : "desk");
+    out += fmt::format("{}{} {}", out.empty() ? "" : "; ", one.tap, one.on_object ? kObject : "desk");
   return out;
 }
 
@@ -416,7 +416,7 @@ FieldList<Summary> make_summary_list() {
   list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; }).more();
   list.add_where(is_read_again, "relabelled",
                  "the contacts that these counts take otherwise than `on_surface` of their taps does, each by the number "
-                 "of its tap and the label at the end: `5 object, 9 desk`; null if there is none; only with "
+                 "of its tap and the label at the end: `5 object; 9 desk`; null if there is none; only with "
                  "`height.systematic` and from any side",
                  [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
