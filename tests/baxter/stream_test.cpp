@@ -39,11 +39,13 @@ std::optional<Fault> looked(double period, double joints, double endpoint, bool 
     const auto latest = [now](Arrival& arrival, double rate) {
       arrival.received = std::floor(now * rate + 1e-6) / rate;
       arrival.stamp = arrival.received + 5.0;
+      arrival.count = std::lround(arrival.received * rate);
     };
     const std::optional<Fault> fault = rules.at(now, [&](Snapshot& s) {
       s.simulated = simulated;
       latest(*s.joints, joints);
       latest(*s.endpoint, endpoint);
+      s.endpoint->renewals = s.endpoint->count;
     });
     if (fault) return fault;
   }

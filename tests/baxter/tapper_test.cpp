@@ -62,7 +62,8 @@ TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
     EXPECT_EQ(contact.outcome, Outcome::contact);
     return contact.seconds;
   };
-  // What is made at 0.5 cm/s and at 1 cm/s: 13.5 cm down, a centimetre before each of two rests, the first of the way up.
+  // What is made at 0.5 cm/s and at 1 cm/s: 13.5 cm down, a centimetre before each of two rests, the first of the way
+  // up.
   EXPECT_NEAR(seconds(0) - seconds(1), 15.5 / 0.5 - 15.5 / 1.0, 1.5);
 }
 

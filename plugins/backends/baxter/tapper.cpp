@@ -95,7 +95,7 @@ Contact Tapper::tap(const TapRequest& request) {
 
 Contact Tapper::attempt(const TapRequest& request) {
   recovering_ = false;
-  motion_log_ = nullptr;
+  motion_log_.reset();
   motion_ = options_.motion.of_request(request);
   Path down = column(request.target);
   if (options_.dry_run) return failed(Outcome::aborted, "dry run: the place can be reached, nothing moved");
@@ -144,12 +144,11 @@ void Tapper::go_to(const Joints& hover) {
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
   climb(up, sign_, {});
-  std::vector<Reaction::Step> motion;
-  motion_log_ = &motion;
+  motion_log_.emplace();
   follow(across, motion_.travel_speed, across.length());
   settle(hover);
-  motion_log_ = nullptr;
-  reaction_.learn_trailing(motion);
+  reaction_.learn_trailing(*motion_log_);
+  motion_log_.reset();
 }
 
 /// Goes up from wherever a run or a fault has left the arm. `sign`: of the force when something presses the tool
@@ -215,7 +214,7 @@ void Tapper::step(const Joints& command) {
   // A period that was missed is not made up for: the arm would be sent several set-points at once.
   if (next_ + kPeriod <= seen_.now) next_ = seen_.now;
   if (!pass()) throw standstill();
-  if (motion_log_ != nullptr) motion_log_->push_back({seen_.now, planner_.to_scene(arm_.tip(command).position), tip_});
+  if (motion_log_) motion_log_->push_back({seen_.now, planner_.to_scene(arm_.tip(command).position), tip_});
   if (std::optional<Fault> fault = watch_.look(seen_, tip_)) throw *fault;
 }
 

@@ -117,8 +117,8 @@ class Tapper {
   std::optional<double> rubbing_;  ///< Nm with which every joint rubs, once it is known
   double shown_sign_ = 0.0;        ///< by the latest contact that was believed; 0 if nothing showed it
   Reaction reaction_;
-  std::vector<Reaction::Step>* motion_log_ = nullptr;  ///< gets every period while it is there
-  int told_ = 0;                                       ///< of how many taps moving_ was noted
+  std::optional<std::vector<Reaction::Step>> motion_log_;  ///< gets every period while it is there
+  int told_ = 0;                                           ///< of how many taps moving_ was noted
   std::optional<double> peak_;  ///< N, the most that was felt of this tap against the tool; none before its descent
 };
 
