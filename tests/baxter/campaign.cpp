@@ -38,6 +38,7 @@ class Session {
   Session(const Condition& condition, const Scene& scene, std::uint64_t seed)
       : scene_(scene),
         random_(seed, "campaign"),
+        predicts_(!condition.motion.empty()),
         robot_(scene, body_of(condition, seed)),
         tapper_(options_of(condition), scene, robot_, nullptr, [](const std::string&) {}) {
     for (const fake_baxter::Fault& fault : condition.faults) robot_.body.inject(fault);
@@ -63,6 +64,7 @@ class Session {
     request.target = draw_place();
     request.previous = previous_;
     previous_ = request.target;
+    if (predicts_) request.predicted = Prediction{scene_.height(request.target.x, request.target.y), 0.005, {}};
     peak_ = 0.0;
     touched_at_.reset();
     const Contact contact = tapper_.tap(request);
@@ -119,6 +121,7 @@ class Session {
 
   const Scene& scene_;
   Random random_;
+  bool predicts_;
   BodyRobot robot_;
   Tapper tapper_;
   int taps_ = 0;

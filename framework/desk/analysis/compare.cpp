@@ -21,17 +21,17 @@ namespace {
 using Values = std::vector<std::string>;
 
 /// What a job came to, and the unit of statistics that it belongs to.
-struct Outcome {
+struct JobOutcome {
   JobValue value;
   std::string unit;
 };
 
 /// The jobs of a group by the values that make pairs. Sorted: the order of the jobs decides nothing.
-using Outcomes = std::map<Values, Outcome>;
+using JobOutcomes = std::map<Values, JobOutcome>;
 
 struct Collected {
   Values values;
-  Outcomes outcomes;
+  JobOutcomes outcomes;
   int never = 0;  ///< of those that count, the ones that never got where they were to be looked at
 };
 
@@ -108,8 +108,8 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
     groups.push_back({group.values, {}, 0});
     for (const auto& [job, row] : group.jobs) {
       // Where seeds are not the units jobs are, and copies of a run are one.
-      Outcome outcome{value_of_job(row, query.metric, "--metric"),
-                      out.by_seed ? value_of(sweep, *job, "seed") : outcome_text(row, outcome_of)};
+      JobOutcome outcome{value_of_job(row, query.metric, "--metric"),
+                         out.by_seed ? value_of(sweep, *job, "seed") : outcome_text(row, outcome_of)};
       if (!keeps(*job, row)) {
         out.left_out.add(outcome.value.fate);
         outcome.value = {Fate::left_out};
@@ -119,7 +119,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
       // A list may hold the same job more than once: each is the counterpart of its like.
       pairing.emplace_back();
-      Outcomes& outcomes = groups.back().outcomes;
+      JobOutcomes& outcomes = groups.back().outcomes;
       for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat)
         pairing.back() = std::to_string(repeat);
     }
@@ -161,12 +161,12 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   ComparedPair out;
   out.first = first;
   out.second = second;
-  const Outcomes& a = groups[first].outcomes;
-  const Outcomes& b = groups[second].outcomes;
+  const JobOutcomes& a = groups[first].outcomes;
+  const JobOutcomes& b = groups[second].outcomes;
   UnitClusters of_a;
   UnitClusters of_b;
   UnitClusters differences;
-  const auto add = [&](const Outcome& one, const Outcome& other) {
+  const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
     const Fate fate = std::min(one.value.fate, other.value.fate);
     if (fate == Fate::counted) {
       // The same seed, or copies of one pair.
@@ -180,7 +180,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   };
   for (const auto& [pairing, outcome] : a) {
     const auto partner = b.find(pairing);
-    add(outcome, partner != b.end() ? partner->second : Outcome{{Fate::without_partner}, ""});
+    add(outcome, partner != b.end() ? partner->second : JobOutcome{{Fate::without_partner}, ""});
   }
   for (const auto& [pairing, outcome] : b) {
     if (a.count(pairing) == 0) add({{Fate::without_partner}, ""}, outcome);
@@ -224,7 +224,7 @@ std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::s
 }
 
 /// Adds to `apart` the places in the pairing of which the two groups have no value in common.
-void find_apart(const Outcomes& a, const Outcomes& b, std::set<std::size_t>& apart) {
+void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t>& apart) {
   const std::size_t places = a.begin()->first.size() - 1;  // the last one tells equal jobs apart
   for (std::size_t place = 0; place < places; ++place) {
     std::set<std::string> values;

@@ -35,8 +35,11 @@ constexpr int kPulled = 6;         ///< new readings of a force that pulls: what
 constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
 constexpr double kEvenTo = 1.0;    ///< s, for so long its force is looked at
 constexpr std::size_t kFewestEven = 10;
-constexpr double kStiffest = 8000.0;  ///< N/m of the arm where its posture is not known
-constexpr double kSteady = 1.5;       ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
+constexpr double kToRest = 0.015;        ///< m/s, of the centimetre before a rest, where nothing should be
+constexpr double kFirstThreshold = 5.0;  ///< N, until a contact was measured
+constexpr double kMostRubbing = 0.5;     ///< Nm of a joint: more is something that touches the arm
+constexpr double kStiffest = 8000.0;     ///< N/m of the arm where its posture is not known
+constexpr double kSteady = 1.5;          ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
 
 /// Of each component; at least one reading.
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
@@ -75,11 +78,17 @@ struct EvenPeriods {
   std::vector<Reaction::Period> now;
   std::vector<Reaction::Period> at_notice;
   int noticed = 0;
+  double begin = 0.0;  ///< s
 
   /// `even_for`: since when it comes down so, seconds; 0 if it does not.
   void add(const Reaction::Period& period, double even_for) {
     if (even_for < kEvenFrom) now.clear();
-    if (even_for >= kEvenFrom) now.push_back(period);
+    if (even_for >= kEvenFrom && period.time >= begin) now.push_back(period);
+  }
+  /// Begins anew once an arm that is slowed down at `time` comes down evenly again.
+  void restart(double time) {
+    now.clear();
+    begin = time + kEvenFrom;
   }
   void notice(int count) {
     noticed = count;
@@ -140,7 +149,7 @@ double turned(const Path& way, double along) {
 /// felt at rest before a tap and after it can be compared.
 void Tapper::rest_from_above(const Path& column) {
   settle(column.front());
-  follow(column, motion_.speed, kFromAbove);
+  follow(column, std::min(motion_.speed, kToRest), kFromAbove);
   settle(column.at(kFromAbove));
 }
 
@@ -158,6 +167,11 @@ double Tapper::stiffness_at(const Target& place) const {
 /// The motion at speeds at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault where such a
 /// speed is not worth having.
 tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double stiffness) const {
+  // Nobody knows yet how late this robot is: it is taken for the slowest that is driven.
+  if (!reaction_.measured()) {
+    motion.threshold = std::min(motion.threshold, kFirstThreshold);
+    motion.fine_threshold = std::min(motion.fine_threshold, motion.threshold);
+  }
   double greatest = reaction_.greatest_speed(motion.threshold, stiffness);
   if (greatest < Reaction::kSlowest && reaction_.measured()) {
     throw Fault{fmt::format("a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
@@ -182,6 +196,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   if (!rubbing_) learn_rubbing(column);
   rest_from_above(column);
   const double stiffness = stiffness_at(request.target);
+  reaction_.late(watch_.lateness(), seen_.now);
   const tapping::MotionOptions motion = bounded(wanted, stiffness);
   note_(fmt::format(
       "tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is noticed after {:.0f} ms and stopped {:.0f} "
@@ -197,6 +212,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   std::optional<double> moving;
   int pulled = 0;
   double set_point = plan.hover;
+  double speed = motion.speed;
   Joints command = at(plan.hover);
   Eigen::Vector3d at_hover = seen_.endpoint->force;
   for (bool first = true; !signed_tap.tap().done();) {
@@ -208,10 +224,15 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     const double beside = coming_down ? moving_ : 0.0;
     const double felt = reading.z() - beside;
     reaction_.late(watch_.lateness(), seen_.now);
-    periods.add({seen_.now, set_point, height()}, signed_tap.tap().even_for());
+    periods.add({seen_.now, height()}, signed_tap.tap().even_for());
     set_point = signed_tap.next(height(), felt, fresh);
     if (signed_tap.tap().noticed() > periods.noticed) periods.notice(signed_tap.tap().noticed());
-    signed_tap.slow_to(std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.threshold, stiffness)));
+    const double greatest = std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.threshold, stiffness));
+    if (greatest < speed) {
+      speed = greatest;
+      signed_tap.slow_to(speed);
+      periods.restart(seen_.now);
+    }
     if (set_point > before && sign_ != 0.0) {
       const double along = std::clamp(plan.hover + kFromAbove - height(), 0.0, column.length() - kTurned);
       watch_.expect_rise(Watch::Rise{signed_tap.zero(), sign_, most_pull(column, along)});
@@ -283,9 +304,9 @@ void Tapper::learn_rubbing(const Path& column) {
   rest_from_above(column);
   const double down = force_at_rest(column.at(kFromAbove)).z();
   const Path up = column.back(kFromAbove);
-  follow(up, motion_.speed, up.length());
+  follow(up, std::min(motion_.speed, kToRest), up.length());
   settle(up.end());
-  rubbing_ = std::abs(down - force_at_rest(up.end()).z()) / 2 / turned(up, 0.0);
+  rubbing_ = std::min(kMostRubbing, std::abs(down - force_at_rest(up.end()).z()) / 2 / turned(up, 0.0));
 }
 
 /// N of a pull, against its zero at rest, that an arm may feel which goes up `along` this way and is not held.

@@ -27,9 +27,8 @@ class Reaction {
  public:
   /// One period of a descent.
   struct Period {
-    double time;       ///< s
-    double set_point;  ///< height that was commanded, m
-    double height;     ///< of the tip, m
+    double time;    ///< s
+    double height;  ///< of the tip, m
   };
 
   /// N, which a contact is to reach at most: the arm's firmware stops it at 16 N, and noise delays a notice.
@@ -37,7 +36,7 @@ class Reaction {
   /// m/s: an arm that was measured and would have to be slower is rejected.
   static constexpr double kSlowest = 0.002;
   static constexpr double kLookedAt = 1.5;      ///< s of a descent
-  static constexpr double kShortestWay = 0.02;  ///< m
+  static constexpr double kShortestWay = 0.06;  ///< m
   /// s of noticing and trailing until they were measured: those of the slowest robot that is driven.
   static constexpr double kFirstNoticing = 0.23;
   static constexpr double kFirstTrailing = 0.55;

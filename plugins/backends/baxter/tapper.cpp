@@ -30,8 +30,7 @@ constexpr double kPulls = 3.5;        ///< N by which an arm that presses reads 
 constexpr double kAboveTravel = 0.3;  ///< m that the arm may be above the height of travel
 constexpr double kBelowFloor = 0.01;  ///< m that the tip may be below the end of a descent
 
-/// For the first contact with a desk of which nobody knows how hard it is: at 1 cm/s and 4 N it stays below 8 N on
-/// 100 kN/m.
+/// For the first contact with a desk of which nobody knows how hard it is.
 tapping::MotionOptions gentle(tapping::MotionOptions motion) {
   motion.speed = std::min(motion.speed, 0.01);
   motion.fine_speed = std::min(motion.fine_speed, motion.speed);

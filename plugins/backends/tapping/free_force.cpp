@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tapping/free_force.hpp"
 
+#include <algorithm>
+
 namespace palpate::tapping {
 namespace {
 
@@ -40,7 +42,10 @@ FreeForce::Line FreeForce::line(double height) const {
     square += (one.height - middle) * (one.height - middle);
     product += (one.height - middle) * (one.force - forces / count);
   }
-  return {level, middle, product / square};
+  Line out{level, middle, std::clamp(product / square, -kMostSlope, kMostSlope)};
+  const double most = kMostOffset + kMostDrift * std::max(0.0, top_ - height);
+  out.force += std::clamp(out.at(height), tare_ - most, tare_ + most) - out.at(height);
+  return out;
 }
 
 }  // namespace palpate::tapping

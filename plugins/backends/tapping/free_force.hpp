@@ -17,7 +17,8 @@ struct Sample {
 class FreeForce {
  public:
   /// `gap`: metres above the tip whose samples do not count, because a contact with something soft may lie in them.
-  explicit FreeForce(double gap) : gap_(gap) {}
+  /// `top`: the height of the tare, metres.
+  FreeForce(double gap, double top) : gap_(gap), top_(top) {}
 
   /// Forgets all samples and starts with the force of a tare, newtons.
   void tare(double zero);
@@ -34,13 +35,19 @@ class FreeForce {
   };
 
   /// Returns the line that holds at this height (m): by least squares through the samples between `gap` and `gap` +
-  /// kLength above it, with a normal prior about 0 for the slope. Where there are none, the tare.
+  /// kLength above it, with a normal prior about 0 for the slope. Where there are none, the tare. Its slope is at most
+  /// kMostSlope, and at this height it is off the tare by at most kMostOffset + kMostDrift per metre below the top:
+  /// what changes by more is something soft and not a zero.
   Line line(double height) const;
 
-  static constexpr double kLength = 0.03;  ///< m
+  static constexpr double kLength = 0.03;      ///< m
+  static constexpr double kMostSlope = 100.0;  ///< N/m
+  static constexpr double kMostDrift = 60.0;   ///< N/m
+  static constexpr double kMostOffset = 4.0;   ///< N
 
  private:
   double gap_;
+  double top_;
   double tare_ = 0.0;
   std::vector<Sample> samples_;
 };

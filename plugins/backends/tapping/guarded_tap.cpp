@@ -45,6 +45,26 @@ double explained(const std::vector<Sample>& samples, double kink) {
   return square == 0.0 || product < 0.0 ? -1.0 : product * product / square;
 }
 
+/// The means of as many samples one after the other as leave at most kMostSamples: the search for an onset takes the
+/// square of their number, and the arm waits for it.
+std::vector<Sample> thinned(const std::vector<Sample>& samples) {
+  constexpr std::size_t kMostSamples = 400;
+  const std::size_t size = samples.size() / kMostSamples + 1;
+  if (size == 1) return samples;
+  std::vector<Sample> out;
+  for (std::size_t begin = 0; begin < samples.size(); begin += size) {
+    const std::size_t end = std::min(samples.size(), begin + size);
+    const auto count = static_cast<double>(end - begin);
+    Sample mean{0.0, 0.0};
+    for (std::size_t i = begin; i < end; ++i) {
+      mean.height += samples[i].height / count;
+      mean.force += samples[i].force / count;
+    }
+    out.push_back(mean);
+  }
+  return out;
+}
+
 }  // namespace
 
 double slope_below(const std::vector<Sample>& samples, double kink) {
@@ -108,7 +128,11 @@ std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
 }
 
 GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
-    : motion_(motion), descent_(descent), arm_(arm), set_point_(descent.hover), free_(motion.threshold / kSoftest) {}
+    : motion_(motion),
+      descent_(descent),
+      arm_(arm),
+      set_point_(descent.hover),
+      free_(motion.threshold / kSoftest, descent.hover) {}
 
 double GuardedTap::next(double height, double force, bool fresh) {
   if (done()) return set_point_;
@@ -177,7 +201,6 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
     case Stage::fine:
       if (above_ >= kConsecutive) {
-        ++noticed_;
         finish({Outcome::contact, height, peak_, 0.0, {}});
       } else if (ramp(goal_, motion_.fine_speed)) {
         enter(Stage::descend);
@@ -197,6 +220,15 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
   }
   return set_point_;
+}
+
+void GuardedTap::slow_to(double speed) {
+  if (motion_.adaptive_hover) motion_.adaptive_hover->speed = std::min(motion_.adaptive_hover->speed, speed);
+  motion_.fine_speed = std::min(motion_.fine_speed, speed);
+  if (speed >= motion_.speed) return;
+  const double left = std::max(0.0, set_point_ - descent_.floor);
+  motion_.timeout += left / speed - left / motion_.speed;
+  motion_.speed = speed;
 }
 
 void GuardedTap::give_up(double height) {
@@ -224,7 +256,8 @@ void GuardedTap::feel(double height, double force) {
   const double felt = force - zero_;
   peak_ = std::max(peak_, felt);
   above_ = felt > threshold() ? above_ + 1 : 0;
-  if (descending || stage_ == Stage::stop) trace_.push_back({height, force});
+  const bool paused = arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest);
+  if (descending || stage_ == Stage::stop || paused) trace_.push_back({height, force});
 }
 
 /// The contact is one, or the descent goes on where it is. If something is touched, the mean of the force that followed
@@ -237,9 +270,9 @@ void GuardedTap::conclude(double height, bool rises) {
   const bool lasts = rises && (summed_ == 0 || sum_ / summed_ - zero_ > least);
   const bool asks = arm_ == Arm::real || motion_.confirm;
   if (given_up_ && !lasts) return finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
-  const bool again = arm_ == Arm::real && refused_ && std::abs(*refused_ - first_) < kSamePlace;
+  const bool again = arm_ == Arm::real && rises && refused_ && std::abs(*refused_ - first_) < kSamePlace;
   if (!asks || lasts || again) return finish({Outcome::contact, height, peak_, 0.0, {}});
-  refused_ = first_;
+  if (rises) refused_ = first_;
   enter(Stage::descend);
 }
 
@@ -257,6 +290,7 @@ GuardedTap::Rise GuardedTap::rise() const {
   for (const Sample& one : trace_) {
     if (one.height < first_ + 2.0 * kFarthestOnset) above.push_back({one.height, one.force - free.at(one.height)});
   }
+  above = thinned(above);
   const std::optional<double> found = onset_of_descent(above);
   const bool is_contact = found && *found - first_ < kFarthestOnset && slope_below(above, *found) > kSoftestRise;
   return {is_contact ? *found : first_, is_contact};
@@ -270,7 +304,9 @@ double GuardedTap::even_for() const {
 }
 
 void GuardedTap::enter(Stage stage) {
-  const bool resumed = stage_ == Stage::stop;
+  // A real arm of `paper` may touch in a pause, or between two of its steps.
+  const bool resumed =
+      stage_ == Stage::stop || (arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest));
   stage_ = stage;
   entered_ = periods_;
   above_ = 0;

@@ -6,7 +6,6 @@
 #include "tapping/free_force.hpp"
 #include "tapping/motion.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -76,11 +75,8 @@ class GuardedTap {
   /// force that is not `fresh` was told before: time goes on, but it counts for nothing.
   double next(double height, double force, bool fresh = true);
 
-  /// Comes down no faster than this from now on, m/s.
-  void slow_to(double speed) {
-    motion_.speed = std::min(motion_.speed, speed);
-    motion_.fine_speed = std::min(motion_.fine_speed, speed);
-  }
+  /// Comes down no faster than this from now on, m/s, and has as much more time.
+  void slow_to(double speed);
 
   /// The arm has stopped by itself, at a force that it has felt: what it presses on with is let go. Where that force is
   /// seen here, too, if late, it was a contact like any other; else the tap comes to nothing.
