@@ -31,8 +31,8 @@ namespace palpate {
 
 /// A contact with another label now than when it was made: what is added to all heights has become known better.
 struct Relabelled {
-  int tap = 0;              ///< its number, from 1
-  bool on_object = false;   ///< as it is read now
+  int tap = 0;             ///< its number, from 1
+  bool on_object = false;  ///< as it is read now
 };
 
 class Systematic {

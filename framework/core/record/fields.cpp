@@ -228,8 +228,11 @@ FieldList<TapRecord> make_tap_list() {
   list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
-  list.add("on_surface", "whether a contact was one with an object, as it was read when it was made; `relabelled` of the summary names "
-           "the taps that are read otherwise at the end", &Tap::on_surface);
+  list.add(
+      "on_surface",
+      "whether a contact was one with an object, as it was read when it was made; `relabelled` of the summary names "
+      "the taps that are read otherwise at the end",
+      &Tap::on_surface);
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
   list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
                  "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
@@ -414,11 +417,12 @@ FieldList<Summary> make_summary_list() {
       .less()
       .absent("the object was not found");
   list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; }).more();
-  list.add_where(is_read_again, "relabelled",
-                 "the contacts that these counts take otherwise than `on_surface` of their taps does, each by the number "
-                 "of its tap and the label at the end: `5 object; 9 desk`; null if there is none; only with "
-                 "`height.systematic` and from any side",
-                 [](const Summary& s) { return if_any(words(s.relabelled)); });
+  list.add_where(
+      is_read_again, "relabelled",
+      "the contacts that these counts take otherwise than `on_surface` of their taps does, each by the number "
+      "of its tap and the label at the end: `5 object; 9 desk`; null if there is none; only with "
+      "`height.systematic` and from any side",
+      [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
   list.add("nlpd",
            "mean negative log predictive density of the true height (natural logarithm) over the cells on an object "

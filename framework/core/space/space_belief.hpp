@@ -87,7 +87,7 @@ class SpaceBelief final : public SurfaceBelief {
   struct Told {
     SurfaceTouch touch;
     double force;
-    int tap;  ///< its number, from 1
+    int tap;         ///< its number, from 1
     bool on_object;  ///< as it is read when it is made
   };
   Told told(const Approach& approach, const Contact& contact) const;

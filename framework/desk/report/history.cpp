@@ -37,7 +37,8 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
   Snapshot out;
   out.taps = playback.taps();
   for (int i = 0; i < out.taps; ++i)
-    out.marks.push_back(mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
+    out.marks.push_back(
+        mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
   out.next = experiment.choose_next();
   out.scores = experiment.scores();
   experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);

@@ -19,7 +19,7 @@ struct TapMark {
   enum class Kind { on, off, failed };
   int tap = 1;
   Kind kind = Kind::failed;  ///< as the contact is read at that moment
-  double x = 0.0;  ///< metres, as `y`
+  double x = 0.0;            ///< metres, as `y`
   double y = 0.0;
   double height = 0.0;  ///< metres; the desk's where nothing was touched
 };
