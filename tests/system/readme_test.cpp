@@ -104,7 +104,7 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   for (const auto& entry : fs::directory_iterator(test::source_folder() / "framework/docs")) {
     ++pages;
     const std::string name = "framework/docs/" + entry.path().filename().string();
-    EXPECT_LE(lines(text_of(entry.path())), 270) << name;
+    EXPECT_LE(lines(text_of(entry.path())), 250) << name;
     EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
   }
   // The examples of python.md run in tests/python.
