@@ -44,7 +44,7 @@ class RTDEControlInterface:
         return [0.0, 0.0, 0.0 if self.arm.fault == "flange" else 0.15, 0.0, 0.0, 0.0] if self.usable() else []
 
     def isPoseWithinSafetyLimits(self, pose):
-        return pose[0] < CORNER[0] + 0.95 * AREA
+        return self.usable() and pose[0] < CORNER[0] + 0.95 * AREA
 
     def stopScript(self):
         self.arm.note("script stopped")

@@ -51,6 +51,7 @@ class Tapper:
         if arm.trouble:
             raise arm.trouble
         arm.look()
+        arm.look()  # the first state may be older than a cable pulled since the last tap
         begin, outcome = arm.stamp, None
         self.check_begin(ask)
         here = arm.pose()
