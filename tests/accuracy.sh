@@ -49,7 +49,7 @@ while [ $# -gt 0 ]; do
     --write) mode='write' ;;
     --reason | --set | --seeds)
       [ $# -ge 2 ] || usage
-      case $1 in --reason) reason=$2 ;; --set) echo "$2" >>"$work/set" ;; --seeds) most=$2 ;; esac
+      case $1 in --reason) reason=$2 ;; --set) echo "$2" >>"$work/set" ;; --seeds) most=$2; case $2 in "" | *[!0-9]* | 0 | 1) echo "accuracy: --seeds takes a number from 2 on: the error of a mean needs two" >&2; exit 2 ;; esac ;; esac
       shift
       ;;
     *) case " $sweeps " in *" $1 "*) wanted="$wanted $1" ;; *) usage ;; esac ;;
