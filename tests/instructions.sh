@@ -108,7 +108,7 @@ while IFS=, read -r piece is_short most; do
   failed=yes
   echo "instructions: $piece takes more than 2 % more than the $most of $table; what grew:" >&2
   awk -F '\t' 'NR == FNR {old[$2] = $1; next} {if ($1 > old[$2]) printf "%+15.0f  %s\n", $1 - old[$2], $2}' \
-    "$kept/$piece" "$work/counted/$piece" | sort -k1,1nr | head -n 10 >&2
+    "$kept/$piece" "$work/counted/$piece" | sort -k1,1gr | head -n 10 >&2
 done <"$work/pieces"
 
 # The last commit that changed the numbers says in CHANGELOG.md which it raised.

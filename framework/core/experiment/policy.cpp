@@ -184,6 +184,9 @@ void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
               Error::Kind::run);
 }
 
-double largest_value(const Eigen::VectorXd& values) { return values.maxCoeff<Eigen::PropagateNaN>(); }
+double largest_value(const Eigen::VectorXd& values) {
+  // In a fraction of the time of maxCoeff<Eigen::PropagateNaN>(): a sum is NaN wherever a value is.
+  return std::isnan(values.sum()) ? values.maxCoeff<Eigen::PropagateNaN>() : values.maxCoeff();
+}
 
 }  // namespace palpate

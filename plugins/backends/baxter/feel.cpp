@@ -24,6 +24,7 @@ constexpr double kLeastMoved = 2.5;        ///< N that the zero may move, whatev
 
 /// m above what it touched to where an arm goes up gently: there it is clear, and its joints rub the other way.
 constexpr double kClear = 0.005;
+constexpr double kFarther = 0.01;  ///< m that it goes on gently where it still presses: an onset is as inexact
 constexpr double kTurned = 0.01;   ///< m of a way over which turned() looks
 constexpr double kRubs = 1.4;      ///< times as much as at rest, while the joints turn around and move
 constexpr double kGentle = 0.01;   ///< m/s: an arm of 6.4 kN/m that is held feels 2 N more in three readings
@@ -322,15 +323,15 @@ void Tapper::retreat(const Path& up, double sign, double zero, const Contact& co
   rise(up, std::clamp(touched - height(), 0.0, kMostGentle) + kClear, sign, zero);
 }
 
-/// Goes up gently until the tip has come up by `gently` (m), and farther while it presses; faster from there on. On the
-/// first part what it presses with goes, and what its joints rub against turns around; then its zero follows the pose.
-/// `zero`: N of the force along z of an arm that is free; without it what it feels after the first part is taken for
-/// that.
+/// Goes up gently until the tip has come up by `gently` (m), at most kFarther more while it presses; then faster. On
+/// the first part what it presses with goes, and what its joints rub against turns around; then its zero follows the
+/// pose. `zero`: N of the force along z of an arm that is free; without it what it feels after the first part is taken
+/// for that.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = most_pull(up, 0.0);
   if (sign != 0.0 && zero) watch_.expect_rise(Watch::Rise{*zero, sign, limit});
   const double clear = height() + gently;
-  const double surely = height() + kMostGentle;
+  const double surely = clear + kFarther;
   double speed = std::min(motion_.speed, kGentle);
   Eigen::Vector3d force = seen_.endpoint->force;
   const auto set_free = [&] {
