@@ -97,8 +97,9 @@ Watchers::Watchers(const fs::path& folder) {
     std::error_code gone;
     const fs::path place = fs::read_symlink(one.path() / "cwd", gone);
     std::ifstream in(one.path() / "cmdline", std::ios::binary);
-    const std::string words{std::istreambuf_iterator<char>(in), {}};
-    const bool watches = words.find(std::string("\0watch\0", 7)) != std::string::npos;
+    std::ostringstream words;
+    words << in.rdbuf();  // where the process ends meanwhile, this sets failbit; an iterator of the buffer would throw
+    const bool watches = words.str().find(std::string("\0watch\0", 7)) != std::string::npos;
     if (!gone && watches && place == fs::canonical(folder)) pids_.push_back(std::stoi(name));
   }
 }
