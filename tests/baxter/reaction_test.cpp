@@ -5,6 +5,7 @@
 #include "support/testing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace palpate::baxter {
@@ -76,6 +77,18 @@ TEST(Reaction, KeepsTheLatestContactsAndTheWorstOfThem) {
   EXPECT_NEAR(reaction.noticing(), 0.05, 0.012);
 }
 
+TEST(Reaction, ExpectsNoNoticeWithinFewerThanFourRenewalsOfTheForce) {
+  Reaction reaction;
+  reaction.renewed_every(0.01);
+  EXPECT_EQ(reaction.noticing(), Reaction::kFirstNoticing);
+  reaction.renewed_every(0.1);
+  EXPECT_NEAR(reaction.noticing(), Reaction::kFirstNoticing + 0.36, 1e-12) << "nothing was measured";
+  reaction.learn_noticing(contact(0.004, 4000.0, 5.0, 0.25), 0.0, 5.0, 4000.0);
+  EXPECT_NEAR(reaction.noticing(), 0.4, 1e-12);
+  reaction.learn_noticing(contact(0.004, 4000.0, 5.0, 0.7), 0.0, 5.0, 4000.0);
+  EXPECT_NEAR(reaction.noticing(), 0.7, 0.012);
+}
+
 TEST(Reaction, BoundsTheSpeedByTheForceThatIsExpected) {
   Reaction reaction;
   for (const double stiffness : {2200.0, 6400.0}) {
@@ -95,6 +108,14 @@ TEST(Reaction, CountsLatenessUntilItHasFaded) {
   EXPECT_GT(reaction.lateness(), 0.02);
   reaction.late(0.0, 200.0);
   EXPECT_LT(reaction.lateness(), 0.001);
+}
+
+TEST(Reaction, ForgetsALatenessWhileNobodyLooks) {
+  Reaction reaction;
+  reaction.late(0.04, 10.0);
+  reaction.late(0.0, 10.01);
+  reaction.late(0.0, 100.0);
+  EXPECT_NEAR(reaction.lateness(), 0.04 * std::exp(-3.0), 1e-4) << "three times 30 s later";
 }
 
 }  // namespace
