@@ -121,7 +121,7 @@ TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigu
   EXPECT_GT(desk.lowest, 0.03) << "it did not come down further";
 }
 
-TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThanTwentySecondsAndToldOrFound) {
+TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndToldOrFound) {
   for (const double stiffness : {250.0, 300.0, 400.0}) {
     // A floor far below the desk: only the force ends the descent.
     BaxterOptions options = fake_options();

@@ -122,14 +122,16 @@ TEST(AForce, ThatComesInBurstsIsCountedByTheMessageAndNotByTheLook) {
   EXPECT_THAT(robot.send(rules, 300, renewed(1)), IsNothing());
 }
 
-/// An arm that goes up with a force that is a function of the period, in newtons of a press; `sign` as of Watch::Rise.
-std::optional<Fault> rising(double sign, const Watch::Rise& rise, const std::function<double(int)>& press) {
+/// An arm that goes up by `step` m a period with a force that is a function of the period, in newtons of a press;
+/// `sign` as of Watch::Rise.
+std::optional<Fault> rising(double sign, const Watch::Rise& rise, const std::function<double(int)>& press,
+                            double step = 0.001) {
   Rules rules;
   Sender robot;
   rules.expect_rise(rise);
   std::optional<Fault> fault;
-  for (int period = 0; period < 100 && !fault; ++period) {
-    rules.tip.z() = 0.001 * period;  // 10 cm/s
+  for (int period = 0; period < 200 && !fault; ++period) {
+    rules.tip.z() = step * period;
     fault = robot.send(rules, [&](long number) { return rise.zero + sign * press(period) + renewed(1)(number); });
   }
   return fault;
@@ -151,8 +153,10 @@ TEST(AnArmThatGoesUp, FollowsAZeroThatChangesWithThePoseAndNoSpring) {
   const Watch::Rise rise{1.0, -1.0, 6.0, Watch::Zero::follows};
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.05 * period; }), IsNothing()) << "5 N/s: 50 N/m at 10 cm/s";
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("something holds", Then::hold));
-  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.15 * period; }), IsFault("something holds", Then::hold))
-      << "150 N/m, slowly";
+  EXPECT_THAT(rising(
+                  -1.0, rise, [](int period) { return -0.06 * period; }, 0.0002),
+              IsFault("something holds", Then::hold))
+      << "300 N/m at 2 cm/s";
 }
 
 TEST(AReflex, OfAnArmThatGoesUpAndIsPulledIsToldAsThatAndHeld) {

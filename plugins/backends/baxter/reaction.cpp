@@ -104,7 +104,7 @@ void Reaction::learn_noticing(const Periods& periods, double free_down_to, doubl
 double Reaction::noticing() const {
   const double renewals = kRenewals * renewal_;
   if (!measured()) return kFirstNoticing + std::max(0.0, renewals - kLeastNoticing);
-  return std::max(most(noticing_, 0.0), renewals);
+  return std::max(most(noticing_, 0.0) + renewal_, renewals);
 }
 
 double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }

@@ -68,7 +68,8 @@ class Reaction {
 
   /// Whether a contact has shown how late it is noticed.
   bool measured() const { return !noticing_.empty(); }
-  double noticing() const;  ///< s, the longest of the latest kKept contacts; at least kRenewals
+  /// s, the longest of the latest kKept contacts and one renewal, since noise may spoil a reading; at least kRenewals.
+  double noticing() const;
   double trailing() const;  ///< s, the longest of the latest kKept motions
   double stopping() const;  ///< s
   double lateness() const { return late_; }
