@@ -235,9 +235,8 @@ TEST(ForceBound, HoldsForEveryMotionThatIsAccepted) {
     report(motion, one);
     EXPECT_EQ(one.too_strong, 0) << motion;
     EXPECT_EQ(one.phantoms, 0) << motion;
-    // A threshold of 10 N leaves noise little room below force_stop, 14 N: that may end a run.
-    EXPECT_GE(one.contacts, one.taps - one.ended) << motion;
-    EXPECT_LE(one.ended, taps / 4) << motion;
+    EXPECT_EQ(one.contacts, one.taps) << motion;
+    EXPECT_EQ(one.ended, 0) << motion;
   }
 }
 

@@ -5,6 +5,7 @@
 #include "support/testing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace palpate::baxter {
@@ -60,7 +61,7 @@ TEST(Reaction, MeasuresByPositionsHowLateAContactIsNoticed) {
     for (const double late : {0.05, 0.1, 0.25}) {
       Reaction reaction;
       reaction.learn_noticing(contact(speed, 4000.0, 5.0, late), 0.0, 5.0, 4000.0);
-      EXPECT_NEAR(reaction.noticing(), late, 0.012) << speed;
+      EXPECT_NEAR(reaction.noticing(), late + kPeriod, 0.012) << speed << ", and one reading that noise spoils";
     }
   }
 }
@@ -71,9 +72,21 @@ TEST(Reaction, KeepsTheLatestContactsAndTheWorstOfThem) {
   const auto learn = [&](double late) { reaction.learn_noticing(contact(0.015, 4000.0, 5.0, late), 0.0, 5.0, 4000.0); };
   learn(0.15);
   learn(0.05);
-  EXPECT_NEAR(reaction.noticing(), 0.15, 0.012);
+  EXPECT_NEAR(reaction.noticing(), 0.15 + kPeriod, 0.012);
   for (int i = 0; i < 5; ++i) learn(0.05);
-  EXPECT_NEAR(reaction.noticing(), 0.05, 0.012);
+  EXPECT_NEAR(reaction.noticing(), 0.05 + kPeriod, 0.012);
+}
+
+TEST(Reaction, ExpectsNoNoticeWithinFewerThanFourRenewalsOfTheForce) {
+  Reaction reaction;
+  reaction.renewed_every(0.01);
+  EXPECT_EQ(reaction.noticing(), Reaction::kFirstNoticing);
+  reaction.renewed_every(0.1);
+  EXPECT_NEAR(reaction.noticing(), Reaction::kFirstNoticing + 0.36, 1e-12) << "nothing was measured";
+  reaction.learn_noticing(contact(0.004, 4000.0, 5.0, 0.25), 0.0, 5.0, 4000.0);
+  EXPECT_NEAR(reaction.noticing(), 0.4, 1e-12);
+  reaction.learn_noticing(contact(0.004, 4000.0, 5.0, 0.7), 0.0, 5.0, 4000.0);
+  EXPECT_NEAR(reaction.noticing(), 0.8, 0.012) << "and one that noise spoils";
 }
 
 TEST(Reaction, BoundsTheSpeedByTheForceThatIsExpected) {
@@ -95,6 +108,14 @@ TEST(Reaction, CountsLatenessUntilItHasFaded) {
   EXPECT_GT(reaction.lateness(), 0.02);
   reaction.late(0.0, 200.0);
   EXPECT_LT(reaction.lateness(), 0.001);
+}
+
+TEST(Reaction, ForgetsALatenessWhileNobodyLooks) {
+  Reaction reaction;
+  reaction.late(0.04, 10.0);
+  reaction.late(0.0, 10.01);
+  reaction.late(0.0, 100.0);
+  EXPECT_NEAR(reaction.lateness(), 0.04 * std::exp(-3.0), 1e-4) << "three times 30 s later";
 }
 
 }  // namespace

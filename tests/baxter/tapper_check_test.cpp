@@ -148,7 +148,7 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
       {"second_sender=joints", "/robot/joint_states of the left arm comes from more than one node"},
       {"second_sender=collision", "collision_detection_state of the left arm comes from more than one node"},
       {"second_sender=avoidance", "collision_avoidance_state of the left arm comes from more than one node"},
-      {"slow_force=5", "had another force only"},
+      {"slow_force=20", "had another force only"},
       {"estop=100", "the emergency stop is pressed"},
       {"error", "the robot reports an error and is disabled"},
   };

@@ -32,10 +32,11 @@ inline Joints pose() {
 class Rules : public Watch {
  public:
   Rules() : Watch(kSpace, 14.0) {}
+  Eigen::Vector3d tip = kInside;
   std::optional<Fault> at(double now, const Spoil& spoil = nullptr, const Joints& joints = pose()) {
     Snapshot seen = sound(now, joints);
     if (spoil) spoil(seen);
-    return look(seen, kInside);
+    return look(seen, tip);
   }
 };
 

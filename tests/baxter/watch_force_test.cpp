@@ -59,24 +59,28 @@ std::function<double(long)> renewed(int every) {
   return [every](long number) { return 0.1 * std::sin(1.0 + 1000.0 * static_cast<double>(number / every)); };
 }
 
-TEST(AFrozenForce, IsNoticedAfterTenOfTheTimesInWhichTheRobotRenewsIt) {
+TEST(AFrozenForce, IsNoticedAfterTenOfTheTimesInWhichTheRobotRenewsItOrFourThatTakeATenthOfASecond) {
   for (const auto& [every, messages, periods] :
-       {std::tuple{1, 1, 10}, {1, 5, 2}, {3, 2, 15}}) {  // 100, 500 and 67 renewals a second
+       {std::tuple{1, 1, 10}, {1, 5, 2}, {3, 2, 10}, {5, 1, 20}}) {  // 100, 500, 67 and 20 renewals a second
     Rules rules;
     Sender robot(messages);
     ASSERT_THAT(robot.send(rules, 120, renewed(every)), IsNothing()) << every;
     const double last = renewed(every)(robot.sent() - 1);
     const std::optional<Fault> fault = robot.send(rules, 100, [&](long) { return last; });
     EXPECT_THAT(fault, IsFault("the same force to the last digit", Then::hold));
-    EXPECT_NEAR(robot.taken(), periods, 1) << every << " of " << messages << " a period";
+    EXPECT_LE(robot.taken(), periods + 1) << every << " of " << messages << " a period";
+    EXPECT_GE(robot.taken(), periods - every) << "the latest may have been sent again before";
   }
 }
 
 TEST(AFrozenForce, IsFoundInAForceThatIsRenewedSeldomOnlyWhereItIsFrozen) {
-  for (const int every : {1, 2}) {
+  for (const int every : {1, 2, 5, 10, 12}) {
     Rules rules;
     Sender robot;
     EXPECT_THAT(robot.send(rules, 1000, renewed(every)), IsNothing()) << every;
+    const double last = renewed(every)(robot.sent() - 1);
+    EXPECT_TRUE(robot.send(rules, 1000, [&](long) { return last; })) << every;
+    EXPECT_LE(robot.taken(), 10 * every) << every;
   }
 }
 
@@ -94,16 +98,21 @@ TEST(AForce, ThatIsRenewedSeldomEndsNoRunByOneNoisyValue) {
 }
 
 TEST(AForce, ThatIsRenewedTooSeldomToBeSafeIsToldWithHowOften) {
-  for (const int every : {5, 10}) {
+  Rules rules;
+  Sender robot;
+  const std::optional<Fault> fault = robot.send(rules, 100, renewed(15));
+  EXPECT_THAT(fault, IsFault("had another force only 3 times in the last 0.5 s, 4 are needed", Then::hold));
+}
+
+TEST(AForce, ThatIsRenewedLessThanHalfAsOftenAsBeforeIsToldWithHowOften) {
+  for (const auto& [before, after, needed] : {std::tuple{1, 5, 25}, {2, 5, 13}, {5, 14, 5}}) {
     Rules rules;
     Sender robot;
-    const std::optional<Fault> fault = robot.send(rules, 60, renewed(every));
-    EXPECT_THAT(fault, IsFault(every == 5 ? "had another force only 11 times in the last 0.5 s, 25 are needed"
-                                          : "had another force only 6 times",
-                               Then::hold));
+    ASSERT_THAT(robot.send(rules, 200, renewed(before)), IsNothing()) << before;
+    const std::optional<Fault> fault = robot.send(rules, 60, renewed(after));
+    EXPECT_THAT(fault, IsFault("had another force only", Then::hold)) << before;
+    EXPECT_THAT(fault, IsFault((std::to_string(needed) + " are needed").c_str(), Then::hold)) << before;
   }
-  Rules rules;
-  EXPECT_THAT(Sender().send(rules, 300, renewed(2)), IsNothing()) << "fifty times a second is enough";
 }
 
 TEST(AForce, ThatComesInBurstsIsCountedByTheMessageAndNotByTheLook) {
@@ -113,13 +122,16 @@ TEST(AForce, ThatComesInBurstsIsCountedByTheMessageAndNotByTheLook) {
   EXPECT_THAT(robot.send(rules, 300, renewed(1)), IsNothing());
 }
 
-/// An arm that goes up with a force that is a function of the period, in newtons of a press; `sign` as of Watch::Rise.
-std::optional<Fault> rising(double sign, const Watch::Rise& rise, const std::function<double(int)>& press) {
+/// An arm that goes up by `step` m a period with a force that is a function of the period, in newtons of a press;
+/// `sign` as of Watch::Rise.
+std::optional<Fault> rising(double sign, const Watch::Rise& rise, const std::function<double(int)>& press,
+                            double step = 0.001) {
   Rules rules;
   Sender robot;
   rules.expect_rise(rise);
   std::optional<Fault> fault;
-  for (int period = 0; period < 100 && !fault; ++period) {
+  for (int period = 0; period < 200 && !fault; ++period) {
+    rules.tip.z() = step * period;
     fault = robot.send(rules, [&](long number) { return rise.zero + sign * press(period) + renewed(1)(number); });
   }
   return fault;
@@ -131,10 +143,9 @@ TEST(AnArmThatGoesUp, IsHeldByWhatPullsAndByNothingElse) {
     EXPECT_THAT(rising(sign, rise, [](int) { return 30.0; }), IsNothing()) << "it presses still";
     EXPECT_THAT(rising(sign, rise, [](int) { return -5.5; }), IsNothing()) << "its joints rub";
     EXPECT_THAT(rising(sign, rise, [](int period) { return period % 3 == 0 ? -5.0 : -9.0; }), IsNothing()) << "noise";
-    EXPECT_THAT(
-        rising(sign, rise, [](int period) { return 10.0 - 0.5 * period; }),
-        AllOf(IsFault("something holds the tool: it pulls with ", Then::hold),
-              IsFault("at (10.0, 10.0, 10.0) cm of the scene", Then::hold), IsFault("free it by hand", Then::hold)));
+    EXPECT_THAT(rising(sign, rise, [](int period) { return 10.0 - 0.5 * period; }),
+                AllOf(IsFault("something holds the tool: it pulls with ", Then::hold),
+                      IsFault("at (10.0, 10.0, ", Then::hold), IsFault("free it by hand", Then::hold)));
   }
 }
 
@@ -142,6 +153,10 @@ TEST(AnArmThatGoesUp, FollowsAZeroThatChangesWithThePoseAndNoSpring) {
   const Watch::Rise rise{1.0, -1.0, 6.0, Watch::Zero::follows};
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.05 * period; }), IsNothing()) << "5 N/s: 50 N/m at 10 cm/s";
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("something holds", Then::hold));
+  EXPECT_THAT(rising(
+                  -1.0, rise, [](int period) { return -0.06 * period; }, 0.0002),
+              IsFault("something holds", Then::hold))
+      << "300 N/m at 2 cm/s";
 }
 
 TEST(AReflex, OfAnArmThatGoesUpAndIsPulledIsToldAsThatAndHeld) {

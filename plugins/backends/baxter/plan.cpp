@@ -166,7 +166,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   const tapping::MotionOptions& wanted = options_.motion.of_request(request);
   const double stiffness = stiffness_at(request.target);
   tapping::MotionOptions motion = wanted;
-  reaction_.late(watch_.lateness(), seen_.now);
+  measure_time();
   try {
     motion = bounded(wanted, stiffness);
   } catch (const Fault& slow) {

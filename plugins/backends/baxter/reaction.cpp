@@ -12,7 +12,7 @@ constexpr double kFades = 30.0;          ///< s in which a lateness fades to a t
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
 constexpr double kClear = 0.001;         ///< m above that height that counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and the period in which they are looked at
-constexpr double kMostNoticing = 0.5;    ///< s: what takes longer was no steady rise
+constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: what takes longer was no steady rise
 /// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
 /// stop: those of a critically damped joint, 1 / (2 e).
 constexpr double kLeastLag = 0.3;
@@ -98,10 +98,15 @@ void Reaction::learn_noticing(const Periods& periods, double free_down_to, doubl
     if (stiffness * (it->height - descent.at(it->time)) < threshold) break;
     reached = it->time;
   }
-  keep(noticing_, std::clamp(periods.back().time - reached, kLeastNoticing, kMostNoticing));
+  keep(noticing_, std::clamp(periods.back().time - reached, kLeastNoticing, kMostNoticing + kRenewals * renewal_));
 }
 
-double Reaction::noticing() const { return most(noticing_, kFirstNoticing); }
+double Reaction::noticing() const {
+  const double renewals = kRenewals * renewal_;
+  if (!measured()) return kFirstNoticing + std::max(0.0, renewals - kLeastNoticing);
+  return std::max(most(noticing_, 0.0) + renewal_, renewals);
+}
+
 double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }
 
 /// An arm that trails by less than a Baxter's joints do is another arm: all of that may be delay.

@@ -37,12 +37,18 @@ class Reaction {
   static constexpr double kSlowest = 0.002;
   static constexpr double kLookedAt = 1.5;      ///< s of a descent
   static constexpr double kShortestWay = 0.06;  ///< m
-  /// s of noticing and trailing until they were measured: those of the slowest robot that is driven.
+  /// Renewals of the force that a notice may take: the three readings of a contact, and one that noise spoils.
+  static constexpr double kRenewals = 4.0;
+  /// s of noticing and trailing until they were measured: those of the slowest robot that is driven and that renews its
+  /// force a hundred times a second.
   static constexpr double kFirstNoticing = 0.23;
   static constexpr double kFirstTrailing = 0.55;
 
   /// Takes how late messages or this program are at `now`, seconds; the worst counts, and fades within kFades.
   void late(double seconds, double now);
+
+  /// Takes the period in which the robot renews its force, seconds: no contact is noticed within fewer than kRenewals.
+  void renewed_every(double seconds) { renewal_ = seconds; }
 
   /// One period of a free motion from rest to rest: where the tip was sent and where it was, metres.
   struct Step {
@@ -62,7 +68,8 @@ class Reaction {
 
   /// Whether a contact has shown how late it is noticed.
   bool measured() const { return !noticing_.empty(); }
-  double noticing() const;  ///< s, the longest of the latest kKept contacts
+  /// s, the longest of the latest kKept contacts and one renewal, since noise may spoil a reading; at least kRenewals.
+  double noticing() const;
   double trailing() const;  ///< s, the longest of the latest kKept motions
   double stopping() const;  ///< s
   double lateness() const { return late_; }
@@ -79,6 +86,7 @@ class Reaction {
   std::deque<double> trailing_;
   double late_ = 0.0;
   double late_at_ = 0.0;
+  double renewal_ = 0.01;
 };
 
 }  // namespace palpate::baxter

@@ -56,9 +56,16 @@ class Tapper {
   static constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
   /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
+  static constexpr double kTurned = 0.01;  ///< m of a way over which most_pull() looks
 
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
+  struct WayDown;
+  void lead(WayDown& way);
+  void slow_down(WayDown& way);
+  void tare(WayDown& way);
+  void feel_free(WayDown& way, double felt, double beside, bool coming_down);
+  Contact judge(const WayDown& way, const Contact& contact);
   void calibrate(const Contact& contact);
   void check_robot() const;
   std::optional<Fault> listen();
@@ -72,7 +79,10 @@ class Tapper {
   void rise(const Path& up, double gently, double sign, const std::optional<double>& zero);
   void learn_rubbing(const Path& column);
   double most_pull(const Path& way, double along) const;
+  static double turned(const Path& way, double along);
   double stiffness_at(const Target& place) const;
+  double greatest_speed(double threshold, double stiffness, Fault::Then then) const;
+  void measure_time();
   tapping::MotionOptions bounded(tapping::MotionOptions motion, double stiffness) const;
   void learn_moving(double difference);
   Eigen::Vector3d force_at_rest(const Joints& joints);

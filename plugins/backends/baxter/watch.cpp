@@ -164,11 +164,7 @@ void Watch::hear(const Snapshot& seen) {
   if (!seen.endpoint) return;
   const EndpointReading& endpoint = *seen.endpoint;
   endpoint_stream_.hear(endpoint, seen.now);
-  fresh_ = force_stream_.hear({endpoint.received, static_cast<double>(endpoint.renewals), endpoint.renewals}, seen.now);
-  if (!fresh_) return;
-  renewed_ = endpoint.count;
-  if (force_stream_.heard() < Stream::kFewest) return;
-  renewal_ = std::max(1.0, static_cast<double>(endpoint_stream_.heard()) / force_stream_.heard());
+  fresh_ = renewals_.hear(endpoint, seen.now);
 }
 
 /// Whoever feels too seldom presses too hard before he notices. A simulated clock runs on while this program is late,
@@ -176,8 +172,8 @@ void Watch::hear(const Snapshot& seen) {
 std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
   if (seen.now - motion_.began < Stream::kWindow) return std::nullopt;
   const int looks = static_cast<int>(motion_.looks.size());
-  const auto in_window = [](int times) {
-    return fmt::format("{} times in the last {:.1f} s, {} are needed", times, Stream::kWindow, Stream::kFewest);
+  const auto in_window = [](int times, int needed = Stream::kFewest) {
+    return fmt::format("{} times in the last {:.1f} s, {} are needed", times, Stream::kWindow, needed);
   };
   if (looks < Stream::kFewest && !seen.simulated) {
     return Fault{fmt::format("this computer got to the arm {}{}", in_window(looks), kOwnSlowness), Then::hold};
@@ -190,10 +186,11 @@ std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
                     name, in_window(stream->heard())),
         Then::hold};
   }
-  if (force_stream_.heard() >= fewest) return std::nullopt;
+  const int needed = std::min(fewest, renewals_.needed());
+  if (renewals_.heard() >= needed) return std::nullopt;
   return Fault{fmt::format("endpoint_state came {} times and had another force only {}: a contact would be felt too "
                            "late, see what filters or repeats the force, or restart the robot",
-                           endpoint_stream_.heard(), in_window(force_stream_.heard())),
+                           endpoint_stream_.heard(), in_window(renewals_.heard(), needed)),
                Then::hold};
 }
 
@@ -284,7 +281,7 @@ std::optional<Fault> Watch::joints(const Snapshot& seen) {
 
 std::optional<Fault> Watch::endpoint(const Snapshot& seen, double gap) {
   if (auto fault = late("endpoint_state", *seen.endpoint, endpoint_delay_, Then::hold)) return fault;
-  if (auto fault = frozen(*seen.endpoint)) return fault;
+  if (auto fault = frozen(*seen.endpoint, seen.now)) return fault;
   return collision_silent(seen, gap);
 }
 

@@ -41,8 +41,7 @@ struct Workspace {
 
 /// How often something new comes: the new readings of one stream within the last half second. The robot sends a hundred
 /// times a second and the driver looks as often; but either may be late, and then the latest reading is one that was
-/// looked at before. What counts readings must count new ones; of the force those that brought another force, however
-/// often it was sent.
+/// looked at before. What counts readings must count new ones; of the force see Renewals.
 class Stream {
  public:
   static constexpr double kWindow = 0.5;  ///< s
@@ -69,10 +68,10 @@ class Stream {
   /// Counts anew. What was heard last is still not new.
   void begin() { heard_.clear(); }
 
- private:
-  /// A stream of exactly the fewest has as many in every window, whatever the sums of its times round to.
+  /// s: a stream of exactly the fewest has as many in every window, whatever the sums of its times round to.
   static constexpr double kSlack = 1e-6;
 
+ private:
   struct Heard {
     double time;
     long count;
@@ -81,20 +80,62 @@ class Stream {
   std::deque<Heard> heard_;
 };
 
+/// How often the robot renews its force: it may send one estimate again and again. The renewals within the last half
+/// second of a stream of EndpointReadings.
+class Renewals {
+ public:
+  /// The fewest in Stream::kWindow: three readings, which make a contact, then take 0.4 s.
+  static constexpr int kFewest = 4;
+
+  /// Takes the latest reading at `now` (s); returns whether its force is new.
+  bool hear(const EndpointReading& endpoint, double now);
+
+  /// Returns the number of renewals within the last Stream::kWindow seconds.
+  int heard() const;
+  /// Returns how many are needed in Stream::kWindow: half of the most that there were, at least kFewest, at most
+  /// Stream::kFewest.
+  int needed() const { return std::clamp(most_ / 2, kFewest, Stream::kFewest); }
+  /// Returns whether the period is known, which takes three renewals.
+  bool known() const { return known_; }
+  double messages() const { return messages_; }  ///< per renewal, as measured
+  double seconds() const { return seconds_; }    ///< per renewal, as measured
+  /// Returns the number of messages since the latest renewal that was seen, and their time in seconds.
+  long equal(const EndpointReading& endpoint) const {
+    return heard_at_.count == 0 ? 0 : endpoint.count - heard_at_.count;
+  }
+  double equal_for(double now) const { return now - heard_at_.time; }
+
+ private:
+  struct Renewal {
+    double time;  ///< s
+    long count;   ///< of the message
+    long renewals;
+  };
+  std::deque<Renewal> heard_;
+  Renewal heard_at_{0.0, 0, -1};  ///< the latest
+  int most_ = 0;
+  bool known_ = false;
+  double messages_ = 1.0;
+  double seconds_ = 0.01;
+};
+
 /// Sources of the numbers: the robot's own limits and times where they are known (its firmware stops at 16 N, forgets
 /// commands after 0.2 s, trails its set-point by 0.3 to 0.4 s), else several times what a sound robot shows.
 class Watch {
  public:
-  static constexpr double kFresh = 0.1;        ///< s, greatest age of joints and endpoint, sent every 0.01 s
-  static constexpr double kStateFresh = 0.5;   ///< s, greatest age of /robot/state
-  static constexpr double kLate = 0.3;         ///< s by which a stamp may lie farther back than the best so far
-  static constexpr double kDrift = 1e-3;       ///< s per second by which the robot's clock and ours may drift apart
-  static constexpr int kFrozen = 10;           ///< times in which the robot renews its force, with the same force
-  static constexpr double kJump = 0.06;        ///< rad between two readings; 4 rad/s of the wrist are 0.04 in a period
-  static constexpr double kFollowing = 0.2;    ///< rad from the set-point
-  static constexpr double kOffTheWay = 0.06;   ///< rad from every set-point of the last kTrail seconds
-  static constexpr double kTrail = 0.8;        ///< s
-  static constexpr double kZeroFollows = 0.5;  ///< s
+  static constexpr double kFresh = 0.1;         ///< s, greatest age of joints and endpoint, sent every 0.01 s
+  static constexpr double kStateFresh = 0.5;    ///< s, greatest age of /robot/state
+  static constexpr double kLate = 0.3;          ///< s by which a stamp may lie farther back than the best so far
+  static constexpr double kDrift = 1e-3;        ///< s per second by which the robot's clock and ours may drift apart
+  static constexpr int kFrozen = 10;            ///< times in which the robot renews its force, with the same force; or
+  static constexpr int kFewestFrozen = 4;       ///< such times, if they have taken kFrozenFor
+  static constexpr double kFrozenFor = 0.1;     ///< s
+  static constexpr double kJump = 0.06;         ///< rad between two readings; 4 rad/s of the wrist are 0.04 in a period
+  static constexpr double kFollowing = 0.2;     ///< rad from the set-point
+  static constexpr double kOffTheWay = 0.06;    ///< rad from every set-point of the last kTrail seconds
+  static constexpr double kTrail = 0.8;         ///< s
+  static constexpr double kZeroFollows = 0.5;   ///< s
+  static constexpr double kRiseFollows = 0.25;  ///< s, of an arm that goes up
   /// How much more force counts the same sideways, where the robot's estimate is at its worst, while the arm goes up or
   /// down: friction of 0.4 Nm makes 12 N of it.
   static constexpr double kSideways = 1.5;
@@ -124,7 +165,8 @@ class Watch {
   /// While the arm goes up nothing presses against it, and what pulls holds the tool: `zero` (N) of the force along z,
   /// the sign of it when something presses the tool upwards, and the pull (N) from which it stops the arm. The joints
   /// rub the other way than when the zero was felt, which reads as a pull of up to 13 N at 0.4 Nm; so where the arm has
-  /// begun to go up freely the zero is felt anew, and `follows` as in Zero.
+  /// begun to go up freely the zero is felt anew, and `follows` as in Zero, but by no more than a pose can change it:
+  /// tapping::FreeForce::kMostDrift times the way up. What changes it by more is a spring.
   struct Rise {
     double zero;
     double sign;
@@ -134,6 +176,7 @@ class Watch {
   /// From now on until begin() or the next call; nullopt: the arm does not go up.
   void expect_rise(const std::optional<Rise>& rise) {
     motion_.rise = rise;
+    motion_.anchor.reset();
     motion_.pulled = 0;
   }
   /// Whether a collision felt by the robot's firmware is a fault; not while one waits for its end.
@@ -150,6 +193,8 @@ class Watch {
   /// Whether the force that was looked at last was a new reading: neither that of the look before nor that one sent
   /// again.
   bool fresh() const { return fresh_; }
+  /// How often the robot renews its force.
+  const Renewals& renewals() const { return renewals_; }
   /// Tells what is sent, so that look() can judge whether the arm follows.
   void sent(double time, const Joints& target);
   /// The last of what was sent; none since begin().
@@ -170,7 +215,7 @@ class Watch {
   std::optional<Fault> too_slow(const Snapshot& seen) const;
   std::optional<Fault> joints(const Snapshot& seen);
   std::optional<Fault> endpoint(const Snapshot& seen, double gap);
-  std::optional<Fault> frozen(const EndpointReading& endpoint) const;
+  std::optional<Fault> frozen(const EndpointReading& endpoint, double now) const;
   std::optional<Fault> collision_silent(const Snapshot& seen, double gap);
   std::optional<Fault> follows(const Snapshot& seen) const;
   std::string why_behind(const Joints& now, double time) const;
@@ -193,6 +238,11 @@ class Watch {
     std::optional<Eigen::Vector3d> tare;
     int too_strong = 0;
     std::optional<Rise> rise;
+    /// Where a zero began to follow: N and m.
+    struct Anchor {
+      double zero, height;
+    };
+    std::optional<Anchor> anchor;
     int pulled = 0;  ///< readings, one after the other
     bool collision_expected = false;
   };
@@ -203,9 +253,7 @@ class Watch {
   Zero zero_ = Zero::stays;
   Stream joint_stream_;
   Stream endpoint_stream_;
-  Stream force_stream_;   ///< of its messages those that renewed the force
-  long renewed_ = 0;      ///< the count of the message that was seen with the latest of them
-  double renewal_ = 1.0;  ///< messages that the robot takes to renew the force once, as measured
+  Renewals renewals_;
   bool fresh_ = false;
   double collision_received_ = -std::numeric_limits<double>::infinity();  ///< the latest
   bool collision_streams_ = false;                                        ///< it came twice within kStateFresh

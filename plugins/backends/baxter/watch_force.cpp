@@ -4,6 +4,7 @@
 #include "baxter/watch.hpp"
 
 #include "baxter/words.hpp"
+#include "tapping/free_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,13 +30,33 @@ Fault held(double newtons, const Eigen::Vector3d& tip, bool reflex) {
 
 }  // namespace
 
-std::optional<Fault> Watch::frozen(const EndpointReading& endpoint) const {
-  const long equal = endpoint.count - renewed_;
-  if (static_cast<double>(equal) < kFrozen * renewal_) return std::nullopt;
+bool Renewals::hear(const EndpointReading& endpoint, double now) {
+  while (!heard_.empty() && heard_.front().time < now - Stream::kWindow - Stream::kSlack) heard_.pop_front();
+  if (endpoint.renewals == heard_at_.renewals) return false;
+  heard_at_ = {now, endpoint.count, endpoint.renewals};
+  heard_.push_back(heard_at_);
+  most_ = std::max(most_, heard());
+  const auto renewals = static_cast<double>(heard_at_.renewals - heard_.front().renewals);
+  if (renewals < 2.0) return true;
+  known_ = true;
+  messages_ = std::max(1.0, static_cast<double>(heard_at_.count - heard_.front().count) / renewals);
+  seconds_ = (now - heard_.front().time) / renewals;
+  return true;
+}
+
+int Renewals::heard() const {
+  return heard_.empty() ? 0 : static_cast<int>(heard_.back().renewals - heard_.front().renewals + 1);
+}
+
+std::optional<Fault> Watch::frozen(const EndpointReading& endpoint, double now) const {
+  if (!renewals_.known()) return std::nullopt;
+  const long equal = renewals_.equal(endpoint);
+  const double times = static_cast<double>(equal) / renewals_.messages();
+  if (times < kFewestFrozen || (times < kFrozen && renewals_.equal_for(now) < kFrozenFor)) return std::nullopt;
   return Fault{
       fmt::format("endpoint_state has had the same force to the last digit for {} messages, and before another "
                   "every {:.1f}: its sender is frozen, restart the robot",
-                  equal, renewal_),
+                  equal, renewals_.messages()),
       Then::hold};
 }
 
@@ -55,7 +76,12 @@ std::optional<Fault> Watch::pull(const Snapshot& seen, const Eigen::Vector3d& ti
   if (!motion_.rise) return std::nullopt;
   Rise& rise = *motion_.rise;
   const double pulls = pull_of(rise, *seen.endpoint);
-  if (rise.follows == Zero::follows) rise.zero -= rise.sign * pulls * std::min(1.0, since / kZeroFollows);
+  if (rise.follows == Zero::follows) {
+    if (!motion_.anchor) motion_.anchor = Motion::Anchor{rise.zero, tip.z()};
+    const double most = tapping::FreeForce::kMostDrift * std::max(0.0, tip.z() - motion_.anchor->height);
+    rise.zero -= rise.sign * pulls * std::min(1.0, since / kRiseFollows);
+    rise.zero = std::clamp(rise.zero, motion_.anchor->zero - most, motion_.anchor->zero + most);
+  }
   motion_.pulled = pulls > rise.limit ? motion_.pulled + 1 : 0;
   if (motion_.pulled < kForceSamples) return std::nullopt;
   return held(pulls, tip, false);

@@ -42,7 +42,7 @@ FreeForce::Line FreeForce::line(double height) const {
     square += (one.height - middle) * (one.height - middle);
     product += (one.height - middle) * (one.force - forces / count);
   }
-  Line out{level, middle, std::clamp(product / square, -kMostSlope, kMostSlope)};
+  Line out{level, middle, std::clamp(product / square, -kMostDrift, kMostDrift)};
   const double most = kMostOffset + kMostDrift * std::max(0.0, top_ - height);
   out.force += std::clamp(out.at(height), tare_ - most, tare_ + most) - out.at(height);
   return out;

@@ -36,14 +36,13 @@ class FreeForce {
 
   /// Returns the line that holds at this height (m): by least squares through the samples between `gap` and `gap` +
   /// kLength above it, with a normal prior about 0 for the slope. Where there are none, the tare. Its slope is at most
-  /// kMostSlope, and at this height it is off the tare by at most kMostOffset + kMostDrift per metre below the top:
+  /// kMostDrift, and at this height it is off the tare by at most kMostOffset + kMostDrift per metre below the top:
   /// what changes by more is something soft and not a zero.
   Line line(double height) const;
 
-  static constexpr double kLength = 0.03;      ///< m
-  static constexpr double kMostSlope = 100.0;  ///< N/m
-  static constexpr double kMostDrift = 60.0;   ///< N/m
-  static constexpr double kMostOffset = 4.0;   ///< N
+  static constexpr double kLength = 0.03;     ///< m
+  static constexpr double kMostDrift = 60.0;  ///< N/m
+  static constexpr double kMostOffset = 4.0;  ///< N
 
  private:
   double gap_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tapping/guarded_tap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,32 +20,6 @@ constexpr double kHeldUp = 2.0;
 constexpr double kTrail = 0.35;
 /// s after which it comes down evenly.
 constexpr double kEven = 0.7;
-
-/// The shortest part of a descent that is looked at, metres, and the share of it that the rise may take.
-constexpr double kFirstWindow = 0.02;
-constexpr double kInside = 0.6;
-
-/// What the best hinge with this kink explains: the sum of squares that it takes off that of the forces about their
-/// mean. Negative where the force would fall with the depth.
-double explained(const std::vector<Sample>& samples, double kink) {
-  const auto n = static_cast<double>(samples.size());
-  double depth = 0.0;
-  double force = 0.0;
-  for (const Sample& one : samples) {
-    depth += std::max(0.0, kink - one.height);
-    force += one.force;
-  }
-  depth /= n;
-  force /= n;
-  double square = 0.0;
-  double product = 0.0;
-  for (const Sample& one : samples) {
-    const double d = std::max(0.0, kink - one.height) - depth;
-    square += d * d;
-    product += d * (one.force - force);
-  }
-  return square == 0.0 || product < 0.0 ? -1.0 : product * product / square;
-}
 
 /// The means of as many samples one after the other as leave at most kMostSamples: the search for an onset takes the
 /// square of their number, and the arm waits for it.
@@ -67,66 +43,6 @@ std::vector<Sample> thinned(const std::vector<Sample>& samples) {
 
 }  // namespace
 
-double slope_below(const std::vector<Sample>& samples, double kink) {
-  const auto n = static_cast<double>(samples.size());
-  double depth = 0.0;
-  for (const Sample& one : samples) depth += std::max(0.0, kink - one.height) / n;
-  double square = 0.0;
-  double product = 0.0;
-  for (const Sample& one : samples) {
-    const double d = std::max(0.0, kink - one.height) - depth;
-    square += d * d;
-    product += d * one.force;
-  }
-  return square > 0.0 ? product / square : 0.0;
-}
-
-std::optional<double> onset(const std::vector<Sample>& samples) {
-  if (samples.size() < 4) return std::nullopt;
-  std::vector<double> heights;
-  for (const Sample& one : samples) heights.push_back(one.height);
-  std::sort(heights.begin(), heights.end());
-  heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
-  if (heights.size() < 3) return std::nullopt;
-  // Between two neighbouring heights the hinge changes smoothly, so the best of them brackets the best kink.
-  std::size_t best = 0;
-  double most = -1.0;
-  for (std::size_t i = 1; i < heights.size(); ++i) {
-    const double here = explained(samples, heights[i]);
-    if (here > most * (1.0 + 1e-12) || (most < 0.0 && here >= 0.0)) {
-      most = here;
-      best = i;
-    }
-  }
-  if (!(most > 0.0)) return std::nullopt;
-  double low = heights[best - 1];
-  double high = heights[std::min(best + 1, heights.size() - 1)];
-  constexpr int kHalvings = 40;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double left = low + (high - low) / 3.0;
-    const double right = high - (high - low) / 3.0;
-    if (explained(samples, left) * (1.0 + 1e-12) >= explained(samples, right)) {
-      high = right;
-    } else {
-      low = left;
-    }
-  }
-  return 0.5 * (low + high);
-}
-
-std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
-  if (descent.empty()) return std::nullopt;
-  const double bottom = descent.back().height;
-  for (double window = kFirstWindow;; window *= 2.0) {
-    const auto first =
-        std::find_if(descent.begin(), descent.end(), [&](const Sample& one) { return one.height < bottom + window; });
-    const std::optional<double> found = onset({first, descent.end()});
-    // A kink at the upper end of the window is that of a window that begins within the rise.
-    const bool inside = found && *found - bottom < kInside * window;
-    if (inside || first == descent.begin()) return found;
-  }
-}
-
 GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm)
     : motion_(motion),
       descent_(descent),
@@ -145,7 +61,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
   switch (stage_) {
     case Stage::tare:
     case Stage::settle:
-      if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) && summed_ > 0) {
+      if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) && summed_ > 0 && averaged(kFewestTared)) {
         zero_ = sum_ / summed_;
         free_.tare(zero_);
         enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
@@ -186,7 +102,9 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::rest:
-      if (waited(motion_.pause)) conclude(height, arm_ == Arm::simulated || rise().is_contact);
+      if (waited(motion_.pause) && (arm_ == Arm::simulated || averaged(kFewestWatched))) {
+        conclude({height, arm_ == Arm::simulated || rise().is_contact, 0.0});
+      }
       break;
     case Stage::back_off:
       if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
@@ -207,7 +125,7 @@ double GuardedTap::next(double height, double force, bool fresh) {
       }
       break;
     case Stage::stop:
-      if (waited(kWatched)) conclude_at_onset();
+      if (waited(kWatched) && averaged(kFewestWatched)) conclude_at_onset();
       break;
     case Stage::bottom:
       if (above_ >= kConsecutive) {
@@ -242,7 +160,8 @@ void GuardedTap::give_up(double height) {
 /// What a new reading counts for.
 void GuardedTap::feel(double height, double force) {
   const bool in_pause = arm_ == Arm::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
-  const bool stopped = (stage_ == Stage::stop || stage_ == Stage::rest) && !waited(kWatched + kPeriod);
+  const bool stopped =
+      (stage_ == Stage::stop || stage_ == Stage::rest) && (!waited(kWatched + kPeriod) || !averaged(kFewestWatched));
   if (taring() || in_pause || stopped) {
     sum_ += force;
     ++summed_;
@@ -263,24 +182,39 @@ void GuardedTap::feel(double height, double force) {
 /// The contact is one, or the descent goes on where it is. If something is touched, the mean of the force that followed
 /// the three loud readings is high; if they were noise it is about zero. It is not above the threshold everywhere: a
 /// set-point that is put where the arm is lets its springs relax, on something soft to less than the threshold.
-void GuardedTap::conclude(double height, bool rises) {
+void GuardedTap::conclude(const Rise& found) {
   // An arm that brakes presses less meanwhile.
   const bool relaxes = motion_.brake > 0.0 || arm_ == Arm::real;
   const double least = relaxes ? 0.5 * motion_.threshold : motion_.threshold;
-  const bool lasts = rises && (summed_ == 0 || sum_ / summed_ - zero_ > least);
+  const bool presses = summed_ == 0 || sum_ / summed_ - zero_ > least;
+  const bool lasts = found.is_contact && presses;
   const bool asks = arm_ == Arm::real || motion_.confirm;
   if (given_up_ && !lasts) return finish({Outcome::aborted, 0.0, 0.0, 0.0, kStoppedByItself});
-  const bool again = arm_ == Arm::real && rises && refused_ && std::abs(*refused_ - first_) < kSamePlace;
-  if (!asks || lasts || again) return finish({Outcome::contact, height, peak_, 0.0, {}});
-  if (rises) refused_ = first_;
+  const bool again = arm_ == Arm::real && found.is_contact && refused_ && std::abs(*refused_ - first_) < kSamePlace;
+  if (!asks || lasts || again) return finish({Outcome::contact, found.height, peak_, 0.0, {}});
+  if (found.is_contact) refused_ = first_;
+  if (presses && !found.is_contact && too_soft()) {
+    return finish({Outcome::aborted, 0.0, 0.0, 0.0,
+                   fmt::format("something presses that is too soft: its force rises by {:.0f} N/m, and {:.0f} N/m are "
+                               "needed to tell it from a zero that changes with the pose",
+                               found.slope, kSoftestRise)});
+  }
   enter(Stage::descend);
+}
+
+/// Counts a contact that lasts and does not rise as on an object; returns whether they are too many in one place.
+bool GuardedTap::too_soft() {
+  if (softs_ == 0 || std::abs(soft_ - first_) > kFarthestOnset) {
+    soft_ = first_;
+    softs_ = 0;
+  }
+  return ++softs_ >= kMostSoft;
 }
 
 /// Of `continuous`: the height is that of the onset.
 void GuardedTap::conclude_at_onset() {
-  if (arm_ == Arm::simulated) return conclude(onset_of_descent(trace_).value_or(first_), true);
-  const Rise found = rise();
-  conclude(found.height, found.is_contact);
+  if (arm_ == Arm::simulated) return conclude({onset_of_descent(trace_).value_or(first_), true, 0.0});
+  conclude(rise());
 }
 
 /// How the force of a real arm rose above the line that it had in free travel.
@@ -292,8 +226,9 @@ GuardedTap::Rise GuardedTap::rise() const {
   }
   above = thinned(above);
   const std::optional<double> found = onset_of_descent(above);
-  const bool is_contact = found && *found - first_ < kFarthestOnset && slope_below(above, *found) > kSoftestRise;
-  return {is_contact ? *found : first_, is_contact};
+  const double slope = found ? slope_below(above, *found) : 0.0;
+  const bool is_contact = found && *found - first_ < kFarthestOnset && slope > kSoftestRise;
+  return {is_contact ? *found : first_, is_contact, slope};
 }
 
 bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for() >= kTrail; }

@@ -66,6 +66,13 @@ class GuardedTap {
   static constexpr double kSoftestRise = 200.0;
   /// N/m of the softest contact, whose beginning is kept out of the force of free travel.
   static constexpr double kSoftest = 600.0;
+  /// New readings that a real arm's mean takes at least, of a tare and after a contact; a robot may renew its force as
+  /// seldom as 8 times a second.
+  static constexpr int kFewestTared = 10;
+  static constexpr int kFewestWatched = 3;
+  /// So many contacts within kFarthestOnset whose force lasts and rises by less than kSoftestRise are one with
+  /// something too soft, which ends the tap.
+  static constexpr int kMostSoft = 2;
   /// Two contacts within so much, metres, that do not last are one with something soft.
   static constexpr double kSamePlace = 0.002;
 
@@ -87,6 +94,10 @@ class GuardedTap {
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
   /// Whether a contact was noticed and the arm is being stopped.
   bool stopping() const { return stage_ == Stage::stop; }
+  /// Whether a contact was noticed and the arm presses no further: it is being stopped, rests, or backs off.
+  bool presses_no_further() const {
+    return stage_ == Stage::stop || stage_ == Stage::rest || stage_ == Stage::back_off;
+  }
   /// How many contacts were noticed so far, believed or not.
   int noticed() const { return noticed_; }
   /// Whether the arm comes down, or is being stopped at a contact: its force then is that of an arm that moves.
@@ -107,16 +118,20 @@ class GuardedTap {
   void feel(double height, double force);
   void enter(Stage stage);
   void touched(double height);
-  void conclude(double height, bool rises);
   void conclude_at_onset();
   struct Rise {
     double height;  ///< where it begins, m
     bool is_contact;
+    double slope;  ///< N/m below it
   };
   Rise rise() const;
+  void conclude(const Rise& found);
+  bool too_soft();
   bool ramp(double goal, double speed);
   bool arrived(double height);
   bool waited(double seconds) const;
+  /// Whether the mean of a stage has enough readings.
+  bool averaged(int fewest) const { return arm_ == Arm::simulated || summed_ >= fewest; }
   void finish(const Contact& result);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
 
@@ -135,6 +150,8 @@ class GuardedTap {
   double peak_ = 0.0;
   double first_ = 0.0;             ///< height at which the latest contact was noticed
   std::optional<double> refused_;  ///< `first_` of the latest that was not believed
+  double soft_ = 0.0;              ///< `first_` of the first contact with something too soft
+  int softs_ = 0;                  ///< how many there were since
   double gap_ = 0.0;               ///< least distance of arm and set-point in this stage
   long nearer_ = 0;                ///< the period in which it last became less
   bool given_up_ = false;

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Where the force of a descent begins to rise, and how steeply.
+#include "tapping/guarded_tap.hpp"
+
+#include <algorithm>
+
+namespace palpate::tapping {
+namespace {
+
+/// The shortest part of a descent that is looked at, metres, and the share of it that the rise may take.
+constexpr double kFirstWindow = 0.02;
+constexpr double kInside = 0.6;
+
+/// What the best hinge with this kink explains: the sum of squares that it takes off that of the forces about their
+/// mean. Negative where the force would fall with the depth.
+double explained(const std::vector<Sample>& samples, double kink) {
+  const auto n = static_cast<double>(samples.size());
+  double depth = 0.0;
+  double force = 0.0;
+  for (const Sample& one : samples) {
+    depth += std::max(0.0, kink - one.height);
+    force += one.force;
+  }
+  depth /= n;
+  force /= n;
+  double square = 0.0;
+  double product = 0.0;
+  for (const Sample& one : samples) {
+    const double d = std::max(0.0, kink - one.height) - depth;
+    square += d * d;
+    product += d * (one.force - force);
+  }
+  return square == 0.0 || product < 0.0 ? -1.0 : product * product / square;
+}
+
+}  // namespace
+
+double slope_below(const std::vector<Sample>& samples, double kink) {
+  const auto n = static_cast<double>(samples.size());
+  double depth = 0.0;
+  for (const Sample& one : samples) depth += std::max(0.0, kink - one.height) / n;
+  double square = 0.0;
+  double product = 0.0;
+  for (const Sample& one : samples) {
+    const double d = std::max(0.0, kink - one.height) - depth;
+    square += d * d;
+    product += d * one.force;
+  }
+  return square > 0.0 ? product / square : 0.0;
+}
+
+std::optional<double> onset(const std::vector<Sample>& samples) {
+  if (samples.size() < 4) return std::nullopt;
+  std::vector<double> heights;
+  for (const Sample& one : samples) heights.push_back(one.height);
+  std::sort(heights.begin(), heights.end());
+  heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+  if (heights.size() < 3) return std::nullopt;
+  // Between two neighbouring heights the hinge changes smoothly, so the best of them brackets the best kink.
+  std::size_t best = 0;
+  double most = -1.0;
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    const double here = explained(samples, heights[i]);
+    if (here > most * (1.0 + 1e-12) || (most < 0.0 && here >= 0.0)) {
+      most = here;
+      best = i;
+    }
+  }
+  if (!(most > 0.0)) return std::nullopt;
+  double low = heights[best - 1];
+  double high = heights[std::min(best + 1, heights.size() - 1)];
+  constexpr int kHalvings = 40;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double left = low + (high - low) / 3.0;
+    const double right = high - (high - low) / 3.0;
+    if (explained(samples, left) * (1.0 + 1e-12) >= explained(samples, right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
+  if (descent.empty()) return std::nullopt;
+  const double bottom = descent.back().height;
+  for (double window = kFirstWindow;; window *= 2.0) {
+    const auto first =
+        std::find_if(descent.begin(), descent.end(), [&](const Sample& one) { return one.height < bottom + window; });
+    const std::optional<double> found = onset({first, descent.end()});
+    // A kink at the upper end of the window is that of a window that begins within the rise.
+    const bool inside = found && *found - bottom < kInside * window;
+    if (inside || first == descent.begin()) return found;
+  }
+}
+
+}  // namespace palpate::tapping

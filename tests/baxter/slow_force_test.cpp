@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// Taps of a robot that renews its force seldom, of one that becomes too slow on the way, and of what is very soft.
+#include "baxter/body_bench.hpp"
+#include "baxter/tapper_bench.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate::baxter {
+namespace {
+
+using fake_baxter::Body;
+using fake_baxter::FaultKind;
+using fake_baxter::parse_fault;
+using test::fake_options;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+constexpr double kHard = 20000.0;  // N/m
+
+/// An arm with springs over a bare desk of this stiffness, and how hard and how long it presses.
+class Desk {
+ public:
+  explicit Desk(double stiffness, const BaxterOptions& options = fake_options())
+      : scene_(palpate::test::scene_of("[]", fmt::format("{{stiffness: {{object: {} N/m}}}}", stiffness))),
+        robot(*scene_, springs()),
+        tapper(options, *scene_, robot, nullptr, [](const std::string&) {}) {
+    robot.every_period = [this] {
+      const double presses = robot.body.pressing();
+      peak = std::max(peak, presses);
+      lowest = std::min(lowest, robot.body.tip().z());
+      if (presses > 0.0 && !touched) touched = robot.body.now();
+    };
+  }
+
+  Contact tap() {
+    TapRequest request;
+    request.number = ++taps_;
+    request.target = {0.03 + 0.03 * taps_, 0.05};
+    touched.reset();
+    peak = 0.0;
+    lowest = 1.0;
+    return tapper.tap(request);
+  }
+  void inject(const std::string& fault) { robot.body.inject(parse_fault(fault)); }
+
+ private:
+  static test::BodyOptions springs() {
+    test::BodyOptions out = test::body_options(fake_options());
+    out.mechanics.type = fake_baxter::MechanicsOptions::Type::springs;
+    return out;
+  }
+
+  std::unique_ptr<const Scene> scene_;
+  int taps_ = 0;
+
+ public:
+  test::BodyRobot robot;
+  Tapper tapper;
+  double peak = 0.0;    ///< N, of this tap
+  double lowest = 1.0;  ///< m, the tip in this tap
+  std::optional<double> touched;
+};
+
+TEST(AForce, ThatIsRenewedTwentyOrTenTimesASecondIsTappedWith) {
+  for (const int every : {5, 10}) {
+    for (const double stiffness : {1000.0, kHard}) {
+      Desk desk(stiffness);
+      desk.inject(fmt::format("slow_force={}", every));
+      desk.tapper.check();
+      for (int i = 0; i < 3; ++i) {
+        const Contact contact = desk.tap();
+        EXPECT_EQ(contact.outcome, Outcome::contact) << every << ": " << contact.reason;
+        EXPECT_NEAR(contact.height, 0.0, 0.003) << every;
+        EXPECT_LT(desk.peak, Body::kReflex) << every;
+      }
+    }
+  }
+}
+
+TEST(AForce, ThatIsRenewedSeldomAndFreezesAtAContactIsFoundBeforeTheReflex) {
+  for (const int every : {1, 2, 5, 10}) {
+    Desk desk(kHard);
+    if (every > 1) desk.inject(fmt::format("slow_force={}", every));
+    ASSERT_EQ(desk.tap().outcome, Outcome::contact) << every;
+    desk.robot.body.inject({FaultKind::freeze_endpoint, 0.0, {}}, {1, 0.0002});
+    const Contact contact = desk.tap();
+    EXPECT_THAT(contact.reason,
+                AnyOf(HasSubstr("the same force to the last digit"), HasSubstr("had another force only")));
+    EXPECT_LT(desk.peak, Body::kReflex) << every;
+  }
+}
+
+TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasuredFigure) {
+  BaxterOptions options = fake_options();
+  options.motion.threshold = 10.0;
+  Desk desk(kHard, options);
+  desk.inject("slow_force=10");
+  ASSERT_EQ(desk.tap().outcome, Outcome::contact) << "at 5 N, while nothing was measured";
+  const Contact contact = desk.tap();
+  EXPECT_THAT(contact.reason, HasSubstr("a contact would be noticed after 4"));
+  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 2 mm/s are needed"));
+  EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
+}
+
+TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigure) {
+  BaxterOptions options = fake_options();
+  options.motion.threshold = 10.0;
+  Desk desk(kHard, options);
+  ASSERT_EQ(desk.tap().outcome, Outcome::contact);
+  // The first in the list that has begun counts.
+  for (const auto& [delay, height] : {std::pair{0.27, 0.06}, {0.18, 0.08}, {0.09, 0.1}}) {
+    desk.robot.body.inject({FaultKind::delay, delay, {}}, {1, height});
+  }
+  const Contact contact = desk.tap();
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 2 mm/s are needed"));
+  EXPECT_THAT(contact.reason, HasSubstr("the arm was raised to the height of travel"));
+  EXPECT_TRUE(contact.ends_run);
+  EXPECT_GT(desk.lowest, 0.03) << "it did not come down further";
+}
+
+TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndToldOrFound) {
+  for (const double stiffness : {250.0, 300.0, 400.0}) {
+    // A floor far below the desk: only the force ends the descent.
+    BaxterOptions options = fake_options();
+    options.motion.overrun = 0.1;
+    Desk desk(stiffness, options);
+    for (int i = 0; i < 2; ++i) {
+      const Contact contact = desk.tap();
+      const double took = desk.robot.body.now() - desk.touched.value();
+      if (contact.outcome != Outcome::contact) {
+        EXPECT_THAT(contact.reason, HasSubstr("something presses that is too soft: its force rises by 1")) << stiffness;
+        EXPECT_FALSE(contact.ends_run);
+      }
+      EXPECT_LT(took, 25.0) << stiffness;
+      EXPECT_LT(desk.peak, 14.0) << stiffness;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::baxter
