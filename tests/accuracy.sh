@@ -5,9 +5,14 @@
 #   sh tests/accuracy.sh BUILD [SWEEP...]            the short form, 100 s on two cores; ./check --all runs it
 #   sh tests/accuracy.sh BUILD --long [SWEEP...]     five times as many seeds: differences of half the size show
 #   sh tests/accuracy.sh BUILD [--long] --write [--reason TEXT] [SWEEP...]
-#                                                    records the new values; worse ones only with a reason
+#                                                    records the new values; worse values, other seeds or jobs and rows
+#                                                    that no job makes only with a reason, which is written beside them
 #   --set KEY=VALUE   an override of every sweep: is this setting worse?      --seeds N   the first N seeds alone
 # BUILD is the directory of a build that has the program and all plugins.
+#
+# A recorded row that no job of its sweep makes fails, and so do a job without a row, another number of seeds and another
+# number of jobs per seed (the objects that the mean of a seed is taken over). A row that was given up keeps its line,
+# with 0 seeds and the reason.
 #
 # The standard error. Values of the same code are equal, bit by bit. A change that moves one tap gives a run other
 # taps from there on: it ends better or worse by chance, although object, placement and noise are the same. So the new
@@ -65,7 +70,7 @@ fi
 seeds_file=$root/tests/benchmark/accuracy/$form.csv
 export PALPATE_PLUGIN_PATH='' HOME="$work"
 
-# run SWEEP: runs its jobs, and prints lines "ROW,SEED,RMSE,IOU", means over the objects of a seed. The seeds are those of
+# run SWEEP: runs its jobs, and prints lines "ROW,SEED,JOBS,RMSE,IOU", means over the JOBS objects of a seed. The seeds are those of
 # no benchmark: whoever tunes by this table leaves them unused.
 run() {
   case $1 in
@@ -110,7 +115,7 @@ run() {
       for (i = 1; i <= n; ++i) {
         key = keys[i]
         if (key in bad) { print "accuracy: a run of " key " has no RMSE or IoU" >"/dev/stderr"; exit 1 }
-        printf "%s,%.12g,%.12g\n", key, rmse[key] / jobs[key], share[key] / jobs[key]
+        printf "%s,%d,%.12g,%.12g\n", key, jobs[key], rmse[key] / jobs[key], share[key] / jobs[key]
       }
     }' "$work/runs/$name"/*/results.csv
   rm -rf "$work/runs"
@@ -119,18 +124,20 @@ run() {
 if [ "$mode" = write ]; then
   mkdir -p "${seeds_file%/*}"
   [ -e "$table" ] || echo "form,row,metric,seeds,value,standard_error,reason" >"$table"
-  [ -e "$seeds_file" ] || echo "row,seed,rmse_m,iou" >"$seeds_file"
+  [ -e "$seeds_file" ] || echo "row,seed,jobs,rmse_m,iou" >"$seeds_file"
 elif [ ! -e "$table" ] || [ ! -e "$seeds_file" ]; then
   echo "accuracy: nothing is recorded in $seeds_file: record the $form form by --write" >&2
   exit 1
 fi
+[ -n "$wanted" ] || wanted=$sweeps
 for sweep in $sweeps; do
-  case " $wanted " in "  " | *" $sweep "*) run "$sweep" >>"$work/new" ;; esac
+  case " $wanted " in *" $sweep "*) run "$sweep" >>"$work/new" ;; esac
 done
 
 # Compares seed by seed; with --write, writes table and seeds into $work.
 judged=0
-awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v part="$most" '
+awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v part="$most" \
+  -v wanted=" $wanted " '
   function shown(metric, value) { return metric == "rmse_m" ? sprintf("%.2f mm", 1000 * value) : sprintf("%.3f", value) }
   function mean_of(row, metric, values,    i, sum) {
     sum = 0
@@ -151,6 +158,8 @@ awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v p
     key = $1 "," $2 "," $3
     lines[++kept] = key
     line[key] = $0
+    if ($4 == 0) next  # was given up
+    if ($1 == form) known[$2]
     seeds[key] = $4
     value[key] = $5
     text = $0
@@ -162,21 +171,51 @@ awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v p
     if (FNR == 1) next
     old_row[++old_rows] = $1
     old_line[old_rows] = $0
-    before[$1, "rmse_m", $2] = $3
-    before[$1, "iou", $2] = $4
+    known[$1]
+    jobs_before[$1, $2] = $3
+    before[$1, "rmse_m", $2] = $4
+    before[$1, "iou", $2] = $5
     ++recorded[$1]
     next
   }
   {
     if (!($1 in count)) rows[++n] = $1
     seed_of[$1, ++count[$1]] = $2
-    now[$1, "rmse_m", $2] = $3
-    now[$1, "iou", $2] = $4
+    jobs_now[$1, $2] = $3
+    now[$1, "rmse_m", $2] = $4
+    now[$1, "iou", $2] = $5
     new_line[++new_lines] = $0
   }
+  # What of seeds and jobs differs from the record: "" if nothing does.
+  function other_runs(row,    j, seed) {
+    for (j = 1; j <= count[row]; ++j) {
+      seed = seed_of[row, j]
+      if (!((row, seed) in jobs_before)) return "seed " seed " is not recorded"
+      if (jobs_before[row, seed] != jobs_now[row, seed]) return jobs_before[row, seed] " -> " jobs_now[row, seed] " jobs of seed " seed
+    }
+    return part == 0 && recorded[row] != count[row] ? recorded[row] " -> " count[row] " seeds" : ""
+  }
   END {
+    for (row in known) {
+      sweep = row
+      sub(/_[0-9]+_.*$/, "", sweep)
+      if (row in count || !index(wanted, " " sweep " ")) continue
+      if (mode == "check" || reason == "") {
+        print "accuracy: " form "," row " is recorded, and no job makes it: give it up by --write --reason TEXT" >"/dev/stderr"
+        failed = 1
+        continue
+      }
+      given_up[row]
+      for (m = 1; m <= 2; ++m) {
+        key = form "," row "," (m == 1 ? "rmse_m" : "iou")
+        if (!(key in line)) lines[++kept] = key
+        line[key] = key ",0,,,\"" reason "\""
+      }
+      printf "%-24s given up\n", row
+    }
     for (i = 1; i <= n; ++i) {
       row = rows[i]
+      others = other_runs(row)
       for (m = 1; m <= 2; ++m) {
         metric = m == 1 ? "rmse_m" : "iou"
         sign = m == 1 ? 1 : -1
@@ -185,19 +224,21 @@ awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v p
         error = error_of(row, metric, new, 0)
         stated = ""
         verdict = "new"
-        compared = key in value
-        for (j = 1; j <= count[row]; ++j) if (!((row, metric, seed_of[row, j]) in before)) compared = 0
-        if (!compared && mode == "check") {
-          print "accuracy: " key " is not recorded for these seeds: record it by --write" >"/dev/stderr"
+        differs = others
+        if (differs == "") {
+          old = mean_of(row, metric, before)
+          if (part == 0 && (seeds[key] != count[row] || old - value[key] > 1e-9 || value[key] - old > 1e-9))
+            differs = "not the mean of its seeds in accuracy/" form ".csv"
+        }
+        compared = key in value && differs == ""
+        if (!compared && (mode == "check" || key in value && reason == "")) {
+          print "accuracy: " key ": " (key in value ? differs : "not recorded") ": record it by --write" \
+            (key in value ? " --reason TEXT" : "") >"/dev/stderr"
           failed = 1
           continue
         }
+        if (!compared && key in value) stated = "\"" reason "\""
         if (compared) {
-          old = mean_of(row, metric, before)
-          if (part == 0 && (recorded[row] != count[row] || seeds[key] != count[row] || old - value[key] > 1e-9 || value[key] - old > 1e-9)) {
-            print "accuracy: " key " is not the mean of its seeds in accuracy/" form ".csv: write both by --write" >"/dev/stderr"
-            failed = 1
-          }
           worse = sign * (new - old)
           paired = error_of(row, metric, new - old, 1)
           limit = 3 * paired
@@ -222,7 +263,7 @@ awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v p
         } else {
           printf "%-24s %-6s %9s  new, standard error %s\n", row, metric, shown(metric, new), shown(metric, error)
         }
-        if (verdict == "equal" && seeds[key] == count[row]) continue
+        if (verdict == "equal") continue
         if (!(key in line)) lines[++kept] = key
         line[key] = sprintf("%s,%d,%.10g,%.3g,%s", key, count[row], new, error, stated)
       }
@@ -230,8 +271,8 @@ awk -F, -v form="$form" -v mode="$mode" -v reason="$reason" -v work="$work" -v p
     if (mode == "write" && !failed) {
       print "form,row,metric,seeds,value,standard_error,reason" >(work "/table")
       for (i = 1; i <= kept; ++i) print line[lines[i]] >(work "/table")
-      print "row,seed,rmse_m,iou" >(work "/seeds")
-      for (i = 1; i <= old_rows; ++i) if (!(old_row[i] in count)) print old_line[i] >(work "/seeds")
+      print "row,seed,jobs,rmse_m,iou" >(work "/seeds")
+      for (i = 1; i <= old_rows; ++i) if (!(old_row[i] in count) && !(old_row[i] in given_up)) print old_line[i] >(work "/seeds")
       for (i = 1; i <= new_lines; ++i) print new_line[i] >(work "/seeds")
     }
     exit failed
@@ -241,18 +282,25 @@ if [ "$mode" = write ] && [ "$judged" = 0 ]; then
   cp "$work/seeds" "$seeds_file"
 fi
 
-# The last commit that made a recorded value worse gives its reason beside it.
+# The last commit that made a recorded value worse, or took it from other seeds, has its reason beside it. No line goes.
 cd "$root"
 last=$(git log -1 --format=%H -- tests/benchmark/accuracy.csv 2>/dev/null || true)
 if [ "$mode" = check ] && [ -n "$last" ] && git show "$last~1:tests/benchmark/accuracy.csv" >"$work/before.csv" 2>/dev/null; then
   git show "$last:tests/benchmark/accuracy.csv" | awk -F, -v last="$last" '
     function text(line) { sub(/^[^,]*,[^,]*,[^,]*,[^,]*,[^,]*,[^,]*,/, "", line); return line }
+    function fail(what) { print "accuracy: " last " " what >"/dev/stderr"; bad = 1 }
     { key = $1 "," $2 "," $3 }
-    NR == FNR { value[key] = $5; why[key] = text($0); next }
-    (key in value) && FNR > 1 && ($3 == "iou" ? value[key] - $5 : $5 - value[key]) > 1e-7 * value[key] && (text($0) == "" || text($0) == why[key]) {
-      print "accuracy: " last " made " key " worse, " value[key] " -> " $5 ", without a reason beside it" >"/dev/stderr"
-      bad = 1
+    NR == FNR { seeds[key] = $4; value[key] = $5; why[key] = text($0); next }
+    !(key in value) || FNR == 1 { delete value[key]; next }
+    seeds[key] > 0 {
+      worse = ($3 == "iou" ? value[key] - $5 : $5 - value[key]) > 1e-7 * value[key]
+      if ((worse || $4 != seeds[key]) && (text($0) == "" || text($0) == why[key]))
+        fail("made " key (worse ? " worse, " value[key] " -> " $5 : " a value of " seeds[key] " -> " $4 " seeds") ", without a reason beside it")
     }
-    END { exit bad }' "$work/before.csv" - || judged=1
+    { delete value[key] }
+    END {
+      for (key in value) fail("deleted the line " key ": give it 0 seeds and a reason")
+      exit bad
+    }' "$work/before.csv" - || judged=1
 fi
 exit "$judged"

@@ -35,18 +35,33 @@ mkdir -p "$runs/$name/id" && cp "$(dirname "$0")/results.csv" "$runs/$name/id"
     fs::permissions(program, fs::perms::owner_all);
   }
 
-  /// Results of two objects and kSeeds seeds, whose mean RMSE is 10 mm, more by 1 mm with every seed, and IoU 0.5.
+  /// Jobs of a sweep: each strategy, object and seed.
+  struct Jobs {
+    std::vector<std::string> strategies{"default"};
+    std::vector<int> objects{-1, 1};
+    int seeds = kSeeds;
+  };
+  /// Results whose mean RMSE over the objects is 10 mm, more by 1 mm with every seed, and whose mean IoU is 0.5.
   /// `worse` is added to the RMSE of a seed, in millimetres, `iou` to all IoU.
   template <class Worse>
-  void give(const Worse& worse, double iou = 0.0) const {
+  void give(const Worse& worse, double iou, const Jobs& jobs) const {
     std::string text = "job,id,strategy,scene,seed,taps,rmse_m,footprint_iou\n";
-    for (int seed = 0; seed < kSeeds; ++seed) {
-      for (const int object : {-1, 1}) {
-        const double rmse = 0.001 * (10.0 + seed + 2.0 * object + worse(seed));
-        text += fmt::format("0,x,default,s{},{},30,{},{}\n", object, seed, rmse, 0.5 + 0.1 * object + iou);
+    for (const std::string& strategy : jobs.strategies) {
+      for (int seed = 0; seed < jobs.seeds; ++seed) {
+        for (const int object : jobs.objects) {
+          const double rmse = 0.001 * (10.0 + seed + 2.0 * object + worse(seed));
+          text += fmt::format("0,x,{},s{},{},30,{},{}\n", strategy, object, seed, rmse, 0.5 + 0.1 * object + iou);
+        }
       }
     }
     write(here() / "build/results.csv", text);
+  }
+  template <class Worse>
+  void give(const Worse& worse, double iou = 0.0) const {
+    give(worse, iou, Jobs());
+  }
+  void give_equal(const Jobs& jobs) const {
+    give([](int) { return 0.0; }, 0.0, jobs);
   }
   void give_equal() const {
     give([](int) { return 0.0; });
@@ -119,7 +134,60 @@ TEST_F(Accuracy, TakesAWorseValueOnlyWithAReasonBesideIt) {
   EXPECT_EQ(table(), before);
 }
 
-TEST_F(Accuracy, ACommitThatMadeAValueWorseWithoutAReasonFails) {
+TEST_F(Accuracy, OfARecordedRowThatNoJobMakesAndOfAJobWithoutARowFails) {
+  const Jobs two{{"default", "weighted"}};
+  give_equal(two);
+  ASSERT_EQ(accuracy({"--write"}).status, 0);
+  const std::string before = table();
+  give_equal();
+  for (const char* mode : {"standard", "--write"}) {
+    const Ended ended = accuracy({mode});
+    EXPECT_EQ(ended.status, 1) << mode;
+    EXPECT_EQ(ended.err,
+              "accuracy: short,standard_30_weighted is recorded, and no job makes it: give it up by --write "
+              "--reason TEXT\n");
+    EXPECT_EQ(table(), before);
+  }
+  EXPECT_EQ(accuracy({"--write", "--reason", "no longer of interest"}).status, 0);
+  EXPECT_THAT(table(), HasSubstr("\nshort,standard_30_weighted,rmse_m,0,,,\"no longer of interest\"\n"
+                                 "short,standard_30_weighted,iou,0,,,\"no longer of interest\"\n"));
+  EXPECT_EQ(accuracy().status, 0);
+  give_equal(two);
+  const Ended unknown = accuracy();
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.err,
+              HasSubstr("accuracy: short,standard_30_weighted,rmse_m: not recorded: record it by --write\n"));
+  EXPECT_EQ(accuracy({"--write"}).status, 0);
+  EXPECT_EQ(table(), before);
+}
+
+TEST_F(Accuracy, OfOtherSeedsOrJobsFailsAndIsTakenOnlyWithAReasonBesideIt) {
+  const auto recorded = [&](const Jobs& first, const Jobs& then, const std::string& says) {
+    give_equal(first);
+    fs::remove_all(here() / "tests/benchmark");
+    ASSERT_EQ(accuracy({"--write"}).status, 0);
+    const std::string before = table();
+    give_equal(then);
+    for (const char* mode : {"standard", "--write"}) {
+      const Ended ended = accuracy({mode});
+      EXPECT_EQ(ended.status, 1) << mode << says;
+      EXPECT_THAT(ended.err, HasSubstr("accuracy: short,standard_30_default,rmse_m: " + says +
+                                       ": record it by --write --reason TEXT\n"));
+      EXPECT_EQ(table(), before);
+    }
+    EXPECT_EQ(accuracy({"--write", "--reason", "other runs"}).status, 0);
+    EXPECT_THAT(table(), HasSubstr(fmt::format("short,standard_30_default,rmse_m,{},", then.seeds)));
+    EXPECT_THAT(table(), HasSubstr(",\"other runs\"\nshort,standard_30_default,iou,"));
+    EXPECT_EQ(accuracy().status, 0);
+  };
+  const Jobs usual;
+  recorded(usual, {{"default"}, {-1, 1}, kSeeds + 1}, "seed 12 is not recorded");
+  recorded(usual, {{"default"}, {-1, 1}, kSeeds - 1}, "12 -> 11 seeds");
+  recorded(usual, {{"default"}, {-1, 0, 1}}, "2 -> 3 jobs of seed 0");
+  recorded(usual, {{"default"}, {0}}, "2 -> 1 jobs of seed 0");
+}
+
+TEST_F(Accuracy, OfACommitThatMadeAValueWorseWithoutAReasonOrDeletedALineFails) {
   give_equal();
   ASSERT_EQ(accuracy({"--write"}).status, 0);
   const auto commit = [&] {
@@ -136,6 +204,11 @@ TEST_F(Accuracy, ACommitThatMadeAValueWorseWithoutAReasonFails) {
   const Ended ended = accuracy();
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, HasSubstr("made short,standard_30_default,rmse_m worse, 0.0155 -> 0.0165, without a reason"));
+  replace(here() / "tests/benchmark/accuracy.csv", "short,standard_30_default,iou,12,",
+          "long,standard_30_default,iou,12,");
+  ASSERT_EQ(commit().status, 0);
+  EXPECT_THAT(accuracy().err,
+              HasSubstr("deleted the line short,standard_30_default,iou: give it 0 seeds and a reason"));
 }
 
 TEST_F(Accuracy, AValueThatIsMissingOrNotFiniteOrOfAnotherRecordFails) {
@@ -150,7 +223,7 @@ TEST_F(Accuracy, AValueThatIsMissingOrNotFiniteOrOfAnotherRecordFails) {
   }
   give_equal();
   replace(here() / "tests/benchmark/accuracy.csv", "0.0155", "0.0255");
-  EXPECT_THAT(accuracy().err, HasSubstr("short,standard_30_default,rmse_m is not the mean of its seeds"));
+  EXPECT_THAT(accuracy().err, HasSubstr("short,standard_30_default,rmse_m: not the mean of its seeds"));
 }
 
 TEST_F(Accuracy, OfTheDefaultIsLostWithAWorseSetting) {

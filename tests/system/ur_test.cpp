@@ -106,6 +106,15 @@ TEST_F(UrArm, AKickThatIsRefusedBetweenTwoTapsEndsTheRunBeforeTheNextMove) {
   EXPECT_EQ(taps().size(), 4U);
 }
 
+TEST_F(UrArm, WhoseCableIsPulledBetweenTwoTapsIsAskedNothing) {
+  const Ended ended = run_with("idle_cable@3");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, StartsWith("backend/process: no new state of the robot for 0.2 s: look at cable and arm"));
+  EXPECT_EQ(noted("waits for an answer"), 0) << "300 s, in which it hears no signal";
+  EXPECT_EQ(noted("down"), 3);
+  EXPECT_EQ(taps().size(), 4U);
+}
+
 TEST_F(UrArm, OneReadingThatSpikesIsNoContact) {
   ASSERT_EQ(run_with("spike@2").status, 0);
   for (const Cells& tap : taps()) expect_on_the_dome(tap);
@@ -151,6 +160,7 @@ TEST_P(UrArmInTrouble, EndsTheRunWithAReasonAndResumeGoesOnBehindIt) {
   EXPECT_THAT(ended.err, HasSubstr("then 'palpate resume --retry-failed'"));
   EXPECT_EQ(lines(ended.err), 1);
   EXPECT_EQ(noted("down"), 3);
+  EXPECT_LE(noted("stop"), 3) << "a way that is stopped is not stopped again";
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
   const std::string before = record();
   const std::size_t failed = taps().size();
@@ -177,6 +187,7 @@ INSTANTIATE_TEST_SUITE_P(By, UrArmInTrouble,
                                          Trouble{"lost", "unable to get state data"},
                                          Trouble{"frozen", "no new state of the robot for 0.2 s"},
                                          Trouble{"cable", "no new state of the robot for 0.2 s"},
+                                         Trouble{"restless", "the arm does not stand 1 s after its stop"},
                                          Trouble{"script", "ur_rtde's script no longer runs on the robot"},
                                          Trouble{"pushed", "something pushes the arm with 50 N"}),
                          [](const auto& one) { return std::string(one.param.kind); });

@@ -33,7 +33,7 @@ class RTDEControlInterface:
     def stopL(self, a=10.0, asynchronous=False):
         self.arm.note("stop")
         if self.usable():
-            self.arm.target = None
+            self.arm.stop()
 
     def zeroFtSensor(self):
         assert self.arm.target is None and self.arm.force() == 0.0, "zeroed while it moves or touches"

@@ -2,9 +2,10 @@
 """The arm behind the stand-ins for ur_rtde: it moves in time of its own, one step a look at its clock, so that a test
 takes as long as the machine likes. UR_LOG names the file in which it notes what is done to it, UR_FAULT what goes wrong:
 `KIND@N` in its Nth move down, counted over all programs; KIND one of protective, emergency, lost, frozen, cable,
-reconnect, script, spike, missing, pushed, sticky, slow. `idle@N` is one kick that is refused after the Nth move down has
-ended. And from the start `mode`, `flange` (no TCP is set), `noisy` (samples of speed and pose), `high` (it stands half a
-metre above the area).
+reconnect, script, spike, missing, pushed, sticky, slow, restless (it creeps on after its stop). After the Nth move down
+has ended, before the next tap: `idle@N` is one kick that is refused, `idle_cable@N` a cable that is pulled, after which
+one newer state is still there to be read. And from the start `mode`, `flange` (no TCP is set), `noisy` (samples of speed
+and pose), `high` (it stands half a metre above the area).
 
 What ur_rtde does is modelled after its sources of 2024: every command but a kick waits for the robot's answer, for up to
 300 s; lost, the connection of the commands is made again by the next of them, with the script, but without a watchdog."""
@@ -15,7 +16,7 @@ import time
 
 STEP = 0.002  # s, 500 Hz
 STIFFNESS = 5000.0  # N/m
-EXECUTION_TIMEOUT = 300.0  # s that a command waits for its answer
+EXECUTION_TIMEOUT = 5.0  # s that a command waits for its answer: 300 in ur_rtde, but the note says enough
 SPEED_NOISE = 0.0005  # m/s, of the fault `noisy`
 POSE_NOISE = 0.00001  # m
 CORNER = (0.4, -0.1, 0.05)  # of the area, m
@@ -103,15 +104,21 @@ class Arm:
     def answer(self):
         """Waits for the robot's answer to a command, deaf to signals as ur_rtde is."""
         if self.unplugged:
+            self.note("waits for an answer")
             time.sleep(EXECUTION_TIMEOUT)
 
     def refuses_kick(self):
-        """Of two kicks without a step of the arm between them the second is made between two taps."""
+        """Begins the faults between two taps: of two kicks without a step of the arm between them the second is made
+        there. Returns whether this kick is refused."""
         idle, self.steps_at_kick = self.steps == self.steps_at_kick, self.steps
-        if not (idle and self.fault == "idle" and self.descents == self.at):
+        if not idle or self.descents != self.at or self.fault not in ("idle", "idle_cable"):
+            return False
+        fault, self.fault = self.fault, ""
+        if fault == "idle_cable":
+            self.step()
+            self.frozen = self.unplugged = True
             return False
         self.note("kick refused")
-        self.fault = ""
         return True
 
     def noise(self, deviation):
@@ -147,6 +154,12 @@ class Arm:
         elif self.fault not in ("missing", "sticky"):
             self.active = False
         self.target, self.speed = list(target[:3]), speed
+
+    def stop(self):
+        self.target = None
+        if self.active and self.fault == "restless":
+            x, y, z = self.position
+            self.target, self.speed = [x + 0.03, y, z + 0.03], 0.005
 
 
 ARM = None

@@ -184,18 +184,20 @@ class Arm:
                 contacts = contacts + [(pose, force)] if touched and touched(pose, force) else []
                 pushed = pushed + 1 if length(force) >= limit else 0
                 if len(contacts) == READINGS:
-                    self.stop()
-                    return contacts[0]
+                    break
                 if pushed == READINGS:
                     raise Fault(f"something pushes the arm with {length(force):.0f} N on its way: free it, {RETRY}")
                 if self.stamp > until:
-                    self.stop()
-                    raise TimeoutError
+                    break
                 if distance(pose, target) < ARRIVED and not self.moves():
                     return None
         except (Over, Fault):
             self.halt()
             raise
+        self.stop()
+        if len(contacts) < READINGS:
+            raise TimeoutError
+        return contacts[0]
 
     def halt(self):
         """Begins to stop. Where no new state comes it sends nothing: ur_rtde would wait for an answer, for 300 s. The
