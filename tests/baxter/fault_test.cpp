@@ -43,7 +43,7 @@ TEST_P(FaultInATap, LeavesTheArmSafeTheTapLoggedAndTheReasonNamed) {
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
   }
   const std::vector<Row> taps = results(only_run(lab.folder() / "runs"));
-  EXPECT_THAT(fields(taps, "outcome"), ElementsAre("contact", "aborted"));
+  ASSERT_THAT(fields(taps, "outcome"), ElementsAre("contact", "aborted"));
   EXPECT_THAT(field(taps[1], "reason"), HasSubstr(given.reason));
   EXPECT_EQ(field(taps[1], "height"), "");
 
