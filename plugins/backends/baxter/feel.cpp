@@ -125,10 +125,11 @@ void Tapper::learn_rubbing(const Path& column) {
   rubbing_ = std::min(kMostRubbing, std::abs(down - force_at_rest(up.end()).z()) / 2 / turned(up, 0.0));
 }
 
-/// N of a pull, against its zero at rest, that an arm may feel which goes up `along` this way and is not held.
+/// N of a pull, against its zero at rest, that an arm may feel which goes up `along` this way and is not held: what its
+/// joints rub, and what it was seen to read beside while it moves.
 double Tapper::most_pull(const Path& way, double along) const {
   if (!rubbing_) return options_.force_stop;
-  return motion_.threshold + kRubs * 2 * *rubbing_ * turned(way, along);
+  return motion_.threshold + std::abs(moving_) + kRubs * 2 * *rubbing_ * turned(way, along);
 }
 
 /// Goes up from where it may press, of which only a pull is a fault. `zero`: of the force along z down there, N.
