@@ -75,8 +75,9 @@ int pareto(Program&, const ParetoArguments& arguments) {
   if (!bound || chosen != nullptr) return kDone;
   const Setting* best = best_bounded(pareto);
   throw Error("", fmt::format("no setting keeps to {} within {}", pareto.error.name, bound_words(pareto, *bound)),
-              best != nullptr ? fmt::format("the nearest is {}: {}", best->name, error_words(pareto, *best))
-                              : "none has an interval: that takes two seeds or more, and no failed job",
+              best != nullptr
+                  ? fmt::format("the nearest is {}: {}", best->name, error_words(pareto, *best))
+                  : "none has an interval: that takes two seeds or more whose values differ, and no failed job",
               Error::Kind::run);
 }
 

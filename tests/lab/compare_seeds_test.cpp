@@ -140,6 +140,28 @@ TEST(CompareSeeds, WhereTheSeedIsNotSweptJobsAreTheUnitsAndItSaysSo) {
   EXPECT_EQ(twice.groups[1].mean.clusters, 12U) << "equal in all that they came to";
   EXPECT_NEAR(twice.groups[1].mean.interval->low, made.groups[1].mean.interval->low, 1e-12);
   EXPECT_EQ(*twice.pairs[0].test.p, *made.pairs[0].test.p);
+  EXPECT_THAT(compare_tables(made), Not(HasSubstr("units")));
+  EXPECT_THAT(compare_tables(twice), HasSubstr("   n  units  mean [95 % interval]"));
+  EXPECT_THAT(compare_tables(twice),
+              HasSubstr("\na: 12 of 24 jobs are copies of another run, which counts once in intervals and p\n"));
+  EXPECT_EQ(compare_rows(twice, "")[0].number("units"), 12.0);
+  EXPECT_EQ(compare_rows(twice, "")[2].number("units"), 12.0);
+}
+
+TEST(CompareSeeds, EqualValuesHaveNoIntervalAndItSaysWhy) {
+  std::vector<MadeJob> jobs;
+  for (int seed = 0; seed < 12; ++seed) {
+    jobs.push_back({"a", "k", seed, 0.2});
+    jobs.push_back({"b", "k", seed, 0.1 * (1 + seed)});
+    jobs.push_back({"c", "k", seed, 0.1 * (1 + seed) + 0.3});  // rounded, so that the differences are not all equal
+  }
+  const Comparison made = MadeSweep(jobs).by({"acquisition"});
+  EXPECT_FALSE(made.groups[0].mean.interval);
+  EXPECT_TRUE(made.pairs[1].difference.interval) << "c - a";
+  EXPECT_FALSE(made.pairs[2].difference.interval) << "c - b";
+  EXPECT_THAT(compare_tables(made), HasSubstr("\na: equal in all 12 seeds: no interval, because equal values do not "
+                                              "tell how far the next may lie\n"));
+  EXPECT_THAT(compare_tables(made), HasSubstr("\nc - b: equal differences in all 12 seeds: no interval"));
 }
 
 TEST(CompareWhere, LeavesOutAResultThatIsMissingOrNotFiniteNegatedOrNot) {

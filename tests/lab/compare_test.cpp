@@ -171,6 +171,10 @@ TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
   const Comparison paired = made.by({"acquisition", "kernel"});
   EXPECT_TRUE(paired.apart.empty());
   for (const ComparedPair& pair : paired.pairs) EXPECT_EQ(pair.difference.count, 1U);
+  const Comparison seeds = MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}, {"b", "k", 3, 0.3}}).by({"acquisition"});
+  EXPECT_THAT(compare_tables(seeds),
+              HasSubstr("\ngroups that have no seed in common have no pairs: run them on the same seeds\n"));
+  EXPECT_THAT(compare_tables(seeds), Not(HasSubstr("--by"))) << "--by acquisition,seed is rejected";
   const MadeSweep shared({{"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
   EXPECT_TRUE(shared.by({"acquisition"}).apart.empty()) << "one lost pair of two is no reason to group otherwise";
 }
@@ -239,7 +243,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
             "command line: --by: this sweep does not vary 'acquisitio', did you mean 'acquisition'?");
   EXPECT_EQ(made.refusal({"taps"}), "command line: --by: this sweep does not vary 'taps', known: acquisition, kernel");
   EXPECT_EQ(made.refusal({"seed"}),
-            "command line: --by: the seed repeats a job, it makes no groups, name another swept key");
+            "command line: --by: the seed repeats a job, it makes no groups, known: acquisition, kernel");
   EXPECT_EQ(made.refusal({"kernel", "kernel"}), "command line: --by: 'kernel' is named twice, name it once");
   EXPECT_EQ(made.refusal({"acquisition"}, "kernel"),
             "command line: --metric: 'kernel' is swept, so it was set and did not come out, give it to --by");

@@ -146,7 +146,7 @@ TEST(Pareto, NeverNamesASettingWithAJobThatFailedIsMissingOrHasNoValue) {
                                 unknown,
                                 {"unknown", "3", 1, 0.001},
                                 {"good", "1", 9, 0.01},
-                                {"good", "2", 9, 0.01}})
+                                {"good", "2", 9, 0.0101}})
                             .pareto();
   for (const char* name : {"acquisition=failed", "acquisition=absent", "acquisition=unknown"}) {
     EXPECT_EQ(setting(pareto, name).front, 0) << name;
@@ -202,13 +202,13 @@ TEST(Within, AsksForTheLowerEndWhereMoreIsBetter) {
 
 TEST(Within, TakesTheCheapestAndOfEqualCostsTheBetter) {
   const Pareto pareto = MadeUp({{"dear", "1", 30, 0.001},
-                                {"dear", "2", 30, 0.001},
+                                {"dear", "2", 30, 0.00101},
                                 {"worse", "1", 10, 0.003},
-                                {"worse", "2", 10, 0.003},
+                                {"worse", "2", 10, 0.0031},
                                 {"better", "1", 10, 0.002},
-                                {"better", "2", 10, 0.002},
+                                {"better", "2", 10, 0.0021},
                                 {"cheap", "1", 5, 0.009},
-                                {"cheap", "2", 5, 0.009}})
+                                {"cheap", "2", 5, 0.0091}})
                             .pareto();
   EXPECT_EQ(cheapest_within(pareto, 0.005)->name, "acquisition=better");
   EXPECT_EQ(cheapest_within(pareto, 0.0005), nullptr);
@@ -219,6 +219,27 @@ TEST(Within, OneSeedIsNeverWithin) {
   const Pareto pareto = MadeUp({{"a", "1", 5, 0.0}}).pareto();
   EXPECT_EQ(cheapest_within(pareto, 1.0), nullptr);
   EXPECT_EQ(best_bounded(pareto), nullptr);
+}
+
+TEST(Within, EqualValuesAreNeverWithinBecauseTheyTellNothingOfTheNext) {
+  const Pareto pareto = MadeUp({{"a", "1", 5, 0.001}, {"a", "2", 5, 0.001}, {"a", "3", 5, 0.001}}).pareto();
+  EXPECT_FALSE(pareto.settings.front().error.interval);
+  EXPECT_EQ(cheapest_within(pareto, 1.0), nullptr);
+  EXPECT_EQ(best_bounded(pareto), nullptr);
+  EXPECT_THAT(pareto_table(pareto), HasSubstr("1.00 [-]"));
+  EXPECT_THAT(pareto_table(pareto),
+              HasSubstr("no interval: all seeds are equal, which does not tell how far the next may lie\n"));
+}
+
+TEST(Pareto, CountsCopiesOfARunOnceWhereTheSeedIsNotSwept) {
+  std::vector<MadeUpJob> jobs{{"a", "1", 5, 0.01}, {"a", "1", 6, 0.02}, {"a", "1", 7, 0.04}};
+  const MeanInterval once = *MadeUp(jobs).pareto().settings.front().error.interval;
+  const std::vector<MadeUpJob> runs = jobs;
+  for (int copy = 0; copy < 2; ++copy) jobs.insert(jobs.end(), runs.begin(), runs.end());
+  const Pareto thrice = MadeUp(jobs).pareto();
+  EXPECT_EQ(thrice.settings.front().error.clusters, 3U);
+  EXPECT_NEAR(thrice.settings.front().error.interval->high, once.high, 1e-12);
+  EXPECT_THAT(pareto_table(thrice), HasSubstr("the only setting: 6 of 9 jobs are copies of another run"));
 }
 
 TEST(Within, ReadsTheBoundInTheUnitOfTheError) {

@@ -50,13 +50,21 @@ TEST(MeanEstimate, OfNothingHasNeitherCountNorInterval) {
   EXPECT_FALSE(estimate_mean(each_alone({})).interval);
 }
 
-TEST(MeanEstimate, OfEqualValuesHasAnIntervalWithoutWidth) {
-  // Three times 0.1 / 3 is not 0.1: the interval would leave its own value out.
-  const MeanEstimate estimate = estimate_mean(each_alone({0.1, 0.1, 0.1}));
-  ASSERT_TRUE(estimate.interval);
-  EXPECT_EQ(estimate.mean, 0.1);
-  EXPECT_EQ(estimate.interval->low, 0.1);
-  EXPECT_EQ(estimate.interval->high, 0.1);
+TEST(MeanEstimate, OfEqualValuesHasNoIntervalHoweverMany) {
+  for (const std::size_t count : {2U, 3U, 500U}) {
+    const MeanEstimate estimate = estimate_mean(each_alone(std::vector<double>(count, 0.1)));
+    EXPECT_EQ(estimate.mean, 0.1) << "three times 0.1 / 3 is not 0.1";
+    EXPECT_FALSE(estimate.interval) << count;
+  }
+}
+
+TEST(MeanEstimate, OfValuesThatAreEqualButForRoundingHasNoInterval) {
+  EXPECT_FALSE(estimate_mean(each_alone({0.3, 0.1 + 0.2, 0.3})).interval);
+  EXPECT_TRUE(estimate_mean(each_alone({0.3, 0.3 + 1e-11, 0.3})).interval);
+  // Differences of numbers near 1000, which are equal but for the rounding of these.
+  const Clusters differences = each_alone({1000.1 - 1000.0, 1000.2 - 1000.1, 1000.3 - 1000.2});
+  EXPECT_TRUE(estimate_mean(differences).interval);
+  EXPECT_FALSE(estimate_mean(differences, 1000.3).interval);
 }
 
 TEST(MeanEstimate, OfLargeNumbersDoesNotOverflow) {

@@ -68,6 +68,17 @@ TEST_F(LargeSweep, HasOnItsPageEveryFifthOfEachSettingWithItsNumbers) {
     const Json& number = error->at("numbers").at(place);
     EXPECT_EQ(number, FakedJob::failed(index) ? Json() : Json(FakedJob::error(index)));
   }
+  // Units are seeds: two jobs of a seed have the same number, those of others have another one.
+  std::map<std::string, std::set<std::size_t>> units;
+  std::set<std::size_t> all_units;
+  for (std::size_t place = 0; place < page.at("jobs").size(); ++place) {
+    const int index = page.at("jobs")[place].at("index");
+    units[sweep_.jobs.at(static_cast<std::size_t>(index)).values[0]].insert(
+        page.at("units").at(place).get<std::size_t>());
+    all_units.insert(page.at("units").at(place).get<std::size_t>());
+  }
+  for (const auto& [seed, numbers] : units) EXPECT_EQ(numbers.size(), 1U) << seed;
+  EXPECT_EQ(all_units.size(), units.size());
   ASSERT_EQ(seeds.size(), 2U);
   EXPECT_EQ(seeds["weighted"].size(), 200U);
   EXPECT_EQ(seeds["weighted"], seeds["uncertainty"]) << "pairs stay pairs";

@@ -58,6 +58,7 @@ void expect_front(const json& seen, const fs::path& directory, const std::string
     if (row.at("front").empty()) continue;
     const auto number = [&](const std::string& name) { return std::stod(row.at(name)); };
     const auto half = [&](const std::string& name) {
+      if (row.at(name + ".high_95").empty()) return 0.0;  // equal values: no bar
       return (number(name + ".high_95") - number(name + ".low_95")) / 2;
     };
     front.push_back({std::stoi(row.at("front")),

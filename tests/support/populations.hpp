@@ -114,6 +114,7 @@ struct Coverage {
   int hits = 0;
   int all = 0;
   int none = 0;
+  int per_sample = 1;  ///< intervals of one sample, which depend on each other and count as one
 
   void add(const std::optional<MeanInterval>& interval, double truth) {
     if (!interval) {
@@ -127,14 +128,28 @@ struct Coverage {
     hits += other.hits;
     all += other.all;
     none += other.none;
+    per_sample = other.per_sample;
   }
   double percent() const { return 100.0 * hits / std::max(1, all); }
+  double samples() const { return static_cast<double>(std::max(1, all)) / per_sample; }
   /// Of the percentage: one standard deviation of a share that is `share` percent.
-  double error(double share) const { return std::sqrt(share * (100.0 - share) / std::max(1, all)); }
+  double error(double share) const { return std::sqrt(share * (100.0 - share) / samples()); }
+  /// The two-sided 99 % interval of the percentage: the score interval (Wilson 1927, Probable inference, the law of
+  /// succession, and statistical inference).
+  MeanInterval bounds() const {
+    const double z = normal_quantile(0.995);
+    const double n = samples();
+    const double share = percent() / 100.0;
+    const double centre = share + z * z / (2.0 * n);
+    const double half = z * std::sqrt(share * (1.0 - share) / n + z * z / (4.0 * n * n));
+    return {100.0 * (centre - half) / (1.0 + z * z / n), 100.0 * (centre + half) / (1.0 + z * z / n)};
+  }
+  /// Whether the percentage is between `least` and `most` as far as the samples can decide.
+  bool within(double least, double most) const { return bounds().high >= least && bounds().low <= most; }
 };
 
 struct Coverages {
-  Coverage means;
+  Coverage means{0, 0, 0, 2};  ///< of both groups
   Coverage differences;
 };
 

@@ -95,34 +95,40 @@ double acceleration_of(const std::vector<double>& influences) {
   return cubes / (6.0 * squares * std::sqrt(squares));
 }
 
-/// BCa of resampled values, which it sorts, about what was estimated.
+/// BCa of resampled values, which it reorders, about what was estimated.
 MeanInterval interval_of(std::vector<double>& values, double centre, double rounding,
                          const std::vector<double>& influences) {
-  std::sort(values.begin(), values.end());
   const double bias = bias_of(values, centre, rounding);
   const double acceleration = acceleration_of(influences);
   const auto n = static_cast<double>(influences.size());
   const double z = student_factor(influences.size() - 1) * std::sqrt(n / (n - 1.0));
   const auto end = [&](double place) {
     const double shifted = bias + place;
-    return quantile(values, normal_share(bias + shifted / (1.0 - acceleration * shifted)));
+    const double share = normal_share(bias + shifted / (1.0 - acceleration * shifted));
+    // The two values that the quantile lies between; a whole order costs more than all draws.
+    const auto below = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + below, values.end());
+    if (below + 1 < static_cast<std::ptrdiff_t>(values.size()))
+      std::iter_swap(values.begin() + below + 1, std::min_element(values.begin() + below + 1, values.end()));
+    return quantile(values, share);
   };
   return {end(-z), end(z)};
 }
 
 }  // namespace
 
-MeanEstimate mean_of_sample(const Clusters& clusters) {
-  if (clusters.size() >= kLeastForBootstrap) return bootstrap_mean(clusters);
-  MeanEstimate out = estimate_mean(clusters);
-  if (clusters.size() < kLeastForInterval || out.interval->low == out.interval->high) out.interval.reset();
+MeanEstimate mean_of_sample(const Clusters& clusters, double scale) {
+  if (clusters.size() >= kLeastForBootstrap) return bootstrap_mean(clusters, scale);
+  MeanEstimate out = estimate_mean(clusters, scale);
+  if (clusters.size() < kLeastForInterval) out.interval.reset();
   return out;
 }
 
-MeanEstimate bootstrap_mean(const Clusters& clusters) {
-  MeanEstimate out = estimate_mean(clusters);
+MeanEstimate bootstrap_mean(const Clusters& clusters, double scale) {
+  MeanEstimate out = estimate_mean(clusters, scale);
+  const bool has_spread = out.interval.has_value();
   out.interval.reset();
-  if (clusters.size() < kLeastForInterval) return out;
+  if (!has_spread || clusters.size() < kLeastForInterval) return out;
   const Centred centred = centre(clusters, out.mean);
   if (centred.unit == 0.0 || !std::isfinite(centred.unit)) return out;
   const std::vector<Pull>& pulls = centred.pulls;
@@ -170,7 +176,6 @@ std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, c
   for (const auto& [a, b] : pairs) influences.push_back((a - out.ratio * b) / bottom);
   const double largest = std::abs(*std::max_element(influences.begin(), influences.end(),
                                                     [](double x, double y) { return std::abs(x) < std::abs(y); }));
-  constexpr double kRounding = 1e-12;
   if (largest <= kRounding * out.ratio) return out;
   Random random(0, "bootstrap of a ratio");
   std::vector<double> ratios(resamples_of(pairs.size()));

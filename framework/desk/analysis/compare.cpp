@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
@@ -51,7 +52,9 @@ Values others(const Values& names, const Values& without) {
 void check_keys(const Sweep& sweep, const CompareQuery& query) {
   for (auto key = query.by.begin(); key != query.by.end(); ++key) {
     if (*key == "seed") {
-      throw Error("command line", "--by: the seed repeats a job, it makes no groups", "name another swept key");
+      const Values keys = setting_keys(sweep);
+      throw Error("command line", "--by: the seed repeats a job, it makes no groups",
+                  keys.empty() ? "sweep the key whose values are to be compared" : suggestion(*key, keys));
     }
     if (!contains(sweep.keys, *key)) {
       throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
@@ -68,28 +71,9 @@ void check_keys(const Sweep& sweep, const CompareQuery& query) {
   }
 }
 
-/// The columns that say what a run came to: the same in copies of it.
-std::set<std::string> outcome_columns(const Sweep& sweep, const Values& columns) {
-  std::set<std::string> out;
-  for (const std::string& name : others(columns, sweep.keys)) {
-    if (name != "job" && name != "id" && !depends_on_machine(name)) out.insert(name);
-  }
-  return out;
-}
-
-/// All that a job came to, as a text; "" of one that has not ended.
-std::string outcome_text(const Row* row, const std::set<std::string>& columns) {
-  std::string out;
-  if (row == nullptr) return out;
-  for (const auto& [name, value] : row->fields) {
-    if (columns.count(name) > 0) out += csv_cell(value) + ",";
-  }
-  return out;
-}
-
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
-                               const CompareQuery& query, Comparison& out) {
+                               const CompareQuery& query, const JobUnits& units, Comparison& out) {
   Values names = columns;
   for (const std::string& key : others(sweep.keys, columns)) names.push_back(key);
   const auto keeps = [&](const Job& job, const Row* row) {
@@ -102,14 +86,12 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
     return query.where == nullptr || query.where->holds(value_in_job, names);
   };
   const Values paired = others(sweep.keys, query.by);
-  const std::set<std::string> outcome_of = out.by_seed ? std::set<std::string>() : outcome_columns(sweep, columns);
   std::vector<Collected> groups;
   for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
     groups.push_back({group.values, {}, 0});
-    for (const auto& [job, row] : group.jobs) {
-      // Where seeds are not the units jobs are, and copies of a run are one.
-      JobOutcome outcome{value_of_job(row, query.metric, "--metric"),
-                         out.by_seed ? value_of(sweep, *job, "seed") : outcome_text(row, outcome_of)};
+    for (const JobResult& one : group.jobs) {
+      const auto& [job, row] = one;
+      JobOutcome outcome{value_of_job(row, query.metric, "--metric"), units.of(one)};
       if (!keeps(*job, row)) {
         out.left_out.add(outcome.value.fate);
         outcome.value = {Fate::left_out};
@@ -166,6 +148,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   UnitClusters of_a;
   UnitClusters of_b;
   UnitClusters differences;
+  double largest = 0.0;
   const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
     const Fate fate = std::min(one.value.fate, other.value.fate);
     if (fate == Fate::counted) {
@@ -174,6 +157,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
       of_a.add(unit, one.value.value);
       of_b.add(unit, other.value.value);
       differences.add(unit, one.value.value - other.value.value);
+      largest = std::max({largest, std::abs(one.value.value), std::abs(other.value.value)});
     } else if (fate != Fate::left_out || std::max(one.value.fate, other.value.fate) > Fate::without_partner) {
       out.lost.add(fate);
     }
@@ -185,7 +169,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   for (const auto& [pairing, outcome] : b) {
     if (a.count(pairing) == 0) add({{Fate::without_partner}, ""}, outcome);
   }
-  out.difference = mean_of_sample(differences.clusters());
+  out.difference = mean_of_sample(differences.clusters(), largest);
   if (ratio) out.ratio = bootstrap_ratio(sums_of(of_a.clusters()), sums_of(of_b.clusters()));
   out.test = signed_rank_test(cluster_means(of_a.clusters()), cluster_means(of_b.clusters()));
   return out;
@@ -263,6 +247,11 @@ std::vector<double> Comparison::means() const {
   return out;
 }
 
+bool Comparison::has_copies() const {
+  return !by_seed && std::any_of(groups.begin(), groups.end(),
+                                 [](const ComparedGroup& one) { return one.mean.clusters < one.mean.count; });
+}
+
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query) {
   if (results.empty()) {
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
@@ -274,9 +263,10 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());
   out.pairing = varying_keys(sweep, others(sweep.keys, query.by));
-  out.by_seed = seeds_are_units(sweep);
+  const JobUnits units(sweep, results);
+  out.by_seed = units.are_seeds();
   const Values paired = others(sweep.keys, query.by);
-  const std::vector<Collected> groups = collect(sweep, results, columns, query, out);
+  const std::vector<Collected> groups = collect(sweep, results, columns, query, units, out);
   for (const Collected& group : groups) out.groups.push_back(summarise(group, query.only_groups));
   check_values(out, sweep);
   std::vector<std::size_t> kept;

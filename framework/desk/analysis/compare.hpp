@@ -55,7 +55,7 @@ struct ComparedPair {
 struct Comparison {
   Column metric;
   std::vector<std::string> by;
-  bool by_seed = false;              ///< seeds are the units: see seeds_are_units()
+  bool by_seed = false;              ///< seeds are the units: see JobUnits
   std::vector<std::string> pairing;  ///< the other swept keys, if they vary: they are equal within a pair
   /// Of those keys the ones of which some compared groups have no value in common, so that they have no pairs.
   std::vector<std::string> apart;
@@ -63,6 +63,8 @@ struct Comparison {
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
   /// Of the groups that have one.
   std::vector<double> means() const;
+  /// Returns whether some units have several values though seeds are not the units: copies of a run.
+  bool has_copies() const;
 
   std::size_t compared = 0;  ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;

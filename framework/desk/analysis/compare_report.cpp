@@ -45,6 +45,15 @@ bool numbered(const Comparison& comparison) {
                      [](const ComparedGroup& group) { return group.name.size() > kLongest; });
 }
 
+/// Title of the column with the number of units: "" where each job is one.
+std::string units_title(const Comparison& comparison) {
+  return comparison.by_seed ? "seeds" : comparison.has_copies() ? "units" : "";
+}
+
+std::string units_cell(const Comparison& comparison, const MeanEstimate& mean) {
+  return units_title(comparison).empty() ? "" : std::to_string(mean.clusters);
+}
+
 std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
   if (numbered(comparison)) return fmt::format("{} - {}", pair.first + 1, pair.second + 1);
   return fmt::format("{} - {}", comparison.groups[pair.first].name, comparison.groups[pair.second].name);
@@ -60,8 +69,8 @@ std::string group_table(const Comparison& comparison, const Scale& scale) {
   const auto head = [&](Fate fate, const char* name) { return shown(fate) ? name : ""; };
   Lines lines{{numbers ? "#" : "", keys_text(comparison.by), "jobs", head(Fate::left_out, "left out"),
                head(Fate::failed, "failed"), head(Fate::unfinished, "unfinished"),
-               head(Fate::without_value, "no value"), "n", comparison.by_seed ? "seeds" : "", "mean [95 % interval]",
-               "median", "10 % to 90 %"}};
+               head(Fate::without_value, "no value"), "n", units_title(comparison), "mean [95 % interval]", "median",
+               "10 % to 90 %"}};
   for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
     const ComparedGroup& one = comparison.groups[i];
     const bool any = one.mean.count > 0;
@@ -69,8 +78,7 @@ std::string group_table(const Comparison& comparison, const Scale& scale) {
     lines.push_back(
         {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()), count(Fate::left_out),
          count(Fate::failed), count(Fate::unfinished), count(Fate::without_value), std::to_string(one.mean.count),
-         comparison.by_seed ? std::to_string(one.mean.clusters) : "", scale.estimate(one.mean),
-         any ? short_number(scale, one.median) : "-",
+         units_cell(comparison, one.mean), scale.estimate(one.mean), any ? short_number(scale, one.median) : "-",
          any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
   }
   return aligned(lines, "rlrrrrrrrrrr");
@@ -107,19 +115,19 @@ std::string ratio_text(const ComparedPair& pair) {
 std::string pair_table(const Comparison& comparison, const Scale& scale) {
   const bool many = comparison.pairs.size() > 1;
   const Words words = words_of(comparison.metric);
-  Lines lines{{"difference", "pairs", "lost", comparison.by_seed ? "seeds" : "", "mean [95 % interval]",
+  Lines lines{{"difference", "pairs", "lost", units_title(comparison), "mean [95 % interval]",
                comparison.ratios ? "ratio [95 % interval]" : "", fmt::format("{}/equal/{}", words.up, words.down), "p",
                many ? "p (Holm)" : "", "effect"}};
   for (const ComparedPair& pair : comparison.pairs) {
     const auto [up, down] = sides(comparison, pair.test);
     const std::string mean = with_interval(pair.difference.mean, pair.difference.interval,
                                            [&](double value) { return scale.difference(value); });
-    lines.push_back(
-        {pair_name(comparison, pair), std::to_string(pair.difference.count), std::to_string(pair.lost.all()),
-         comparison.by_seed ? std::to_string(pair.difference.clusters) : "", pair.difference.count > 0 ? mean : "-",
-         comparison.ratios ? ratio_text(pair) : "", fmt::format("{}/{}/{}", up, pair.test.equal, down),
-         p_text(pair.test.p), many ? p_text(pair.p_holm) : "",
-         pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
+    lines.push_back({pair_name(comparison, pair), std::to_string(pair.difference.count),
+                     std::to_string(pair.lost.all()), units_cell(comparison, pair.difference),
+                     pair.difference.count > 0 ? mean : "-", comparison.ratios ? ratio_text(pair) : "",
+                     fmt::format("{}/{}/{}", up, pair.test.equal, down), p_text(pair.test.p),
+                     many ? p_text(pair.p_holm) : "",
+                     pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
   }
   return aligned(lines, "lrrrrrrrrr");
 }
@@ -145,7 +153,7 @@ std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
 
 /// How few units there are, in words, where that matters.
 std::string few_note(const Comparison& comparison) {
-  std::size_t fewest = kLeastForBootstrap;
+  std::size_t fewest = kEnoughUnits;
   for (const ComparedGroup& one : comparison.groups) {
     if (one.mean.count > 0) fewest = std::min(fewest, one.mean.clusters);
   }
@@ -153,6 +161,39 @@ std::string few_note(const Comparison& comparison) {
     if (one.difference.count > 0) fewest = std::min(fewest, one.difference.clusters);
   }
   return few_words(fewest, comparison.by_seed, kLeastForInterval);
+}
+
+/// Which groups hold copies of runs, and which have no interval because their units are equal.
+std::string units_note(const Comparison& comparison) {
+  std::string out;
+  const auto equal = [&](const std::string& name, const MeanEstimate& mean, bool difference) {
+    if (mean.clusters < kLeastForInterval || mean.interval) return;
+    out +=
+        fmt::format("{}: equal {}in all {}: no interval, because equal values do not tell how far the next may lie\n",
+                    name, difference ? "differences " : "", units_words(mean.clusters, comparison.by_seed));
+  };
+  for (const ComparedGroup& one : comparison.groups) {
+    if (comparison.has_copies() && one.mean.clusters < one.mean.count)
+      out += copies_words(one.name, one.mean.count, one.mean.clusters);
+    equal(one.name, one.mean, false);
+  }
+  for (const ComparedPair& one : comparison.pairs) equal(pair_name(comparison, one), one.difference, true);
+  return out;
+}
+
+/// The swept keys of which some compared groups have no value in common, and what to do about it.
+std::string apart_note(const Comparison& comparison) {
+  std::vector<std::string> keys = comparison.apart;
+  const auto seed = std::find(keys.begin(), keys.end(), "seed");
+  std::string out;
+  if (seed != keys.end()) {
+    keys.erase(seed);
+    out += "groups that have no seed in common have no pairs: run them on the same seeds\n";
+  }
+  if (keys.empty()) return out;
+  return out + fmt::format("groups that have no {} in common have no pairs: '--by {},{}' compares them\n",
+                           keys_text(keys), one_line(fmt::format("{}", fmt::join(comparison.by, ","))),
+                           one_line(fmt::format("{}", fmt::join(keys, ","))));
 }
 
 std::string remarks(const Comparison& comparison) {
@@ -163,7 +204,7 @@ std::string remarks(const Comparison& comparison) {
     const std::string ends = left_out.words({Fate::failed, Fate::unfinished});
     out += (ends.empty() ? "" : ", of which " + ends) + "\n";
   }
-  out += few_note(comparison);
+  out += few_note(comparison) + units_note(comparison);
   if (groups < 2) out += "one group: there is nothing to compare it with\n";
   if (comparison.pairs.size() < groups * (groups - 1) / 2) {
     out += fmt::format("{} groups: each is compared with {} alone\n", groups,
@@ -176,12 +217,7 @@ std::string remarks(const Comparison& comparison) {
   }
   for (const ComparedPair& pair : comparison.pairs)
     out += lost_note(comparison, pair) + contrary_note(comparison, pair);
-  if (!comparison.apart.empty()) {
-    out += fmt::format("groups that have no {} in common have no pairs: '--by {},{}' compares them\n",
-                       keys_text(comparison.apart), one_line(fmt::format("{}", fmt::join(comparison.by, ","))),
-                       one_line(fmt::format("{}", fmt::join(comparison.apart, ","))));
-  }
-  return out;
+  return out + apart_note(comparison);
 }
 
 }  // namespace
@@ -250,6 +286,7 @@ std::vector<Row> compare_rows(const Comparison& comparison, const std::string& w
   const auto add_estimate = [&](Row& row, const MeanEstimate& mean) {
     row.add("n", static_cast<std::int64_t>(mean.count));
     row.add("seeds", comparison.by_seed ? std::optional(static_cast<std::int64_t>(mean.clusters)) : std::nullopt);
+    row.add("units", static_cast<std::int64_t>(mean.clusters));
     add_mean(row, "", mean);
   };
   for (const ComparedGroup& one : comparison.groups) {

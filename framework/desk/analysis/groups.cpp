@@ -58,9 +58,23 @@ std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std:
   return out;
 }
 
-bool seeds_are_units(const Sweep& sweep) {
-  const auto at = std::find(sweep.keys.begin(), sweep.keys.end(), "seed");
-  return at != sweep.keys.end() && !varying_keys(sweep, {"seed"}).empty();
+JobUnits::JobUnits(const Sweep& sweep, const std::vector<Row>& results)
+    : sweep_(sweep), are_seeds_(!varying_keys(sweep, {"seed"}).empty()) {
+  if (are_seeds_) return;
+  for (const std::string& name : columns_of(results)) {
+    const bool is_key = std::find(sweep.keys.begin(), sweep.keys.end(), name) != sweep.keys.end();
+    if (!is_key && name != "job" && name != "id" && !depends_on_machine(name)) compared_.insert(name);
+  }
+}
+
+std::string JobUnits::of(const JobResult& job) const {
+  if (are_seeds_) return value_of(sweep_, *job.job, "seed");
+  std::string out;
+  if (job.row == nullptr) return out;
+  for (const auto& [name, value] : job.row->fields) {
+    if (compared_.count(name) > 0) out += csv_cell(value) + ",";
+  }
+  return out;
 }
 
 void UnitClusters::add(const std::string& unit, double value) {

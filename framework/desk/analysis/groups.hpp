@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,12 +43,27 @@ std::vector<std::string> setting_keys(const Sweep& sweep);
 /// Those of `keys` that have more than one value in the sweep.
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
-/// Whether seeds are the units of statistics: the seed is swept and has more than one value. Jobs with the same seed
-/// share all that is drawn, so they are no independent observations of anything. Where there is but one seed, jobs are
-/// the units.
-bool seeds_are_units(const Sweep& sweep);
+/// The unit of statistics that each job belongs to: the one place with this rule. Seeds are the units if the seed is
+/// swept and has more than one value: jobs with the same seed share all that is drawn, so they are not independent
+/// observations. Otherwise jobs are the units, and copies of a run, which have the same results in all columns that do
+/// not depend on the machine, are one unit.
+class JobUnits {
+ public:
+  /// `sweep` must outlive the object.
+  JobUnits(const Sweep& sweep, const std::vector<Row>& results);
 
-/// Sorts values into the clusters that their units name, in the order in which units come first.
+  bool are_seeds() const { return are_seeds_; }
+
+  /// Returns the name of the job's unit, "" for a job that has not ended where jobs are the units.
+  std::string of(const JobResult& job) const;
+
+ private:
+  const Sweep& sweep_;
+  bool are_seeds_ = false;
+  std::set<std::string> compared_;  ///< columns, where jobs are the units
+};
+
+/// Sorts values into the clusters that their units (JobUnits) name, in the order in which units come first.
 class UnitClusters {
  public:
   void add(const std::string& unit, double value);

@@ -25,7 +25,7 @@ Column make_key(const std::string& name, const std::vector<std::string>& columns
 }
 
 /// The jobs of one setting, counted, and their means.
-Setting make_setting(const Sweep& sweep, const JobGroup& group, const Pareto& pareto) {
+Setting make_setting(const JobGroup& group, const JobUnits& units, const Pareto& pareto) {
   Setting out;
   out.values = group.values;
   out.first_job = static_cast<std::size_t>(group.jobs.front().job->index);
@@ -37,7 +37,7 @@ Setting make_setting(const Sweep& sweep, const JobGroup& group, const Pareto& pa
     const Fate fate = std::min(paid.fate, missed.fate);
     out.counts.add(fate);
     if (fate != Fate::counted) continue;
-    const std::string unit = pareto.by_seed ? value_of(sweep, *one.job, "seed") : fmt::format("job {}", one.job->index);
+    const std::string unit = units.of(one);
     costs.add(unit, paid.value);
     errors.add(unit, missed.value);
   }
@@ -84,10 +84,11 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
                 "give it to --error");
   }
   pareto.keys = setting_keys(sweep);
-  pareto.by_seed = seeds_are_units(sweep);
+  const JobUnits units(sweep, results);
+  pareto.by_seed = units.are_seeds();
   const std::vector<std::string> differing = varying_keys(sweep, pareto.keys);
   for (const JobGroup& group : group_jobs(sweep, results, pareto.keys)) {
-    Setting setting = make_setting(sweep, group, pareto);
+    Setting setting = make_setting(group, units, pareto);
     setting.name = key_words(sweep, *group.jobs.front().job, differing, true);
     if (setting.name.empty()) setting.name = "the only setting";
     pareto.jobs += setting.counts.all();

@@ -19,7 +19,7 @@ struct Setting {
   std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
   FateCounts counts;                ///< without a value: of cost or error
-  MeanEstimate cost;                ///< over the jobs that are done and have both values; clusters: their seeds
+  MeanEstimate cost;                ///< over the jobs that are done and have both values; clusters: their units
   MeanEstimate error;
   /// Its number on the front, from 1 in the order of cost; 0 if it is not on it: another complete one is at least as
   /// good in both and better in one. Equal ones are on it together or not at all.
@@ -37,7 +37,7 @@ struct Pareto {
   std::vector<Setting> settings;  ///< in the order of cost, those without a value last
   int jobs = 0;
   int unfinished = 0;
-  bool by_seed = false;  ///< seeds are the units: see seeds_are_units()
+  bool by_seed = false;  ///< seeds are the units: see JobUnits
 
   bool more_is_better() const { return error.better == RecordField::Better::more; }
 };
@@ -52,7 +52,7 @@ double read_bound(const Pareto& pareto, const std::string& within);
 
 /// The complete setting of the least mean cost whose interval keeps to `bound` at its cautious end: the upper one, or
 /// the lower where more is better. Of equal costs the one with the better error. Null if there is none. A setting of
-/// one seed has no interval and is never chosen.
+/// one seed, or of equal values, has no interval and is never chosen.
 const Setting* cheapest_within(const Pareto& pareto, double bound);
 
 /// The complete setting whose interval ends best, whatever it costs. Null if none has an interval.

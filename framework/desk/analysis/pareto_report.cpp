@@ -25,7 +25,7 @@ Scale scale_of(const Pareto& pareto, const Column& key, Field field) {
 
 /// The fewest and the most units that a setting with a value has.
 std::pair<std::size_t, std::size_t> seeds_of(const Pareto& pareto) {
-  std::size_t fewest = kLeastForBootstrap;
+  std::size_t fewest = kEnoughUnits;
   std::size_t most = 0;
   for (const Setting& one : pareto.settings) {
     if (one.error.clusters == 0) continue;
@@ -68,6 +68,16 @@ std::string pareto_table(const Pareto& pareto) {
       pareto.by_seed ? fmt::format("mean over {}", seeds_words(pareto)) : "the seed is not swept: mean over jobs",
       pareto.more_is_better() ? "more" : "less", pareto.error.name);
   out += few_words(seeds_of(pareto).first, pareto.by_seed, 2);
+  bool equal = false;
+  for (const Setting& one : pareto.settings) {
+    if (!pareto.by_seed && one.error.clusters < one.error.count)
+      out += copies_words(one.name, one.error.count, one.error.clusters);
+    equal = equal || (one.error.clusters > 1 && !one.error.interval) || (one.cost.clusters > 1 && !one.cost.interval);
+  }
+  if (equal) {
+    out += fmt::format("no interval: all {} are equal, which does not tell how far the next may lie\n",
+                       pareto.by_seed ? "seeds" : "jobs");
+  }
   const bool all_complete =
       std::all_of(pareto.settings.begin(), pareto.settings.end(), [](const Setting& one) { return one.complete(); });
   if (!all_complete) out += "settings with jobs that failed, are missing or have no value are not compared\n";

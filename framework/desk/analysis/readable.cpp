@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/readable.hpp"
 
-#include "analysis/bootstrap.hpp"
 #include "config/quantity.hpp"
 
 #include <fmt/format.h>
@@ -34,16 +33,20 @@ std::string units_words(std::size_t units, bool seeds) {
   return fmt::format("{} {}{}", units, seeds ? "seed" : "job", units == 1 ? "" : "s");
 }
 
+std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units) {
+  return fmt::format("{}: {} of {} jobs are copies of another run, which counts once in intervals and p\n", name,
+                     jobs - units, jobs);
+}
+
 std::string few_words(std::size_t units, bool seeds, std::size_t least) {
-  if (units >= kLeastForBootstrap) return {};
+  if (units >= kEnoughUnits) return {};
   if (units < least) {
-    return fmt::format("only {}: too few for an interval; run {} or more\n", units_words(units, seeds),
-                       kLeastForBootstrap);
+    return fmt::format("only {}: too few for an interval; run {} or more\n", units_words(units, seeds), kEnoughUnits);
   }
   return fmt::format(
       "only {}: an interval of so few (Student's t) misses the true mean more often than 5 times in 100; run {} or "
       "more\n",
-      units_words(units, seeds), kLeastForBootstrap);
+      units_words(units, seeds), kEnoughUnits);
 }
 
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits) {

@@ -39,9 +39,15 @@ std::string with_interval(double value, const std::optional<MeanInterval>& ends,
 /// "5 seeds", "1 job": units of statistics.
 std::string units_words(std::size_t units, bool seeds);
 
+/// Fewer seeds, or jobs, are called few: their intervals miss the true mean clearly more often than 5 times in 100.
+inline constexpr std::size_t kEnoughUnits = 10;
+
 /// A line that says how few seeds, or jobs, a mean is over and what that means for its interval; "" where they are not
 /// few. `least`: from so many on there is an interval.
 std::string few_words(std::size_t units, bool seeds, std::size_t least);
+
+/// A line that tells how many of a group's jobs are copies of a run, where jobs are the units.
+std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
 
 /// For values of these sizes: millimetres and milliseconds if all are below one, and `digits` digits of the smallest
 /// that is not 0, but at most four decimals.

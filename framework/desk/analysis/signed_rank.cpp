@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/signed_rank.hpp"
 
+#include "analysis/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -48,7 +50,6 @@ double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_
 }  // namespace
 
 SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<double>& second) {
-  constexpr double kRounding = 1e-12;
   SignedRank out;
   std::vector<Difference> ranked;
   for (std::size_t i = 0; i < first.size(); ++i) {

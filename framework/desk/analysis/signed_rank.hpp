@@ -26,7 +26,7 @@ struct SignedRank {
   std::optional<double> effect;
 };
 
-/// Of as many finite values in each, paired by their index. What differs by less than 1e-12 of the values is equal:
+/// Of as many finite values in each, paired by their index. What differs by less than kRounding of the values is equal:
 /// rounding decides no rank. Exact with ties and without, by the distribution of the rank sum under random signs of
 /// the differences; beyond kExactSignedRanks the normal approximation with the variance that ties leave (Hollander,
 /// Wolfe and Chicken 2014, Nonparametric statistical methods, section 3.1), without continuity correction.

@@ -59,9 +59,19 @@ std::vector<double> cluster_influences(const Clusters& clusters, double mean) {
   return out;
 }
 
-MeanEstimate estimate_mean(const Clusters& clusters) {
+bool all_equal(const Clusters& clusters, double scale) {
+  if (clusters.empty()) return true;
+  for (const std::vector<double>& one : clusters) {
+    for (const double value : one) scale = std::max(scale, std::abs(value));
+  }
+  const std::vector<double> means = cluster_means(clusters);
+  const auto [least, most] = std::minmax_element(means.begin(), means.end());
+  return *most - *least <= kRounding * scale;
+}
+
+MeanEstimate estimate_mean(const Clusters& clusters, double scale) {
   MeanEstimate out{count_of(clusters), clusters.size(), mean_of_clusters(clusters), std::nullopt};
-  if (clusters.size() < 2) return out;
+  if (clusters.size() < 2 || all_equal(clusters, scale)) return out;
   const auto n = static_cast<double>(clusters.size());
   double squares = 0.0;
   for (const double one : cluster_influences(clusters, out.mean)) squares += one * one;

@@ -26,6 +26,9 @@ Clusters each_alone(const std::vector<double>& values);
 /// The means of the clusters, in their order. Equal values are their own mean, to the bit.
 std::vector<double> cluster_means(const Clusters& clusters);
 
+/// Values that differ by less than this share of the largest one are equal: rounding decides no rank and no interval.
+inline constexpr double kRounding = 1e-12;
+
 /// The mean of a sample, and the two-sided 95 % interval of what it estimates.
 struct MeanEstimate {
   std::size_t count = 0;     ///< of values
@@ -39,10 +42,15 @@ struct MeanEstimate {
 /// do.
 std::vector<double> cluster_influences(const Clusters& clusters, double mean);
 
+/// Returns whether the means of all clusters are equal but for kRounding. Equal means do not tell how far the next one
+/// may lie, so there is no interval of them, however many they are. `scale`: the largest absolute value of the numbers
+/// that the values were computed from, where it is larger than theirs (differences of large numbers).
+bool all_equal(const Clusters& clusters, double scale = 0.0);
+
 /// The mean of finite values, each cluster with the weight of its values, and Student's interval with clusters - 1
 /// degrees of freedom; the standard error is that of a ratio estimator (Cochran 1977, Sampling techniques, section
-/// 9A.1). One cluster has no interval: nothing is known of the spread. Equal values have one without width.
-MeanEstimate estimate_mean(const Clusters& clusters);
+/// 9A.1). No interval of one cluster, nor of clusters that are all_equal().
+MeanEstimate estimate_mean(const Clusters& clusters, double scale = 0.0);
 
 /// The factor of the standard error in that interval: 12.706 for one degree of freedom, 1.960 for infinitely many.
 /// `degrees` >= 1.

@@ -72,6 +72,15 @@ Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResul
   return columns;
 }
 
+/// For each of `jobs` the number of its unit of statistics.
+Json json_of_units(const Sweep& sweep, const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
+  const JobUnits units(sweep, results);
+  std::map<std::string, std::size_t> numbers;
+  std::vector<std::size_t> of_job;
+  for (const JobResult& one : jobs) of_job.push_back(numbers.emplace(units.of(one), numbers.size()).first->second);
+  return of_job;
+}
+
 /// What became of a job: from its row, or, without one, from its directory as it is now.
 RunStatus standing_of(const Row* row, const fs::path& directory) {
   if (row != nullptr)
@@ -198,6 +207,7 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
            {"keys", keys},
            {"jobs", jobs},
+           {"units", json_of_units(sweep, results, shown)},
            {"columns", json_of_columns(results, shown)},
            {"first_looks", first_looks()},
            {"factors", interval_factors(sweep.jobs.size())},

@@ -91,11 +91,15 @@ function meansWords(sweep, settings) {
   const kFew = 10;
   const rest = "numbered: no other setting is at least as good in both.";
   const counts = settings.map((one) => one.error.clusters);
-  if (!sweep.seeds || counts.length === 0) return `The seed is not swept: means over the jobs of each setting; ${rest}`;
+  const equal = settings.some(({ cost, error }) => [cost, error].some((one) => one.clusters > 1 && one.half === null))
+    ? " No bar: all values are equal, which does not tell how far the next may lie."
+    : "";
+  const copies = settings.some(({ error }) => !sweep.seeds && error.clusters < error.count) ? " Copies of a run count once." : "";
+  if (!sweep.seeds || counts.length === 0) return `The seed is not swept: means over the jobs of each setting; ${rest}${copies}${equal}`;
   const [fewest, most] = extent(counts);
-  const over = fewest === most ? sweep.seedWords(most) : `${fewest} to ${sweep.seedWords(most)}`;
+  const over = fewest === most ? many(most, "seed") : `${fewest} to ${many(most, "seed")}`;
   const few = fewest < kFew ? ` Of fewer than ${kFew} seeds such an interval misses the true mean more often than 5 times in 100.` : "";
-  return `Means over ${over} with 95 % intervals (Student's t); ${rest}${few}`;
+  return `Means over ${over} with 95 % intervals (Student's t); ${rest}${few}${equal}`;
 }
 
 function sayOfFront(sweep, choice, settings, placed) {

@@ -65,14 +65,15 @@ class SweepData {
     return jobs.map((job) => this.number(column, job)).filter((value) => value !== null);
   }
 
-  /// What a job counts as in statistics: its seed, or, where there is but one, the job.
-  seedOf(job) {
-    return this.seeds ? this.seeds.of_job[job.place] : job.place;
+  /// The number of the unit that a job is, or belongs to, in statistics (JobUnits in analysis/groups.hpp).
+  unit(job) {
+    return this.units[job.place];
   }
 
-  /// "20 seeds", or "" where the seed is not swept.
-  seedWords(clusters) {
-    return this.seeds ? many(clusters, "seed") : "";
+  /// "20 seeds"; where the seed is not swept "12 units, copies count once" of 24 jobs with copies, "" without any.
+  unitWords(clusters, jobs) {
+    if (this.seeds) return many(clusters, "seed");
+    return clusters < jobs ? `${many(clusters, "unit")}, copies count once` : "";
   }
 
   /// The value of a key as written; plugins without such an option have none.
@@ -113,14 +114,17 @@ const meanOf = (values) => {
   return least === most ? least : values.reduce((sum, one) => sum + one / values.length, 0);
 };
 
+/// As in analysis/statistics.hpp.
+const kRounding = 1e-12;
+
 /// Mean, standard deviation (null of one value) and half the width of the mean's 95 % interval, as the program
-/// computes them, times `unit`. `seeds` has the seed of each value: those of one seed are one cluster, and `clusters`
-/// counts them (SweepData.seedOf).
-function estimate(values, seeds, factors, unit = 1) {
+/// computes them, times `unit`. `units` has the unit of each value (SweepData.unit): those of one unit are one cluster, and
+/// `clusters` counts them. `half` is null of one cluster and of clusters with equal means, as in estimate_mean().
+function estimate(values, units, factors, unit = 1) {
   const count = values.length;
   if (count === 0) return { count, clusters: 0, mean: null, deviation: null, half: null };
   const found = new Map();
-  values.forEach((value, i) => (found.has(seeds[i]) ? found.get(seeds[i]).push(value) : found.set(seeds[i], [value])));
+  values.forEach((value, i) => (found.has(units[i]) ? found.get(units[i]).push(value) : found.set(units[i], [value])));
   const lists = [...found.values()];
   const clusters = lists.length;
   const even = lists.every((one) => one.length === lists[0].length);
@@ -128,7 +132,9 @@ function estimate(values, seeds, factors, unit = 1) {
   if (count < 2) return { count, clusters, mean: mean * unit, deviation: null, half: null };
   const square = (value) => value * value;
   const deviation = Math.sqrt(values.reduce((sum, one) => sum + square(one - mean), 0) / (count - 1)) * unit;
-  if (clusters < 2) return { count, clusters, mean: mean * unit, deviation, half: null };
+  const [least, most] = extent(lists.map(meanOf));
+  const largest = Math.max(...extent(values).map(Math.abs));
+  if (clusters < 2 || most - least <= kRounding * largest) return { count, clusters, mean: mean * unit, deviation, half: null };
   const pulls = lists.map((one) => (meanOf(one) - mean) * (one.length / (count / clusters)));
   const variance = pulls.reduce((sum, one) => sum + square(one), 0) / (clusters - 1);
   const factor = factors[Math.min(clusters - 2, factors.length - 1)];
@@ -142,8 +148,8 @@ function settingsOf(sweep, cost, error) {
   const sign = sweep.moreIsBetter(error) ? -1 : 1;
   const settings = sweep.groups(sweep.settings).map(({ jobs }) => {
     const valued = jobs.filter((job) => job.state === "done" && sweep.raw(cost, job) !== null && sweep.raw(error, job) !== null);
-    const seeds = valued.map((job) => sweep.seedOf(job));
-    const over = (column) => [valued.map((job) => sweep.raw(column, job)), seeds, sweep.factors];
+    const units = valued.map((job) => sweep.unit(job));
+    const over = (column) => [valued.map((job) => sweep.raw(column, job)), units, sweep.factors];
     return {
       words: sweep.words(jobs[0]),
       jobs,

@@ -61,14 +61,14 @@ function drawCells(sweep, { across, up, metric }) {
   const keys = [across, up].filter((name, i, all) => name && all.indexOf(name) === i).map((name) => sweep.key(name));
   const hover = (jobs, { count, clusters, mean, deviation }) => {
     const spread = deviation === null ? "" : ` ± ${shown(deviation)}`;
-    const seeds = (clusters) => (sweep.seeds ? `, ${sweep.seedWords(clusters)}` : "");
+    const units = count > 0 ? sweep.unitWords(clusters, count) : "";
     const lines = keys.map((key) => plain(brief(`${key.name}: ${sweep.text(key, jobs[0])}`, 80)));
-    const value = count > 0 ? `mean ${shown(mean)}${spread} of ${count} values${seeds(clusters)}` : "no value";
+    const value = count > 0 ? `mean ${shown(mean)}${spread} of ${count} values${units ? `, ${units}` : ""}` : "no value";
     return [...lines, `${titleOf(metric)}: ${value}`, sweep.ended(jobs)].join("<br>");
   };
   const cells = sweep.groups(keys).map(({ places, jobs }) => {
     const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
-    const found = estimate(sweep.numbers(metric, valued), valued.map((job) => sweep.seedOf(job)), sweep.factors);
+    const found = estimate(sweep.numbers(metric, valued), valued.map((job) => sweep.unit(job)), sweep.factors);
     return { ...found, column: places[0], row: places[1], hover: hover(jobs, found) };
   });
   // All other keys are taken together.
